@@ -2,7 +2,6 @@
 
 from argparse import ArgumentParser, Namespace
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -15,12 +14,14 @@ from talbot.models.parameters import STANDARD, CameraParameters
 
 # Life size: disparities of more than a pixel from 2.2 to 4.6 m, in which the phase turns more than once
 CAMERA = CameraParameters(focal_length=25e-3, focus=3.0, scale=1.0)
+FIXED = {"mode": "tof", "views": "auto"}  # of the capture: as many as `capture` takes
+STEPS = ("setup", "capture", "build", "rtl", "decode", "field", "unwrap", "report")
 F_MOD, CONTRAST, AMBIENT = 100e6, 0.7, 0.2
 
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot depth`: texts, checked by `run`."""
-    reading.add_arguments(parser, "depth", "cornell", "tof", CAMERA)
+    reading.add_arguments(parser, "depth", "cornell", FIXED, CAMERA)
     add = parser.add_argument
     add("--f-mod", help=f"modulation frequency, 1e5..1e9 Hz (default: {F_MOD:g}, or of the sensor file)")
     add("--contrast", help=f"demodulation contrast, 0.01..1 (default: {CONTRAST:g}, or of the sensor file)")
@@ -33,7 +34,9 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Measure one depth field and print the figures; 1 where the chip and the golden model differ."""
-    from .job import STEPS, run
+    from . import page  # Matplotlib: not before it is needed
+    from .capture import capture
+    from .measure import Depth, read_depth
 
     own = STANDARD.electrical
     ours = replace(own, f_mod=F_MOD, contrast=CONTRAST, ambient_current=AMBIENT * own.white_current)
@@ -49,8 +52,12 @@ def run(options: Namespace) -> int:
     camera = camera_of(options, sensor.optics.camera)
     sensor = replace(sensor, optics=replace(sensor.optics, camera=camera), electrical=replace(e, **given))
     asked, typed = reading.asked(options, "depth", add_arguments, sensor)
-    job = partial(run, asked, prior_asked(options, asked.noise), golden=options.golden, arguments=typed)
-    return reading.told(asked, typed, STEPS, job, _print)
+    prior = prior_asked(options, asked.noise)
+
+    def found(note: reading.Note) -> Depth:
+        return read_depth(capture(asked, note, options.golden), prior, note)
+
+    return reading.run(asked, typed, STEPS, found, page, _print)
 
 
 def _print(s: dict[str, Any], folder: Path) -> None:

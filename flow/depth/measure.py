@@ -11,10 +11,11 @@ from scipy.ndimage import maximum_filter
 
 from talbot.flow.frame.reading import full, rms
 from talbot.flow.frame.result import PHASE_TURN, GoldenResult
+from talbot.flow.lightfield.fields import estimator_of
 from talbot.models.digital.phase import phase_samples
 from talbot.models.pixel.time_of_flight import SPEED_OF_LIGHT, demodulate
 from talbot.models.reconstruct import white_sum
-from talbot.models.reconstruct.bayes import FieldEstimator, FieldPrior
+from talbot.models.reconstruct.bayes import FieldPrior
 from talbot.models.reconstruct.depth_field import DepthField, depth_field, foreground, refocused, unwrap
 from talbot.models.scene import Sampling, camera
 
@@ -26,7 +27,6 @@ BEST = "field"
 FAINT = 3.0  # codes: what has a smaller amplitude has no phase
 LOOSE = 0.2  # px per view step: no disparity is surer
 EDGE = 2  # steps of the disparities that are tried from their ends: what is nearer may be beyond
-PUPIL = 7  # points across the pupil at which the estimator takes the scene
 CODES = 255
 
 
@@ -58,7 +58,7 @@ def read_depth(frames: DepthFrames, prior: FieldPrior, note: Callable[[str], Non
     diodes = frames.diodes()
     over = _beside(full(diodes, (0, 1)), prior.margin)
     start = perf_counter()
-    estimator = FieldEstimator(sensor, scene.views, prior, scene.views if scene.render is None else PUPIL)
+    estimator = estimator_of(result, prior)
     field = depth_field(estimator, diodes / white)
     seconds = perf_counter() - start
     ideal = depth_field(estimator, frames.diodes(noisy=False) / white)

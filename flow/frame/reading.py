@@ -20,6 +20,7 @@ from talbot.models.reconstruct import FULL
 from . import report
 from .command import add_frame_arguments, arguments_of, name_of, request_of, tell_replaced, typed_of
 from .figures import mismatches
+from .job import golden_result, simulate_frame
 from .request import FrameRequest
 from .result import FrameResult, GoldenResult
 
@@ -40,13 +41,20 @@ class Found(Protocol):
 
 
 def add_arguments(
-    parser: ArgumentParser, command: str, scene: str, mode: str, camera: CameraParameters = CameraParameters()
+    parser: ArgumentParser,
+    command: str,
+    scene: str,
+    fixed: Mapping[str, Any],
+    camera: CameraParameters = CameraParameters(),
 ) -> None:
-    """Options of the scene, the sensor and the frame: texts, checked by `asked`. camera: see `add_frame_arguments`."""
+    """Options of the scene, the sensor and the frame: texts, checked by `asked`.
+
+    fixed, with `WHOLE`, and camera: see `add_frame_arguments`.
+    """
     add = parser.add_argument
     add("--scene", default=scene, help=f"name of a scene, an image, or a light field, as for talbot sim ({scene})")
     add("--depth", help="depth file for --scene (models/scene/README.md)")
-    add_frame_arguments(parser, WHOLE | {"mode": mode}, camera)
+    add_frame_arguments(parser, WHOLE | dict(fixed), camera)
     add("--golden", action="store_true", help="by the golden chip alone, without its Verilog")
     add("--out", help=f"folder for the results (default: build/{command}/<scene>, as of sim)")
 
@@ -63,42 +71,36 @@ def asked(
     return request_of(options, sensor), typed
 
 
-def told(
+def frame_of(request: FrameRequest, note: Note, golden: bool) -> GoldenResult:
+    """The frame by the chip's Verilog, or by the golden chip alone. Raises ParameterError, ToolError."""
+    return (golden_result if golden else simulate_frame)(request, note)
+
+
+def run(
     request: FrameRequest,
-    arguments: dict[str, Any],
+    arguments: Mapping[str, Any],
     steps: Sequence[str],
-    run: Callable[[Note], dict[str, Any]],
+    found: Callable[[Note], Found],
+    page: ModuleType,
     show: Callable[[dict[str, Any], Path], None],
 ) -> int:
-    """Run with progress and show the figures; 1 where the chip and the golden model differ."""
+    """Compute ``found`` with progress, write its page and summary.json, all or nothing, and show its figures.
+
+    Returns 1 where the chip and the golden model differ. arguments: of the command line, kept in the summary.
+    Raises ParameterError, ToolError, OSError.
+    """
+    check_folder("out", request.folder)
     before = arguments_of(request.folder)
     with Steps(steps, lines=True) as progress:
-        summary = run(progress.note)
+        done = found(progress.note)
+        progress.note("report")
+        summary = done.summary | {"arguments": dict(arguments)}
+        with staged(request.folder, page.NAMES) as part:
+            page.write(part, done)
+            (part / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n")
     show(summary, request.folder)
-    tell_replaced(before, arguments)
+    tell_replaced(before, dict(arguments))
     return int(differs(summary))
-
-
-def write(
-    folder: Path,
-    names: Sequence[str],
-    found: Callable[[], Found],
-    page: ModuleType,
-    note: Note,
-    arguments: Mapping[str, Any] | None = None,
-) -> dict[str, Any]:
-    """Compute ``found`` and write its page and summary.json into ``folder``, all or nothing; returns the summary.
-
-    arguments: of the command line, kept in the summary.
-    """
-    check_folder("out", folder)
-    done = found()
-    note("report")
-    with staged(folder, names) as part:
-        page.write(part, done)
-        summary = done.summary | {"arguments": dict(arguments or {})}
-        (part / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n")
-    return summary
 
 
 def about(result: GoldenResult) -> dict[str, Any]:

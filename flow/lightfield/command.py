@@ -1,7 +1,6 @@
 """The light field and the depth of a scene from a raw frame of the chip, every method beside the free baselines."""
 
 from argparse import ArgumentParser, Namespace
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +13,7 @@ if TYPE_CHECKING:
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot lightfield`: texts, checked by `run`."""
-    reading.add_arguments(parser, "lightfield", "motorcycle", "raw")
+    reading.add_arguments(parser, "lightfield", "motorcycle", {"mode": "raw"})
     add_prior_arguments(parser)
 
 
@@ -37,12 +36,18 @@ def prior_asked(options: Namespace, noise: float) -> "FieldPrior":
 
 def run(options: Namespace) -> int:
     """Read one frame back and print the figures; 1 where the chip and the golden model differ."""
-    from .job import STEPS, run
+    from . import page  # Matplotlib: not before it is needed
+    from .fields import Fields, read_back
+    from .methods import METHODS
 
     asked, typed = reading.asked(options, "lightfield", add_arguments)
     prior = prior_asked(options, asked.noise)
-    job = partial(run, asked, prior, golden=options.golden, arguments=typed)
-    return reading.told(asked, typed, STEPS, job, _print)
+
+    def found(note: reading.Note) -> Fields:
+        return read_back(reading.frame_of(asked, note, options.golden), prior, note)
+
+    steps = "setup", "capture", "build", "rtl", "decode", *METHODS, "report"
+    return reading.run(asked, typed, steps, found, page, _print)
 
 
 def _print(s: dict[str, Any], folder: Path) -> None:

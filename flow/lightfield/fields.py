@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from talbot.flow.frame.reading import about
+from talbot.flow.frame.reading import about, rms
 from talbot.flow.frame.result import GoldenResult
 from talbot.models.capture import CaptureOperator, cells
 from talbot.models.parameters import ParameterError
@@ -41,7 +41,7 @@ def read_back(result: GoldenResult, prior: FieldPrior, note: Callable[[str], Non
 
     Raises ParameterError for a frame that does not read all of the array.
     """
-    estimator, scene = _estimator(result, prior), result.exposed.scene
+    estimator, scene = estimator_of(result, prior), result.exposed.scene
     truth = np.asarray(scene.full_light_field, np.float32)
     sent, ideal = (_pair(result, samples) for samples in (result.decoded.samples, result.exposed.ideal))
     operator, reached = CaptureOperator(result.sensor), _reached(result)
@@ -66,7 +66,7 @@ def estimate(result: GoldenResult, method: str = BEST, prior: FieldPrior | None 
 
     Raises ParameterError as `read_back`.
     """
-    estimator = _estimator(result, prior or prior_of(result.request.noise))
+    estimator = estimator_of(result, prior or prior_of(result.request.noise))
     found = measure(method, estimator, CaptureOperator(result.sensor), _pair(result, result.decoded.samples))[0]
     return found._replace(light_field=found.light_field * _reached(result))
 
@@ -76,7 +76,8 @@ def prior_of(noise: float, **rest: Any) -> FieldPrior:
     return FieldPrior(noise=FieldPrior.noise * max(noise, QUIET), **rest)
 
 
-def _estimator(result: GoldenResult, prior: FieldPrior) -> FieldEstimator:
+def estimator_of(result: GoldenResult, prior: FieldPrior) -> FieldEstimator:
+    """The estimator for a frame that reads all of the array. Raises ParameterError for another."""
     if not result.decoded.read.all():
         raise ParameterError("window, types, decimation = a part of the array: must be all, for a light field")
     scene = result.exposed.scene
@@ -114,12 +115,12 @@ def depth_figures(result: GoldenResult, found: Estimate) -> dict[str, float | No
     if scene.disparity is None or not sure.any():
         return out
     error = np.abs(found.disparity - scene.disparity)[sure]
-    out["disparity_rms_px"] = float(np.sqrt(np.mean(error**2)))
+    out["disparity_rms_px"] = rms(error)
     out["disparity_median_px"] = float(np.median(error))
     out["disparity_rms_constant_px"] = float(np.std(scene.disparity[sure]))
     if scene.depth is not None:
         depth = depth_map(result, found)
-        out["depth_rms_m"] = float(np.sqrt(np.mean((depth - scene.depth)[sure] ** 2)))
+        out["depth_rms_m"] = rms((depth - scene.depth)[sure])
         out["depth_rms_constant_m"] = float(np.std(scene.depth[sure]))
         out["range_m"] = float(np.ptp(scene.depth))
     return out

@@ -1,7 +1,6 @@
 """Polarization of a scene from a raw frame of the chip, and its highlights, beside what costs nothing."""
 
 from argparse import ArgumentParser, Namespace
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -9,22 +8,28 @@ from talbot.flow.frame import arguments as text
 from talbot.flow.frame import reading
 from talbot.flow.frame.reading import number
 
+STEPS = ("setup", "capture", "build", "rtl", "decode", "polarization", "report")
+
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot polar`: texts, checked by `run`."""
-    reading.add_arguments(parser, "polar", "specular", "raw")
+    reading.add_arguments(parser, "polar", "specular", {"mode": "raw"})
     words = "polarized light of a highlight, of white: what has more is one, 0..16"
     parser.add_argument("--highlight", default="0.1", help=words)
 
 
 def run(options: Namespace) -> int:
     """Read one frame and print the figures; 1 where the chip and the golden model differ."""
-    from .job import STEPS, run
+    from . import page  # Matplotlib: not before it is needed
+    from .measure import PolarFrame, read_polarization
 
     highlight = text.real("highlight", options.highlight, 0, 16)
     asked, typed = reading.asked(options, "polar", add_arguments)
-    job = partial(run, asked, highlight, golden=options.golden, arguments=typed)
-    return reading.told(asked, typed, STEPS, job, _print)
+
+    def found(note: reading.Note) -> PolarFrame:
+        return read_polarization(reading.frame_of(asked, note, options.golden), highlight, note)
+
+    return reading.run(asked, typed, STEPS, found, page, _print)
 
 
 def _print(s: dict[str, Any], folder: Path) -> None:

@@ -99,3 +99,9 @@ def test_a_light_field_with_a_depth_of_its_own(tmp_path):
     words = f"--scene={tmp_path / 'own.npz'}", "--rows=24", "--cols=36", "--golden", "--f-mod=5e7"
     s = measured(tmp_path / "out", *words)
     assert s["range_m"] == pytest.approx(np.ptp(depth)) and s["depth_rms_m"] < 0.1 < s["baselines"]["constant"]["rms_m"]
+
+
+def test_what_the_capture_does_not_ask_is_refused(capsys, tmp_path):
+    with pytest.raises(SystemExit, match="2"):
+        main(["depth", "--views=3", f"--out={tmp_path / 'out'}"])
+    assert "unrecognized arguments: --views=3" in capsys.readouterr().err and not (tmp_path / "out").exists()

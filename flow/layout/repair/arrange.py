@@ -8,7 +8,7 @@ import numpy.typing as npt
 from coloquinte import CellOrientation, CellRowPolarity, ColoquinteParameters, Rectangle, Row
 
 from ..netlist.placed import MIRRORED
-from .repair import MORE, Plan, length
+from .repair import MORE, Plan
 
 FULL = 0.95  # of the rows, at most: cells, and what is kept free beside each
 SEED, TURNS = 1, 2  # the room beside a cell follows from the wires of the turn before
@@ -113,9 +113,3 @@ def connections(plan: Plan, fixed: Collection[str], names: Collection[str]) -> d
             nets.setdefault(net, []).append(numbers.get(name, plan.point(name)))
     tied = {net for name in fixed for net in plan.instances[name].pins.values()}
     return {net: ends for net, ends in nets.items() if net not in tied and len(ends) > 1}
-
-
-def wire_um(plan: Plan) -> float:
-    """Estimated length of all nets, um."""
-    ends = connections(plan, (), ())
-    return sum(length([end for end in points if not isinstance(end, int)]) for points in ends.values())

@@ -74,14 +74,17 @@ class Plan:
         pins = sum(drives.inputs.get((self.instances[name].cell, pin), 0.0) for name, pin in sinks)
         return length(ends) * self.femtofarad_um / 1000 + pins + self.outside.get(net, 0.0)
 
-    def wires(self, netlist: Netlist) -> dict[str, tuple[float, float]]:
-        """(fF, ohm) of every net as it is placed now."""
+    def lengths(self) -> dict[str, float]:
+        """Estimated um of every net as it is placed now."""
         ends: dict[str, list[Point]] = {net: [at] for net, at in self.ports.items()}
-        for instance in netlist.instances:
+        for name, instance in self.instances.items():
             for net in instance.pins.values():
-                ends.setdefault(net, []).append(self.point(instance.name))
-        lengths = {net: length(points) for net, points in ends.items()}
-        return {net: (self.femtofarad_um * um, OHM_UM * um + VIAS_OHM) for net, um in lengths.items()}
+                ends.setdefault(net, []).append(self.point(name))
+        return {net: length(points) for net, points in ends.items()}
+
+    def wires(self) -> dict[str, tuple[float, float]]:
+        """(fF, ohm) of every net as it is placed now."""
+        return {net: (self.femtofarad_um * um, OHM_UM * um + VIAS_OHM) for net, um in self.lengths().items()}
 
     def listed(
         self, netlist: Netlist, placed: Sequence[Sequence[Any]], fill: Sequence[str]
@@ -177,17 +180,15 @@ def shortened(plan: Plan, drives: Drives, kept: Collection[str]) -> int:
 
     A longer wire of one layer charges a small gate by more than a diode takes. kept: nets that stay as they are.
     """
-    count, driven = 0, connected(plan.instances)
-    ends = [(name, pin, net) for name, i in plan.instances.items() for pin, net in i.pins.items() if net not in driven]
-    begins = {net: (plan.point(name), sinks) for net, (name, pin, sinks) in driven.items()
-              if (plan.instances[name].cell, pin) in drives.limits}  # fmt: skip
-    begins |= {net: (at, [(name, pin) for name, pin, to in ends if to == net]) for net, at in plan.ports.items()
-               if net not in driven}  # fmt: skip
-    for net, ((x, y), sinks) in begins.items():
+    count, driven, sinks = 0, connected(plan.instances), sinks_of(plan.instances)
+    limited = {net: name for net, (name, pin, _) in driven.items() if (plan.instances[name].cell, pin) in drives.limits}
+    begins = {net: plan.point(name) for net, name in limited.items()}
+    begins |= {net: at for net, at in plan.ports.items() if net not in driven}
+    for net, (x, y) in begins.items():
         if net in kept:
             continue
         groups: dict[bool, Sinks] = {}  # to the west and to the east
-        for end in sinks:
+        for end in sinks.get(net, ()):
             right, up = plan.point(end[0])
             if abs(right - x) + abs(up - y) > FAR_UM:
                 groups.setdefault(right > x, []).append(end)
@@ -216,14 +217,19 @@ def late(plan: Plan, drives: Drives, net: str, driver: End, sinks: Sinks, slacks
 
 def connected(instances: Mapping[str, Instance]) -> dict[str, tuple[str, str, Sinks]]:
     """By net its driver, the pin of it, and what it drives."""
-    drivers, sinks = {}, {}
+    sinks = sinks_of(instances)
+    drivers = {net: (name, pin) for name, i in instances.items() for pin, net in i.pins.items() if pin in OUTPUT_PINS}
+    return {net: (*driver, sinks.get(net, [])) for net, driver in drivers.items()}
+
+
+def sinks_of(instances: Mapping[str, Instance]) -> dict[str, Sinks]:
+    """By net what it drives."""
+    sinks: dict[str, Sinks] = {}
     for name, instance in instances.items():
         for pin, net in instance.pins.items():
-            if pin in OUTPUT_PINS:
-                drivers[net] = name, pin
-            else:
+            if pin not in OUTPUT_PINS:
                 sinks.setdefault(net, []).append((name, pin))
-    return {net: (*driver, sinks.get(net, [])) for net, driver in drivers.items()}
+    return sinks
 
 
 def swap(plan: Plan, name: str, cell: str) -> bool:

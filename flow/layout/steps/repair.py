@@ -118,7 +118,7 @@ class Repair(Step[RepairParameters]):
         for _ in range(ROUNDS):
             repaired(plan, limits, kept, slacks)
             now = replace(netlist, instances=tuple(plan.instances.values()))
-            slacks = setup_slacks(now, plan.wires(now), inputs["liberty"], inputs["sdc"])
+            slacks = setup_slacks(now, plan.wires(), inputs["liberty"], inputs["sdc"])
             if min(slacks.values()) > best[0]:
                 best = min(slacks.values()), deepcopy(plan), slacks
             else:  # go on from the best, with less at a time

@@ -175,7 +175,7 @@ def test_older_releases_get_the_options_that_they_want(commands, called, other, 
 @needs_tclsh
 @needs_cells
 @pytest.mark.parametrize("violations, diodes, routed", [("0", "0", 1), ("1", "0", 1), ("1", "2", 4)])
-def test_routes_are_made_anew_while_diodes_help_then_fillers(
+def test_routes_are_made_again_while_diodes_help_then_fillers(
     violations, diodes, routed, pdk, openroad, tmp_path, monkeypatch
 ):
     stub.install(
