@@ -38,6 +38,7 @@ BRINGS = {
 } | dict.fromkeys(
     ("klayout", "c4m", "pdkmaster", "coriolis", "sky130"), "make setup-layout (klayout's program: make tools)"
 )
+LAYOUT_PACKAGES = {"klayout", "c4m", "pdkmaster", "coriolis", "coloquinte"}
 collect_ignore = [] if importlib.util.find_spec("klayout") else list(LAYOUTS)
 
 
@@ -108,6 +109,27 @@ def pytest_collection_modifyitems(config, items):
     if not installed():
         for item in in_icarus:
             item.add_marker(pytest.mark.skip(reason=MISSING))
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_setup(item):
+    return (yield from skipped_without_layouts())
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_call(item):
+    return (yield from skipped_without_layouts())
+
+
+def skipped_without_layouts():
+    """Skip a test that comes to a package of the environment of layouts, where that is not installed."""
+    try:
+        return (yield)
+    except ModuleNotFoundError as error:
+        package = (error.name or "").partition(".")[0]
+        if package in LAYOUT_PACKAGES:
+            pytest.skip(f"{package}: not installed")
+        raise
 
 
 @pytest.fixture

@@ -1,21 +1,26 @@
-"""GDS as every step writes it, the same layout as the same file; and KLayout's database, loaded at its first use."""
+"""GDS as every step writes it, the same layout as the same file; and KLayout's modules, loaded at their first use."""
 
 import importlib
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+
+class _Module:
+    """A module of KLayout: an option of the installation, which modules import without."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+
+    def __getattr__(self, name: str) -> Any:
+        setattr(self, name, getattr(importlib.import_module(self._name), name))
+        return self.__dict__[name]
+
+
 if TYPE_CHECKING:
     import klayout.db as db
 else:
-
-    class _Database:
-        """The module klayout.db: an option of the installation, which modules import without."""
-
-        def __getattr__(self, name: str) -> Any:
-            setattr(self, name, getattr(importlib.import_module("klayout.db"), name))
-            return self.__dict__[name]
-
-    db = _Database()
+    db = _Module("klayout.db")
+pex = _Module("klayout.pex")  # KLayout's types leave out its classes
 
 
 def read_gds(path: Path) -> "db.Layout":

@@ -4,8 +4,7 @@ from collections import defaultdict
 from collections.abc import Collection, Iterable
 from typing import NamedTuple, NotRequired, TypedDict
 
-import klayout.db as db
-
+from talbot.base.gds import db
 from talbot.cells.compact.assemble import Assembly
 from talbot.cells.compact.canvas import Canvas
 from talbot.cells.compact.grid import Vertex
@@ -30,7 +29,7 @@ class Shape(NamedTuple):
     top: float
 
     @property
-    def nm(self) -> db.Box:
+    def nm(self) -> "db.Box":
         """The rectangle in nm."""
         return db.Box(*(round(v * 1000) for v in (self.left, self.bottom, self.right, self.top)))
 
@@ -235,7 +234,7 @@ def frame(drawing: Pen) -> None:
     drawing.box("nwm", "vdd", -0.18, c.well, width + 0.18, c.height + 0.31)
 
 
-def regions(shapes: Iterable[Shape]) -> dict[str, db.Region]:
+def regions(shapes: Iterable[Shape]) -> "dict[str, db.Region]":
     """The region of every layer in ``shapes``, in nm."""
     found = defaultdict(db.Region)
     for s in shapes:

@@ -2,8 +2,7 @@
 
 from collections.abc import Mapping
 
-import klayout.db as db
-
+from talbot.base.gds import db
 from talbot.cells.compact.draw import Drawing, Shape, regions
 
 SPACES = {"li": 170, "poly": 210, "m1": 140, "difftap": 270, "licon": 170, "mcon": 190}  # nm
@@ -34,7 +33,7 @@ def broken(drawing: Drawing) -> list[str]:
     return out
 
 
-def reachable(pin: Shape, nets: Mapping[tuple[str, str], db.Region], step: int) -> bool:
+def reachable(pin: Shape, nets: "Mapping[tuple[str, str], db.Region]", step: int) -> bool:
     """Whether a route on met1 has room over a ``pin`` on li.
 
     nets: the cell's shapes by layer and net. step: half a track, at whose multiples a route can meet a pin, nm.

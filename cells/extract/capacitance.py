@@ -12,8 +12,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-import klayout.db as db
-
+from talbot.base.gds import db
 from talbot.platforms.extraction import ExtractionPlatform
 from talbot.platforms.layers import DIFFUSION, Layer
 
@@ -74,7 +73,7 @@ def capacitances(found: CellLayout, tech: ExtractionPlatform) -> dict[tuple[str,
     return dict(total.pairs)
 
 
-def _areas(found: CellLayout, net: str, layer: Layer, rest: db.Region, total: _Total) -> None:
+def _areas(found: CellLayout, net: str, layer: Layer, rest: "db.Region", total: _Total) -> None:
     um2 = found.dbu**2
     for lower in total.below(layer):
         if layer.lef == "poly":
@@ -97,7 +96,7 @@ class _Rectangles:
         self.layers = {name: _split(nets, found.dbu) for name, nets in regions.items()}
         self.dbu, self.halo_um = found.dbu, halo_um
 
-    def beside(self, rectangles: Sequence[Rectangle], edge: db.Edge) -> Iterator[Strip]:
+    def beside(self, rectangles: Sequence[Rectangle], edge: "db.Edge") -> Iterator[Strip]:
         """Parts of ``rectangles`` in the strip of width ``halo_um`` outside ``edge``."""
         x1, y1, x2, y2 = (v * self.dbu for v in (edge.p1.x, edge.p1.y, edge.p2.x, edge.p2.y))
         vertical = x1 == x2
@@ -112,7 +111,7 @@ class _Rectangles:
                 yield Strip(near, far, a, b, net)
 
 
-def _split(nets: Mapping[str, db.Region], dbu: float) -> list[Rectangle]:
+def _split(nets: "Mapping[str, db.Region]", dbu: float) -> list[Rectangle]:
     found = []
     for net, region in nets.items():
         for trapezoid in region.decompose_trapezoids_to_region().each():
@@ -121,7 +120,7 @@ def _split(nets: Mapping[str, db.Region], dbu: float) -> list[Rectangle]:
     return found
 
 
-def _edge(edge: db.Edge, net: str, layer: Layer, rectangles: _Rectangles, total: _Total) -> None:
+def _edge(edge: "db.Edge", net: str, layer: Layer, rectangles: _Rectangles, total: _Total) -> None:
     """All that one edge of ``net`` on ``layer`` sees."""
     strips = {name: list(rectangles.beside(parts, edge)) for name, parts in rectangles.layers.items()}
     if layer.lef != "poly":

@@ -4,8 +4,7 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from pathlib import Path
 
-import klayout.db as db
-
+from talbot.base.gds import db
 from talbot.models.parameters import ParameterError
 from talbot.platforms.extraction import ExtractionPlatform
 from talbot.platforms.layers import DIFFUSION, GdsLayer
@@ -37,7 +36,7 @@ class Device:
     sa: float
     sb: float
     marks: frozenset[str]
-    at: db.Point
+    at: "db.Point"
 
 
 @dataclass
@@ -50,17 +49,17 @@ class CellLayout:
     """
 
     dbu: float
-    active: db.Region
+    active: "db.Region"
     ports: set[str] = field(default_factory=set)
     devices: list[Device] = field(default_factory=list)
-    shapes: dict[str, dict[str, db.Region]] = field(default_factory=dict)
-    wells: dict[str, db.Region] = field(default_factory=dict)
-    islands: dict[str, dict[str, db.Region]] = field(default_factory=dict)
-    vias: list[db.Region] = field(default_factory=list)
-    labels: dict[str, list[tuple[str, db.Point]]] = field(default_factory=dict)
+    shapes: "dict[str, dict[str, db.Region]]" = field(default_factory=dict)
+    wells: "dict[str, db.Region]" = field(default_factory=dict)
+    islands: "dict[str, dict[str, db.Region]]" = field(default_factory=dict)
+    vias: "list[db.Region]" = field(default_factory=list)
+    labels: "dict[str, list[tuple[str, db.Point]]]" = field(default_factory=dict)
 
 
-def read_cell(gds: str | Path, name: str) -> tuple[db.Layout, db.Cell]:
+def read_cell(gds: str | Path, name: str) -> "tuple[db.Layout, db.Cell]":
     """The layout in the file ``gds`` and its cell ``name``, flat. Raises ParameterError where there is none."""
     layout = db.Layout()
     try:
@@ -95,7 +94,7 @@ def find(gds: str | Path, name: str, tech: ExtractionPlatform) -> CellLayout:
     return found
 
 
-def _merged(region: db.Region) -> db.Region:
+def _merged(region: "db.Region") -> "db.Region":
     """The region merged, and of no layout any more."""
     merged = db.Region()
     for polygon in region.each_merged():
@@ -103,7 +102,7 @@ def _merged(region: db.Region) -> db.Region:
     return merged
 
 
-def _labels(layout: db.Layout, cell: db.Cell, tech: ExtractionPlatform) -> dict[str, list[tuple[str, db.Point]]]:
+def _labels(layout: "db.Layout", cell: "db.Cell", tech: ExtractionPlatform) -> "dict[str, list[tuple[str, db.Point]]]":
     found = {}
     for conductor in reversed(tech.conductors):
         for layer in (conductor.pin, conductor.label):
@@ -114,11 +113,11 @@ def _labels(layout: db.Layout, cell: db.Cell, tech: ExtractionPlatform) -> dict[
 
 
 def _layers(
-    l2n: db.LayoutToNetlist, layout: db.Layout, tech: ExtractionPlatform, box: db.Box
-) -> tuple[dict[str, db.Region], dict[str, db.Texts]]:
+    l2n: "db.LayoutToNetlist", layout: "db.Layout", tech: ExtractionPlatform, box: "db.Box"
+) -> "tuple[dict[str, db.Region], dict[str, db.Texts]]":
     """Every region and every layer of labels by name, registered, so that ``l2n`` knows the nets of their shapes."""
 
-    def drawn(name: str, layer: GdsLayer) -> db.Region:
+    def drawn(name: str, layer: GdsLayer) -> "db.Region":
         return l2n.make_layer(layout.layer(*layer), name)
 
     raw = {name: drawn(name, layer) for name, layer in tech.devices.items() if name not in MARKS}
@@ -143,7 +142,7 @@ def _layers(
 
 
 def _connect(
-    l2n: db.LayoutToNetlist, layers: dict[str, db.Region], texts: dict[str, db.Texts], tech: ExtractionPlatform
+    l2n: "db.LayoutToNetlist", layers: "dict[str, db.Region]", texts: "dict[str, db.Texts]", tech: ExtractionPlatform
 ) -> None:
     diffusions = [layers[name] for name in ("nsd", "psd", "ntap", "ptap")]
     conductors = [layers[conductor.lef] for conductor in tech.conductors]
@@ -165,14 +164,18 @@ def _connect(
 
 
 def _collect(
-    l2n: db.LayoutToNetlist, circuit: db.Circuit, layers: dict[str, db.Region], tech: ExtractionPlatform, dbu: float
+    l2n: "db.LayoutToNetlist",
+    circuit: "db.Circuit",
+    layers: "dict[str, db.Region]",
+    tech: ExtractionPlatform,
+    dbu: float,
 ) -> CellLayout:
     found = CellLayout(dbu, _merged(layers["active"]))
     groups = {DIFFUSION: ("nsd", "psd", "ntap", "ptap")} | {layer.lef: (layer.lef,) for layer in tech.conductors}
     found.shapes = {conductor: {} for conductor in groups}
     found.islands = {"n": {}, "p": {}}
 
-    def add(regions: dict[str, db.Region], net: db.Net, *names: str) -> None:
+    def add(regions: "dict[str, db.Region]", net: "db.Net", *names: str) -> None:
         region = db.Region()
         for name in names:
             region += l2n.shapes_of_net(net, layers[name], True)
@@ -191,12 +194,12 @@ def _collect(
     return found
 
 
-def node(net: db.Net) -> str:
+def node(net: "db.Net") -> str:
     """A net's name as SPICE can hold it: its label (the first of several), or n<number>."""
     return net.name.split(",")[0] if net.name else f"n{net.cluster_id}"
 
 
-def _device(device: db.Device, found: CellLayout, marks: dict[str, db.Region]) -> Device:
+def _device(device: "db.Device", found: CellLayout, marks: "dict[str, db.Region]") -> Device:
     net = {t.name: node(device.net_for_terminal(t.id())) for t in device.device_class().terminal_definitions()}
     value, at = device.parameter, device.trans.disp
     point = db.Point(round(at.x / found.dbu), round(at.y / found.dbu))
@@ -209,7 +212,7 @@ def _device(device: db.Device, found: CellLayout, marks: dict[str, db.Region]) -
     return Device(kind, drain, gate, source, bulk, width, length, *sides, sa=sa, sb=sb, marks=over, at=point)
 
 
-def _stress(found: CellLayout, point: db.Point, width: float, length: float) -> tuple[float, float]:
+def _stress(found: CellLayout, point: "db.Point", width: float, length: float) -> tuple[float, float]:
     """SA and SB (um) of a gate with its middle at ``point``: where the diffusion's end has steps, BSIM4's equivalent.
 
     1 / (SA + L / 2) is the mean over the gate's width of that of each strip (BSIM4.5 manual, 13.4, SA and SB for

@@ -11,24 +11,19 @@ from dataclasses import dataclass
 from itertools import combinations
 from typing import Any, NamedTuple
 
-import klayout.db as db
-import klayout.pex
-
+from talbot.base.gds import db, pex
 from talbot.models.parameters import ParameterError
 from talbot.platforms.extraction import ExtractionPlatform
 from talbot.platforms.layers import DIFFUSION
 
 from .devices import CellLayout, Device
 
-pex: Any = klayout.pex  # KLayout's types leave out its classes
-
 IDEAL = 1e-3  # ohm a square of a diffusion, in which the transistor's model has the resistance
 LEAST = 1e-3  # ohm; what is less is as much
 MOST = 1e6  # ohm; what is more is left out
 BRANCHES = 5  # of a node that is taken out
-Points = Mapping[int, Sequence[db.Point]]  # by number of the conductor
-Polygons = Mapping[int, Sequence[db.Polygon]]
-VIEWS = (db.Trans(), db.Trans(db.Trans.M90))  # as drawn, and mirrored
+Points = Mapping[int, Sequence["db.Point"]]  # by number of the conductor
+Polygons = Mapping[int, Sequence["db.Polygon"]]
 
 
 @dataclass(frozen=True)
@@ -49,7 +44,7 @@ class Terminal(NamedTuple):
     device: int
     role: str
     conductor: str
-    region: db.Region
+    region: "db.Region"
 
 
 class Port(NamedTuple):
@@ -85,7 +80,7 @@ def resistances(found: CellLayout, tech: ExtractionPlatform) -> Resistances:
     return Resistances(resistors, terminals)
 
 
-def _sides(device: Device, found: CellLayout) -> dict[str, tuple[str, db.Region]]:
+def _sides(device: Device, found: CellLayout) -> "dict[str, tuple[str, db.Region]]":
     """Role -> (conductor, region) of a transistor: its gate's poly, the islands of its source and drain."""
     step = round(device.length / found.dbu / 2) + 10
     poly, gate = found.shapes["poly"][device.gate], db.Box(device.at, device.at).enlarged(5)
@@ -96,7 +91,7 @@ def _sides(device: Device, found: CellLayout) -> dict[str, tuple[str, db.Region]
     return sides
 
 
-def _island(device: Device, found: CellLayout, step: int) -> tuple[str, db.Region]:
+def _island(device: Device, found: CellLayout, step: int) -> "tuple[str, db.Region]":
     """(net, region) of the diffusion ``step`` dbu beside the middle of a gate."""
     spot = db.Region(db.Box(device.at, device.at).enlarged(2).moved(step, 0))
     for net, islands in found.islands[device.kind].items():
@@ -158,13 +153,13 @@ def _conductances(
     return _reduced(network, [(number[port.conductor], port.shape) for port in ports], flat)
 
 
-def _network(dbu: float, rules: Any, geometry: Mapping[int, db.Region], points: Points, polygons: Polygons) -> Any:
+def _network(dbu: float, rules: Any, geometry: "Mapping[int, db.Region]", points: Points, polygons: Polygons) -> Any:
     """KLayout's network of a net; mirrored where its squares, counted as drawn, are more than MOST.
 
     It cuts a polygon into trapezoids, sometimes one without a height (1.3e11 ohm in xor2_2), and none of the mirrored.
     """
     found = []
-    for view in VIEWS:
+    for view in (db.Trans(), db.Trans(db.Trans.M90)):  # as drawn, and mirrored
         seen = {layer: region.transformed(view) for layer, region in geometry.items()}
         spots = {layer: [view * point for point in same] for layer, same in points.items()}
         flat = {layer: [polygon.transformed(view) for polygon in same] for layer, same in polygons.items()}
@@ -211,7 +206,7 @@ def _eliminate(beside: list[dict[int, float]], node: int) -> None:
         _join(beside, a, b, x * y / sum(arms.values()))
 
 
-def _is(node: Any, shape: "db.Region | db.Point", polygons: Sequence[db.Polygon]) -> bool:
+def _is(node: Any, shape: "db.Region | db.Point", polygons: "Sequence[db.Polygon]") -> bool:
     """Whether a network's node is the port ``shape``."""
     if isinstance(shape, db.Point):
         return node.type() == pex.RNode.VertexPort

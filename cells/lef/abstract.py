@@ -8,8 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-import klayout.db as db
-
+from talbot.base.gds import db
 from talbot.base.lef import write
 from talbot.base.lef.write import Rectangles
 from talbot.cells.extract.devices import CellLayout, find, read_cell
@@ -50,7 +49,7 @@ def abstract(gds: str | Path, name: str, tech: ExtractionPlatform, pins: Mapping
     return write.macro(name, head, [_pin(pin, kind, found, metals) for pin, kind in pins.items()], obstructions)
 
 
-def _outline(gds: str | Path, name: str, tech: ExtractionPlatform) -> db.DBox:
+def _outline(gds: str | Path, name: str, tech: ExtractionPlatform) -> "db.DBox":
     layout, cell = read_cell(gds, name)
     boxes = (db.Region(cell.begin_shapes_rec(layout.layer(*layer))).bbox() for layer in tech.outlines)
     for box in boxes:
@@ -77,7 +76,7 @@ def _pin(pin: str, kind: PinKind, found: CellLayout, metals: Sequence[str]) -> w
     return write.Pin(pin, statements, list(_rectangles(shapes, found.dbu)))
 
 
-def _rectangles(regions: Mapping[str, db.Region], dbu: float) -> Iterator[Rectangles]:
+def _rectangles(regions: "Mapping[str, db.Region]", dbu: float) -> Iterator[Rectangles]:
     """Rectangles of the regions by layer, sorted; none of an empty one."""
     for metal, region in regions.items():
         boxes = [part.bbox() for part in region.merged().decompose_trapezoids_to_region().each()]
