@@ -178,6 +178,10 @@ layout-pareto: $(TESTS_READY) $(LAYOUT_READY) have-tools  ## the divider's varia
 layout-effort: $(TESTS_READY) $(LAYOUT_READY) have-tools  ## a layout's quality against the placer's effort: build/layout/sweep/ (LIBERTY='a.lib b.lib')
 	@$(talbot) layout-sweep effort
 
+.PHONY: layout-energy
+layout-energy: $(TESTS_READY) $(LAYOUT_READY) have-tools  ## switching energy of the chip's events, from frames at its layout's gates: build/layout/energy/ (LIBERTY='a.lib b.lib')
+	@$(talbot) layout-energy
+
 layout-hierarchy: KNOWN += DESIGNS
 .PHONY: layout-hierarchy
 layout-hierarchy: $(TESTS_READY) $(LAYOUT_READY) have-tools  ## the chip laid out flat and around two blocks laid out before: build/layout/hierarchy/ (DESIGNS='phase_path phase_path_macros' LIBERTY='a.lib b.lib')

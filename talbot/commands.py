@@ -32,6 +32,7 @@ COMMANDS = {
     "divider": ("talbot.flow.simulate.divider.exhaustive", "every input of a divider through its Verilog"),
     "layout": ("talbot.flow.layout.command", "a design's Verilog to a layout with all its checks"),
     "layout-sweep": ("talbot.flow.layout.sweep.command", "layouts of variants, and of the placer's efforts"),
+    "layout-energy": ("talbot.flow.layout.energy.command", "switching energy of the chip, event by event"),
     "layout-compare": ("talbot.flow.layout.report.compare", "finished layouts side by side"),
     "openroad": ("talbot.flow.openroad.command", "a design by OpenROAD: scripts, and a run"),
     "openroad-compare": ("talbot.flow.openroad.compare", "both back ends, design by design"),

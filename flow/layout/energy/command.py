@@ -1,0 +1,92 @@
+"""Switching energy of the digital part, event by event, from frames at the gates of the chip's layout."""
+
+import json
+from argparse import ArgumentParser, Namespace
+from pathlib import Path
+from typing import Any
+
+from talbot.base.cache import digest
+from talbot.base.command import failures
+from talbot.base.files import staged, write
+from talbot.base.paths import RESULTS
+from talbot.base.progress import Steps
+from talbot.base.steps import Runner, Step, StepError
+from talbot.models.parameters import ParameterError
+from talbot.platforms.processes import PROCESSES
+
+from ..chain import all_steps, input_files, timing_steps
+from ..design import Design, design, folder_name
+from ..options import Options
+from ..search import lay_out_smallest
+from ..steps.extraction import Extraction
+from ..steps.parameters import PdkParameters
+from .frames import FRAMES, HELD_BACK, RECORDED
+from .measure import Measure, MeasureParameters
+from .report import page, text
+from .result import WORST, Frame, evaluate
+
+DESIGN = "asp_chip"
+WITH_DELAYS = "stimulus", "sta", "gate_delays", "power"  # what the frame with delays takes, at the first corner
+
+
+def add_arguments(parser: ArgumentParser) -> None:
+    """Options of `talbot layout-energy`."""
+    add = parser.add_argument
+    cells = "characterized cells at a corner (again for further corners; default: measured now)"
+    add("--liberty", type=Path, action="append", default=[], help=cells)
+    add("--layouts", type=Path, default=RESULTS / "layout", help="folder of the layouts, as of make layout")
+    add("--out", type=Path, default=RESULTS / "layout" / "energy", help="folder of the table and the page")
+
+
+def run(options: Namespace) -> int:
+    """Measure the frames, fit them and print the table; 1 where the held-back frame is off by more than WORST."""
+    chosen, pdk = design(DESIGN), PROCESSES[0]
+    asked = Options(pdk, chosen.utilization, tuple(options.liberty))
+    corner = asked.corners[0]
+    measured = [Measure(MeasureParameters(chosen.top, corner, frame)) for frame in (*FRAMES, HELD_BACK, RECORDED)]
+    names = [step.name for step in (*all_steps(chosen, asked, signoff), *measured)]
+    with Steps(names, lines=True) as bar:
+        folder = options.layouts / folder_name(chosen, pdk)
+        files = input_files(chosen, asked, folder)
+        runner = Runner(folder / "steps", files, bar.note, options.layouts / "shared")
+        if lay_out_smallest(chosen, asked, runner, signoff)[-1].rules_broken != 0:
+            raise StepError(f"{DESIGN}: no attempt of the layout closes")
+        found = runner.run_all(measured)
+    summary = summarize(found, runner.records, corner) | provenance(runner, measured[0])
+    with staged(options.out) as part:
+        write(part / "energy.json", json.dumps(summary, indent=1) + "\n")
+        write(part / "energy.html", page(summary))
+    print(text(summary))
+    print(f"  look at {options.out / 'energy.html'}")
+    off = summary["held_back"]["residual"]
+    wrong = [f"residual of the held-back frame = {off:.3f}: must be at most {WORST}"] if abs(off) > WORST else []
+    return failures(wrong)
+
+
+def signoff(design: Design, options: Options) -> list[Step]:
+    """The steps after a routing that the energies rest on."""
+    first = options.corners[:1]
+    if not first:
+        raise ParameterError("liberty = none: must be characterized cells")
+    wanted = {name if name == "stimulus" else f"{name}_{first[0]}" for name in WITH_DELAYS}
+    timed = [step for step in timing_steps(design, options) if step.name in wanted]
+    return [Extraction(PdkParameters(options.pdk)), *timed]
+
+
+def summarize(records: list[dict[str, Any]], all_records: dict[str, Any], corner: str) -> dict[str, Any]:
+    """Content of energy.json but for the provenance. records: of `Measure`, in the order of the frames."""
+    frames = (*FRAMES, HELD_BACK, RECORDED)
+    rows = [
+        Frame.of(frame.name, frame.varies, record["metrics"]) for frame, record in zip(frames, records, strict=True)
+    ]
+    *fitted, held_back, recorded = rows
+    delayed = all_records[f"power_{corner}"]
+    return evaluate(fitted, held_back, recorded, delayed)
+
+
+def provenance(runner: Runner, step: Measure) -> dict[str, Any]:
+    """Corner, tools, and digests of the files that the energies were computed from, by name."""
+    inputs = {name: digest(runner.paths[source]) for name, source in step.inputs.items()}
+    record = runner.records[step.name]
+    supply = {"supply_v": record["metrics"]["supply_v"], "corner": step.parameters.corner}
+    return supply | {"design": DESIGN, "pdk": PROCESSES[0], "inputs": inputs, "tools": record["tools"]}
