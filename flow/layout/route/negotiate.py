@@ -23,7 +23,8 @@ from .route import Route
 from .view import Straight
 from .violations import Violations, find, find_in_file, split_levels
 
-PATIENCE = 6  # evicted nets for every one that is to be routed, at most
+# Evicted nets, at most: for every one that is to be routed; more, and where a net is to get shorter
+PATIENCE, ALLOWED, ALLOWED_SHORTER = 6, 1000, 60
 TRIES = 3  # of a net without a path, while others move
 HASTY_TRIES = 3  # of a net, which look for a path nearby alone
 WHOLE = 4  # every such try of a net begins without the legs that nothing is in the way of
@@ -58,10 +59,10 @@ class Routed:
     long: set[str] = field(default_factory=set)
 
 
-def negotiate(board: Board, wanted: Collection[str], state: Routed | None = None) -> Routed:
+def negotiate(board: Board, wanted: Collection[str], state: Routed | None = None, allowed: int = ALLOWED) -> Routed:
     """Route the nets ``wanted`` on the ``board`` and every net that they evict, turn by turn.
 
-    state: what this call goes on with.
+    state: what this call goes on with. allowed: evicted nets beyond PATIENCE.
     """
     state = state or Routed()
     waiting = sorted(wanted, key=lambda net: -_hpwl(board, net))  # the long ones while there is room: found faster
@@ -69,7 +70,7 @@ def negotiate(board: Board, wanted: Collection[str], state: Routed | None = None
         if net not in state.legs:
             board.rip_up(net)
     board.charge(PRESENT)
-    patience = PATIENCE * len(waiting) + 1000
+    patience = PATIENCE * len(waiting) + allowed
     while waiting:
         if len(waiting) >= TOLD:
             line(f"{len(waiting)} nets to route")
@@ -92,7 +93,8 @@ def negotiate(board: Board, wanted: Collection[str], state: Routed | None = None
             place(board, net, found, state, 1 + state.tries[net] // EASY)
             evicted += sorted(found.evicted)
         waiting = list(dict.fromkeys(evicted))
-        board.charge(GROWTH * board.present)
+        if waiting:
+            board.charge(GROWTH * board.present)
     return state
 
 
@@ -113,6 +115,8 @@ def straighten(board: Board, state: Routed, most: Mapping[str, float]) -> set[st
     A net stays as it was where some net then has no route, or nets are longer than allowed by as much in sum.
     """
     left = _long(state.routes, most, state.routes)
+    if left:
+        line(f"{len(left)} nets to shorten")
     for net in sorted(left.keys() - state.bent, key=lambda net: -left[net]):
         state.bent.add(net)
         for straight in STRAIGHT:
@@ -137,7 +141,7 @@ def _straightened(board: Board, net: str, straight: Straight, state: Routed, mos
         board.put(net, routes[net])
         return False
     place(board, net, found, state, PROTECTED)
-    negotiate(board, found.evicted, state)
+    negotiate(board, found.evicted, state, ALLOWED_SHORTER)
     changed = {other for other in routes if state.routes.get(other) is not routes[other]}
     now, before = (sum(_long(made, most, changed).values()) for made in (state.routes, routes))
     if not state.open and now < before:
