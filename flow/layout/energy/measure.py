@@ -60,7 +60,7 @@ class Measure(CornerStep[MeasureParameters]):
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         p, netlist = self.parameters, Netlist.read(inputs["netlist"])
-        asked, exposed = p.frame.exposed()
+        asked, exposed = p.frame.shot()
         sensor, frame = asked.sensor, asked.frame
         with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
             chip, counts = Path(folder) / "chip.v", Path(folder) / "counts"
