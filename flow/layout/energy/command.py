@@ -2,6 +2,7 @@
 
 import json
 from argparse import ArgumentParser, Namespace
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -20,8 +21,9 @@ from ..options import Options
 from ..search import lay_out_smallest
 from ..steps.extraction import Extraction
 from ..steps.parameters import PdkParameters
-from .frames import FRAMES, HELD_BACK, RECORDED
-from .measure import Measure, MeasureParameters
+from ..steps.power import PowerParameters
+from .frames import EVERY, HELD_BACK, RECORDED
+from .measure import FrameParameters, Measure, MeasureParameters, Slews, Transitions
 from .report import page, text
 from .result import WORST, Frame, evaluate
 
@@ -43,16 +45,19 @@ def run(options: Namespace) -> int:
     chosen, pdk = design(DESIGN), PROCESSES[0]
     asked = Options(pdk, chosen.utilization, tuple(options.liberty))
     corner = asked.corners[0]
-    measured = [Measure(MeasureParameters(chosen.top, corner, frame)) for frame in (*FRAMES, HELD_BACK, RECORDED)]
-    names = [step.name for step in (*all_steps(chosen, asked, signoff), *measured)]
+    counted = [Transitions(FrameParameters(frame)) for frame in EVERY]
+    slews = Slews(PowerParameters(chosen.top, corner, chosen.clock.period_ns))
+    measured = [Measure(MeasureParameters(frame, corner)) for frame in EVERY]
+    steps = [*counted, slews, *measured]
+    names = [step.name for step in (*all_steps(chosen, asked, signoff), *steps)]
     with Steps(names, lines=True) as bar:
         folder = options.layouts / folder_name(chosen, pdk)
         files = input_files(chosen, asked, folder)
         runner = Runner(folder / "steps", files, bar.note, options.layouts / "shared")
         if lay_out_smallest(chosen, asked, runner, signoff)[-1].rules_broken != 0:
             raise StepError(f"{DESIGN}: no attempt of the layout closes")
-        found = runner.run_all(measured)
-    summary = summarize(found, runner.records, corner) | provenance(runner, measured[0])
+        runner.run_all(steps)
+    summary = summarize(runner.records, corner) | provenance(runner, measured[0], counted[0])
     with staged(options.out) as part:
         write(part / "energy.json", json.dumps(summary, indent=1) + "\n")
         write(part / "energy.html", page(summary))
@@ -73,20 +78,22 @@ def signoff(design: Design, options: Options) -> list[Step]:
     return [Extraction(PdkParameters(options.pdk)), *timed]
 
 
-def summarize(records: list[dict[str, Any]], all_records: dict[str, Any], corner: str) -> dict[str, Any]:
-    """Content of energy.json but for the provenance. records: of `Measure`, in the order of the frames."""
-    frames = (*FRAMES, HELD_BACK, RECORDED)
-    rows = [
-        Frame.of(frame.name, frame.varies, record["metrics"]) for frame, record in zip(frames, records, strict=True)
-    ]
-    *fitted, held_back, recorded = rows
-    delayed = all_records[f"power_{corner}"]
-    return evaluate(fitted, held_back, recorded, delayed)
+def summarize(records: Mapping[str, dict[str, Any]], corner: str) -> dict[str, Any]:
+    """Content of energy.json but for the provenance. records: of all steps, by name."""
+    metrics = {name: record["metrics"] for name, record in records.items()}
+    made = {
+        frame.name: Frame.of(frame, metrics[f"transitions_{frame.name}"], metrics[f"energy_{corner}_{frame.name}"])
+        for frame in EVERY
+    }
+    others = made.pop(HELD_BACK.name), made.pop(RECORDED.name)
+    return evaluate(list(made.values()), *others, records[f"power_{corner}"])
 
 
-def provenance(runner: Runner, step: Measure) -> dict[str, Any]:
+def provenance(runner: Runner, measured: Measure, counted: Transitions) -> dict[str, Any]:
     """Corner, tools, and digests of the files that the energies were computed from, by name."""
-    inputs = {name: digest(runner.paths[source]) for name, source in step.inputs.items()}
-    record = runner.records[step.name]
-    supply = {"supply_v": record["metrics"]["supply_v"], "corner": step.parameters.corner}
-    return supply | {"design": DESIGN, "pdk": PROCESSES[0], "inputs": inputs, "tools": record["tools"]}
+    inputs = {**counted.inputs, **measured.inputs}
+    known = {name: digest(runner.paths[source]) for name, source in inputs.items() if name != "counts"}
+    tools = {k: v for step in runner.records.values() for k, v in step["tools"].items() if k in ("iverilog", "sta")}
+    supply = runner.records[measured.name]["metrics"]["supply_v"]
+    named = {"design": DESIGN, "pdk": PROCESSES[0], "corner": measured.parameters.corner, "supply_v": supply}
+    return named | {"inputs": known, "tools": tools}

@@ -6,12 +6,13 @@ from functools import partial
 from talbot.flow.frame.job import expose, see
 from talbot.flow.frame.request import FrameRequest, request
 from talbot.flow.frame.result import Exposed
-from talbot.flow.layout.chain import CHIP_FRAME
 from talbot.flow.layout.steps.stimulus import SCENE, middle
+from talbot.models.afe.trim import trim_gain
 from talbot.models.parameters import ALL_TYPES, AmpTiming, ParameterError, Window
 
 INTEGRATION = 64  # cycles; short, so that most of a frame's cycles convert
 HALF_THE_TYPES = 0x555555
+RECORDED_TILES = 1  # of the chip's frame with delays (`chain.CHIP_FRAME`)
 
 
 @dataclass(frozen=True)
@@ -38,13 +39,10 @@ class EnergyFrame:
 
     def requested(self) -> FrameRequest:
         """The request whose exposure the pixels hold, with the default timing. Raises ParameterError."""
-        size = CHIP_FRAME["rows"], CHIP_FRAME["cols"]
         if self.recorded:
-            cut = partial(middle, tiles=CHIP_FRAME["tiles"])
-            return request(*size, scene=SCENE, mode="tof", phase=True, window=cut)
+            return request(scene=SCENE, mode="tof", phase=True, window=partial(middle, tiles=RECORDED_TILES))
         corners = *self.first, *self.last
         return request(
-            *size,
             scene=self.scene,
             mode=self.mode,
             threshold=self.threshold,
@@ -57,8 +55,10 @@ class EnergyFrame:
         """The frame, with the timing that the chip is given, and what the pixels hold. Raises ParameterError."""
         asked = self.requested()
         exposed = expose(asked, *see(asked))
+        if self.recorded:
+            return asked, exposed
         timing = AmpTiming(t_int=self.t_int, n_cm=self.n_cm, exposure=self.exposure)
-        return asked if self.recorded else replace(asked, frame=replace(asked.frame, timing=timing)), exposed
+        return replace(asked, frame=replace(asked.frame, timing=timing)), untrimmed(asked, exposed)
 
     @property
     def varies(self) -> str:
@@ -73,6 +73,14 @@ class EnergyFrame:
             if value != plain[name]
         ]
         return ", ".join(changed) or "edge mode, eight rows of 32 tiles, the scene of make sim"
+
+
+def untrimmed(asked: FrameRequest, exposed: Exposed) -> Exposed:
+    """The same values ahead of the converters with no trim, so that none is written over SPI: diodes b have it."""
+    front_end, samples = exposed.front_end, exposed.samples.copy()
+    if asked.frame.mode == "edge":  # of the other modes the sums and diodes are as they are
+        samples[..., 1] *= trim_gain(front_end.trim)[asked.sensor.tile.type_map(*samples.shape[1:3])]
+    return replace(exposed, samples=samples, front_end=replace(front_end, trim=(0,) * len(front_end.trim)))
 
 
 FRAMES = (
@@ -92,11 +100,12 @@ FRAMES = (
 # Predicted by the fit of the others: another scene, window, threshold, mask and integration
 HELD_BACK = EnergyFrame("held_back", "coins", threshold=16, mask=0xFFF0FF, t_int=200, first=(60, 20), last=(61, 47))
 RECORDED = EnergyFrame("recorded", recorded=True)
+EVERY = (*FRAMES, HELD_BACK, RECORDED)
 
 
 def frame_named(name: str) -> EnergyFrame:
     """The frame of that name. Raises ParameterError."""
-    known = {frame.name: frame for frame in (*FRAMES, HELD_BACK, RECORDED)}
+    known = {frame.name: frame for frame in EVERY}
     if name not in known:
         raise ParameterError(f"frame = {name!r}: must be one of {', '.join(known)}")
     return known[name]

@@ -2,23 +2,28 @@
 
 import json
 import tempfile
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from talbot.base.liberty.read import read
-from talbot.base.steps import Files, StepError
+from talbot.base.steps import Files, Step, StepError
 from talbot.flow.frame.hardware import simulate
+from talbot.flow.frame.request import FrameRequest
+from talbot.flow.frame.result import Exposed
 from talbot.flow.simulate.build import Build
+from talbot.flow.simulate.frame import FrameRun, host_script, run_frame
 from talbot.flow.simulate.icarus import icarus_program
+from talbot.models.afe import write_converter, write_samples
 from talbot.models.chip import golden_frame
+from talbot.models.digital.host import command, frame_writes, write_transfers
+from talbot.models.parameters.registers import array_resets, register_map
 
 from ..netlist.netlist import Netlist
-from ..power.energy import Cells, blocks, powers
-from ..power.energy import Power as InstancePower
+from ..power.energy import Cells, Power, blocks, powers
 from ..steps.corner import CornerStep
-from ..steps.power import Power, PowerParameters, wire_pf
+from ..steps.power import Power as PowerStep
+from ..steps.power import PowerParameters, wire_pf
 from .count import PARTS, counted_verilog, read_counts
 from .events import digital_events
 from .frames import EnergyFrame, frame_named
@@ -27,11 +32,9 @@ UNIT_NS = 1000.0  # a "cycle" of `powers` in which uW are pJ
 
 
 @dataclass(frozen=True)
-class MeasureParameters:
-    """Module, corner, frame (`frames`)."""
+class FrameParameters:
+    """The frame, of `frames`."""
 
-    top: str = "AspChip"
-    corner: str = ""
     frame: EnergyFrame = EnergyFrame("edge")
 
     def __post_init__(self) -> None:
@@ -39,68 +42,118 @@ class MeasureParameters:
             raise StepError(f"frame {self.frame.name}: must be the one of that name")
 
 
-class Measure(CornerStep[MeasureParameters]):
-    """Energy of a frame at the gates, zero delay: cells' internal energy and that of their loads, without the outputs'.
+@dataclass(frozen=True)
+class MeasureParameters(FrameParameters):
+    """The frame, and the corner."""
 
-    The stream must be the golden model's. pj: of the parts of the run, host (configuration over SPI), frame (chip busy)
-    and after (status); leakage apart. by_block: of the part frame. transitions: a net's settled values.
+    corner: str = ""
+
+
+class Transitions(Step[FrameParameters]):
+    """How often each net changes in a frame at zero delay; the stream must be the golden model's.
+
+    counts: cycles and transitions by part of the run (`count.PARTS`). events: `DigitalEvents`.
+    """
+
+    name = "transitions"
+    inputs = {"netlist": "repair.netlist", "cells": "library.verilog"}
+    outputs = {"counts": "counts.json"}
+    metrics = {"cycles": "", "transitions": "", "bytes": "", "events": ""}
+    tools = ("iverilog",)
+
+    def __init__(self, parameters: FrameParameters) -> None:
+        super().__init__(parameters)
+        self.name = f"{self.name}_{parameters.frame.name}"
+
+    def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
+        netlist = Netlist.read(inputs["netlist"])
+        asked, exposed = self.parameters.frame.shot()
+        with tempfile.TemporaryDirectory(prefix="talbot-") as name:
+            folder = Path(name)
+            (folder / "chip.v").write_text(counted_verilog(netlist))
+            build = Build.of(asked.sensor, exposed.samples.shape[0])
+            program = icarus_program(build, folder, [folder / "chip.v", inputs["cells"]], ("Meter",))
+            seen = _play(program, asked, exposed, folder, self.parameters.frame.recorded)
+            parts = read_counts(folder / "counts", netlist)
+        golden = golden_frame(exposed.samples, asked.sensor, asked.frame, exposed.front_end)
+        if seen.stream != golden.stream:
+            raise StepError(f"{self.name}: the netlist's frame is not the golden chip's")
+        outputs["counts"].write_text(json.dumps({name: vars(part) for name, part in parts.items()}, indent=0) + "\n")
+        return {
+            "cycles": {name: part.cycles for name, part in parts.items()},
+            "transitions": {name: sum(part.transitions.values()) for name, part in parts.items()},
+            "bytes": len(seen.stream),
+            "events": digital_events(golden, seen.activity["busy"])._asdict(),
+        }
+
+
+def _play(program: Path, asked: FrameRequest, exposed: Exposed, folder: Path, whole: bool) -> FrameRun:
+    """Run a frame. whole: every register is written and the status read, else only what differs from the resets."""
+    sensor, front_end, more = asked.sensor, exposed.front_end, (f"+counts={folder / 'counts'}",)
+    if whole:
+        return simulate(program, sensor, asked.frame, exposed.samples, front_end, more=more)
+    array, tile, chip = sensor.array, sensor.tile, register_map()
+    sizes = array.rows, array.cols, sensor.chip.lanes, tile.rows, tile.cols, sensor.chip.divider
+    resets = chip.image(chip.configuration, array_resets(*sizes))
+    writes = [(at, byte) for at, byte in frame_writes(asked.frame, front_end.trim) if resets[at] != byte]
+    write_samples(folder / "samples", exposed.samples)
+    write_converter(folder / "converter", front_end)
+    script = host_script([*write_transfers(writes), command("start")], [])
+    return run_frame(program, folder / "samples", folder / "converter", script, more=more)
+
+
+class Slews(CornerStep[PowerParameters]):
+    """Slew of every pin by OpenSTA, as of the step `power`."""
+
+    name = "slews_{corner}"
+    inputs = {"verilog": "stream_out.verilog", "spef": "extraction.{wires}", "sdc": "sdc", "liberty": "timing.{corner}"}
+    outputs = {"slews": "slews.json"}
+    metrics = {"pins": ""}
+    tools = ("sta",)
+
+    def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
+        found = PowerStep(self.parameters).slews(inputs, {"instances": outputs["slews"]})
+        outputs["slews"].write_text(json.dumps([[*pin, ns] for pin, ns in found.items()]) + "\n")
+        return {"pins": len(found)}
+
+
+class Measure(CornerStep[MeasureParameters]):
+    """Energy of a frame's transitions: that inside the cells and of their loads, without those of the outputs.
+
+    pj: of each part of the run; leakage apart. by_block: of the part frame.
     """
 
     name = "energy_{corner}"
-    inputs = {"netlist": "repair.netlist", "cells": "library.verilog", "liberty": "timing.{corner}"}
-    inputs |= {"verilog": "stream_out.verilog", "spef": "extraction.{wires}", "sdc": "sdc"}
+    inputs = {"netlist": "repair.netlist", "liberty": "timing.{corner}", "spef": "extraction.{wires}"}
+    inputs |= {"slews": "slews_{corner}.slews"}
     outputs = {"instances": "energy.json"}
-    metrics = {"pj": "pJ", "cycles": "", "by_block": "pJ", "leakage_uw": "uW", "transitions": "", "events": ""}
-    metrics |= {"supply_v": "V"}
-    tools = ("iverilog", "sta")
+    metrics = {"pj": "pJ", "by_block": "pJ", "leakage_uw": "uW", "supply_v": "V"}
 
     def __init__(self, parameters: MeasureParameters) -> None:
         super().__init__(parameters)
-        self.name += f"_{parameters.frame.name}"
+        self.name = f"{self.name}_{parameters.frame.name}"
+        self.inputs = {**self.inputs, "counts": f"transitions_{parameters.frame.name}.counts"}
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
-        p, netlist = self.parameters, Netlist.read(inputs["netlist"])
-        asked, exposed = p.frame.shot()
-        sensor, frame = asked.sensor, asked.frame
-        with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
-            chip, counts = Path(folder) / "chip.v", Path(folder) / "counts"
-            chip.write_text(counted_verilog(netlist))
-            taps = exposed.samples.shape[0]
-            program = icarus_program(Build.of(sensor, taps), Path(folder), [chip, inputs["cells"]], ("Meter",))
-            more = (f"+counts={counts}",)
-            seen = simulate(program, sensor, frame, exposed.samples, exposed.front_end, more=more)
-            parts = read_counts(counts, netlist)
-        golden = golden_frame(exposed.samples, sensor, frame, exposed.front_end)
-        if seen.stream != golden.stream:
-            raise StepError(f"{self.name}: the netlist's frame is not the golden chip's")
-        cells, wires = Cells(read(inputs["liberty"])), wire_pf(inputs["spef"].read_text())
-        slews = Power(PowerParameters(p.top, p.corner)).slews(inputs, outputs)
-        found = {
-            name: powers(netlist, cells, {net: (float(n), 0.0) for net, n in part.transitions.items()}, wires, slews,
-                         UNIT_NS)
-            for name, part in parts.items()
-        }  # fmt: skip
-        own, where = found["frame"], blocks(netlist)
+        netlist, cells = Netlist.read(inputs["netlist"]), Cells(read(inputs["liberty"]))
+        wires, where = wire_pf(inputs["spef"].read_text()), blocks(netlist)
+        slews = {(name, pin): ns for name, pin, ns in json.loads(inputs["slews"].read_text())}
+        parts, found = json.loads(inputs["counts"].read_text()), {}
+        for name in PARTS:
+            activity = {net: (float(count), 0.0) for net, count in parts[name]["transitions"].items()}
+            found[name] = powers(netlist, cells, activity, wires, slews, UNIT_NS)
         by_block = dict.fromkeys(where.values(), 0.0)
-        for name, power in own.items():
-            by_block[where[name]] += switched(power)
-        outputs["instances"].write_text(json.dumps({name: switched(power) for name, power in own.items()}, indent=0))
+        switched = {name: _switched(power) for name, power in found["frame"].items()}
+        for name, pj in switched.items():
+            by_block[where[name]] += pj
+        outputs["instances"].write_text(json.dumps(switched, indent=0) + "\n")
         return {
-            "pj": {name: round(total(found[name]), 3) for name in PARTS},
-            "cycles": {name: parts[name].cycles for name in PARTS},
+            "pj": {name: round(sum(map(_switched, own.values())), 3) for name, own in found.items()},
             "by_block": {name: round(pj, 3) for name, pj in sorted(by_block.items(), key=lambda item: -item[1])},
-            "leakage_uw": round(sum(power.leakage for power in own.values()), 6),
-            "transitions": sum(parts["frame"].transitions.values()),
-            "events": digital_events(golden, seen.activity["busy"])._asdict(),
+            "leakage_uw": round(sum(power.leakage for power in found["frame"].values()), 6),
             "supply_v": cells.supply_v,
         }
 
 
-def switched(power: InstancePower) -> float:
-    """What an instance takes by its transitions."""
+def _switched(power: Power) -> float:
     return power.internal + power.switching
-
-
-def total(found: Mapping[str, InstancePower]) -> float:
-    """What all instances take by their transitions."""
-    return sum(map(switched, found.values()))

@@ -6,6 +6,7 @@ from typing import Any
 
 from .events import DigitalEvents
 from .fit import Fit, fit
+from .frames import EnergyFrame
 
 WORST = 0.1  # share by which the held-back frame may be off
 
@@ -14,7 +15,7 @@ WORST = 0.1  # share by which the held-back frame may be off
 class Frame:
     """A measured frame. pj: of the part while the chip is busy; run_pj, run_cycles: of the whole run, SPI too.
 
-    by_block: pJ, of that part. host_pj_cycle: while a host writes the configuration. leakage: uW.
+    by_block: pJ, of that part. host_pj_cycle: while a host writes the configuration.
     """
 
     name: str
@@ -28,12 +29,12 @@ class Frame:
     leakage_uw: float
 
     @classmethod
-    def of(cls, name: str, varies: str, metrics: Mapping[str, Any]) -> "Frame":
-        """From the metrics of `Measure`."""
-        pj, cycles = metrics["pj"], metrics["cycles"]
-        own = DigitalEvents(**metrics["events"]), pj["frame"], metrics["by_block"]
+    def of(cls, frame: EnergyFrame, counted: Mapping[str, Any], measured: Mapping[str, Any]) -> "Frame":
+        """From the metrics of `Transitions` and of `Measure`."""
+        pj, cycles = measured["pj"], counted["cycles"]
+        own = DigitalEvents(**counted["events"]), pj["frame"], measured["by_block"]
         run = sum(pj.values()), sum(cycles.values()), pj["host"] / cycles["host"]
-        return cls(name, varies, *own, *run, metrics["leakage_uw"])
+        return cls(frame.name, frame.varies, *own, *run, measured["leakage_uw"])
 
     def row(self, found: Fit, left_out: float | None = None) -> dict[str, Any]:
         """What it took beside what ``found`` says. residual, left_out: shares."""
@@ -64,7 +65,7 @@ def evaluate(fitted: Sequence[Frame], held_back: Frame, recorded: Frame, delayed
     return {
         "pj": found.pj,
         "leakage_uw": recorded.leakage_uw,
-        "host_pj_cycle": round(sum(frame.host_pj_cycle for frame in fitted) / len(fitted), 4),
+        "host_pj_cycle": round(recorded.host_pj_cycle, 4),
         "frames": [frame.row(found, off) for frame, off in zip(fitted, found.left_out, strict=True)],
         "held_back": held_back.row(found),
         "recorded": recorded.row(found),

@@ -24,7 +24,7 @@ from .view import Straight
 from .violations import Violations, find, find_in_file, split_levels
 
 # Evicted nets, at most: for every one that is to be routed; more, and where a net is to get shorter
-PATIENCE, ALLOWED, ALLOWED_SHORTER = 6, 1000, 60
+PATIENCE, ALLOWED, ALLOWED_SHORTER = 6, 1000, 30
 TRIES = 3  # of a net without a path, while others move
 HASTY_TRIES = 3  # of a net, which look for a path nearby alone
 WHOLE = 4  # every such try of a net begins without the legs that nothing is in the way of
@@ -33,8 +33,9 @@ JOBS = 2  # in which the whole layout is checked
 ROUNDS = 12  # of checks: a net that is evicted for another may get an antenna
 TOLD = 100  # nets in a turn that takes seconds, of which a line is printed
 # What a net that is too long may do, turn by turn: it first goes around others at a small cost, then hardly
-STRAIGHT = tuple(Straight(nm, trunk) for nm in (100, 20) for trunk in (False, True))
-PROTECTED = 50  # weight of a net that was straightened
+STRAIGHT = tuple(Straight(nm, trunk) for nm in (500, 100) for trunk in (False, True))
+PROTECTED = 8  # weight of a net that was straightened
+MOST_EVICTED = 12  # nets in the way of one that is to get shorter
 MOST_BROKEN = 0.2  # share of the nets that a check may find to be rerouted
 
 
@@ -122,6 +123,7 @@ def straighten(board: Board, state: Routed, most: Mapping[str, float]) -> set[st
         for straight in STRAIGHT:
             if net not in _long(state.routes, most, [net]) or _straightened(board, net, straight, state, most):
                 break
+        line(f"{net}: {left[net]:.1f} um too long, then {_long(state.routes, most, [net]).get(net, 0):.1f}")
     return {*_long(state.routes, most, state.routes)}
 
 
@@ -137,7 +139,7 @@ def _straightened(board: Board, net: str, straight: Straight, state: Routed, mos
     board.charge(PRESENT)
     board.rip_up(net)
     found = route_net(board, net, straight=straight)
-    if not found or found.route.nm >= routes[net].nm:
+    if not found or found.route.nm >= routes[net].nm or len(found.evicted) > MOST_EVICTED:
         board.put(net, routes[net])
         return False
     place(board, net, found, state, PROTECTED)

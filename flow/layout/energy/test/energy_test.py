@@ -9,15 +9,27 @@ import pytest
 from talbot.base.command import main
 from talbot.base.steps import StepError
 from talbot.base.tools import run
+from talbot.flow.layout.chain import timing_steps
+from talbot.flow.layout.design import design
 from talbot.flow.layout.energy import command
 from talbot.flow.layout.energy.count import counted_verilog, read_counts
 from talbot.flow.layout.energy.events import DigitalEvents, digital_events
 from talbot.flow.layout.energy.fit import fit
-from talbot.flow.layout.energy.frames import FRAMES, HELD_BACK, RECORDED, EnergyFrame, frame_named
-from talbot.flow.layout.energy.measure import Measure, MeasureParameters
+from talbot.flow.layout.energy.frames import (
+    EVERY,
+    FRAMES,
+    HELD_BACK,
+    RECORDED,
+    RECORDED_TILES,
+    EnergyFrame,
+    frame_named,
+)
+from talbot.flow.layout.energy.measure import FrameParameters, Measure, MeasureParameters
 from talbot.flow.layout.energy.report import page, text
 from talbot.flow.layout.energy.result import Frame, evaluate
 from talbot.flow.layout.netlist.netlist import Instance, Netlist, Port
+from talbot.flow.layout.options import Options
+from talbot.flow.layout.steps.stimulus import middle
 from talbot.models.chip import golden_frame
 from talbot.models.parameters import ParameterError
 
@@ -137,7 +149,7 @@ def test_evaluated():
 
 
 def test_events_of_a_golden_frame():
-    asked, exposed = EnergyFrame("x", mode="tof", phase=True, last=(48, 9)).shot()
+    asked, exposed = EnergyFrame("x", mode="tof", phase=True, first=(48, 8), last=(48, 9)).shot()
     golden = golden_frame(exposed.samples, asked.sensor, asked.frame, exposed.front_end)
     pixels = 4 * 2 * 6  # rows of two tiles
     found = digital_events(golden, 1234)
@@ -146,18 +158,26 @@ def test_events_of_a_golden_frame():
 
 
 def test_every_frame_is_one_that_can_be_asked_for():
-    every = (*FRAMES, HELD_BACK, RECORDED)
+    every = EVERY
     assert len({f.name for f in every}) == len(every) == len({replace(f, name="") for f in every})
     assert all(f.requested().sensor.array.rows == 384 for f in every)
     assert HELD_BACK.scene != FRAMES[0].scene and all(frame_named(f.name) is f for f in every)
-    assert len({Measure(MeasureParameters(corner="tt", frame=f)).name for f in every}) == len(every)
+    assert len({Measure(MeasureParameters(f, "tt")).name for f in every}) == len(every)
+
+
+def test_the_recorded_frame_is_that_of_the_chip_with_delays():
+    step = next(s for s in timing_steps(design("asp_chip"), Options()) if s.name == "stimulus")
+    p, asked = step.parameters, RECORDED.requested()
+    assert (p.rows, p.cols, p.tiles) == (asked.sensor.array.rows, asked.sensor.array.cols, RECORDED_TILES)
+    assert (p.divider, p.n_frac) == (asked.sensor.chip.divider, asked.sensor.chip.n_frac)
+    assert asked.frame.phase and asked.frame.window == middle(asked.sensor.full_window, p.tiles)
 
 
 def test_bad_input(tmp_path, capsys):
     with pytest.raises(ParameterError, match="frame = 'none': must be one of edge, "):
         frame_named("none")
     with pytest.raises(StepError, match="must be the one"):
-        MeasureParameters(frame=EnergyFrame("edge", threshold=3))
+        FrameParameters(EnergyFrame("edge", threshold=3))
     ask = ["--out", str(tmp_path / "out"), "--liberty", str(tmp_path / "none.lib")]
     assert main(command, ask) == 2 and "none.lib: no such file" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
