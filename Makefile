@@ -82,6 +82,10 @@ lightfield: $(READY)  ## a raw frame's light field, refocused pictures and depth
 pixel: $(TESTS_READY)  ## the pixel in a process's metal: search, angular responses, Eq. 3.1 against them: build/pixel/<pdk>/pixel.html (PDK=)
 	@$(talbot) pixel
 
+.PHONY: cosim
+cosim: $(TESTS_READY) $(LAYOUT_READY)  ## a row with transistors in the loop: the chip's Verilog and ngspice in lock-step: build/cosim/cosim.html (needs libngspice: make tools)
+	@$(talbot) cosim
+
 .PHONY: polar
 polar: $(READY)  ## a raw frame's angle and degree of polarization, and its highlights: build/polar/<scene>/ (SCENE=)
 	@$(talbot) polar
