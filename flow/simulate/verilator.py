@@ -51,7 +51,7 @@ def program_of(
     note: Callable[[str], None],
     cxx: Sequence[str] = (),
 ) -> Path:
-    """Path of the program of module ``top`` of the chip's Verilog and ``sources``, with ``main`` around it: from the cache.
+    """Path of the program of module ``top`` of the Verilog and ``sources``, with ``main`` around it: from the cache.
 
     options: of Verilator; cxx: of g++. note: called with a line of text before each long step. Raises ToolError.
     """
