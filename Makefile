@@ -82,6 +82,10 @@ lightfield: $(READY)  ## a raw frame's light field, refocused pictures and depth
 pixel: $(TESTS_READY)  ## the pixel in a process's metal: search, angular responses, Eq. 3.1 against them: build/pixel/<pdk>/pixel.html (PDK=)
 	@$(talbot) pixel
 
+.PHONY: pixel-layout
+pixel-layout: $(TESTS_READY) $(LAYOUT_READY)  ## the pixel drawn: 24 types, tile, array with dummies and rings; DRC, LVS: build/pixel-layout/<pdk>/pixel_layout.html (ROWS= COLS=)
+	@$(talbot) pixel-layout
+
 .PHONY: polar
 polar: $(READY)  ## a raw frame's angle and degree of polarization, and its highlights: build/polar/<scene>/ (SCENE=)
 	@$(talbot) polar
