@@ -86,6 +86,10 @@ pixel: $(TESTS_READY)  ## the pixel in a process's metal: search, angular respon
 cosim: $(TESTS_READY) $(LAYOUT_READY)  ## a row with transistors in the loop: the chip's Verilog and ngspice in lock-step: build/cosim/cosim.html (needs libngspice: make tools)
 	@$(talbot) cosim
 
+.PHONY: pixel-layout
+pixel-layout: $(TESTS_READY) $(LAYOUT_READY)  ## the pixel drawn: 24 types, tile, array with dummies and rings; DRC, LVS: build/pixel-layout/<pdk>/pixel_layout.html (ROWS= COLS=)
+	@$(talbot) pixel-layout
+
 .PHONY: polar
 polar: $(READY)  ## a raw frame's angle and degree of polarization, and its highlights: build/polar/<scene>/ (SCENE=)
 	@$(talbot) polar
