@@ -82,6 +82,10 @@ lightfield: $(READY)  ## a raw frame's light field, refocused pictures and depth
 pixel: $(TESTS_READY)  ## the pixel in a process's metal: search, angular responses, Eq. 3.1 against them: build/pixel/<pdk>/pixel.html (PDK=)
 	@$(talbot) pixel
 
+.PHONY: analog
+analog: $(LAYOUT_READY) have-tools  ## the analog circuits in ngspice and their datasheet: build/analog/<pdk>/datasheet.html [CORNERS=all DRAWS=200 TABLE=file]
+	@$(talbot) analog
+
 .PHONY: polar
 polar: $(READY)  ## a raw frame's angle and degree of polarization, and its highlights: build/polar/<scene>/ (SCENE=)
 	@$(talbot) polar

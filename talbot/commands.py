@@ -21,6 +21,7 @@ COMMANDS = {
     "sequence": ("talbot.flow.sequence.command", "a sequence of pictures through one running simulation of the chip"),
     "lightfield": ("talbot.flow.lightfield.command", "light field and depth from a raw frame, beside free baselines"),
     "pixel": ("talbot.flow.pixel.command", "a process's pixel: gratings in its metals, solved, fitted to Eq. 3.1"),
+    "analog": ("talbot.flow.analog.command", "the analog circuits in ngspice: corners, mismatch, noise, datasheet"),
     "polar": ("talbot.flow.polar.command", "polarization and highlights from a raw frame, beside free baselines"),
     "depth": ("talbot.flow.depth.command", "depth field by time of flight, unwrapped by the light field"),
     "sensor": ("talbot.flow.sensor", "the standard sensor as a file to start from, or a file checked and completed"),
