@@ -90,6 +90,10 @@ cosim: $(TESTS_READY) $(LAYOUT_READY)  ## a row with transistors in the loop: th
 pixel-layout: $(TESTS_READY) $(LAYOUT_READY)  ## the pixel drawn: 24 types, tile, array with dummies and rings; DRC, LVS: build/pixel-layout/<pdk>/pixel_layout.html (ROWS= COLS=)
 	@$(talbot) pixel-layout
 
+.PHONY: analog
+analog: $(LAYOUT_READY) have-tools  ## the analog circuits in ngspice and their datasheet: build/analog/<pdk>/datasheet.html [CORNERS=all DRAWS=200 TABLE=file]
+	@$(talbot) analog
+
 .PHONY: polar
 polar: $(READY)  ## a raw frame's angle and degree of polarization, and its highlights: build/polar/<scene>/ (SCENE=)
 	@$(talbot) polar

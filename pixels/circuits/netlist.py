@@ -155,6 +155,14 @@ class Circuit:
             raise ParameterError(f"capacitor = {min(unknown)}: must be one of {self.name}'s")
         return replace(self, capacitors=tuple(c._replace(value=values.get(c.name, c.value)) for c in self.capacitors))
 
+    def replaced(self, changed: "Circuit") -> Self:
+        """The same circuit with ``changed`` in place of every circuit of that name in it."""
+        inner = (
+            i._replace(circuit=changed if i.circuit.name == changed.name else i.circuit.replaced(changed))
+            for i in self.instances
+        )
+        return replace(self, instances=tuple(inner))
+
     def without(self, device: str) -> Self:
         """The same circuit without one of its own devices: a fault that is planted."""
         kinds = ("transistors", "capacitors", "resistors", "instances")
