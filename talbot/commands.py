@@ -20,6 +20,7 @@ COMMANDS = {
     "sim": ("talbot.flow.frame.command", "a scene through the golden models and the chip's Verilog"),
     "sequence": ("talbot.flow.sequence.command", "a sequence of pictures through one running simulation of the chip"),
     "lightfield": ("talbot.flow.lightfield.command", "light field and depth from a raw frame, beside free baselines"),
+    "learn": ("talbot.flow.lightfield.learn.command", "the dictionary or the network of light fields, learned again"),
     "pixel": ("talbot.flow.pixel.command", "a process's pixel: gratings in its metals, solved, fitted to Eq. 3.1"),
     "polar": ("talbot.flow.polar.command", "polarization and highlights from a raw frame, beside free baselines"),
     "depth": ("talbot.flow.depth.command", "depth field by time of flight, unwrapped by the light field"),
