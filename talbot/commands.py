@@ -20,6 +20,7 @@ COMMANDS = {
     "sim": ("talbot.flow.frame.command", "a scene through the golden models and the chip's Verilog"),
     "sequence": ("talbot.flow.sequence.command", "a sequence of pictures through one running simulation of the chip"),
     "lightfield": ("talbot.flow.lightfield.command", "light field and depth from a raw frame, beside free baselines"),
+    "learn": ("talbot.flow.lightfield.learn.command", "the dictionary or the network of light fields, learned again"),
     "pixel": ("talbot.flow.pixel.command", "a process's pixel: gratings in its metals, solved, fitted to Eq. 3.1"),
     "cosim": ("talbot.flow.cosim.command", "a row with analog circuits: Verilog and ngspice in lock-step"),
     "pixel-layout": ("talbot.flow.pixel_layout.command", "the pixel drawn: 24 types, tile, array; design rules, LVS"),

@@ -16,7 +16,7 @@ from talbot.models.reconstruct.bayes import Estimate, FieldEstimator, FieldPrior
 from talbot.models.scene import Sampling
 from talbot.models.scene.camera import depth as depth_of_disparity
 
-from .methods import METHODS, Found, figures, measure
+from .methods import Found, applicable, figures, measure
 
 Values = npt.NDArray[np.floating]
 BEST = "mixture"  # the method that has a disparity, too
@@ -47,7 +47,7 @@ def read_back(result: GoldenResult, prior: FieldPrior, note: Callable[[str], Non
     operator, reached = CaptureOperator(result.sensor), _reached(result)
     seen = truth * reached
     free, found, figured = baselines(result.image, seen), {}, {}
-    for name in METHODS:
+    for name in applicable(operator):
         note(name)
         got, seconds = measure(name, estimator, operator, sent)
         float_got = measure(name, estimator, operator, ideal)[0]
@@ -62,7 +62,7 @@ def read_back(result: GoldenResult, prior: FieldPrior, note: Callable[[str], Non
 
 
 def estimate(result: GoldenResult, method: str = BEST, prior: FieldPrior | None = None) -> Found:
-    """The light field of a raw frame by a method, one of `METHODS`. prior: by default `prior_of` the frame's noise.
+    """The light field of a raw frame by an `applicable` method. prior: by default `prior_of` the frame's noise.
 
     Raises ParameterError as `read_back`.
     """

@@ -46,7 +46,7 @@ class FieldPrior:
     near: float = 2.5
     disparities: int = 21
     margin: int = 4
-    trust: float = 0.1
+    trust: float = 0.2
 
     def __post_init__(self) -> None:
         check_real("level", self.level, 0.01, 100)
