@@ -55,7 +55,7 @@ class Coding:
     """
 
     stride: int = 5
-    iterations: int = 60
+    iterations: int = 20
     penalty: float = 0.1
     noise: float = 0.006
     floor_sum: float = 0.05

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from talbot.base.progress import each
+from talbot.flow.lightfield.fields import TRUST
 from talbot.models.capture import CaptureOperator, cells
 from talbot.models.parameters import ArrayParameters, SensorParameters
 from talbot.models.reconstruct.bayes import FieldEstimator, FieldPrior
@@ -78,7 +79,7 @@ def lessons(seeds: Sequence[int], seed: int, noises: Sequence[float] = NOISES, s
     rng, out, taken = np.random.default_rng(seed), [], list(shots(seeds, size))
     reached = cells(VIEWS)[..., None, None]
     for noise in noises:
-        estimator = FieldEstimator(sensor(size), VIEWS, FieldPrior(noise=noise), ESTIMATED)
+        estimator = FieldEstimator(sensor(size), VIEWS, FieldPrior(noise=noise, trust=TRUST), ESTIMATED)
         for shot in each(taken, f"samples, noise {noise:g}"):
             pair = noisy(shot.pair, noise, rng)
             mixture = estimator.mixture(pair)
