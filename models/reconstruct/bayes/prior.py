@@ -50,7 +50,7 @@ class FieldPrior:
     disparities: int = 21
     margin: int = 4
     trust: float = 0.1
-    plain: float = 2.0
+    plain: float = 1.25
 
     def __post_init__(self) -> None:
         check_real("level", self.level, 0.01, 100)
