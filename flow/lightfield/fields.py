@@ -19,7 +19,7 @@ from talbot.models.scene.camera import depth as depth_of_disparity
 from .methods import Found, applicable, figures, measure
 
 Values = npt.NDArray[np.floating]
-DISPARITY = "mixture"  # the method whose disparity is shown
+BEST = "mixture"  # the method whose pictures and disparity are shown
 TRUST = 0.2  # of the prior: more parallax than with less, by dead leaves
 PUPIL = 7  # points across the pupil at which the estimators take a scene that can be seen from anywhere
 QUIET = 0.5  # of the physical noise: what rounding to codes leaves without any other
@@ -28,7 +28,7 @@ SURE = 0.5  # px per view step: a disparity of a larger standard deviation is no
 
 @dataclass(frozen=True, eq=False)
 class Fields:
-    """What one raw frame gives. found: by method. best: by the last of them, with the disparity of `DISPARITY`."""
+    """What one raw frame gives. found: by method. best: by `BEST`."""
 
     result: GoldenResult
     truth: Values
@@ -56,14 +56,14 @@ def read_back(result: GoldenResult, prior: FieldPrior, note: Callable[[str], Non
         figured[name] = figures(got.light_field * corners, seen, free["sum_image_psnr_db"]) | seconds
         figured[name]["left_out"] = got.plain
         figured[name]["psnr_db_float"] = psnr_db(float_got.light_field * corners, seen)
-    summary = about(result) | {"methods": figured, "best": list(found)[-1], "baselines": free}
-    _, disparity, spread, plain = found[DISPARITY]
+    summary = about(result) | {"methods": figured, "best": BEST, "baselines": free}
+    field, disparity, spread, plain = found[BEST]
     assert disparity is not None and spread is not None
-    best = Estimate(found[summary["best"]].light_field, disparity, spread, plain)
+    best = Estimate(field, disparity, spread, plain)
     return Fields(result, truth, found, best, summary | depth_figures(result, best))
 
 
-def estimate(result: GoldenResult, method: str = DISPARITY, prior: FieldPrior | None = None) -> Found:
+def estimate(result: GoldenResult, method: str = BEST, prior: FieldPrior | None = None) -> Found:
     """The light field of a raw frame by an `applicable` method. prior: by default `prior_of` the frame's noise.
 
     Raises ParameterError as `read_back`.
