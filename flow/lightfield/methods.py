@@ -76,7 +76,7 @@ METHODS: Mapping[str, Method] = {"direct": _direct, "linear": _linear, "sparse":
 PREPARE: Mapping[str, Callable[[FieldEstimator, CaptureOperator], object]] = {
     "linear": lambda estimator, operator: estimator.filters,
     "sparse": _coder,
-    "mixture": lambda estimator, operator: estimator.components,
+    "mixture": lambda estimator, operator: (estimator.filters, estimator.components),
     "network": lambda estimator, operator: (estimator.filters, estimator.components, Network.shipped()),
 }
 
