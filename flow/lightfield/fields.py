@@ -19,7 +19,8 @@ from talbot.models.scene.camera import depth as depth_of_disparity
 from .methods import Found, applicable, figures, measure
 
 Values = npt.NDArray[np.floating]
-BEST = "mixture"  # the method that has a disparity, too
+BEST = "mixture"  # the method whose pictures and disparity are shown
+TRUST = 0.2  # of the prior: more parallax than with less, by dead leaves
 PUPIL = 7  # points across the pupil at which the estimators take a scene that can be seen from anywhere
 QUIET = 0.5  # of the physical noise: what rounding to codes leaves without any other
 SURE = 0.5  # px per view step: a disparity of a larger standard deviation is none
@@ -43,21 +44,22 @@ def read_back(result: GoldenResult, prior: FieldPrior, note: Callable[[str], Non
     """
     estimator, scene = estimator_of(result, prior), result.exposed.scene
     truth = np.asarray(scene.full_light_field, np.float32)
-    sent, ideal = (_pair(result, samples) for samples in (result.decoded.samples, result.exposed.ideal))
-    operator, reached = CaptureOperator(result.sensor), _reached(result)
-    seen = truth * reached
+    sent, ideal = (pair_of(result, samples) for samples in (result.decoded.samples, result.exposed.ideal))
+    operator, corners = CaptureOperator(result.sensor), reached(result)
+    seen = truth * corners
     free, found, figured = baselines(result.image, seen), {}, {}
     for name in applicable(operator):
         note(name)
         got, seconds = measure(name, estimator, operator, sent)
         float_got = measure(name, estimator, operator, ideal)[0]
-        found[name] = got._replace(light_field=got.light_field * reached)
-        figured[name] = figures(got.light_field * reached, seen, free["sum_image_psnr_db"]) | seconds
-        figured[name]["psnr_db_float"] = psnr_db(float_got.light_field * reached, seen)
-    summary = about(result) | {"methods": figured, "baselines": free}
-    field, disparity, spread = found[BEST]
+        found[name] = got._replace(light_field=got.light_field * corners)
+        figured[name] = figures(got.light_field * corners, seen, free["sum_image_psnr_db"]) | seconds
+        figured[name]["left_out"] = got.plain
+        figured[name]["psnr_db_float"] = psnr_db(float_got.light_field * corners, seen)
+    summary = about(result) | {"methods": figured, "best": BEST, "baselines": free}
+    field, disparity, spread, plain = found[BEST]
     assert disparity is not None and spread is not None
-    best = Estimate(field, disparity, spread)
+    best = Estimate(field, disparity, spread, plain)
     return Fields(result, truth, found, best, summary | depth_figures(result, best))
 
 
@@ -66,9 +68,9 @@ def estimate(result: GoldenResult, method: str = BEST, prior: FieldPrior | None 
 
     Raises ParameterError as `read_back`.
     """
-    estimator = estimator_of(result, prior or prior_of(result.request.noise))
-    found = measure(method, estimator, CaptureOperator(result.sensor), _pair(result, result.decoded.samples))[0]
-    return found._replace(light_field=found.light_field * _reached(result))
+    estimator = estimator_of(result, prior or prior_of(result.request.noise, trust=TRUST))
+    found = measure(method, estimator, CaptureOperator(result.sensor), pair_of(result, result.decoded.samples))[0]
+    return found._replace(light_field=found.light_field * reached(result))
 
 
 def prior_of(noise: float, **rest: Any) -> FieldPrior:
@@ -84,13 +86,13 @@ def estimator_of(result: GoldenResult, prior: FieldPrior) -> FieldEstimator:
     return FieldEstimator(result.sensor, scene.views, prior, scene.views if scene.render is None else PUPIL)
 
 
-def _pair(result: GoldenResult, samples: npt.NDArray[Any]) -> Values:
+def pair_of(result: GoldenResult, samples: npt.NDArray[Any]) -> Values:
     """Samples (rows, cols, 2) as (2, rows, cols), 1 = the average diode in a flat white scene."""
     white = white_sum(result.request.lit, result.request.frame.exposing)
     return np.moveaxis(np.asarray(samples, float), 2, 0) / white
 
 
-def _reached(result: GoldenResult) -> npt.NDArray[np.bool_]:
+def reached(result: GoldenResult) -> npt.NDArray[np.bool_]:
     """Corners that the round pupil does not reach have no light."""
     return cells(result.exposed.scene.views)[..., None, None]
 

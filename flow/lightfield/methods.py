@@ -13,6 +13,7 @@ from talbot.models.capture import CaptureOperator
 from talbot.models.parameters import SensorParameters
 from talbot.models.reconstruct import light_field_estimate, psnr_db
 from talbot.models.reconstruct.bayes import FieldEstimator
+from talbot.models.reconstruct.network import VIEWS, Network
 from talbot.models.reconstruct.sparse import Coding, Dictionary, SparseEstimator
 
 Values = npt.NDArray[np.floating]
@@ -20,11 +21,16 @@ SSIM_WINDOW = 7  # px
 
 
 class Found(NamedTuple):
-    """What a method gives. light_field: l[v, u, y, x], white = 1. disparity, spread: (rows, cols) in px, or None."""
+    """What a method gives.
+
+    light_field: l[v, u, y, x], white = 1. disparity, spread: (rows, cols) in px, or None. plain: share of the windows
+    that are left out, since their samples show no angular content.
+    """
 
     light_field: Values
     disparity: Values | None = None
     spread: Values | None = None
+    plain: float = 0.0
 
 
 Method = Callable[[FieldEstimator, CaptureOperator, Values], Found]
@@ -42,6 +48,12 @@ def _mixture(estimator: FieldEstimator, operator: CaptureOperator, pair: Values)
     return Found(*estimator.mixture(pair))
 
 
+def _network(estimator: FieldEstimator, operator: CaptureOperator, pair: Values) -> Found:
+    mixture = estimator.mixture(pair)
+    field = Network.shipped().correct(estimator.linear(pair), mixture, estimator.prior.noise)
+    return Found(*mixture._replace(light_field=field))
+
+
 def _sparse(estimator: FieldEstimator, operator: CaptureOperator, pair: Values) -> Found:
     return Found(_coder(estimator, operator).estimate(pair))
 
@@ -57,12 +69,15 @@ def _prepared(sensor: SensorParameters, coding: Coding) -> SparseEstimator:
     return coder
 
 
-# direct: Sigma^-1 Phi' i [Jayasuriya2017, Sec. 3.3.2]. linear, mixture: models/reconstruct/bayes. sparse: .../sparse.py
-METHODS: Mapping[str, Method] = {"direct": _direct, "linear": _linear, "sparse": _sparse, "mixture": _mixture}
+# direct: Sigma^-1 Phi' i [Jayasuriya2017, Sec. 3.3.2]. linear, mixture: models/reconstruct/bayes
+METHODS: Mapping[str, Method] = {"direct": _direct, "linear": _linear, "sparse": _sparse, "mixture": _mixture} | {
+    "network": _network
+}
 PREPARE: Mapping[str, Callable[[FieldEstimator, CaptureOperator], object]] = {
     "linear": lambda estimator, operator: estimator.filters,
     "sparse": _coder,
-    "mixture": lambda estimator, operator: estimator.components,
+    "mixture": lambda estimator, operator: (estimator.filters, estimator.components),
+    "network": lambda estimator, operator: (estimator.filters, estimator.components, Network.shipped()),
 }
 
 
@@ -70,8 +85,8 @@ def applicable(operator: CaptureOperator) -> list[str]:
     """Methods for frames of this size and light fields of as many views; what is learned has a size of its own."""
     views, _, *shape = operator.shape
     _, own, _, *patch = Dictionary.shipped().atoms.shape
-    fits = views == own and min(np.subtract(shape, patch)) >= 0
-    return [name for name in METHODS if name != "sparse" or fits]
+    fits = {"network": views == VIEWS, "sparse": views == own and min(np.subtract(shape, patch)) >= 0}
+    return [name for name in METHODS if fits.get(name, True)]
 
 
 def measure(

@@ -37,7 +37,7 @@ LAYERS: Mapping[str, tuple[int, int]] = {
 }
 STEP = 4  # px: sizes that two halvings divide
 STRIP = 16  # rows of a matrix product: its copy of the pixels' surroundings stays in the cache
-NOISE = 0.006  # of white, at which the input for it is 0
+NOISE = 0.006, 0.2  # of white: the least, at which the input for it is 0, and the most that it was taught with
 
 
 def features(linear: Floats, mixture: Estimate, noise: float) -> Floats:
@@ -50,7 +50,7 @@ def features(linear: Floats, mixture: Estimate, noise: float) -> Floats:
     mixture : Estimate
         Of `FieldEstimator.mixture`.
     noise : float
-        Standard deviation of a sample, 1 = white, 1e-5..10.
+        Standard deviation of a sample, 1 = white, 1e-5..10; outside of `NOISE` its nearer end.
 
     Returns
     -------
@@ -67,7 +67,7 @@ def features(linear: Floats, mixture: Estimate, noise: float) -> Floats:
         raise ParameterError(f"views = {shape[0]}: must be {VIEWS} for the network, which was taught with these")
     mean = mixture.light_field.mean((0, 1))
     views = [field.reshape(-1, *shape[2:]) - mean for field in (linear, mixture.light_field)]
-    level = np.full((1, *shape[2:]), np.log10(noise / NOISE))
+    level = np.full((1, *shape[2:]), np.log10(np.clip(noise, *NOISE) / NOISE[0]))
     return np.concatenate([*views, mean[None], mixture.disparity[None], mixture.spread[None], level]).astype(np.float32)
 
 

@@ -55,7 +55,7 @@ class Coding:
     """
 
     stride: int = 5
-    iterations: int = 60
+    iterations: int = 20
     penalty: float = 0.1
     noise: float = 0.006
     floor_sum: float = 0.05
@@ -258,7 +258,7 @@ class SparseEstimator:
         penalty[0] = 0  # the mean is free
         parts = [seen.T @ samples[:, first : first + CHUNK] for first in range(0, samples.shape[1], CHUNK)]
         solved = Parallel(n_jobs=coding.jobs)(delayed(lasso.solve)(part, penalty, coding.iterations) for part in parts)
-        return np.concatenate(list(solved), 1)
+        return np.concatenate([np.asarray(part) for part in solved], 1)
 
     def _factor(self, top: int, left: int) -> tuple[Floats, Lasso]:
         """Phi D, (samples, atoms), and its factors for patches that begin here in the tile."""

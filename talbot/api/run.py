@@ -73,8 +73,8 @@ class Run:
         disparity (raw mode): px of the array per view step, Image (rows, cols), NaN where the mixture is not sure.
         depth (tof mode): in m, Image (rows, cols), NaN where there is no amplitude.
 
-        method: of a light field, as in `make lightfield`: direct (the thesis's; the default), linear or mixture, by
-        Bayes' rule (models/reconstruct/bayes).
+        method: of a light field (flow/lightfield/README.md): direct (the thesis's; the default), linear, sparse,
+        mixture, network.
         disparity: (rows, cols), px of the array per view step, for an image from edges; by default the scene's own.
         Raises ParameterError.
         """

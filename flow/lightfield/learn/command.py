@@ -5,6 +5,7 @@ from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
 from talbot.flow.frame import arguments as text
+from talbot.models.parameters import ParameterError
 
 WHAT = "dictionary", "network"
 FIRST = 1000  # seed of the first scene; those of the tests and figures are below
@@ -18,6 +19,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     add("--scenes", default="24", help="to learn from, 1..10000")
     add("--steps", default="", help="of the learning, 1..1000000 (default: 40 batches, 2500 of the network)")
     add("--atoms", default="384", help="of the dictionary, 2..4096")
+    add("--start", help="weights of the network to go on from (default: none)")
     add("--out", default="build/learn", help="folder for <what>.npz, which models/reconstruct ships, and <what>.json")
 
 
@@ -29,7 +31,9 @@ def run(options: Namespace) -> int:
     scenes = text.integer("scenes", options.scenes, 1, 10**4)
     steps = text.integer("steps", options.steps or {"dictionary": "40", "network": "2500"}[options.what], 1, 10**6)
     atoms = text.integer("atoms", options.atoms, 2, 4096)
-    out = Path(options.out)
+    out, start = Path(options.out), Path(options.start) if options.start else None
+    if start is not None and not start.is_file():
+        raise ParameterError(f"start = {str(start)!r}: must be a file of weights")
     check_folder("out", out)
     seeds = range(FIRST, FIRST + scenes)
     if options.what == "dictionary":
@@ -39,7 +43,7 @@ def run(options: Namespace) -> int:
     else:
         from .training import learned
 
-        made = learned(seeds, steps, seed)
+        made = learned(seeds, steps, seed, start)
     with staged(out) as part:
         made.save(part / f"{options.what}.npz")
         (part / f"{options.what}.json").write_text(json.dumps(made.summary, indent=1) + "\n")

@@ -8,17 +8,22 @@ import numpy as np
 import numpy.typing as npt
 
 from talbot.base.progress import each
+from talbot.flow.lightfield.fields import TRUST
 from talbot.models.capture import CaptureOperator, cells
 from talbot.models.parameters import ArrayParameters, SensorParameters
 from talbot.models.reconstruct.bayes import FieldEstimator, FieldPrior
-from talbot.models.reconstruct.network import VIEWS, features
+from talbot.models.reconstruct.network import NOISE, VIEWS, features
 from talbot.models.scene import Sampling, load
 
 Values = npt.NDArray[np.floating]
 SIZE = 96  # px: 4 x 4 tiles of 4 x 6 pixels and more
 PUPIL = 11  # points across the pupil at which a scene is captured
 ESTIMATED = 7  # at which the estimators take it, as `make lightfield` does
-NOISES = (0.006, 0.05, 0.2)  # of white: physical noise, to the most that the thesis tries [Jayasuriya2017, Sec. 3.7]
+NOISES = (
+    NOISE[0],
+    0.05,
+    NOISE[1],
+)  # of white: physical noise, to the most that the thesis tries [Jayasuriya2017, Sec. 3.7]
 
 
 class Shot(NamedTuple):
@@ -78,7 +83,7 @@ def lessons(seeds: Sequence[int], seed: int, noises: Sequence[float] = NOISES, s
     rng, out, taken = np.random.default_rng(seed), [], list(shots(seeds, size))
     reached = cells(VIEWS)[..., None, None]
     for noise in noises:
-        estimator = FieldEstimator(sensor(size), VIEWS, FieldPrior(noise=noise), ESTIMATED)
+        estimator = FieldEstimator(sensor(size), VIEWS, FieldPrior(noise=noise, trust=TRUST), ESTIMATED)
         for shot in each(taken, f"samples, noise {noise:g}"):
             pair = noisy(shot.pair, noise, rng)
             mixture = estimator.mixture(pair)

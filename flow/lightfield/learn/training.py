@@ -46,10 +46,13 @@ def forward(weights: Mapping[str, Any], seen: Any) -> Any:
     return layers(full + nn.interpolate(half, scale_factor=2, mode="nearest"), "full_3", "full_4")
 
 
-def train(lessons: Sequence[Lesson], steps: int, seed: int) -> tuple[dict[str, npt.NDArray[np.float16]], list[float]]:
+def train(
+    lessons: Sequence[Lesson], steps: int, seed: int, start: Mapping[str, npt.NDArray[Any]] | None = None
+) -> tuple[dict[str, npt.NDArray[np.float16]], list[float]]:
     """Weights after ``steps`` of Adam on crops of the lessons, turned at random, and the loss at every step.
 
     The loss is the mean square error over that of the mixture: below 1 it is an improvement. All noises weigh alike.
+    start: weights to go on from, at half the rate; None is random ones.
     """
     pt, rng = torch(), np.random.default_rng(seed)
     pt.manual_seed(seed)
@@ -58,7 +61,9 @@ def train(lessons: Sequence[Lesson], steps: int, seed: int) -> tuple[dict[str, n
         size = (2 / (9 * inside)) ** 0.5 * (LAST if name == "full_4" else 1)
         weights[name] = (size * pt.randn(out, inside, 3, 3)).requires_grad_()
         weights[f"{name}_bias"] = pt.zeros(out).requires_grad_()
-    optimizer = pt.optim.Adam(weights.values(), RATE)
+    for name, value in (start or {}).items():
+        weights[name] = pt.from_numpy(value.astype(np.float32)).requires_grad_()
+    optimizer = pt.optim.Adam(weights.values(), RATE / 2 if start else RATE)
     schedule = pt.optim.lr_scheduler.CosineAnnealingLR(optimizer, steps)
     scale = np.array([np.square(lesson.wanted, dtype=np.float32).mean() ** -0.5 for lesson in lessons])
     losses = []
@@ -113,12 +118,20 @@ class Learned:
         np.savez_compressed(path, **self.weights)  # type: ignore[arg-type]
 
 
-def learned(seeds: Sequence[int], steps: int, seed: int) -> Learned:
-    """Weights from scenes of ``seeds``. Raises ToolError without PyTorch."""
+def learned(seeds: Sequence[int], steps: int, seed: int, start: Path | None) -> Learned:
+    """Weights from scenes of ``seeds``, on from those in ``start``. Raises ToolError without PyTorch, OSError."""
     torch()  # before minutes of samples
-    weights, losses = train(lessons(seeds, seed), steps, seed)
+    before = None if start is None else dict(np.load(start))
+    weights, losses = train(lessons(seeds, seed), steps, seed, before)
     last = losses[-max(len(losses) // 10, 1) :]
-    summary = {"scenes": len(seeds), "first_scene": seeds[0], "steps": steps, "seed": seed, "noises": NOISES}
+    summary = {
+        "scenes": len(seeds),
+        "first_scene": seeds[0],
+        "steps": steps,
+        "seed": seed,
+        "start": str(start or ""),
+        "noises": NOISES,
+    }
     count = sum(value.size for value in weights.values())
     figures = {"parameters": count, "error": float(np.mean(last)), "losses": losses}
     return Learned(weights, summary | figures)
