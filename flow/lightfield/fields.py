@@ -1,7 +1,7 @@
 """What a raw frame gives by every method, with its figures, beside what costs nothing."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -55,10 +55,21 @@ def read_back(result: GoldenResult, prior: FieldPrior, note: Callable[[str], Non
         figured[name] = figures(got.light_field * reached, seen, free["sum_image_psnr_db"]) | seconds
         figured[name]["psnr_db_float"] = psnr_db(float_got.light_field * reached, seen)
     summary = about(result) | {"methods": figured, "baselines": free}
+    if result.request.calibration:
+        note("with the true optics")
+        summary["true_optics"] = _by_truth(result, prior, truth * reached, sent)
     field, disparity, spread = found[BEST]
     assert disparity is not None and spread is not None
     best = Estimate(field, disparity, spread)
     return Fields(result, truth, found, best, summary | depth_figures(result, best))
+
+
+def _by_truth(result: GoldenResult, prior: FieldPrior, seen: Values, sent: Values) -> dict[str, float | None]:
+    """PSNR in dB of every method that knows the sensor's true optics in place of a calibration."""
+    true = replace(result, request=replace(result.request, calibration=None))
+    estimator, operator, reached = estimator_of(true, prior), CaptureOperator(true.sensor), _reached(true)
+    found = {name: measure(name, estimator, operator, sent)[0].light_field for name in METHODS}
+    return {name: psnr_db(field * reached, seen) for name, field in found.items()}
 
 
 def estimate(result: GoldenResult, method: str = BEST, prior: FieldPrior | None = None) -> Found:
