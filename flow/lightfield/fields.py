@@ -7,11 +7,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from talbot.flow.frame.reading import about, rms
+from talbot.flow.frame.reading import about, full, rms
 from talbot.flow.frame.result import GoldenResult
 from talbot.models.capture import CaptureOperator, cells
 from talbot.models.parameters import ParameterError
 from talbot.models.reconstruct import psnr_db, white_sum
+from talbot.models.reconstruct.bad_pixels import dead_pixels, repaired
 from talbot.models.reconstruct.bayes import Estimate, FieldEstimator, FieldPrior
 from talbot.models.scene import Sampling
 from talbot.models.scene.camera import depth as depth_of_disparity
@@ -43,13 +44,15 @@ def read_back(result: GoldenResult, prior: FieldPrior, note: Callable[[str], Non
     """
     estimator, scene = estimator_of(result, prior), result.exposed.scene
     truth = np.asarray(scene.full_light_field, np.float32)
-    sent, ideal = (_pair(result, samples) for samples in (result.decoded.samples, result.exposed.ideal))
+    sent, bad = _sent(result)
+    ideal = _pair(result, result.exposed.ideal)
     operator, reached = CaptureOperator(result.sensor), _reached(result)
     seen = truth * reached
     free, found, figured = baselines(result.image, seen), {}, {}
     for name in METHODS:
         note(name)
         got, seconds = measure(name, estimator, operator, sent)
+        got = _unsure(got, bad, estimator)
         float_got = measure(name, estimator, operator, ideal)[0]
         found[name] = got._replace(light_field=got.light_field * reached)
         figured[name] = figures(got.light_field * reached, seen, free["sum_image_psnr_db"]) | seconds
@@ -77,8 +80,10 @@ def estimate(result: GoldenResult, method: str = BEST, prior: FieldPrior | None 
 
     Raises ParameterError as `read_back`.
     """
-    estimator = estimator_of(result, prior or prior_of(result.request.noise))
-    found = measure(method, estimator, CaptureOperator(result.sensor), _pair(result, result.decoded.samples))[0]
+    prior = prior or prior_of(result.request.noise)
+    sent, bad = _sent(result)
+    estimator = estimator_of(result, prior)
+    found = _unsure(measure(method, estimator, CaptureOperator(result.sensor), sent)[0], bad, estimator)
     return found._replace(light_field=found.light_field * _reached(result))
 
 
@@ -93,6 +98,21 @@ def estimator_of(result: GoldenResult, prior: FieldPrior) -> FieldEstimator:
         raise ParameterError("window, types, decimation = a part of the array: must be all, for a light field")
     scene = result.exposed.scene
     return FieldEstimator(result.sensor, scene.views, prior, scene.views if scene.render is None else PUPIL)
+
+
+def _sent(result: GoldenResult) -> tuple[Values, npt.NDArray[np.bool_]]:
+    """Samples as `_pair`, dead pixels repaired, and the pixels that are dead or full."""
+    samples = result.decoded.samples
+    pair = _pair(result, samples)
+    dead = dead_pixels(pair)
+    return repaired(pair, dead), dead | full(np.asarray(samples, float), (2,))
+
+
+def _unsure(found: Found, bad: npt.NDArray[np.bool_], estimator: FieldEstimator) -> Found:
+    """``found`` without a disparity wherever a window holds a bad pixel."""
+    if found.spread is None or not bad.any():
+        return found
+    return found._replace(spread=np.where(estimator.told_by(bad), np.inf, found.spread))
 
 
 def _pair(result: GoldenResult, samples: npt.NDArray[Any]) -> Values:
