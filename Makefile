@@ -102,6 +102,10 @@ polar: $(READY)  ## a raw frame's angle and degree of polarization, and its high
 depth: $(READY)  ## depth by time of flight, unwrapped by the light field of its taps, and past an occluder: build/depth/<scene>/ (SCENE=)
 	@$(talbot) depth
 
+.PHONY: calibrate
+calibrate: $(READY)  ## pixel types, trims and lens from noisy frames on a bench: build/calibrate/calibration.json, for CALIBRATION= of sim and lightfield
+	@$(talbot) calibrate
+
 .PHONY: test
 test: $(TESTS_READY)  ## the fast tests of every block and model (under 10 minutes on 2 cores) [COMPLETE=1: fail where a test lacks a tool]
 	@$(PY) -m pytest -n auto --dist loadfile $(if $(filter-out 0 no false off,$(COMPLETE)),--complete)

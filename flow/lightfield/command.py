@@ -58,6 +58,8 @@ def _print(s: dict[str, Any], folder: Path) -> None:
     for name, psnr, gain, _, slope, *_, seconds, once in table(s):
         rest = f"  gain {gain:>8}  slope {slope}  {seconds} s (once {once} s)" if gain else ""
         print(f"  {name:<42}{psnr:>8}{rest}")
+    for name, psnr in s.get("true_optics", {}).items():
+        print(f"  {f'{name}, with the true optics':<42}{reading.number(psnr)} dB")
     error, constant = reading.number(s["disparity_rms_px"]), reading.number(s["disparity_rms_constant_px"])
     print(f"  disparity {error} px RMS where it is sure ({100 * s['depth_sure']:.0f} %); one for all: {constant} px")
     if s["depth_rms_m"] is not None:

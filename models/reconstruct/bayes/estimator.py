@@ -149,6 +149,39 @@ class FieldEstimator:
         """For each disparity, made once a sensor."""
         return [Component(*self._filters(self.covariances.of(float(d)))) for d in self.prior.grid]
 
+    def told_by(self, pixels: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
+        """Where the mixture's disparity is from any of some pixels.
+
+        Parameters
+        ----------
+        pixels : bool (rows, cols)
+            Dead or full ones, for example.
+
+        Returns
+        -------
+        bool (rows, cols)
+            True where one of them is in a window.
+        """
+        windows = sliding_window_view(pixels, (self.y.window, self.x.window))[np.ix_(self.y.firsts, self.x.firsts)]
+        return np.asarray(self.y.spread() @ windows.any((2, 3)) @ self.x.spread().T > 0)
+
+    def condition(self, disparity: float | None = None) -> float:
+        """Condition of the covariance of the samples in a window, noise included.
+
+        Parameters
+        ----------
+        disparity : float, optional
+            In px per view step; None is the mean over the prior's, that of `linear`.
+
+        Returns
+        -------
+        float
+            Greatest of all groups of windows.
+        """
+        tables = self.covariances.mean() if disparity is None else self.covariances.of(disparity)
+        groups = {(down.phase, across.phase): (down, across) for down, across in self._groups()}
+        return max(float(np.linalg.cond(self._whiten(tables, *group))) ** 2 for group in groups.values())
+
     def mixture(self, pair: Floats, evidence: Floats | None = None) -> Estimate:
         """Mean over the disparities, each as probable as the samples make it.
 
