@@ -18,6 +18,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     add("--types", default="6", help="pixel types of the row that are read, 1..6 (6; in time of flight 2 at most)")
     add("--threshold", default="10", help="of edge mode, 0..127 (10)")
     add("--seed", default="1", help="of the pixels' values (1)")
+    add("--t-int", default="20000", help="cycles of integration, 1..65535 (20000, 2 ms)")
     add("--reltol", default="1e-3", help="ngspice's relative tolerance, 1e-8..0.1 (1e-3)")
     add("--method", default="trap", help="ngspice's integration, trap or gear (trap)")
     add("--study", action="store_true", help="error against run time on one sample, beside an off-line reference, too")
@@ -44,6 +45,7 @@ def run(options: Namespace) -> int:
     shared: dict[str, Any] = {
         "cols": text.integer("cols", options.cols, 6, 48),
         "lanes": text.integer("lanes", options.lanes, 1, 4),
+        "t_int": text.integer("t_int", options.t_int, 1, 65535),
         "threshold": text.integer("threshold", options.threshold, 0, 127),
         "seed": text.integer("seed", options.seed, 0, 2**32 - 1),
         "accuracy": accuracy,
@@ -56,6 +58,7 @@ def run(options: Namespace) -> int:
         found: dict[str, Any] = {"rows": [summary(row) for row in done], "model": model_alone(asked[0])}
         steps.note("study")
         found["study"] = study.accuracy(steps.note) if options.study else []
+        found["left_out"] = study.leaving_out(steps.note) if options.study else []
         found["faults"] = study.faults(steps.note) if options.faults else []
         steps.note("report")
         with staged(out, page.names(MODES)) as part:
@@ -79,6 +82,11 @@ def _print(s: dict[str, Any], folder: Path) -> None:
             f"decisions {1e12 * line['largest_error_s']:.1f} ps off at most, " if line.get("largest_error_s") else ""
         )
         print(f"  {line['name']}: {error}{line['time_points']} time points, {line['seconds']:.1f} s")
+    for line in s["left_out"]:
+        print(
+            f"  left out: {line['name']}: {line['seconds']:.1f} s in place of {line['seconds_with']:.1f}, "
+            f"error {line['error_lsb']:+.4f} LSB at the lane"
+        )
     for line in s["faults"]:
         print(f"  planted: {line['planted']}; found: {line['name']} (codes {line['error']} LSB from it in all)")
     print(f"  real-number front end: {s['model']['cycles_per_s']:,.0f} cycles a second")

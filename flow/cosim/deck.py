@@ -11,6 +11,7 @@ from talbot.pixels.circuits.netlist import Circuit, Instance, Transistor
 from talbot.pixels.circuits.specification import CODES, LaneSpec
 from talbot.platforms.sky130 import analog
 
+from . import pixels
 from .accuracy import Accuracy
 from .faults import Fault
 
@@ -21,6 +22,17 @@ CORNER = Corner("tt", 25.0, 1.8)
 SELECT_W = 16.0  # um, n transistor between a column and its lane: 4.3 pF settle in a cycle
 LANE_NODES = ("top", "other", "xcomparator.outp", "xcomparator.outn")  # in the waves
 Values = Mapping[tuple[int, int], float]
+
+
+@dataclass(frozen=True)
+class RowOfPixels:
+    """Pixels of a row. diodes: (a, b) in LSB of each column and tap; cols: of the array; integration: s."""
+
+    diodes: Mapping[int, Mapping[int, tuple[float, float]]]
+    cols: int
+    gain: float
+    integration: float
+    sizes: pixels.PixelSizes = pixels.PixelSizes()
 
 
 @dataclass(frozen=True)
@@ -70,18 +82,19 @@ def build(
     accuracy: Accuracy,
     fault: Fault | None = None,
     everything: bool = False,
+    row: "RowOfPixels | None" = None,
 ) -> Deck:
     """The circuit that reads one row.
 
     values: LSB at (column, sub-sample). lanes: of the chip; only those that serve one of these columns are built, with
-    ``everything`` all. unsigned: the range of all values; else -128..127.
+    ``everything`` all. unsigned: the range of all values; else -128..127. row: pixels in place of ideal columns.
     """
     columns = tuple(sorted({column for column, _ in values}))
     used = {column // tile_cols % lanes for column in columns}
     served = tuple(sorted(range(lanes) if everything else used))
     deck = Deck([f"q{i}" if i in served else "-" for i in range(lanes)], served, columns, supply=spec.supply)
     sound = lanes_of.sar_lane(lanes_of.size(spec, analog))
-    body = []
+    body, own = [], []
     circuits = {"selector": _selector()}
     for i in served:
         one = fault.of_lane(sound, i) if fault else sound
@@ -98,16 +111,26 @@ def build(
     for (column, sub), value in sorted(values.items()):
         name, into = f"{column}_{sub}", column // tile_cols % lanes
         on = _source(deck, f"select{name}", 10 * lanes + SUBS * column + sub, spec.supply)
-        volts = level + (value - MIDDLE * unsigned) * spec.lsb
-        body += [
-            f"Vcolumn{name} column{name} 0 {volts:.9g}",
-            f"Xselect{name} column{name} in{into} {on} vdd 0 selector",
-        ]
+        body.append(f"Xselect{name} column{name} in{into} {on} vdd 0 selector")
+        if row is None:
+            body.append(f"Vcolumn{name} column{name} 0 {level + (value - MIDDLE * unsigned) * spec.lsb:.9g}")
+    if row is not None:
+        circuits |= {one.name: one for one in (pixels.pixel(row.sizes), pixels.clear(), pixels.sampler())}
+        own = pixels.amplifier(row.sizes)
+        body += _row(deck, row, unsigned, spec, level, fault)
+        deck.saved += [f"out_{d}{c}" for c in columns for d in "ab"] + [f"value{c}" for c in columns]
+        first = 10 * lanes + SUBS * row.cols
+        for i, line in enumerate((*pixels.LINES, "clear")):
+            _source(deck, f"{line}_row", first + i, spec.supply)
+        for tap in range(SUBS):
+            _source(deck, f"tap{tap}", first + 3 + tap, spec.supply)
+            _source(deck, f"light{tap}", -1, 1.0)
     if not fault:
         for circuit in circuits.values():
             circuit.check(analog)
     sizes = set().union(*(circuit.sizes() for circuit in circuits.values()))
-    deck.transistors = sum(_count(circuits[line.split()[-1]]) for line in body if line[0] == "X")
+    called = [line.split()[-1] for line in body if line[0] == "X"]
+    deck.transistors = sum(_count(circuits["charge_clear" if name == "charge" else name]) for name in called)
     supplies = {"refp": spec.refp, "refn": spec.refn, "vcm": spec.vcm, "ref": level}
     deck.lines = [
         "* one row of a sensor",
@@ -116,16 +139,26 @@ def build(
         *analog.cards(CORNER.process, sizes),
         ".param cscale=1",
         *dict.fromkeys(text for circuit in circuits.values() for text in _subcircuits(circuit)),
+        *own,
         f"Vdd vdd 0 {spec.supply:g}",
         *(f"V{name} {name}_out 0 {volts:g}" for name, volts in supplies.items()),
         *(f"R{name} {name}_out {name} {spec.reference_resistance:g}" for name in supplies),
-        *_breaks(timing),
+        _breaks(timing),
         *deck.sources,
         *body,
         ".save " + " ".join(f"v({node})" for node in deck.saved),
         ".end",
     ]
     return deck
+
+
+def _row(deck: Deck, row: RowOfPixels, unsigned: bool, spec: LaneSpec, level: float, fault: Fault | None) -> list[str]:
+    """Lines of the pixels and columns."""
+    columns = {c: row.diodes[c] for c in deck.columns}
+    middle = level - MIDDLE * unsigned * spec.lsb
+    swapped = frozenset(fault.where if fault and fault.kind == "diodes" else ())
+    cut = fault.where[0] if fault and fault.kind == "row" else None
+    return pixels.lines(columns, not unsigned, row.gain, spec.lsb, middle, row.integration, row.sizes, swapped, cut)
 
 
 def _subcircuits(circuit: Circuit) -> list[str]:
@@ -143,13 +176,10 @@ def _count(circuit: Circuit) -> int:
     return len(circuit.transistors) + sum(_count(one.circuit) for one in circuit.instances)
 
 
-def _breaks(timing: Timing) -> list[str]:
-    """Sources without a load whose corners are those of the drive: ngspice lowers its order there."""
+def _breaks(timing: Timing) -> str:
+    """A source without a load whose corners are those of clock and strobe: ngspice lowers its order there."""
     t = timing
-    return [
-        f"Vbreak{i} break{i} 0 PULSE(0 1 {start:.9g} {t.edge:.9g} {t.edge:.9g} {0.25 * t.period:.9g} {t.period:.9g})"
-        for i, start in enumerate((0.0, 0.5 * t.period, 0.5 * t.period + t.after))
-    ]
+    return f"Vbreak break 0 PULSE(0 1 0 {t.edge:.9g} {t.edge:.9g} {0.5 * t.period - t.edge:.9g} {t.period:.9g})"
 
 
 def _source(deck: Deck, name: str, bit: int, high: float, half: bool = False, rise: float = 0.0) -> str:

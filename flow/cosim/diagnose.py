@@ -26,11 +26,21 @@ class Finding(NamedTuple):
 
 
 def dictionary(row: RowRequest) -> Iterator[Fault]:
-    """Every fault that the row's lanes may have."""
+    """Every fault that the row's lanes may have, and its pixels where they are in the circuit."""
     for lane in row.deck().lanes:
         yield Fault("comparator", (lane,))
         for bit in range(BITS):
             yield Fault("capacitor", (lane, bit))
+    for column in row.deck().columns if row.pixels else ():
+        yield Fault("diodes", (column,))
+        yield Fault("row", (column,))
+
+
+def value_of(value: float, column: int, edge: bool, fault: Fault | None) -> float:
+    """What the amplifiers of ``column`` make with ``fault`` of ``value`` (LSB): none through a line that is cut."""
+    if fault == Fault("diodes", (column,)) and edge:
+        return -value
+    return 0.0 if fault and fault.kind == "row" and column >= fault.where[0] else value
 
 
 def code_of(value: float, lane: int, unsigned: bool, threshold: int, fault: Fault | None) -> int:
@@ -39,7 +49,8 @@ def code_of(value: float, lane: int, unsigned: bool, threshold: int, fault: Faul
     A capacitor that is missing samples nothing and adds nothing: a code without its bit is compared with the value
     times what is left of the 256 units.
     """
-    here = fault if fault and fault.where[0] == lane else None
+    of_lane = fault and fault.kind in ("comparator", "capacitor") and fault.where[0] == lane
+    here = fault if of_lane else None
     weight = 1 << here.where[1] if here and here.kind == "capacitor" else 0
     search = decisions(unsigned, threshold)
     try:
@@ -58,7 +69,9 @@ def diagnose(row: Row) -> Finding:
     unsigned, threshold = asked.mode != "edge", asked.threshold if asked.mode == "edge" else 0
 
     def error(fault: Fault | None) -> int:
-        return sum(abs(s.code - code_of(s.value, s.lane, unsigned, threshold, fault)) for s in row.samples)
+        values = [value_of(s.value, s.column, asked.mode == "edge", fault) for s in row.samples]
+        expected = [code_of(v, s.lane, unsigned, threshold, fault) for v, s in zip(values, row.samples, strict=True)]
+        return sum(abs(s.code - code) for s, code in zip(row.samples, expected, strict=True))
 
     errors = {SOUND: error(None)} | {fault.name: error(fault) for fault in dictionary(asked)}
     (name, best), (_, after), *_ = sorted(errors.items(), key=lambda item: item[1])

@@ -8,6 +8,8 @@ from talbot.pixels.circuits.netlist import Circuit
 KINDS = {
     "comparator": "the comparator inputs of lane {} are swapped",
     "capacitor": "lane {} has no capacitor of bit {}",
+    "diodes": "the diode lines of column {} are swapped",
+    "row": "the row's read line is cut before column {}",
 }
 
 

@@ -6,6 +6,8 @@
 //              8 LANES                its DAC's code
 //              LANES                  lane l decides in this cycle: its comparator is strobed
 //              SUBS x COLS            column c, sub-sample s at the lane's input (bit SUBS c + s)
+//              1, 1, 1                the row's reset line, its read line, the columns' amplifiers cleared
+//              SUBS                   the amplifiers' outputs are sampled, of each tap
 `default_nettype none
 `ifndef BALANCE_BITS
 `define BALANCE_BITS 10
@@ -28,7 +30,7 @@ module Afe #(
     output wire        [LANES-1:0]         comparator
 );
   localparam int SUBS = 4, LAST = 10;                   // decisions of a conversion, with those of the window
-  localparam int BITS = 10 * LANES + SUBS * COLS;
+  localparam int ROW = 10 * LANES + SUBS * COLS, BITS = ROW + 3 + SUBS;
 
   reg [LANES-1:0] answers  /*verilator public_flat_rw*/;
   wire [BITS-1:0] controls  /*verilator public_flat_rd*/;
@@ -37,13 +39,29 @@ module Afe #(
   wire [8*LANES-1:0] question  /*verilator public_flat_rd*/;
   wire [LANES-1:0] deciding  /*verilator public_flat_rd*/;
   wire running  /*verilator public_flat_rd*/;
-  wire active  /*verilator public_flat_rd*/;                    // the circuit has something to do in this cycle
+  wire converting  /*verilator public_flat_rd*/;
+  wire phases  /*verilator public_flat_rd*/;                    // of the row, this cycle or the one before
+  wire integrating  /*verilator public_flat_rd*/;
+  wire [1:0] tap  /*verilator public_flat_rd*/;
   wire [31:0] place  /*verilator public_flat_rd*/;
   initial answers = 0;
   assign comparator = answers;
   assign question = dac;
   assign running = Bench.busy;
-  assign active = |(hold ? en : {LANES{1'b0}}) || |deciding;
+  assign converting = |(hold ? en : {LANES{1'b0}}) || |deciding;
+
+  wire reads = Bench.read & ~Bench.chip.ref_ctl;
+  wire phase = Bench.pixel_reset | Bench.read;
+  reg was_phase;
+  initial was_phase = 0;
+  always @(posedge clk) was_phase <= phase;
+  assign phases = phase | was_phase;
+  assign integrating = Bench.integrate;
+  assign tap = Bench.chip.tap;
+  assign controls[ROW+:3] = {Bench.read & Bench.chip.ref_ctl, reads, Bench.pixel_reset};
+  for (genvar t = 0; t < SUBS; t++) begin : sampling
+    assign controls[ROW+3+t] = reads && Bench.chip.sample && int'(tap) == t;
+  end
   assign place = {6'd0, hold, unsigned_, 1'b0, row, sub, k, group};
 
   RealAfe #(.ROWS(ROWS), .COLS(COLS), .LANES(LANES), .TILE_ROWS(TILE_ROWS), .TILE_COLS(TILE_COLS), .TAPS(TAPS)) twin (

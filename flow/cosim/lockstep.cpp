@@ -8,6 +8,8 @@
 //   +deck=FILE     the netlist; its last line is .end
 //   +drive=FILE    head: period edge step stop (s); then lines "source bit low high half rise fall": volts at 0 and 1 of a
 //                  bit of `controls`, delays (s) of its edges; with half = 1 it is high in the second half of the cycle
+//                  the bit of vlight0 .. vlight3, the light of each tap, is -1
+//   +whole=1       with light: every cycle of an integration is simulated
 //   +answers=NODES the comparators' outputs, of each lane in order, separated by commas; "-" of a lane without a circuit
 //   +cycles=FILE   what was asked and answered in each cycle of the circuit, as text
 //   +points=FILE   every time point, binary doubles: time and the saved vectors, whose names are the first line
@@ -30,6 +32,7 @@
 
 namespace {
 constexpr double EXACT = 1e-16;  // s within which two times are one
+constexpr unsigned LIGHT = ~0u;  // "bit" of a source that is light
 
 struct Source {
   std::string name;
@@ -48,7 +51,10 @@ double period, edge, step, stop, threshold = 0.9;
 std::vector<double> corners;     // of a cycle, s after its clock edge
 std::uint64_t ticks = 0, analog = 0, period_number = 0, limit = 1000000000, rejected = 0, accepted = 0;
 std::size_t corner = 0;          // the next one
-bool started = false, was_busy = false;
+bool started = false, was_busy = false, pixels = false, whole = false;
+std::uint64_t pending = 0;       // cycles of integration whose charge the circuit has not got
+unsigned shining = 0;            // the tap that they are of
+Source* light[4] = {};           // of each tap, 1 at the photocurrents' own strength
 std::vector<std::string> nodes;
 std::vector<int> answer_at;      // of each lane, the vector
 std::vector<double> point;
@@ -92,7 +98,13 @@ void tick() {
 }
 
 bool busy() { return AFE(running); }
-bool quiet() { return !AFE(active); }
+
+// A cycle without time of the circuit: nothing switches. Of an integration there is one cycle, after its end, in which
+// light `2 * cycles` times as strong shines for half the period: the same charge.
+bool quiet() {
+  if (AFE(converting) || (pixels && AFE(phases))) return false;
+  return !pixels || (whole ? !AFE(integrating) : AFE(integrating) || pending == 0);
+}
 
 // The frame is over: the rest of the host's script needs no circuit.
 [[noreturn]] void finish() {
@@ -143,10 +155,21 @@ void clock_edge(double time) {
   started = true;
   do {
     tick();
+    if (pixels && !whole && AFE(integrating)) {
+      ++pending;
+      shining = AFE(tap);
+    }
     if (was_busy && !busy() && quiet()) finish();
     was_busy |= busy();
   } while (quiet());
-  for (Source& s : sources) turn(s, !s.half && bit_of(AFE(controls), s.bit), time);
+  if (whole)
+    for (unsigned t = 0; t < 4; ++t) turn(*light[t], AFE(integrating) && AFE(tap) == t, time);
+  else if (pending && !AFE(integrating)) {
+    light[shining]->high = 2.0 * static_cast<double>(pending);
+    turn(*light[shining], true, time);
+    pending = 0;
+  }
+  for (Source& s : sources) if (s.bit != LIGHT) turn(s, !s.half && bit_of(AFE(controls), s.bit), time);
 }
 
 double due() { return static_cast<double>(period_number) * period + corners[corner]; }
@@ -156,6 +179,8 @@ void happen() {
   else if (corners[corner] == 0.5 * period)
     for (Source& s : sources)
       if (s.half) turn(s, bit_of(AFE(controls), s.bit), due());
+  if (corners[corner] == 0.5 * period && pixels && !whole)
+    for (Source* s : light) turn(*s, false, due());
   if (++corner == corners.size()) {
     corner = 0;
     ++period_number;
@@ -217,16 +242,19 @@ bool read_drive(const std::string& name) {
   std::FILE* file = std::fopen(name.c_str(), "r");
   if (!file || std::fscanf(file, "%lf %lf %lf %lf", &period, &edge, &step, &stop) != 4) return false;
   char text[256];
-  unsigned bit;
-  int half;
+  int bit, half;
   double low, high, rise, fall;
   std::set<double> at = {0.0, 0.5 * period};
-  while (std::fscanf(file, "%255s %u %lf %lf %d %lf %lf", text, &bit, &low, &high, &half, &rise, &fall) == 7) {
-    sources.push_back({text, bit, low, high, half != 0, rise, fall, low, low, -1.0});
+  while (std::fscanf(file, "%255s %d %lf %lf %d %lf %lf", text, &bit, &low, &high, &half, &rise, &fall) == 7) {
+    sources.push_back({text, static_cast<unsigned>(bit), low, high, half != 0, rise, fall, low, low, -1.0});
     for (const double begin : {(half ? 0.5 * period : 0.0) + rise, fall}) at.insert({begin, begin + edge});
   }
   std::fclose(file);
   for (Source& s : sources) by_name[s.name] = &s;
+  for (unsigned t = 0; t < 4; ++t)
+    if (const auto found = by_name.find("vlight" + std::to_string(t)); found != by_name.end()) light[t] = found->second;
+  pixels = light[0] && light[1] && light[2] && light[3];
+  whole = pixels && !argument("whole=").empty();
   for (const double time : at)
     if (corners.empty() || time > corners.back() + EXACT) corners.push_back(time);
   return true;

@@ -82,13 +82,17 @@ def run(
     front_end: FrontEnd,
     timing: Timing,
     accuracy: Accuracy,
+    whole: bool = False,
     max_cycles: int = 1_000_000,
 ) -> Run:
-    """One frame; where ngspice gives up, again with the next of its ladder. Raises ToolError after the last."""
+    """One frame; where ngspice gives up, again with the next of ``accuracy.ladder``.
+
+    whole: see `RowRequest`. Raises ToolError after the last.
+    """
     why = ""
     for attempt, tried in enumerate(accuracy.ladder, 1):
         try:
-            return _run(binary, deck(tried), frame, samples, front_end, timing, tried, attempt, max_cycles)
+            return _run(binary, deck(tried), frame, samples, front_end, timing, tried, attempt, whole, max_cycles)
         except ToolError as error:
             if f"status {GAVE_UP}" not in str(error):
                 raise
@@ -105,6 +109,7 @@ def _run(
     timing: Timing,
     accuracy: Accuracy,
     attempt: int,
+    whole: bool,
     max_cycles: int,
 ) -> Run:
     script = host_script([*write_transfers(frame_writes(frame, front_end.trim)), command("start")], [])
@@ -122,7 +127,7 @@ def _run(
             folder / "converter",
             script,
             max_cycles=max_cycles,
-            more=[*more, f"+answers={','.join(deck.answers)}"],
+            more=[*more, f"+answers={','.join(deck.answers)}", *(["+whole=1"] if whole else [])],
         )
         time, waves = _points(folder / "points")
         stats = json.loads((folder / "lockstep").read_text())

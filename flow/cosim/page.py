@@ -71,6 +71,15 @@ def _studies(s: Mapping[str, Any]) -> list[Section]:
         head = ("", "s", "time points", "decisions", "largest error, ps", "rms, ps", "code", "attempts")
         lines = [_studied(line) for line in s["study"]]
         sections.append(Section("Error against run time", STUDY, head=head, rows=lines))
+    if s["left_out"]:
+        head = ("left out", "s", "s with it", "cycles", "with it", "transistors", "with it", "error, LSB", "codes")
+        keys = ("cycles", "cycles_with", "transistors", "transistors_with")
+        lines = [
+            (x["name"], f"{x['seconds']:.1f}", f"{x['seconds_with']:.1f}", *(str(x[key]) for key in keys))
+            + (f"{x['error_lsb']:+.4f}", ", ".join(map(str, x["codes"])))
+            for x in s["left_out"]
+        ]
+        sections.append(Section("Leaving out", head=head, rows=lines))
     if s["faults"]:
         head = ("planted", "found", "codes from it, LSB", "from the next", "from a sound circuit")
         errors = ("error", "next_error", "sound_error")

@@ -52,7 +52,8 @@ def corners(line: str, bits: npt.NDArray[np.bool_], timing: Timing) -> list[tupl
             changes.append((begin + 0.5 * timing.period * (half == "1") + float(rise), float(high)))
         for start, target in changes:
             if target != volts:
-                points += [(start, volts), (start + timing.edge, target)]
+                points += [(start, volts)] * (start > points[-1][0])
+                points.append((start + timing.edge, target))
                 volts = target
     return points
 

@@ -1,7 +1,7 @@
 """One row through the chip's Verilog with the circuit in the loop, and its codes beside the real-number model's."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -17,7 +17,7 @@ from talbot.pixels.circuits.specification import LaneSpec
 
 from . import lockstep
 from .accuracy import Accuracy
-from .deck import Deck, Timing, build
+from .deck import Deck, RowOfPixels, Timing, build
 from .faults import Fault
 
 MODES = ("edge", "image", "tof")
@@ -46,6 +46,12 @@ class RowRequest:
         Planted in the circuit.
     everything : bool
         Lanes that the row does not read are simulated, too.
+    pixels : bool
+        Pixels and column amplifiers are in the circuit; else ideal voltages.
+    t_int : int
+        Cycles of integration, 1..65535.
+    whole : bool
+        Every cycle of the integration is simulated, not one in place of all.
     """
 
     mode: str = "image"
@@ -56,6 +62,9 @@ class RowRequest:
     seed: int = 1
     fault: Fault | None = None
     everything: bool = False
+    pixels: bool = True
+    t_int: int = 20000
+    whole: bool = False
     timing: Timing = Timing()
     accuracy: Accuracy = Accuracy()
     spec: LaneSpec = LaneSpec()
@@ -66,6 +75,7 @@ class RowRequest:
         check_choice("lanes", self.lanes, (1, 2, 4))
         check_int("types", self.types, 1, 6)
         check_int("threshold", self.threshold, 0, 127)
+        check_int("t_int", self.t_int, 1, 65535)
         check_int("seed", self.seed, 0, 2**32 - 1)
 
     @cached_property
@@ -81,7 +91,7 @@ class RowRequest:
             mode=self.mode,
             mask=mask,
             threshold=self.threshold if edge else 0,
-            timing=SHORT_TIMING,
+            timing=replace(SHORT_TIMING, t_int=self.t_int, n_cm=0),
         )
         return sensor, frame
 
@@ -122,7 +132,16 @@ class RowRequest:
             accuracy or self.accuracy,
             self.fault,
             self.everything,
+            self._pixels if self.pixels else None,
         )
+
+    @property
+    def _pixels(self) -> RowOfPixels:
+        diodes = {
+            c: {tap: (float(row[0, c, 0]), float(row[0, c, 1])) for tap, row in enumerate(self.samples)}
+            for c in range(self.cols)
+        }
+        return RowOfPixels(diodes, self.cols, GAIN, self.t_int * self.timing.period)
 
 
 @dataclass(frozen=True)
@@ -161,7 +180,9 @@ def read_row(asked: RowRequest, note: Callable[[str], None] = lambda text: None,
     """Read one row with the circuit in the loop. Raises ParameterError, ToolError."""
     sensor, frame = asked.frame
     binary = program or lockstep.program(sensor, len(asked.samples), note)
-    run = lockstep.run(binary, asked.deck, frame, asked.samples, asked.front_end, asked.timing, asked.accuracy)
+    run = lockstep.run(
+        binary, asked.deck, frame, asked.samples, asked.front_end, asked.timing, asked.accuracy, asked.whole
+    )
     codes = decode_stream(run.stream, sensor.tile)[0].samples[0]
     expected = golden_frame(asked.samples, sensor, frame, asked.front_end).codes[0]
     deck = asked.deck()

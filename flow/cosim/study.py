@@ -13,7 +13,7 @@ from .faults import Fault
 from .replay import TIGHT, replay
 from .row import Row, RowRequest, decision_times, read_row
 
-ONE = RowRequest(mode="image", cols=6, lanes=1, types=1)
+ONE = RowRequest(mode="image", cols=6, lanes=1, types=1, pixels=False)
 SETTINGS = {
     "default": Accuracy(),
     "reltol 1e-2": Accuracy(reltol=1e-2, chgtol=1e-14),
@@ -22,8 +22,8 @@ SETTINGS = {
     "gear": Accuracy(method="gear"),
     "step 1 ns": Accuracy(step=1e-9),
 }
-PLANTED = (Fault("comparator", (0,)), Fault("capacitor", (1, 6)))
-FAULTY = RowRequest(mode="image", cols=12, lanes=2, types=2)
+PLANTED = (Fault("comparator", (0,)), Fault("capacitor", (1, 6)), Fault("diodes", (6,)), Fault("row", (1,)))
+FAULTY = RowRequest(mode="edge", cols=12, lanes=2, types=2)
 
 
 def accuracy(note: Callable[[str], None], asked: RowRequest = ONE) -> list[dict[str, Any]]:
@@ -75,4 +75,35 @@ def faults(note: Callable[[str], None], asked: RowRequest = FAULTY) -> list[dict
         found = diagnose(read_row(replace(asked, fault=fault)))
         lines.append({"planted": fault.name if fault else "no fault", **found._asdict()})
         note(f"{lines[-1]['planted']}: found: {found.name}")
+    return lines
+
+
+def leaving_out(note: Callable[[str], None]) -> list[dict[str, Any]]:
+    """What is left out, simulated all the same: cycles of an integration, and a lane that the row does not read."""
+    light = RowRequest(mode="image", cols=6, lanes=1, types=1, t_int=100)
+    narrow = RowRequest(mode="image", cols=6, lanes=2, types=1, pixels=False)
+    pairs = {
+        "an integration of 100 cycles": (light, replace(light, whole=True)),
+        "a lane that the row does not read": (narrow, replace(narrow, everything=True)),
+    }
+    lines = []
+    for name, (lean, full) in pairs.items():
+        a, b = read_row(lean), read_row(full)
+        node = "in0"  # of the lane that is read, as it lets go
+        ends = [(np.flatnonzero(r.run.cycles.hold)[0] + 1) * lean.timing.period for r in (a, b)]
+        last = [np.interp(t, r.run.time, r.run.waves[node]) for t, r in zip(ends, (a, b), strict=True)]
+        lines.append(
+            {
+                "name": name,
+                "seconds": a.run.stats["seconds"],
+                "seconds_with": b.run.stats["seconds"],
+                "cycles": a.run.stats["circuit_cycles"],
+                "cycles_with": b.run.stats["circuit_cycles"],
+                "transistors": a.deck.transistors,
+                "transistors_with": b.deck.transistors,
+                "error_lsb": float(last[0] - last[1]) / lean.spec.lsb,
+                "codes": [a.samples[0].code, b.samples[0].code],
+            }
+        )
+        note(f"{name}: {lines[-1]['seconds']:.1f} s in place of {lines[-1]['seconds_with']:.1f}")
     return lines

@@ -8,6 +8,7 @@ import pytest
 from talbot.base.tools import ToolError
 from talbot.flow.cosim import lockstep
 from talbot.flow.cosim.accuracy import Accuracy
+from talbot.flow.cosim.diagnose import code_of, value_of
 from talbot.flow.cosim.faults import Fault
 from talbot.flow.cosim.row import Row, RowRequest, read_row
 from talbot.flow.cosim.waves import write_vcd
@@ -17,7 +18,7 @@ from talbot.pixels.circuits.specification import LaneSpec
 from talbot.platforms.sky130 import analog
 
 library = pytest.mark.skipif(not ctypes.util.find_library("ngspice"), reason="needs libngspice (make tools)")
-SMALL = RowRequest(mode="image", cols=6, lanes=1, types=1)
+SMALL = RowRequest(mode="image", cols=6, lanes=1, types=1)  # its pixels, too
 
 
 @pytest.fixture(scope="module")
@@ -31,6 +32,25 @@ def test_a_sample_converts_as_in_the_model(row: Row):
     assert abs(sample.code - sample.expected) <= 1 and (sample.code == sample.expected) == (sample.why is None)
     assert abs(sample.why[1] if sample.why else 0.0) < 1.0  # LSB from the level at which they part
     assert row.run.cycles.deciding.sum() >= 8 and row.run.attempts == 1
+
+
+@library
+def test_pixels_give_the_charge_of_two_milliseconds_from_one_cycle(row: Row):
+    """The wells, the column's charge amplifiers and the sample together: the value of models/afe."""
+    (sample,), cycles = row.samples, row.run.cycles
+    sampled = (np.flatnonzero(cycles.hold)[0] + 1) * SMALL.timing.period
+    at_lane = np.interp(sampled, row.run.time, row.run.waves["in0"])
+    value = (at_lane - 0.5 * (SMALL.spec.refp + SMALL.spec.refn)) / SMALL.spec.lsb + 128
+    assert value == pytest.approx(sample.value, abs=0.35)
+    assert row.run.stats["cycles"] > SMALL.t_int > 100 * row.run.stats["circuit_cycles"]
+
+
+@pytest.mark.parametrize(
+    ("fault", "code"), [(None, 111), ("comparator:0", -128), ("capacitor:0:6", 115), ("diodes:0", -111), ("row:0", 0)]
+)
+def test_the_dictionary_knows_what_each_fault_does(fault: str | None, code: int):
+    planted = Fault.parse(fault) if fault else None
+    assert code_of(value_of(110.8, 0, True, planted), 0, False, 0, planted) == code
 
 
 @library
@@ -77,7 +97,7 @@ def test_a_fault_is_in_one_lane_alone():
     assert not any("faulty" in line for line in sound.deck().lines)
 
 
-@pytest.mark.parametrize("text", ["", "capacitor:1", "comparator:x", "diode:1", "comparator:1:2"])
+@pytest.mark.parametrize("text", ["", "capacitor:1", "comparator:x", "diode:1", "row:", "comparator:1:2"])
 def test_a_fault_that_is_none_is_refused(text: str):
     with pytest.raises(ParameterError, match=r"fault = .* must be one of"):
         Fault.parse(text)
@@ -94,7 +114,7 @@ def test_ngspice_that_gives_up_is_an_error_after_the_whole_ladder(monkeypatch):
     tried = []
 
     def gives_up(*arguments: object) -> None:
-        tried.append(arguments[-3])
+        tried.extend(one for one in arguments if isinstance(one, Accuracy))
         raise ToolError("the simulation stopped with status 5: timestep too small")
 
     monkeypatch.setattr(lockstep, "_run", gives_up)
@@ -107,7 +127,8 @@ def test_ngspice_that_gives_up_is_an_error_after_the_whole_ladder(monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("field", "value"), [("mode", "raw"), ("cols", 5), ("lanes", 3), ("types", 7), ("threshold", 128), ("seed", -1)]
+    ("field", "value"),
+    [("mode", "raw"), ("cols", 5), ("lanes", 3), ("types", 7), ("t_int", 0), ("threshold", 128), ("seed", -1)],
 )
 def test_requests_are_checked(field: str, value: object):
     with pytest.raises(ParameterError, match=field):
