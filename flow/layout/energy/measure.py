@@ -25,7 +25,6 @@ from ..steps.corner import CornerStep
 from ..steps.power import Power as PowerStep
 from ..steps.power import PowerParameters, wire_pf
 from .count import PARTS, counted_verilog, read_counts
-from .events import digital_events
 from .frames import EnergyFrame, frame_named
 
 UNIT_NS = 1000.0  # a "cycle" of `powers` in which uW are pJ
@@ -83,7 +82,7 @@ class Transitions(Step[FrameParameters]):
             "cycles": {name: part.cycles for name, part in parts.items()},
             "transitions": {name: sum(part.transitions.values()) for name, part in parts.items()},
             "bytes": len(seen.stream),
-            "events": digital_events(golden, seen.activity["busy"])._asdict(),
+            "events": golden.digital_events(seen.activity["busy"])._asdict(),
         }
 
 
