@@ -20,10 +20,11 @@ from ..design import Design, design, folder_name
 from ..options import Options
 from ..search import lay_out_smallest
 from ..steps.extraction import Extraction
+from ..steps.gate_frames import TAPS
 from ..steps.parameters import PdkParameters
 from ..steps.power import PowerParameters
-from .frames import EVERY, HELD_BACK, RECORDED
-from .measure import FrameParameters, Measure, MeasureParameters, Slews, Transitions
+from .frames import EVERY, HELD_BACK, RECORDED, frame_named
+from .measure import BenchParameters, CountingBench, FrameParameters, Light, Measure, Slews, Transitions
 from .report import page, text
 from .result import WORST, Frame, evaluate
 
@@ -45,10 +46,7 @@ def run(options: Namespace) -> int:
     chosen, pdk = design(DESIGN), PROCESSES[0]
     asked = Options(pdk, chosen.utilization, tuple(options.liberty))
     corner = asked.corners[0]
-    counted = [Transitions(FrameParameters(frame)) for frame in EVERY]
-    slews = Slews(PowerParameters(chosen.top, corner, chosen.clock.period_ns))
-    measured = [Measure(MeasureParameters(frame, corner)) for frame in EVERY]
-    steps = [*counted, slews, *measured]
+    steps = energy_steps(PowerParameters(chosen.top, corner, chosen.clock.period_ns))
     names = [step.name for step in (*all_steps(chosen, asked, signoff), *steps)]
     with Steps(names, lines=True) as bar:
         folder = options.layouts / folder_name(chosen, pdk)
@@ -57,7 +55,7 @@ def run(options: Namespace) -> int:
         if lay_out_smallest(chosen, asked, runner, signoff)[-1].rules_broken != 0:
             raise StepError(f"{DESIGN}: no attempt of the layout closes")
         runner.run_all(steps)
-    summary = summarize(runner.records, corner) | provenance(runner, measured[0], counted[0])
+    summary = summarize(runner.records, corner) | provenance(runner, corner)
     with staged(options.out) as part:
         write(part / "energy.json", json.dumps(summary, indent=1) + "\n")
         write(part / "energy.html", page(summary))
@@ -66,6 +64,18 @@ def run(options: Namespace) -> int:
     off = summary["held_back"]["residual"]
     wrong = [f"residual of the held-back frame = {off:.3f}: must be at most {WORST}"] if abs(off) > WORST else []
     return failures(wrong)
+
+
+def energy_steps(parameters: PowerParameters) -> list[Step]:
+    """The steps after those of the layout, at the corner of ``parameters``."""
+    lit = [frame_named(name) for name in dict.fromkeys(frame.lit_as for frame in EVERY)]
+    return [
+        *(CountingBench(BenchParameters(taps)) for taps in (1, TAPS)),
+        *(Light(FrameParameters(frame)) for frame in lit),
+        *(Transitions(FrameParameters(frame)) for frame in EVERY),
+        Slews(parameters),
+        Measure(parameters),
+    ]
 
 
 def signoff(design: Design, options: Options) -> list[Step]:
@@ -81,19 +91,20 @@ def signoff(design: Design, options: Options) -> list[Step]:
 def summarize(records: Mapping[str, dict[str, Any]], corner: str) -> dict[str, Any]:
     """Content of energy.json but for the provenance. records: of all steps, by name."""
     metrics = {name: record["metrics"] for name, record in records.items()}
+    energy = metrics[f"energy_{corner}"]
     made = {
-        frame.name: Frame.of(frame, metrics[f"transitions_{frame.name}"], metrics[f"energy_{corner}_{frame.name}"])
+        frame.name: Frame.of(frame, metrics[f"transitions_{frame.name}"], energy["frames"][frame.name])
         for frame in EVERY
     }
     others = made.pop(HELD_BACK.name), made.pop(RECORDED.name)
-    return evaluate(list(made.values()), *others, records[f"power_{corner}"])
+    known = {"corner": corner, "supply_v": energy["supply_v"], "leakage_uw": energy["leakage_uw"]}
+    return known | evaluate(list(made.values()), *others, records[f"power_{corner}"])
 
 
-def provenance(runner: Runner, measured: Measure, counted: Transitions) -> dict[str, Any]:
-    """Corner, tools, and digests of the files that the energies were computed from, by name."""
-    inputs = {**counted.inputs, **measured.inputs}
-    known = {name: digest(runner.paths[source]) for name, source in inputs.items() if name != "counts"}
-    tools = {k: v for step in runner.records.values() for k, v in step["tools"].items() if k in ("iverilog", "sta")}
-    supply = runner.records[measured.name]["metrics"]["supply_v"]
-    named = {"design": DESIGN, "pdk": PROCESSES[0], "corner": measured.parameters.corner, "supply_v": supply}
-    return named | {"inputs": known, "tools": tools}
+def provenance(runner: Runner, corner: str) -> dict[str, Any]:
+    """Design, tools, and digests of the layout's files that the energies were computed from, by name."""
+    steps = CountingBench, Measure(PowerParameters(corner=corner))
+    inputs = {name: source for step in steps for name, source in step.inputs.items()}
+    known = {name: digest(runner.paths[source]) for name, source in inputs.items() if not source.endswith(".counts")}
+    tools = {k: v for record in runner.records.values() for k, v in record["tools"].items() if k in ("iverilog", "sta")}
+    return {"design": DESIGN, "pdk": PROCESSES[0], "inputs": known, "tools": tools}

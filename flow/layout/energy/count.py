@@ -62,9 +62,14 @@ class Part:
     transitions: Mapping[str, int]
 
 
+def nets_of(netlist: Netlist) -> dict[str, str]:
+    """Short name of each net, as the counters have it."""
+    return plain_names(netlist, "")
+
+
 def counted_verilog(netlist: Netlist) -> str:
     """Verilog of the netlist with short names and a counter at every net, and of what they report to."""
-    nets = plain_names(netlist, "")
+    nets = nets_of(netlist)
     ports = {net for port in netlist.ports for net in port.bits()}
     short = {net: net if net in ports else plain for net, plain in nets.items()}
     instances = tuple(
@@ -80,7 +85,7 @@ def read_counts(file: Path, netlist: Netlist) -> dict[str, Part]:
     """The PARTS of a run whose counters wrote ``file``. Raises StepError where one is not whole."""
     text = file.read_text()
     cycles = {int(part): int(count) for part, count in re.findall(r"(?m)^cycles (\d+) (\d+)$", text)}
-    nets = {plain: net for net, plain in plain_names(netlist, "").items()}
+    nets = {plain: net for net, plain in nets_of(netlist).items()}
     found: dict[int, dict[str, int]] = {}
     for plain, part, changes in re.findall(r"(?m)^\S+\.n(w\d+) (\d+) (\d+)$", text):
         found.setdefault(int(part), {})[nets[plain]] = int(changes)

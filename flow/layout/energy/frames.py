@@ -1,15 +1,21 @@
 """The frames whose energy is measured: a few tiles of the default sensor, each varying one thing of the first."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import partial
 
+import numpy as np
+import numpy.typing as npt
+
 from talbot.flow.frame.job import expose, see
 from talbot.flow.frame.request import FrameRequest, request
-from talbot.flow.frame.result import Exposed
 from talbot.flow.layout.steps.stimulus import SCENE, middle
+from talbot.models.afe import FrontEnd
 from talbot.models.afe.trim import trim_gain
+from talbot.models.chip import front_end_of
 from talbot.models.parameters import ALL_TYPES, AmpTiming, ParameterError, Window
 
+Values = npt.NDArray[np.float64]
 INTEGRATION = 64  # cycles; short, so that most of a frame's cycles convert
 HALF_THE_TYPES = 0x555555
 RECORDED_TILES = 1  # of the chip's frame with delays (`chain.CHIP_FRAME`)
@@ -21,7 +27,7 @@ class EnergyFrame:
 
     The pixels hold the default exposure; t_int, n_cm, exposure are the chip's alone. first, last: tile row and column
     of the window's corners, both included. recorded: the frame that `make layout` simulates with delays
-    (`steps.stimulus`), in place of what the other fields say.
+    (`steps.stimulus`), in place of what the other fields say. lit_as: the frame whose exposure the pixels hold.
     """
 
     name: str
@@ -36,6 +42,7 @@ class EnergyFrame:
     first: tuple[int, int] = (48, 32)
     last: tuple[int, int] = (49, 63)
     recorded: bool = False
+    lit_as: str = "edge"
 
     def requested(self) -> FrameRequest:
         """The request whose exposure the pixels hold, with the default timing. Raises ParameterError."""
@@ -51,21 +58,34 @@ class EnergyFrame:
             window=lambda full: Window(corners[0], corners[2], corners[1], corners[3]),
         )
 
-    def shot(self) -> tuple[FrameRequest, Exposed]:
-        """The frame, with the timing that the chip is given, and what the pixels hold. Raises ParameterError."""
+    def light(self) -> tuple[Values, tuple[int, ...]]:
+        """What the pixels of its window hold, (taps, rows, cols, 2), and the types' trims. Raises ParameterError."""
         asked = self.requested()
         exposed = expose(asked, *see(asked))
+        return exposed.samples, exposed.front_end.trim
+
+    def shot(self, samples: Values, trims: Sequence[int]) -> tuple[FrameRequest, Values, FrontEnd]:
+        """The frame with its own timing, the samples and the front end, for light of `light`.
+
+        Trims are at their resets, so that none is written over SPI; in edge mode diodes b have them: the values ahead
+        of the converters are the same. The recorded frame is as it was.
+        """
+        asked = self.requested()
         if self.recorded:
-            return asked, exposed
+            return asked, samples, front_end_of(asked.lit, trims)
         timing = AmpTiming(t_int=self.t_int, n_cm=self.n_cm, exposure=self.exposure)
-        return replace(asked, frame=replace(asked.frame, timing=timing)), untrimmed(asked, exposed)
+        if self.mode == "edge":
+            trimmed = samples[..., 1] * trim_gain(trims)[asked.sensor.tile.type_map(*samples.shape[1:3])]
+            samples = np.stack([samples[..., 0], trimmed], -1)
+        untrimmed = front_end_of(asked.lit, [0] * len(trims))
+        return replace(asked, frame=replace(asked.frame, timing=timing)), samples, untrimmed
 
     @property
     def varies(self) -> str:
         """What differs from the first frame, in words."""
         if self.recorded:
             return "one tile in time of flight with phases, as simulated with delays"
-        pairs = [(item.name, getattr(self, item.name)) for item in fields(self) if item.name != "name"]
+        pairs = [(f.name, getattr(self, f.name)) for f in fields(self) if f.name not in ("name", "lit_as")]
         plain = vars(EnergyFrame(""))
         changed = [
             f"{name} {value:#x}" if name == "mask" else f"{name} {value}"
@@ -75,20 +95,12 @@ class EnergyFrame:
         return ", ".join(changed) or "edge mode, eight rows of 32 tiles, the scene of make sim"
 
 
-def untrimmed(asked: FrameRequest, exposed: Exposed) -> Exposed:
-    """The same values ahead of the converters with no trim, so that none is written over SPI: diodes b have it."""
-    front_end, samples = exposed.front_end, exposed.samples.copy()
-    if asked.frame.mode == "edge":  # of the other modes the sums and diodes are as they are
-        samples[..., 1] *= trim_gain(front_end.trim)[asked.sensor.tile.type_map(*samples.shape[1:3])]
-    return replace(exposed, samples=samples, front_end=replace(front_end, trim=(0,) * len(front_end.trim)))
-
-
 FRAMES = (
     EnergyFrame("edge"),
     EnergyFrame("image", mode="image"),
     EnergyFrame("raw", mode="raw", last=(49, 47)),
-    EnergyFrame("tof", mode="tof", last=(49, 39)),
-    EnergyFrame("phase", mode="tof", phase=True, last=(49, 39)),
+    EnergyFrame("tof", mode="tof", last=(49, 39), lit_as="tof"),
+    EnergyFrame("phase", mode="tof", phase=True, last=(49, 39), lit_as="tof"),
     EnergyFrame("threshold", threshold=64),
     EnergyFrame("all", threshold=0),
     EnergyFrame("mask", mask=HALF_THE_TYPES),
@@ -98,8 +110,10 @@ FRAMES = (
     EnergyFrame("lanes", last=(49, 34)),
 )
 # Predicted by the fit of the others: another scene, window, threshold, mask and integration
-HELD_BACK = EnergyFrame("held_back", "coins", threshold=16, mask=0xFFF0FF, t_int=200, first=(60, 20), last=(61, 47))
-RECORDED = EnergyFrame("recorded", recorded=True)
+HELD_BACK = EnergyFrame(
+    "held_back", "coins", threshold=16, mask=0xFFF0FF, t_int=200, first=(60, 20), last=(61, 47), lit_as="held_back"
+)
+RECORDED = EnergyFrame("recorded", recorded=True, lit_as="recorded")
 EVERY = (*FRAMES, HELD_BACK, RECORDED)
 
 

@@ -27,15 +27,14 @@ class Frame:
     run_pj: float
     run_cycles: int
     host_pj_cycle: float
-    leakage_uw: float
 
     @classmethod
     def of(cls, frame: EnergyFrame, counted: Mapping[str, Any], measured: Mapping[str, Any]) -> "Frame":
-        """From the metrics of `Transitions` and of `Measure`."""
+        """From the metrics of `Transitions`, and what `Measure` has of the frame."""
         pj, cycles = measured["pj"], counted["cycles"]
         own = DigitalEvents(**counted["events"]), pj["frame"], measured["by_block"]
         run = sum(pj.values()), sum(cycles.values()), pj["host"] / cycles["host"]
-        return cls(frame.name, frame.varies, *own, *run, measured["leakage_uw"])
+        return cls(frame.name, frame.varies, *own, *run)
 
     def row(self, found: Fit, left_out: float | None = None) -> dict[str, Any]:
         """What it took beside what ``found`` says. residual, left_out: shares."""
@@ -65,7 +64,6 @@ def evaluate(fitted: Sequence[Frame], held_back: Frame, recorded: Frame, delayed
     settled = recorded.run_pj / recorded.run_cycles
     return {
         "pj": found.pj,
-        "leakage_uw": recorded.leakage_uw,
         "host_pj_cycle": round(recorded.host_pj_cycle, 4),
         "frames": [frame.row(found, off) for frame, off in zip(fitted, found.left_out, strict=True)],
         "held_back": held_back.row(found),

@@ -23,13 +23,13 @@ from talbot.flow.layout.energy.frames import (
     EnergyFrame,
     frame_named,
 )
-from talbot.flow.layout.energy.measure import FrameParameters, Measure, MeasureParameters
+from talbot.flow.layout.energy.measure import FrameParameters, Transitions
 from talbot.flow.layout.energy.report import page, text
 from talbot.flow.layout.energy.result import Frame, evaluate
 from talbot.flow.layout.netlist.netlist import Instance, Netlist, Port
 from talbot.flow.layout.options import Options
 from talbot.flow.layout.steps.stimulus import middle
-from talbot.models.chip import golden_frame
+from talbot.models.chip import front_end_of, golden_frame
 from talbot.models.parameters import ParameterError
 from talbot.models.parameters.energy import DigitalEvents
 
@@ -105,7 +105,7 @@ def frames(seed=1, count=12):
 
 def frame(name, events, factor=1.0):
     pj = factor * sum(PJ[event] * count for event, count in events._asdict().items())
-    return Frame(name, "-", events, pj, {"clock tree": pj}, 2 * pj, 2 * events.cycles, 20.0, 1.5)
+    return Frame(name, "-", events, pj, {"clock tree": pj}, 2 * pj, 2 * events.cycles, 20.0)
 
 
 def test_the_fit_finds_what_the_energies_were_made_of():
@@ -135,7 +135,15 @@ def summary(factor=1.0):
     *fitted, held_back, recorded = frames(count=14)
     held_back = frame("held_back", held_back.events, factor)
     found = evaluate(fitted, held_back, recorded, delayed(1.1 * recorded.run_pj / recorded.run_cycles + 0.03))
-    known = {"supply_v": 1.8, "corner": "tt", "design": "chip", "pdk": "sky130", "inputs": {"spef": "0"}, "tools": {}}
+    known = {
+        "supply_v": 1.8,
+        "corner": "tt",
+        "design": "chip",
+        "pdk": "sky130",
+        "leakage_uw": 1.5,
+        "inputs": {"spef": "0"},
+        "tools": {},
+    }
     return found | known
 
 
@@ -149,8 +157,9 @@ def test_evaluated():
 
 
 def test_events_of_a_golden_frame():
-    asked, exposed = EnergyFrame("x", mode="tof", phase=True, first=(48, 8), last=(48, 9)).shot()
-    golden = golden_frame(exposed.samples, asked.sensor, asked.frame, exposed.front_end)
+    frame = EnergyFrame("x", mode="tof", phase=True, first=(48, 8), last=(48, 9))
+    asked, samples, front_end = frame.shot(np.full((4, 384, 384, 2), 30.0), [7] * 24)
+    golden = golden_frame(samples, asked.sensor, asked.frame, front_end)
     pixels = 4 * 2 * 6  # rows of two tiles
     found = golden.digital_events(1234)
     assert found._replace(bytes=0) == DigitalEvents(1234, 4, 4 * pixels, 4 * pixels * 8, 0, pixels)
@@ -162,7 +171,15 @@ def test_every_frame_is_one_that_can_be_asked_for():
     assert len({f.name for f in every}) == len(every) == len({replace(f, name="") for f in every})
     assert all(f.requested().sensor.array.rows == 384 for f in every)
     assert HELD_BACK.scene != FRAMES[0].scene and all(frame_named(f.name) is f for f in every)
-    assert len({Measure(MeasureParameters(f, "tt")).name for f in every}) == len(every)
+    assert len({Transitions(FrameParameters(f)).name for f in every}) == len(every)
+
+
+def test_trims_in_the_samples_are_as_trims_in_the_registers():
+    rng = np.random.default_rng(3)
+    samples, trims = rng.uniform(0, 60, (1, 384, 384, 2)), rng.integers(-200, 200, 24)
+    asked, shot, front_end = FRAMES[0].shot(samples, trims)
+    wanted = front_end_of(asked.lit, trims).values(samples, "edge")
+    assert front_end.trim == (0,) * 24 and front_end.values(shot, "edge") == pytest.approx(wanted)
 
 
 def test_the_recorded_frame_is_that_of_the_chip_with_delays():
