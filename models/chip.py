@@ -13,6 +13,7 @@ from talbot.models.digital.phase import phase_samples
 from talbot.models.digital.scan import pixels_read
 from talbot.models.digital.stream import StreamHeader, encode_frame
 from talbot.models.parameters import ConverterParameters, FrameParameters, SensorParameters
+from talbot.models.parameters.energy import DigitalEvents
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,6 +60,23 @@ class GoldenFrame:
     def left_out(self) -> int:
         """Number of samples that the window comparison set to zero."""
         return self.samples - self.made
+
+    def digital_events(self, cycles: int) -> DigitalEvents:
+        """What the frame made the digital part do.
+
+        Parameters
+        ----------
+        cycles : int
+            In which the chip was busy.
+
+        Returns
+        -------
+        DigitalEvents
+            For `EnergyParameters`.
+        """
+        divisions = int(self.read.sum()) if self.frame.phase else 0
+        rows, sent = int(self.read.any(1).sum()), len(self.stream)
+        return DigitalEvents(cycles, rows, self.samples, self.decisions, sent, divisions)
 
     @cached_property
     def stream(self) -> bytes:

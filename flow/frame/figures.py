@@ -12,7 +12,7 @@ from talbot.base.verilator import verilator_version
 from talbot.models.afe.trim import TRIM_MAX, TRIM_MIN
 from talbot.models.digital.exposure import integration_cycles, slot_cycles
 from talbot.models.parameters import ELEMENTARY_CHARGE, EnergyParameters, LightParameters
-from talbot.models.parameters.energy import DECISIONS, WINDOW, Events
+from talbot.models.parameters.energy import DECISIONS, WINDOW, DigitalEvents, Events
 from talbot.models.parameters.stream_format import HEADER_BYTES, MARK, TRAILER_BYTES
 
 from .quality import decoding_error, ideal_samples, quality
@@ -44,21 +44,23 @@ def events_of(result: FrameResult) -> Events:
     stream = np.frombuffer(result.chip.stream, np.uint8)
     # Data pins that change from byte to byte, and the strobe up and down
     toggles = int(np.unpackbits(stream[1:] ^ stream[:-1]).sum()) + 2 * stream.size
-    return Events(rows * sensor.array.cols * taps, rows * columns * taps, seconds, golden.decisions, toggles)
+    digital = golden.digital_events(result.chip.activity["busy"])
+    return Events(rows * sensor.array.cols * taps, rows * columns * taps, seconds, golden.decisions, toggles, digital)
 
 
 def energy_of(result: FrameResult) -> dict[str, float]:
-    """Energy of the frame in uJ: parts and ``total`` in the lower reading of Table 6.1, ``adcs_high``, ``total_high``.
+    """Energy of the frame in uJ: parts in the lower reading of Table 6.1, ``adcs_high``, ``total``, ``total_high``.
 
-    image_mode, image_mode_high: of an edge frame's samples converted in full and sent as a byte each. edge_pays_below:
-    the share of converted samples below which edge mode takes less than that (lower reading). light: of the source in
-    time of flight, on while a row integrates; in no total.
+    timing, digital: one part, by the table and by the layout's gates; a total has one of them.
+    image_mode, image_mode_high: of an edge frame's samples converted in full and sent as a byte each. saved_by_edge: by
+    how much it takes less, and edge_pays_below: the share of converted samples below which it does, both in the lower
+    reading with the digital part by the layout. light: of the source in time of flight, on while a row integrates; in
+    no total.
     """
-    events, asked = events_of(result), result.request
-    parts = {name: (1e6 * low, 1e6 * high) for name, (low, high) in EnergyParameters().frame(events).items()}
+    events, asked, energy = events_of(result), result.request, EnergyParameters()
+    parts = {name: (1e6 * low, 1e6 * high) for name, (low, high) in energy.frame(events).items()}
     out = {name: low for name, (low, _) in parts.items()} | {"adcs_high": parts["adcs"][1]}
-    for i, end in enumerate(("", "_high")):
-        out[f"total{end}"] = sum(value[i] for value in parts.values())
+    out["total"], out["total_high"] = (1e6 * total for total in energy.total(events))
     if asked.frame.mode == "tof":
         sensor, lens, timing = asked.sensor, asked.sensor.optics.camera, asked.frame.exposing
         pixels = sensor.array.rows * sensor.array.cols
@@ -69,16 +71,36 @@ def energy_of(result: FrameResult) -> dict[str, float]:
         out["light"] = 1e6 * power * lit
     if asked.frame.mode != "edge":
         return out
-    # Image mode: a full conversion and a byte for every sample; half of the data pins change.
-    count = result.golden.samples
-    plain = events._replace(decisions=DECISIONS * count, toggles=(4 + 2) * count)
-    one = EnergyParameters().frame(Events(0, 0, 0.0, 1, 1))
-    search, pin, each = one["adcs"][0], one["pads"][0], events.toggles / max(result.golden.made, 1)
-    saved = (DECISIONS - WINDOW) * search + 6 * pin  # of a sample that is left out
-    out["edge_pays_below"] = min(saved / (DECISIONS * search + each * pin), 1.0)
-    for i, end in enumerate(("", "_high")):
-        out[f"image_mode{end}"] = 1e6 * sum(value[i] for value in EnergyParameters().frame(plain).values())
+    plain = image_mode(events, result.golden.samples)
+    out["image_mode"], out["image_mode_high"] = (1e6 * total for total in energy.total(plain))
+    out["saved_by_edge"] = 1e6 * (_by_sample(plain) - _by_sample(events))
+    out["edge_pays_below"] = edge_pays_below(events, result.golden.made)
     return out
+
+
+def edge_pays_below(events: Events, made: int) -> float:
+    """The share of converted samples below which edge mode takes less than image mode, at most 1.
+
+    A converted sample counts with its share of the bytes and changes of the frame that had ``events``.
+    """
+    none = Events(0, 0, 0.0, WINDOW, 0, DigitalEvents(decisions=WINDOW))
+    saved = _by_sample(image_mode(Events(0, 0, 0.0, 0, 0), 1)) - _by_sample(none)
+    made = max(made, 1)
+    searched = DECISIONS * made
+    digital = DigitalEvents(decisions=searched, bytes=events.digital.bytes)
+    return min(saved * made / _by_sample(Events(0, 0, 0.0, searched, events.toggles, digital)), 1.0)
+
+
+def image_mode(events: Events, samples: int) -> Events:
+    """The events with a full conversion and a byte for every sample; half of the data pins change."""
+    digital = events.digital._replace(decisions=DECISIONS * samples, bytes=samples)
+    return events._replace(decisions=DECISIONS * samples, toggles=(4 + 2) * samples, digital=digital)
+
+
+def _by_sample(events: Events) -> float:
+    """Energy (J) of what the mode decides: converters in the lower reading, digital part by the layout, pads."""
+    parts = EnergyParameters().frame(events)
+    return sum(parts[name][0] for name in ("adcs", "digital", "pads"))
 
 
 def energy_line(summary: dict[str, Any]) -> str:
@@ -91,7 +113,7 @@ def energy_line(summary: dict[str, Any]) -> str:
     if "light" in e:
         text += f" and {e['light'] / 1e6:.3g} J of light"
     if "edge_pays_below" in e:
-        text += f"; edges pay below {100 * e['edge_pays_below']:.0f} % converted"
+        text += f"; edges save {e['saved_by_edge']:.1f} uJ, and pay below {100 * e['edge_pays_below']:.0f} % converted"
     return f"{text}; {e['total'] * rate / 1e3:.2f} mW at {rate:.3g} frames/s"
 
 

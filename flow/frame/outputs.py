@@ -174,11 +174,12 @@ def _where(s: dict[str, Any]) -> list[Markup]:
     pins = s["cycles_by_pin"]
     phases = ("pixel_reset", "integrate", "cm_reset", "read", "waiting")
     cycles = {name.replace("_", " "): pins[name] for name in phases}
-    parts = ("pixel_array", "amplifiers", "timing", "adcs", "pads")
-    energy = {name.replace("_", " "): s["energy_uj"][name] for name in parts}
+    parts = {name: name.replace("_", " ") for name in ("pixel_array", "amplifiers", "adcs", "pads")}
+    parts |= {"timing": "timing, Table 6.1", "digital": "the same, layout"}
+    energy = {shown: s["energy_uj"][name] for name, shown in parts.items()}
     return [
         svg(bars(cycles, "cycles", f"Cycles: the amplifiers' phases ({s['cycles']:,} in all)")),
-        svg(bars(energy, "µJ", f"Energy ({s['energy_uj']['total']:.1f} µJ)")),
+        svg(bars(energy, "µJ", f"Energy ({s['energy_uj']['total']:.1f} to {s['energy_uj']['total_high']:.1f} µJ)")),
         svg(bars(s["bytes"], "bytes", f"Bytes ({s['stream_bytes']:,})")),
     ]
 

@@ -1,5 +1,6 @@
 """The threshold of edge-only conversion on the default scene, through the chip's Verilog: SNR of the decoded
-differences and PSNR of the image rebuilt from them against conversions, bytes, cycles, energy and simulation time."""
+differences and PSNR of the image rebuilt from them against conversions, bytes, cycles, energy and simulation time; the
+share converted, what edge mode saves of image mode's energy (uJ), and the share below which it saves any."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -43,7 +44,9 @@ def measure(point: tuple[int, int]) -> dict[str, Any]:
         "psnr_edges_db": summary["psnr_db"],
         "psnr_image_db": result.rebuilt.psnr_db,
     }
-    return {"threshold": threshold, **quality, **costs(result, summary)}
+    energy, share = summary["energy_uj"], summary["conversions_made"] / summary["samples"]
+    saved = {"converted": share, "saved_uj": energy["saved_by_edge"], "pays_below": energy["edge_pays_below"]}
+    return {"threshold": threshold, **quality, **costs(result, summary), **saved}
 
 
 def costs(result: FrameResult, summary: dict[str, Any]) -> dict[str, Any]:

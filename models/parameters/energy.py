@@ -1,4 +1,4 @@
-"""Energy of an event on the chip, from the measured power of the thesis's sensor [Jayasuriya2017, Table 6.1]."""
+"""Energy of an event: the measured power of the thesis's sensor [Jayasuriya2017, Table 6.1], the layout's gates."""
 
 from dataclasses import dataclass, fields
 from typing import NamedTuple
@@ -8,8 +8,36 @@ from .electrical import ELEMENTARY_CHARGE, PHOTON
 from .sources import sourced
 
 TABLE = "[Jayasuriya2017], Table 6.1"
+LAYOUT = "make layout-energy, tt, 1.8 V: flow/layout"
 DECISIONS = 8  # comparator decisions of one full conversion
 WINDOW = 2  # of the window comparison
+
+
+class DigitalEvents(NamedTuple):
+    """What a frame made the digital part do.
+
+    Attributes
+    ----------
+    cycles : int
+        Of the clock while the chip is busy.
+    rows : int
+        Rows read.
+    samples : int
+        Samples that the converters gave.
+    decisions : int
+        Comparator decisions.
+    bytes : int
+        Of the stream.
+    divisions : int
+        Of the phases.
+    """
+
+    cycles: int = 0
+    rows: int = 0
+    samples: int = 0
+    decisions: int = 0
+    bytes: int = 0
+    divisions: int = 0
 
 
 class Events(NamedTuple):
@@ -27,6 +55,8 @@ class Events(NamedTuple):
         Comparator decisions, window and search together.
     toggles : int
         Changes of the stream's output pins.
+    digital : DigitalEvents
+        What it made the digital part do.
     """
 
     resets: int
@@ -34,6 +64,7 @@ class Events(NamedTuple):
     seconds: float
     decisions: int
     toggles: int
+    digital: DigitalEvents = DigitalEvents()
 
 
 @dataclass(frozen=True)
@@ -41,7 +72,8 @@ class EnergyParameters:
     """Measured power of a sensor by part, and what it takes to make energies of it.
 
     The converters' power may be that of converting every sample, or already that of converting edges alone: Table 6.1
-    does not say. `frame` gives both readings.
+    does not say. `frame` gives both readings. The digital part has two sources, of which a total takes one: ``timing``
+    of the table, and the switching energy at the gates of the layout, event by event (without its outputs' loads).
 
     Attributes
     ----------
@@ -57,6 +89,12 @@ class EnergyParameters:
         Capacitance at an output pin, 0..1e-9 F.
     pad_voltage : float
         0.1..10 V.
+    cycle, row, sample, decision, byte, division : float
+        Switching energy of the digital part, 0..1 J each of `DigitalEvents`.
+    glitches : float
+        Factor to these, which are without glitches, 1..10.
+    leakage : float
+        Power of the digital part's gates at rest, 0..1 W.
 
     References
     ----------
@@ -72,9 +110,18 @@ class EnergyParameters:
     edge_share: float = sourced(0.1, "[Jayasuriya2017], Sec. 6.3: 120 of 1200 kbit")
     pad_load: float = sourced(10e-12, "assumed")
     pad_voltage: float = sourced(1.8, "assumed")
+    cycle: float = sourced(0.0, LAYOUT)
+    row: float = sourced(0.0, LAYOUT)
+    sample: float = sourced(0.0, LAYOUT)
+    decision: float = sourced(0.0, LAYOUT)
+    byte: float = sourced(0.0, LAYOUT)
+    division: float = sourced(0.0, LAYOUT)
+    glitches: float = sourced(1.0, LAYOUT)
+    leakage: float = sourced(0.0, LAYOUT)
 
     def __post_init__(self) -> None:
         ends = {"frame_rate": (0.1, 1e5), "pixels": (1, 2**31), "pad_load": (0, 1e-9), "pad_voltage": (0.1, 10)}
+        ends["glitches"] = (1, 10)
         for item in fields(self):
             check_real(item.name, getattr(self, item.name), *ends.get(item.name, (0, 1)))
 
@@ -89,7 +136,8 @@ class EnergyParameters:
         Returns
         -------
         dict of str to (float, float)
-            Part to energy in J: lower reading (every sample was converted), higher (edges alone were).
+            Part to energy in J: lower reading (every sample was converted), higher (edges alone were). ``timing`` and
+            ``digital`` are two sources for one part.
         """
         each = 1 / (self.frame_rate * self.pixels)
         every = self.adcs * each / DECISIONS * events.decisions
@@ -98,9 +146,44 @@ class EnergyParameters:
             "pixel_array": self.pixel_array * each * events.resets,
             "amplifiers": self.amplifiers * each * events.amplified,
             "timing": self.timing * events.seconds,
+            "digital": self.switched(events.digital) + self.leakage * events.seconds,
             "pads": self.pad_load * self.pad_voltage**2 / 2 * events.toggles,
         }
         return {name: (value, value) for name, value in known.items()} | {"adcs": (every, edges)}
+
+    def total(self, events: Events) -> tuple[float, float]:
+        """Energy of one frame, from the lowest to the highest reading of every part.
+
+        Parameters
+        ----------
+        events : Events
+            What the frame did.
+
+        Returns
+        -------
+        (float, float)
+            In J: the digital part is the smaller of its two sources in the first, the larger in the second.
+        """
+        parts = self.frame(events)
+        both = parts.pop("timing")[0], parts.pop("digital")[0]
+        low, high = (sum(values) for values in zip(*parts.values()))
+        return low + min(both), high + max(both)
+
+    def switched(self, events: DigitalEvents) -> float:
+        """Switching energy of the digital part, glitches included.
+
+        Parameters
+        ----------
+        events : DigitalEvents
+            What it did.
+
+        Returns
+        -------
+        float
+            In J.
+        """
+        each = self.cycle, self.row, self.sample, self.decision, self.byte, self.division
+        return self.glitches * sum(energy * count for energy, count in zip(each, events, strict=True))
 
 
 @dataclass(frozen=True)

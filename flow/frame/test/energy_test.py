@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from talbot.flow.frame.figures import edge_pays_below, image_mode
 from talbot.models.parameters import (
     CameraParameters,
     ConverterParameters,
@@ -12,7 +13,7 @@ from talbot.models.parameters import (
     RoomParameters,
     sources,
 )
-from talbot.models.parameters.energy import Events
+from talbot.models.parameters.energy import DigitalEvents, Events
 from talbot.models.pixel.response import vignetting
 
 FULL = Events(147456, 147456, 1 / 30, 8 * 147456, 0)
@@ -20,7 +21,7 @@ FULL = Events(147456, 147456, 1 / 30, 8 * 147456, 0)
 
 def test_a_frame_that_converts_everything_takes_the_table_s_power():
     parts = EnergyParameters().frame(FULL)
-    assert sum(low for low, _ in parts.values()) * 30 == pytest.approx(1.8e-3)
+    assert sum(low for name, (low, _) in parts.items() if name != "digital") * 30 == pytest.approx(1.8e-3)
     # If the table's converters were gated, a full conversion takes 8 / 2.8 of that.
     assert parts["adcs"][1] / parts["adcs"][0] == pytest.approx(8 / 2.8)
 
@@ -28,6 +29,38 @@ def test_a_frame_that_converts_everything_takes_the_table_s_power():
 def test_a_gated_frame_takes_the_table_s_power_in_the_other_reading():
     events = FULL._replace(decisions=round((2 + 0.1 * 8) * 147456))
     assert EnergyParameters().frame(events)["adcs"][1] * 30 == pytest.approx(100e-6, rel=1e-5)
+
+
+DIGITAL = DigitalEvents(300_000, 384, 147456, 300_000, 20_000, 36_864)
+GATES = {"cycle": 20e-12, "row": 1e-10, "sample": 3e-12, "decision": 2e-12, "byte": 5e-12, "division": 7e-12}
+
+
+def test_a_total_takes_the_digital_part_from_one_source():
+    energy = EnergyParameters(**GATES, glitches=1.5, leakage=2e-6)
+    events = FULL._replace(digital=DIGITAL)
+    parts = energy.frame(events)
+    by_hand = 1.5 * sum(e * n for e, n in zip(GATES.values(), DIGITAL, strict=True)) + 2e-6 / 30
+    assert parts["digital"] == pytest.approx((by_hand, by_hand)) and by_hand < parts["timing"][0]
+    rest = [sum(value[i] for name, value in parts.items() if name not in ("timing", "digital")) for i in (0, 1)]
+    assert energy.total(events) == pytest.approx((rest[0] + by_hand, rest[1] + 500e-6 / 30))
+    swapped = EnergyParameters(**GATES | {"cycle": 200e-12}, glitches=1.5, leakage=2e-6).total(events)
+    assert swapped[0] == pytest.approx(rest[0] + 500e-6 / 30) and swapped[1] > swapped[0]
+
+
+@pytest.mark.parametrize("made", [1, 9000, 147456])
+def test_at_the_share_where_edges_pay_both_modes_take_the_same(made):
+    """A frame in which that share is converted, with as many bytes and changes of pins for each."""
+    samples, sent, toggles = 147456, 2.2, 7
+    events = FULL._replace(toggles=toggles * made, digital=DIGITAL._replace(bytes=round(sent * made)))
+    share = edge_pays_below(events, made)
+    at = share * samples
+    decisions = 2 * samples + 8 * at
+    edge = events._replace(decisions=decisions, toggles=events.toggles / made * at)
+    edge = edge._replace(digital=DIGITAL._replace(decisions=decisions, bytes=events.digital.bytes / made * at))
+    plain = image_mode(events, samples)
+    first, second = (EnergyParameters().frame(one) for one in (edge, plain))
+    names = "adcs", "digital", "pads"
+    assert sum(first[n][0] for n in names) == pytest.approx(sum(second[n][0] for n in names)) and 0.5 < share < 1
 
 
 def test_pads_pay_for_every_change():

@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import nnls
 
-from .events import DigitalEvents
+from talbot.models.parameters.energy import DigitalEvents
 
 
 @dataclass(frozen=True)

@@ -30,7 +30,6 @@ from ..steps.gate_frames import TAPS
 from ..steps.power import Power as PowerStep
 from ..steps.power import PowerParameters, wire_pf
 from .count import PARTS, counted_verilog, nets_of, read_counts
-from .events import digital_events
 from .frames import EVERY, EnergyFrame, Values, frame_named
 
 UNIT_NS = 1000.0  # a "cycle" of `powers` in which uW are pJ
@@ -131,7 +130,7 @@ class Transitions(Step[FrameParameters]):
             "cycles": {name: part.cycles for name, part in parts.items()},
             "transitions": {name: sum(part.transitions.values()) for name, part in parts.items()},
             "bytes": len(seen.stream),
-            "events": digital_events(golden, seen.activity["busy"])._asdict(),
+            "events": golden.digital_events(seen.activity["busy"])._asdict(),
         }
 
 

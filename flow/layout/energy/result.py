@@ -4,7 +4,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from .events import DigitalEvents
+from talbot.models.parameters.energy import DigitalEvents
+
 from .fit import Fit, fit
 from .frames import EnergyFrame
 

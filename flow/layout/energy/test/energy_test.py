@@ -13,7 +13,6 @@ from talbot.flow.layout.chain import timing_steps
 from talbot.flow.layout.design import design
 from talbot.flow.layout.energy import command
 from talbot.flow.layout.energy.count import counted_verilog, read_counts
-from talbot.flow.layout.energy.events import DigitalEvents, digital_events
 from talbot.flow.layout.energy.fit import fit
 from talbot.flow.layout.energy.frames import (
     EVERY,
@@ -32,6 +31,7 @@ from talbot.flow.layout.options import Options
 from talbot.flow.layout.steps.stimulus import middle
 from talbot.models.chip import front_end_of, golden_frame
 from talbot.models.parameters import ParameterError
+from talbot.models.parameters.energy import DigitalEvents
 
 PJ = dict(zip(DigitalEvents._fields, (20.0, 300.0, 9.0, 4.0, 11.0, 50.0), strict=True))
 
@@ -161,7 +161,7 @@ def test_events_of_a_golden_frame():
     asked, samples, front_end = frame.shot(np.full((4, 384, 384, 2), 30.0), [7] * 24)
     golden = golden_frame(samples, asked.sensor, asked.frame, front_end)
     pixels = 4 * 2 * 6  # rows of two tiles
-    found = digital_events(golden, 1234)
+    found = golden.digital_events(1234)
     assert found._replace(bytes=0) == DigitalEvents(1234, 4, 4 * pixels, 4 * pixels * 8, 0, pixels)
     assert found.bytes == len(golden.stream)
 
