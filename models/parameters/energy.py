@@ -110,14 +110,14 @@ class EnergyParameters:
     edge_share: float = sourced(0.1, "[Jayasuriya2017], Sec. 6.3: 120 of 1200 kbit")
     pad_load: float = sourced(10e-12, "assumed")
     pad_voltage: float = sourced(1.8, "assumed")
-    cycle: float = sourced(0.0, LAYOUT)
-    row: float = sourced(0.0, LAYOUT)
-    sample: float = sourced(0.0, LAYOUT)
-    decision: float = sourced(0.0, LAYOUT)
+    cycle: float = sourced(28.31e-12, LAYOUT)
+    row: float = sourced(279.1e-12, LAYOUT)
+    sample: float = sourced(14.44e-12, LAYOUT)
+    decision: float = sourced(3.19e-12, LAYOUT)
     byte: float = sourced(0.0, LAYOUT)
-    division: float = sourced(0.0, LAYOUT)
-    glitches: float = sourced(1.0, LAYOUT)
-    leakage: float = sourced(0.0, LAYOUT)
+    division: float = sourced(6.652e-12, LAYOUT)
+    glitches: float = sourced(1.004, LAYOUT)
+    leakage: float = sourced(1.49e-6, LAYOUT)
 
     def __post_init__(self) -> None:
         ends = {"frame_rate": (0.1, 1e5), "pixels": (1, 2**31), "pad_load": (0, 1e-9), "pad_voltage": (0.1, 10)}
