@@ -24,15 +24,16 @@ LAYOUTS = "talbot/cells/extract", "talbot/cells/compact", "talbot/cells/lef", "t
 PACKAGE = Path(__file__).parent / "talbot"
 NETLISTS = pytest.StashKey()  # rtl.harness.netlists.Netlists of --netlist
 SLOW = "slow: make verify, or pytest --all"
-# What neither Debian nor PyPI has, or a machine cannot do: skipped with --complete, too
+# What neither Debian nor PyPI has, a machine cannot do, or is too large to ask for: skipped with --complete, too
 ELSEWHERE = re.compile(
-    r"slow|benchmark|PDK_ROOT|TT_TOOLS|openroad|a small file system cannot be mounted|needs /proc|no coriolis for"
+    r"slow|benchmark|PDK_ROOT|TT_TOOLS|openroad|PyTorch|a small file system cannot be mounted|needs /proc|no coriolis for"
 )
 # Command that brings what a test was skipped for, by a word of its reason
 BRINGS = {
     "slow": "make verify",
     "benchmark": "make bench",
     "LibreLane": "make librelane",
+    "PyTorch": "pip install 'talbot[nn]'",
     "TT_TOOLS": "TT_TOOLS=<tt-support-tools> PDK_ROOT=<an installed PDK>",
     "PDK_ROOT": "PDK_ROOT=<an installed PDK>",
 } | dict.fromkeys(

@@ -110,8 +110,9 @@ FRAMES = (
     EnergyFrame("lanes", last=(49, 34)),
 )
 # Predicted by the fit of the others: another scene, window, threshold, mask and integration
+WINDOW = 60, 20, 61, 47  # its first and last tile row and column
 HELD_BACK = EnergyFrame(
-    "held_back", "coins", threshold=16, mask=0xFFF0FF, t_int=200, first=(60, 20), last=(61, 47), lit_as="held_back"
+    "held_back", "coins", threshold=16, mask=0xFFF0FF, t_int=200, first=WINDOW[:2], last=WINDOW[2:], lit_as="held_back"
 )
 RECORDED = EnergyFrame("recorded", recorded=True, lit_as="recorded")
 EVERY = (*FRAMES, HELD_BACK, RECORDED)

@@ -76,7 +76,7 @@ def test_bad_arguments(word, message, capsys):
 
 
 def test_pytorch_and_numpy_are_one_network(lesson):
-    torch = pytest.importorskip("torch")
+    torch = pytest.importorskip("torch", reason="PyTorch is not installed")
     weights, losses = training.train([lesson], 3, 1)
     assert len(losses) == 3 and set(weights) == {*LAYERS, *(f"{name}_bias" for name in LAYERS)}
     seen = lesson.seen.astype(np.float32)
