@@ -77,7 +77,9 @@ def test_metal_and_places_are_read_from_the_file(tmp_path):
     process = pixel_process("sky130")
     top, cell = layout.create_cell("top"), layout.create_cell("pixel_x")
     cell.shapes(layout.layer(*process.metals[4].gds)).insert(db.DBox(0, 0, 5, 4))
-    top.insert(db.DCellInstArray(cell.cell_index(), db.DTrans(db.DVector(10, 20)), db.DVector(10, 0), db.DVector(0, 10), 2, 3))
+    top.insert(
+        db.DCellInstArray(cell.cell_index(), db.DTrans(db.DVector(10, 20)), db.DVector(10, 0), db.DVector(0, 10), 2, 3)
+    )
     top.shapes(layout.layer(*process.outline)).insert(db.DBox(0, 0, 40, 50))
     write_gds(layout, tmp_path / "top.gds")
     assert densities(tmp_path / "top.gds", "sky130")["met4"] == pytest.approx(6 * 20 / 2000)

@@ -1,0 +1,1 @@
+"""The analog circuits measured in ngspice: corners, mismatch, noise, linearity; their datasheet."""

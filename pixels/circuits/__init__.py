@@ -1,0 +1,1 @@
+"""Circuits of the analog half: specifications, sizes and netlists in transistors of a process."""

@@ -1,0 +1,53 @@
+"""Logic gates inside the analog circuits: static CMOS of one width, p transistors twice that of n."""
+
+from .netlist import Circuit, Transistor
+
+LENGTH = 0.15  # um
+UNIT = 0.65  # um, width of an n transistor; p transistors have twice that
+
+
+def _name(kind: str, strength: int) -> str:
+    return f"{kind}_x{strength}"
+
+
+def inverter(strength: int = 1) -> Circuit:
+    """Pins a y vdd vss."""
+    n, p = UNIT * strength, 2 * UNIT * strength
+    return Circuit(
+        _name("inv", strength),
+        ("a", "y", "vdd", "vss"),
+        (
+            Transistor("n", "y", "a", "vss", "vss", "n", n, LENGTH),
+            Transistor("p", "y", "a", "vdd", "vdd", "p", p, LENGTH),
+        ),
+    )
+
+
+def nand(strength: int = 1) -> Circuit:
+    """Pins a b y vdd vss."""
+    n, p = 2 * UNIT * strength, 2 * UNIT * strength
+    return Circuit(
+        _name("nand", strength),
+        ("a", "b", "y", "vdd", "vss"),
+        (
+            Transistor("na", "y", "a", "m", "vss", "n", n, LENGTH),
+            Transistor("nb", "m", "b", "vss", "vss", "n", n, LENGTH),
+            Transistor("pa", "y", "a", "vdd", "vdd", "p", p, LENGTH),
+            Transistor("pb", "y", "b", "vdd", "vdd", "p", p, LENGTH),
+        ),
+    )
+
+
+def nor(strength: int = 1) -> Circuit:
+    """Pins a b y vdd vss."""
+    n, p = UNIT * strength, 4 * UNIT * strength
+    return Circuit(
+        _name("nor", strength),
+        ("a", "b", "y", "vdd", "vss"),
+        (
+            Transistor("pa", "m", "a", "vdd", "vdd", "p", p, LENGTH),
+            Transistor("pb", "y", "b", "m", "vdd", "p", p, LENGTH),
+            Transistor("na", "y", "a", "vss", "vss", "n", n, LENGTH),
+            Transistor("nb", "y", "b", "vss", "vss", "n", n, LENGTH),
+        ),
+    )

