@@ -35,7 +35,8 @@ class AnalogFiles(NamedTuple):
 def files(folder: Path, pdk: str, analog: Path | None = None) -> AnalogFiles:
     """Write the black boxes into ``folder``; those of which ``analog`` has LEF and GDS are replaced by these.
 
-    Without a user's one the pixel array is the drawn one, where the process has it; a drawing is kept. A pin that a black box does not have, a reference or a bias, leads to a pin of the die. Raises ParameterError.
+    The pixel array is the drawn one where the process has it and the user has no other; the drawing is kept. A pin that
+    a black box does not have, a reference or a bias, leads to a pin of the die. Raises ParameterError.
     """
     circuits = _circuits(analog) if analog else []
     run([sys.executable, "-m", "talbot.pixels.footprints", "--pdk", pdk, "--out", folder], cwd=ROOT)

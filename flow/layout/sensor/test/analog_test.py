@@ -113,7 +113,7 @@ def test_a_pin_of_its_own_is_one_of_the_die(tmp_path):
 
 
 def test_the_drawn_array_is_a_block_of_the_die(tmp_path):
-    """Every net of a small die is found again with the drawn array in it, and pixels alone are left out of the rules."""
+    """Every net of a small die is found again with the drawn array in it; pixels alone are left out of the rules."""
     import klayout.db as db
 
     from talbot.pixels.layout.write import array_layout, write
