@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +21,7 @@ from .optics.solve import Floats
 from .optics.table import ACROSS_DEGREES, along_degrees, angle_table
 
 STORE = BUILD / "pixel" / "tables"
+SOURCE = "PIXEL="  # of a response, and the pixel behind it
 
 
 def tabled(sensor: SensorParameters, pixel: str, note: Callable[[str], None] = lambda text: None) -> SensorParameters:
@@ -31,12 +33,32 @@ def tabled(sensor: SensorParameters, pixel: str, note: Callable[[str], None] = l
     check_choice("pixel", pixel, PIXELS)
     if pixel == IDEAL:
         return sensor
-    tables = {beta: _table(pixel, beta, note) for beta in _betas(sensor, pixel)}
+    for beta in _betas(sensor, pixel):
+        _table(pixel, beta, note)
     types = tuple(
-        kind if kind.response else replace(kind, response=_response(kind, pixel, *tables[_nearest(kind.beta, pixel)]))
-        for kind in sensor.tile.types
+        kind if kind.response else replace(kind, response=_response(kind, pixel)) for kind in sensor.tile.types
     )
     return replace(sensor, tile=replace(sensor.tile, types=types))
+
+
+def pixel_of(sensor: SensorParameters) -> str:
+    """The ``pixel`` whose responses a sensor's types have, as `tabled` gave them; "ideal" where they have none."""
+    sources = {_source(kind) for kind in sensor.tile.types} - {""}
+    return sources.pop().removeprefix(SOURCE) if len(sources) == 1 else IDEAL
+
+
+def untabled(sensor: SensorParameters) -> SensorParameters:
+    """``sensor`` without what `tabled` gave it."""
+    if pixel_of(sensor) == IDEAL:
+        return sensor
+    types = tuple(replace(kind, response=None) if _source(kind) else kind for kind in sensor.tile.types)
+    return replace(sensor, tile=replace(sensor.tile, types=types))
+
+
+def _source(kind: PixelType) -> str:
+    """What `tabled` names as the source of a type's response; '' for any other response."""
+    found = getattr(kind.response, "source", "")
+    return found if found.startswith(SOURCE) else ""
 
 
 def rows(alpha: float, found: Fit) -> tuple[int, int]:
@@ -60,21 +82,30 @@ def _betas(sensor: SensorParameters, pixel: str) -> list[float]:
     return sorted({_nearest(beta, pixel) for beta in wanted})
 
 
-def _table(pixel: str, beta: float, note: Callable[[str], None]) -> tuple[Design, Floats]:
-    """The design for ``beta`` as it measures, and its table (4, along, across), 1 as a plain diode."""
+def _table(pixel: str, beta: float, note: Callable[[str], None] = lambda text: None) -> Path:
+    """The folder with the table for ``beta``."""
     chosen = gratings(pixel)
     geometry, wavelength = chosen.geometries[beta], chosen.wavelength_um
-    design = measure(geometry, wavelength)
     key = digest(code("talbot.pixels.optics.table"), geometry, wavelength)
 
     def make(folder: Path) -> None:
         np.save(folder / "table.npy", angle_table(geometry, wavelength, note))
 
-    shares = np.load(cached(STORE / key, make) / "table.npy")
-    return design, shares / bare_share(geometry.stack, wavelength)
+    return cached(STORE / key, make)
 
 
-def _response(kind: PixelType, pixel: str, design: Design, table: Floats) -> TableResponse:
+@lru_cache(maxsize=16)
+def _loaded(pixel: str, beta: float) -> tuple[Design, Floats]:
+    """The design for ``beta`` as it measures, and its table (4, along, across), 1 as a plain diode."""
+    chosen = gratings(pixel)
+    geometry, wavelength = chosen.geometries[beta], chosen.wavelength_um
+    shares = np.load(_table(pixel, beta) / "table.npy")
+    return measure(geometry, wavelength), shares / bare_share(geometry.stack, wavelength)
+
+
+@lru_cache(maxsize=256)  # sensors of the same pixels are equal
+def _response(kind: PixelType, pixel: str) -> TableResponse:
+    design, table = _loaded(pixel, _nearest(kind.beta, pixel))
     along, across = np.deg2rad(along_degrees()), np.deg2rad(ACROSS_DEGREES)
     chosen = [*rows(kind.alpha, design.fit)]
-    return TableResponse(along, across, np.maximum(table[chosen], 0.0), kind.gamma, f"PIXEL={pixel}")
+    return TableResponse(along, across, np.maximum(table[chosen], 0.0), kind.gamma, f"{SOURCE}{pixel}")

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from talbot.base.files import write
-from talbot.base.progress import Steps
+from talbot.base.progress import Steps, line
 from talbot.flow.frame import job
 from talbot.flow.frame.chip_picture import chip_svg
 from talbot.flow.frame.request import CONVERTERS, FrameRequest, request
@@ -34,6 +34,8 @@ from talbot.models.parameters import (
 from talbot.models.parameters.sensor_file import keys, nearest
 from talbot.models.scene import LightField, Sampling, open_clip
 from talbot.models.scene import scenes as named_scenes
+from talbot.pixels.designs import IDEAL
+from talbot.pixels.tabled import pixel_of, tabled, untabled
 
 from .run import Run
 
@@ -85,6 +87,8 @@ class Sensor:
     alpha, perhaps an m of its own, or response=f: a function of the incidence angles theta_x and theta_y, arrays (n,)
     in rad, that gives the response of both diodes, (2, n), 0 or more.
     converter: 'typical', 'ideal', or a dict of inl, dnl, offset, noise, ktc (LSB) and seed.
+    pixel: 'ideal' (Eq. 3.1), 'sky130' or 'ihp-sg13g2': what the process's gratings do, as `make sim PIXEL=sky130`; types
+    with a response of their own keep it. Tables are computed once, in half a minute.
 
     Raises ParameterError for an unknown name or a value out of range.
     """
@@ -96,9 +100,10 @@ class Sensor:
         *,
         tile: TileParameters | Rows | None = None,
         converter: str | Mapping[str, float] | ConverterParameters | None = None,
+        pixel: str | None = None,
         **parameters: Any,
     ) -> None:
-        object.__setattr__(self, "parameters", _changed(STANDARD, tile, converter, parameters))
+        object.__setattr__(self, "parameters", _changed(STANDARD, tile, converter, pixel, parameters))
 
     @classmethod
     def of(cls, parameters: SensorParameters) -> Self:
@@ -126,10 +131,11 @@ class Sensor:
         *,
         tile: TileParameters | Rows | None = None,
         converter: str | Mapping[str, float] | ConverterParameters | None = None,
+        pixel: str | None = None,
         **parameters: Any,
     ) -> "Sensor":
         """This sensor with other values of some parameters. Raises ParameterError."""
-        return Sensor.of(_changed(self.parameters, tile, converter, parameters))
+        return Sensor.of(_changed(self.parameters, tile, converter, pixel, parameters))
 
     def simulate(self, scene: Seen = "motorcycle", mode: str = "edge", **settings: Unpack[Settings]) -> Run:
         """One frame through the chip's Verilog, as `make sim` does it, and through the golden model beside it.
@@ -211,8 +217,10 @@ class Sensor:
     def __repr__(self) -> str:
         """What is not the default, by name."""
         own = {name: value for name, value in _values(self.parameters).items() if value != _values(STANDARD)[name]}
-        whole = {name: getattr(self.parameters, name) for name in OBJECTS}
+        whole = {name: getattr(untabled(self.parameters), name) for name in OBJECTS}
         own |= {name: value for name, value in whole.items() if value != getattr(STANDARD, name)}
+        if (pixel := pixel_of(self.parameters)) != IDEAL:
+            own["pixel"] = pixel
         return f"Sensor({', '.join(f'{name}={value!r}' for name, value in own.items())})"
 
     def _repr_html_(self) -> str:
@@ -248,13 +256,14 @@ def _changed(
     base: SensorParameters,
     tile: TileParameters | Rows | None,
     converter: str | Mapping[str, float] | ConverterParameters | None,
+    pixel: str | None,
     named: Mapping[str, Any],
 ) -> SensorParameters:
     """``base`` with these in place of its own."""
     tables: dict[str, Any] = {}
     for name, value in named.items():
         if name not in NAMES:
-            near = nearest(name, [*OBJECTS, *NAMES])
+            near = nearest(name, [*OBJECTS, "pixel", *NAMES])
             raise ParameterError(f"{name} = {value!r}: must be a parameter of a sensor{near}")
         *path, last = NAMES[name].split(".")
         inner = tables
@@ -268,13 +277,13 @@ def _changed(
         converter = CONVERTERS[converter]
     if converter is not None:
         tables["converter"] = converter
-    return sensor_of(tables, base)
+    return tabled(sensor_of(tables, untabled(base)), pixel_of(base) if pixel is None else pixel, line)
 
 
 # A notebook completes the names and shows their defaults
 Sensor.__signature__ = inspect.Signature(  # pyright: ignore[reportAttributeAccessIssue]
     [
         inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=value)
-        for name, value in (_values(STANDARD) | {"tile": None, "converter": "typical"}).items()
+        for name, value in (_values(STANDARD) | {"tile": None, "converter": "typical", "pixel": IDEAL}).items()
     ]
 )

@@ -6,7 +6,8 @@ import pytest
 import talbot
 from talbot.commands import main
 from talbot.models.parameters import ParameterError
-from talbot.pixels.tabled import tabled
+from talbot.pixels import tabled
+from talbot.pixels.optics.table import ACROSS_DEGREES, along_degrees
 
 
 def test_a_solution_by_the_public_name():
@@ -37,9 +38,34 @@ def test_refused_in_one_line(words, said, capsys):
     assert said in error and error.count("\n") == 1
 
 
+def test_pixels_by_name_as_on_the_command_line(tmp_path, monkeypatch):
+    """The same bytes, for tables that take no time; the name is shown, kept and taken back."""
+
+    def cosines(geometry, wavelength_um, note):
+        turns = np.pi / 2 * np.arange(4)[:, None, None] + 40 * np.sin(np.deg2rad(along_degrees()))[:, None] / 3
+        return 0.2 + 0.1 * np.cos(turns) * np.cos(np.deg2rad(ACROSS_DEGREES))
+
+    monkeypatch.setattr(tabled, "angle_table", cosines)
+    monkeypatch.setattr(tabled, "STORE", tmp_path / "tables")
+    plain = talbot.Sensor(rows=13, cols=50, lanes=4, f_number=2)
+    sensor = plain.replace(pixel="sky130")
+    assert sensor == talbot.Sensor(rows=13, cols=50, lanes=4, f_number=2, pixel="sky130") != plain
+    assert "pixel='sky130'" in repr(sensor) and "tile" not in repr(sensor)
+    assert sensor.replace(m=0.5).replace(pixel="ideal") == plain.replace(m=0.5)
+    codes = np.random.default_rng(0).integers(0, 256, (3, 3, 13, 50, 3), np.uint8)
+    talbot.LightField(codes).save(tmp_path / "lf")
+    plain.save(tmp_path / "sensor.toml")
+    words = ["--scene", tmp_path / "lf", "--sensor", tmp_path / "sensor.toml", "--out", tmp_path / "out"]
+    assert main(["sim", "--pixel", "sky130", *map(str, words)]) == 0
+    stream = (tmp_path / "out" / "stream.bin").read_bytes()
+    assert stream == sensor.golden(tmp_path / "lf").stream != plain.golden(tmp_path / "lf").stream
+    with pytest.raises(ParameterError, match="pixel = 'gf180': must be one of ideal, sky130, ihp-sg13g2"):
+        talbot.Sensor(pixel="gf180")
+
+
 @pytest.mark.slow  # a table takes half a minute
 def test_a_chip_with_tables_is_equal_to_its_model(tmp_path):
-    sensor = talbot.Sensor.of(tabled(talbot.Sensor(rows=24, cols=36, lanes=4).parameters, "sky130"))
+    sensor = talbot.Sensor(rows=24, cols=36, lanes=4, pixel="sky130")
     assert "# its response is that of PIXEL=sky130" in sensor.text
     for mode in ("edge", "image", "raw", "tof"):
         run = sensor.simulate("motorcycle", mode=mode)

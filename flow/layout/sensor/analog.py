@@ -1,41 +1,68 @@
-"""Files of the analog blocks: black boxes written by `pixels.footprints`, or a user's circuits in their place."""
+"""Files of the analog blocks: the drawn pixel array, black boxes of the others, or a user's circuits in their place."""
 
 import sys
 from pathlib import Path
 from typing import NamedTuple
 
+from talbot.base.cache import cached, digest
 from talbot.base.lef.read import read_macro
-from talbot.base.paths import ROOT
+from talbot.base.paths import BUILD, ROOT
+from talbot.base.sources import code
 from talbot.base.tools import run
 from talbot.models.parameters import ParameterError
+from talbot.platforms.pixel import PROCESSES
 
 from .plan import BLOCKS
 
 KINDS = "lef", "gds"
+ARRAY = "pixel_array"
+DRAWING = "talbot.pixels.layout.write"
+STORE = BUILD / "pixel" / "arrays"
 
 
 class AnalogFiles(NamedTuple):
-    """Files '<block>.lef' and '<block>.gds' by name; blocks that are black boxes; pins that black boxes do not have."""
+    """Files '<block>.lef' and '<block>.gds' by name; blocks that are black boxes; pins that black boxes do not have.
+
+    drawn: blocks that this project draws, and whose cells have checks of their own.
+    """
 
     paths: dict[str, Path]
     black_boxes: list[str]
     extra: tuple[str, ...]
+    drawn: tuple[str, ...] = ()
 
 
 def files(folder: Path, pdk: str, analog: Path | None = None) -> AnalogFiles:
     """Write the black boxes into ``folder``; those of which ``analog`` has LEF and GDS are replaced by these.
 
-    A pin that a black box does not have, a reference or a bias, leads to a pin of the die. Raises ParameterError.
+    The pixel array is the drawn one where the process has it and the user has no other; the drawing is kept. A pin that
+    a black box does not have, a reference or a bias, leads to a pin of the die. Raises ParameterError.
     """
     circuits = _circuits(analog) if analog else []
     run([sys.executable, "-m", "talbot.pixels.footprints", "--pdk", pdk, "--out", folder], cwd=ROOT)
     found = {f"{block}.{kind}": folder / f"{block}.{kind}" for block in BLOCKS for kind in KINDS}
     extra: dict[str, None] = {}
+    drawn = (ARRAY,) if pdk in PROCESSES and ARRAY not in circuits else ()
+    for block in drawn:
+        kept = _drawing(pdk)
+        own = {f"{block}.{kind}": kept / f"{block}.{kind}" for kind in KINDS}
+        check(own[f"{block}.lef"], found[f"{block}.lef"])
+        found |= own
     for block in circuits:
         own = {f"{block}.{kind}": analog / f"{block}.{kind}" for kind in KINDS} if analog else {}
         extra |= dict.fromkeys(check(own[f"{block}.lef"], found[f"{block}.lef"]))
         found |= own
-    return AnalogFiles(found, [block for block in BLOCKS if block not in circuits], tuple(extra))
+    empty = [block for block in BLOCKS if block not in (*circuits, *drawn)]
+    return AnalogFiles(found, empty, tuple(extra), drawn)
+
+
+def _drawing(pdk: str) -> Path:
+    """Folder with LEF and GDS of the pixel array, drawn once."""
+
+    def make(part: Path) -> None:
+        run([sys.executable, "-m", DRAWING, "--pdk", pdk, "--out", part], cwd=ROOT)
+
+    return cached(STORE / digest(code(DRAWING), pdk), make)
 
 
 def _circuits(folder: Path) -> list[str]:

@@ -1,4 +1,4 @@
-"""Lay out the sensor's die: the chip first, the analog blocks' black boxes, then the die's own steps."""
+"""Lay out the sensor's die: the chip first, the analog blocks, drawn or black boxes, then the die's own steps."""
 
 import json
 import shutil
@@ -26,7 +26,7 @@ from .metrics import RULES, summarize
 from .picture import by_block
 from .steps.die_antenna import DieAntenna
 from .steps.die_connectivity import DieConnectivity
-from .steps.die_gds import DieGds
+from .steps.die_gds import DieGds, DieGdsParameters
 from .steps.die_parasitics import DieParasitics, DieParasiticsParameters
 from .steps.die_plan import DiePlan, DiePlanParameters
 from .steps.die_sta import DieSta
@@ -40,16 +40,16 @@ RESULTS = {"gds": "die_gds.gds", "v": "die_plan.verilog", "sdc": "die_parasitics
 RESULTS |= {"connectivity.json": "die_connectivity.report", "parasitics.json": "die_parasitics.nets"}
 
 
-def die_steps(chip: Design, options: Options, extra: Iterable[str] = ()) -> list[Step]:
-    """The die's steps in order. extra: see DiePlanParameters."""
+def die_steps(chip: Design, options: Options, extra: Iterable[str] = (), drawn: Iterable[str] = ()) -> list[Step]:
+    """The die's steps in order. extra: see DiePlanParameters. drawn: see DieGdsParameters."""
     pdk, clock, io = options.pdk, chip.clock, chip.io
     drc = Drc(PdkParameters(pdk))
-    drc.inputs = {**drc.inputs, "gds": "die_gds.gds"}
+    drc.inputs = {**drc.inputs, "gds": "die_gds.checked"}
     ns = {"input_ns": io.input_delay * clock.period_ns, "output_ns": io.output_delay * clock.period_ns}
     parasitics = DieParasiticsParameters(pdk, clock.port, load_pf=io.load_pf, **ns)
     return [
         DiePlan(DiePlanParameters(pdk, extra=tuple(extra))),
-        DieGds(PdkParameters(pdk)),
+        DieGds(DieGdsParameters(pdk, tuple(drawn))),
         DieConnectivity(PdkParameters(pdk)),
         DieParasitics(parasitics),
         *(DieSta(StaParameters(chip.top, corner, clock.period_ns)) for corner in options.corners),
@@ -75,18 +75,23 @@ def lay_out_sensor(
     parts = PARTS | {f"timing.{corner}": f"timing.{corner}" for corner in options.corners}
     given = {name: core.paths[source] for name, source in parts.items()}
     runner = Runner(folder / "steps", blocks.paths | given, note)
-    return lay_out_die(chip, options, runner, blocks.black_boxes, blocks.extra)
+    return lay_out_die(chip, options, runner, blocks.black_boxes, blocks.extra, blocks.drawn)
 
 
 def lay_out_die(
-    chip: Design, options: Options, runner: Runner, black_boxes: Sequence[str], extra: Iterable[str] = ()
+    chip: Design,
+    options: Options,
+    runner: Runner,
+    black_boxes: Sequence[str],
+    extra: Iterable[str] = (),
+    drawn: Iterable[str] = (),
 ) -> tuple[Path, list[str]]:
     """Lay out the die around a chip that is laid out: (path of summary.json, limits broken).
 
     runner: its files are PARTS of the chip and those of the blocks; the results are beside its folder.
     """
     folder = runner.folder.parent
-    runner.run_all(die_steps(chip, options, extra))
+    runner.run_all(die_steps(chip, options, extra, drawn))
     summary = summarize(SENSOR, options, runner, black_boxes)
     lines, tech = broken(summary, RULES), coriolis_platform(options.pdk)
     tech = replace(tech, metals=(*tech.metals, top_metal(options.pdk).metal))

@@ -20,6 +20,7 @@ SLACKS = [name for name in DieSta.metrics if name != "f_max_mhz"]  # by corner
 SHOWN = 12  # nets in the summary, those with the largest loads
 NOT_CHECKED = (
     "insides of the black boxes: outlines with pins, no circuit; they have no rule, netlist or current",
+    "pixels of the drawn array: rules and LVS of make pixel-layout, of a small array of the same cells",
     "pads, ESD protection and the seal ring: there are none",
     "density and fill over the black boxes and in the channel: only the chip is filled",
     "antennas on the highest metal of the channel: whether a net's driver has the diffusion for it; in the black boxes",

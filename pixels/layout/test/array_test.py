@@ -6,7 +6,8 @@ import pytest
 
 from talbot.base.lef.read import read_macro
 from talbot.models.parameters import ArrayParameters, ParameterError
-from talbot.pixels.blocks import pixel_array
+from talbot.pixels.blocks import SUPPLIES, AnalogSizes, pixel_array
+from talbot.pixels.footprints import lef
 from talbot.pixels.layout.array import DUMMIES, SOUTH, WEST, draw_array, draw_pixels
 from talbot.pixels.layout.write import NAME, array_layout, array_lef, write
 
@@ -53,6 +54,23 @@ def test_pins_are_those_of_the_black_box_and_have_their_metal(made, drawn):
             shapes = db.Region(cell.begin_shapes_rec(layout.layer(*by_name[name])))
             box = db.Region(db.DBox(*corners).to_itype(layout.dbu))
             assert (box - shapes).is_empty()
+
+
+def test_the_sensors_array_abuts_as_its_black_box():
+    """Of 384 x 384 pixels: rows and columns where the footprint has them, all moved by one distance a side."""
+    array = ArrayParameters()
+    macro = read_macro(array_lef(array_layout("sky130", array.rows, array.cols)))
+    black_box = read_macro(lef(pixel_array(array), "sky130", AnalogSizes().supply_um))
+    assert macro.pins.keys() == black_box.pins.keys() and len(macro.pins) == 384 * 6 + 384 * 2 + 2
+    moved = {}
+    for name, pin in macro.pins.items():
+        (layer, at), (wanted, was) = pin.boxes[0], black_box.pins[name].boxes[0]
+        assert (layer, pin.direction) == (wanted, black_box.pins[name].direction)
+        if name not in SUPPLIES:
+            moved.setdefault(name.partition("_")[0] == "column", set()).add(
+                tuple(round(a - b, 3) for a, b in zip(at, was, strict=True))
+            )
+    assert moved == {True: {(WEST + 20, 0.0, WEST + 20, 0.0)}, False: {(0.0, SOUTH + 20, 0.0, SOUTH + 20)}}
 
 
 def test_files_are_written_together(made, tmp_path):

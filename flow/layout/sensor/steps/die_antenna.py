@@ -16,7 +16,7 @@ class DieAntenna(Antenna):
     """
 
     name = "die_antenna"
-    inputs = {"gds": "die_gds.gds"}
+    inputs = {"gds": "die_gds.checked"}
 
     def tech(self) -> CoriolisPlatform:
         """The process without the branches' metal and those above."""

@@ -2,11 +2,11 @@
 
 import json
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from talbot.base.gds import write_gds
 from talbot.base.steps import Files, Step, StepError
-from talbot.flow.layout.steps.parameters import PdkParameters
 from talbot.platforms.coriolis import coriolis_platform
 
 from ..plan import BLOCKS, CORE, ORIENTATIONS
@@ -16,12 +16,27 @@ if TYPE_CHECKING:
     import klayout.db as kdb
 
 
-class DieGds(Step[PdkParameters]):
-    """The blocks' GDS at the places of the plan, and the plan's metal."""
+PIXELS = "pixel_"  # cells of pixels in a drawn array have names that begin so
+
+
+@dataclass(frozen=True)
+class DieGdsParameters:
+    """Process. drawn: blocks whose pixels are checked apart, in a small array (`make pixel-layout`)."""
+
+    pdk: str = "sky130"
+    drawn: tuple[str, ...] = ()
+
+
+class DieGds(Step[DieGdsParameters]):
+    """The blocks' GDS at the places of the plan, and the plan's metal.
+
+    checked: the same without the pixels of drawn arrays, for rules and antennas, which see every shape of each of
+    150,000 pixels; what is around the pixels stays.
+    """
 
     name = "die_gds"
     inputs = {f"{block}.gds": f"{block}.gds" for block in (*BLOCKS, CORE)} | {"plan": "die_plan.plan"}
-    outputs = {"gds": f"{TOP}.gds"}
+    outputs = {"gds": f"{TOP}.gds", "checked": "checked.gds"}
     metrics = {"rectangles": ""}
     tools = ("python klayout",)
 
@@ -51,6 +66,12 @@ class DieGds(Step[PdkParameters]):
                     top.shapes(layout.layer(layer, datatype)).insert(db.Text(net, middle))
         top.shapes(layout.layer(*tech.outline)).insert(db.Box(0, 0, *plan["die"]))
         write_gds(layout, outputs["gds"])
+        for name in self.parameters.drawn:
+            inner = [layout.cell(index) for index in cells[name].each_child_cell()]
+            for cell in inner:
+                if cell.name.startswith(PIXELS):
+                    cell.prune_cell()
+        write_gds(layout, outputs["checked"])
         return {"rectangles": len(plan["shapes"])}
 
 

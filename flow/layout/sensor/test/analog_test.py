@@ -20,8 +20,9 @@ pytest.importorskip("klayout.db", reason="klayout: not installed")
 def black_boxes(tmp_path_factory):
     """Folder with the black boxes of the whole sensor."""
     folder = tmp_path_factory.mktemp("black_boxes")
-    found, names, extra = files(folder, "sky130")
-    assert names == list(BLOCKS) and extra == () and all(path.parent == folder for path in found.values())
+    found, names, extra, drawn = files(folder, "sky130")
+    assert names == [block for block in BLOCKS if block not in drawn] and extra == () and drawn == ("pixel_array",)
+    assert all((path.parent == folder) == (name.split(".")[0] in names) for name, path in found.items())
     return folder
 
 
@@ -43,9 +44,12 @@ def with_reference(text):
 
 def test_a_block_takes_the_place_of_its_black_box(black_boxes, tmp_path):
     theirs(black_boxes, tmp_path, "adc_lanes", with_reference)
-    found, names, extra = files(tmp_path / "out", "sky130", tmp_path)
+    found, names, extra, drawn = files(tmp_path / "out", "sky130", tmp_path)
     assert found["adc_lanes.lef"].parent == found["adc_lanes.gds"].parent == tmp_path
-    assert names == [block for block in BLOCKS if block != "adc_lanes"] and extra == ("vref",)
+    assert names == ["row_driver", "column_amplifiers"] and extra == ("vref",) and drawn == ("pixel_array",)
+    theirs(black_boxes, tmp_path, "pixel_array")
+    found, names, _, drawn = files(tmp_path / "out", "sky130", tmp_path)
+    assert found["pixel_array.gds"].parent == tmp_path and drawn == ()
 
 
 @pytest.mark.parametrize(
@@ -106,3 +110,26 @@ def test_a_pin_of_its_own_is_one_of_the_die(tmp_path):
     layout.write(str(given["adc_lanes.gds"]))
     with pytest.raises(StepError, match="adc_lanes.gds has the top cells adc; its LEF is of adc_lanes"):
         small.connectivity(given, tmp_path)
+
+
+def test_the_drawn_array_is_a_block_of_the_die(tmp_path):
+    """Every net of a small die is found again with the drawn array in it; pixels alone are left out of the rules."""
+    import klayout.db as db
+
+    from talbot.pixels.layout.write import array_layout, write
+
+    given = small.files(tmp_path)
+    write(tmp_path, array_layout("sky130", 16, 120))
+    plain = small.plan(given, tmp_path)
+    assert plain["abutted"] == 16 * 6 + 120 * 2 + 2 * 2
+    metrics = small.connectivity(given, tmp_path, drawn=("pixel_array",))
+    assert metrics == {"open_nets": 0, "shorts": 0, "lvs_match": True}
+
+    def cells(name):
+        layout = db.Layout()
+        layout.read(str(given[f"die_gds.{name}"]))
+        return {cell.name for cell in layout.each_cell()}
+
+    lacking = cells("gds") - cells("checked")
+    assert len(lacking) == 24 and all(name.startswith("pixel_") for name in lacking)
+    assert {"pixel_array", "row_end", "column_end", "supply_end"} <= cells("checked")

@@ -112,5 +112,5 @@ def test_a_long_wire_at_a_gate(tmp_path, layer, violations):
         draw(wire.gds, 0.7, -0.15, 1.1, 0.15)
     draw(layer, 0.7, -0.15, 300, 0.15)
     layout.write(str(tmp_path / "die.gds"))
-    given = {"die_gds.gds": tmp_path / "die.gds"}
+    given = {"die_gds.checked": tmp_path / "die.gds"}
     assert small.run(DieAntenna(PdkParameters()), given, tmp_path) == {"antenna_violations": violations}

@@ -4,7 +4,7 @@ import json
 
 from talbot.flow.layout.sensor.plan import BLOCKS, CORE, SIGNALS, DieParameters
 from talbot.flow.layout.sensor.steps.die_connectivity import DieConnectivity
-from talbot.flow.layout.sensor.steps.die_gds import DieGds
+from talbot.flow.layout.sensor.steps.die_gds import DieGds, DieGdsParameters
 from talbot.flow.layout.sensor.steps.die_plan import DiePlan, DiePlanParameters
 from talbot.flow.layout.steps.parameters import PdkParameters
 from talbot.models.parameters import ArrayParameters, ChipParameters
@@ -102,7 +102,7 @@ def plan(given, folder, die=DIE, extra=()):
     return run(DiePlan(DiePlanParameters("sky130", die, extra)), given, folder)
 
 
-def connectivity(given, folder):
+def connectivity(given, folder, drawn=()):
     """Metrics of the comparison of the GDS of the plan with its nets."""
-    run(DieGds(PdkParameters()), given, folder)
+    run(DieGds(DieGdsParameters(drawn=drawn)), given, folder)
     return run(DieConnectivity(PdkParameters()), given, folder)
