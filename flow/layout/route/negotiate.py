@@ -32,9 +32,10 @@ EASY = 4  # times that a net is routed before it costs others twice, and so on: 
 JOBS = 2  # in which the whole layout is checked
 ROUNDS = 12  # of checks: a net that is evicted for another may get an antenna
 TOLD = 100  # nets in a turn that takes seconds, of which a line is printed
-# What a net that is too long may do, turn by turn: it first goes around others at a small cost, then evicts many
-STRAIGHT = tuple(Straight(nm, most, trunk) for nm, most in ((500, 12), (100, 12), (20, 40)) for trunk in (False, True))
+# What a net that is too long may do, turn by turn: it first goes around others at a small cost, then hardly
+STRAIGHT = tuple(Straight(nm, trunk) for nm in (500, 100) for trunk in (False, True))
 PROTECTED = 8  # weight of a net that was straightened
+MOST_EVICTED = 12  # nets in the way of one that is to get shorter
 MOST_BROKEN = 0.2  # share of the nets that a check may find to be rerouted
 
 
@@ -138,7 +139,7 @@ def _straightened(board: Board, net: str, straight: Straight, state: Routed, mos
     board.charge(PRESENT)
     board.rip_up(net)
     found = route_net(board, net, straight=straight)
-    if not found or found.route.nm >= routes[net].nm or len(found.evicted) > straight.evicted:
+    if not found or found.route.nm >= routes[net].nm or len(found.evicted) > MOST_EVICTED:
         board.put(net, routes[net])
         return False
     place(board, net, found, state, PROTECTED)

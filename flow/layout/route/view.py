@@ -15,13 +15,9 @@ AVOIDED = 2000  # cost of a place too near to what its net is to avoid, in confl
 
 
 class Straight(NamedTuple):
-    """How a net is to be short. conflict_nm: of Grid.search. trunk: whether its farthest ends are joined first.
-
-    evicted: nets in its way, at most.
-    """
+    """How a net is to be short. conflict_nm: of Grid.search. trunk: whether its farthest ends are joined first."""
 
     conflict_nm: int
-    evicted: int
     trunk: bool = False
 
 
