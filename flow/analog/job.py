@@ -16,15 +16,19 @@ from talbot.base.records import from_json
 from talbot.cells.corner import Corner
 from talbot.models.parameters import ParameterError, check_int
 from talbot.pixels.circuits import lane as lanes
+from talbot.pixels.circuits.amplifier import AmplifierSizes, AmplifierSpec
 from talbot.pixels.circuits.lane import LaneSizes
 from talbot.pixels.circuits.specification import LaneSpec
 
-from . import comparator, lane, linearity
-from .comparator import BATCH, Decisions, Noise, spread
+from . import amplifier, comparator, lane, linearity
+from . import noise as noises
+from .amplifier import AmplifierResult
+from .comparator import BATCH, Decisions, spread
 from .datasheet import Row, over_corners
 from .deck import Setup, deck, process_of
 from .found import Found
 from .lane import LaneResult, inl
+from .noise import Noise
 
 STEPS = "check", "corners", "mismatch", "noise", "linearity", "report"
 STORE = BUILD / "analog" / "measured"
@@ -85,7 +89,7 @@ def make(
     found = measured(setup, sizes, corners, draws, workers, note)
     note("report")
     rows = datasheet(setup.spec, found, len(found.offsets))
-    counts = [*found.decisions.values(), *found.lanes.values()]
+    counts = [*found.decisions.values(), *found.lanes.values(), *found.amplifiers.values()]
     summary = {
         "pdk": pdk,
         "corners": list(corners),
@@ -126,6 +130,14 @@ def measured(
     ]
     note("corners")
     results = run(jobs, STORE, "corners", workers)
+    spec_a, sizes_a = AmplifierSpec.of(), AmplifierSizes()
+    amplified = [
+        Job(
+            f"amplifier-{name}", amplifier.measure, (setup, spec_a, sizes_a, sizes, corner), (given, repr(spec_a), name)
+        )
+        for name, corner in places.items()
+    ]
+    amplifiers = run(amplified, STORE, "amplifier", workers)
     note("mismatch")
     typical = places[TYPICAL]
     batches = range(1, -(-draws // BATCH) + 1)
@@ -133,7 +145,7 @@ def measured(
     offsets = [value for batch in run(drawn, STORE, "mismatch", workers) for value in batch]
     note("noise")
     noise: Noise = from_json(
-        Noise, run([Job("noise", comparator.noise, (setup, sizes, typical), (given,))], STORE, "noise", workers)[0]
+        Noise, run([Job("noise", noises.noise, (setup, sizes, typical), (given,))], STORE, "noise", workers)[0]
     )
     note("linearity")
     ktc = {name: linearity.ktc(setup.spec, sizes, one.temperature + 273.15) for name, one in places.items()}
@@ -152,6 +164,7 @@ def measured(
         [one[1] for one in arrays],
         [one[2] for one in arrays if one[2] is not None],
         ktc,
+        {name: from_json(AmplifierResult, one) for name, one in zip(places, amplifiers, strict=True)},
     )
 
 
@@ -203,6 +216,27 @@ def datasheet(spec: LaneSpec, found: Found, draws: int) -> list[Row]:
             over=f"{len(found.enob)} drawn arrays, with noise",
         ),
         corners("lane", "energy of a decision", "pJ", energies, share),
+        *_amplifier(found.amplifiers),
+    ]
+
+
+def _amplifier(found: dict[str, AmplifierResult]) -> list[Row]:
+    """The rows of the difference amplifier."""
+    spec = AmplifierSpec.of()
+
+    def row(name: str, unit: str, field: str, most: float | None, scale: float = 1.0) -> Row:
+        values = {corner: scale * abs(getattr(one, field)) for corner, one in found.items()}
+        return over_corners("amplifier", name, unit, values.items(), TYPICAL, most=most)
+
+    return [
+        row("gain over the ideal one", "", "gain", None),
+        row("offset", "LSB", "offset", None),
+        row("INL", "LSB", "inl", spec.inl),
+        row("settling to half an LSB", "ns", "settling", 1e9 * spec.hold, 1e9),
+        row("left after one cycle", "LSB", "left", spec.settling),
+        row("change under 100 times ambient light", "LSB", "ambient", spec.ambient),
+        row("steps of the trim, off by", "steps", "trim", spec.trim),
+        row("energy of a sample", "pJ", "energy", 1e12 * spec.energy, 1e12),
     ]
 
 

@@ -95,7 +95,7 @@ def test_windows_masks_and_back_pressure(
 def test_imperfect_converters(programs, mode):
     rows, cols, lanes = SIZES["odd"]
     asked = asked_of("odd", mode=mode, threshold=9)
-    rough = ConverterParameters(inl=2, dnl=0.5, offset=3, noise=1.5, ktc=1, seed=5)
+    rough = ConverterParameters(inl=2, dnl=0.5, offset=3, noise=1.5, ktc=1, unit_mismatch=0.05, seed=5)
     sensor = SensorParameters(array=asked.sensor.array, chip=asked.sensor.chip, converter=rough)
     front_end = front_end_of(sensor, [0] * 24)
     assert front_end.converter is not None
