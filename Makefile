@@ -82,6 +82,14 @@ lightfield: $(READY)  ## a raw frame's light field, refocused pictures and depth
 pixel: $(TESTS_READY)  ## the pixel in a process's metal: search, angular responses, Eq. 3.1 against them: build/pixel/<pdk>/pixel.html (PDK=)
 	@$(talbot) pixel
 
+.PHONY: cosim
+cosim: $(TESTS_READY) $(LAYOUT_READY)  ## a row with transistors in the loop: the chip's Verilog and ngspice in lock-step: build/cosim/cosim.html (needs libngspice: make tools)
+	@$(talbot) cosim
+
+.PHONY: pixel-layout
+pixel-layout: $(TESTS_READY) $(LAYOUT_READY)  ## the pixel drawn: 24 types, tile, array with dummies and rings; DRC, LVS: build/pixel-layout/<pdk>/pixel_layout.html (ROWS= COLS=)
+	@$(talbot) pixel-layout
+
 .PHONY: analog
 analog: $(LAYOUT_READY) have-tools  ## the analog circuits in ngspice and their datasheet: build/analog/<pdk>/datasheet.html [CORNERS=all DRAWS=200 TABLE=file]
 	@$(talbot) analog
@@ -93,6 +101,10 @@ polar: $(READY)  ## a raw frame's angle and degree of polarization, and its high
 .PHONY: depth
 depth: $(READY)  ## depth by time of flight, unwrapped by the light field of its taps, and past an occluder: build/depth/<scene>/ (SCENE=)
 	@$(talbot) depth
+
+.PHONY: calibrate
+calibrate: $(READY)  ## pixel types, trims and lens from noisy frames on a bench: build/calibrate/calibration.json, for CALIBRATION= of sim and lightfield
+	@$(talbot) calibrate
 
 .PHONY: test
 test: $(TESTS_READY)  ## the fast tests of every block and model (under 10 minutes on 2 cores) [COMPLETE=1: fail where a test lacks a tool]
@@ -181,6 +193,10 @@ layout-pareto: $(TESTS_READY) $(LAYOUT_READY) have-tools  ## the divider's varia
 .PHONY: layout-effort
 layout-effort: $(TESTS_READY) $(LAYOUT_READY) have-tools  ## a layout's quality against the placer's effort: build/layout/sweep/ (LIBERTY='a.lib b.lib')
 	@$(talbot) layout-sweep effort
+
+.PHONY: layout-energy
+layout-energy: $(TESTS_READY) $(LAYOUT_READY) have-tools  ## switching energy of the chip's events, from frames at its layout's gates: build/layout/energy/ (LIBERTY='a.lib b.lib')
+	@$(talbot) layout-energy
 
 layout-hierarchy: KNOWN += DESIGNS
 .PHONY: layout-hierarchy

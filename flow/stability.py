@@ -21,6 +21,7 @@ from talbot.flow.frame.figures import summarize
 from talbot.flow.frame.request import request
 from talbot.models.digital.divider import phase_error, quad_divide
 from talbot.models.stability import Case, optical_cases, table
+from talbot.models.stability_inverse import inverse_cases
 
 SINGLE_TYPE = 1 << 13
 # (name, arguments of `request`); few sizes, since each compiles a simulator
@@ -65,7 +66,8 @@ def all_cases() -> list[Case]:
     """Measure all cases: minutes when the simulators are not cached; shows progress."""
     with warnings.catch_warnings(), np.errstate(all="raise", under="ignore"):
         warnings.simplefilter("error")
-        groups: list[tuple[str, Callable[[], list[Case]]]] = [("optics", optical_cases), ("divider", divider_cases)]
+        groups: list[tuple[str, Callable[[], list[Case]]]] = [("optics", optical_cases), ("inverse", inverse_cases)]
+        groups.append(("divider", divider_cases))
         groups += [(name, lambda name=name, asked=asked: [frame_case(name, asked)]) for name, asked in FRAMES]
         return [case for _, measure in each(groups, "cases", lambda group: group[0]) for case in measure()]
 

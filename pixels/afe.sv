@@ -10,7 +10,11 @@
 `define BALANCE_BITS 10
 `endif
 
-module Afe #(
+`ifndef AFE
+`define AFE Afe
+`endif
+
+module `AFE #(
     parameter int ROWS = 384, COLS = 384, LANES = 8, TILE_ROWS = 4, TILE_COLS = 6, TAPS = 1
 ) (
     input  wire                            clk,

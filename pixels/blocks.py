@@ -86,7 +86,7 @@ def blocks(
     """The four analog blocks. Raises ParameterError where there is no room for the pins."""
     array, chip, sizes = array or ArrayParameters(), chip or ChipParameters(), sizes or AnalogSizes()
     return (
-        _pixel_array(array, sizes),
+        pixel_array(array),
         _row_driver(array, sizes),
         _column_amplifiers(array, chip, sizes),
         _adc_lanes(chip, sizes),
@@ -128,7 +128,8 @@ def lane_lines(chip: ChipParameters, sizes: AnalogSizes) -> list[tuple[str, floa
     ]
 
 
-def _pixel_array(array: ArrayParameters, sizes: AnalogSizes) -> Block:
+def pixel_array(array: ArrayParameters) -> Block:
+    """The pixels alone, without what a drawn array has around them."""
     width, height = array.cols * array.pitch * 1e6, array.rows * array.pitch * 1e6
     return Block(
         "pixel_array",

@@ -49,8 +49,11 @@ def box(pin: Pin, block: Block, supply_um: float, grid_um: float) -> Box:
     return (low, begin, high, end) if vertical else (begin, low, end, high)
 
 
-def lef(block: Block, pdk: str, supply_um: float) -> str:
-    """The LEF of a block: outline, pins, and an obstruction on their layers over all that is deeper than these."""
+def lef(block: Block, pdk: str, supply_um: float, taken: Iterable[str] = ()) -> str:
+    """The LEF of a block: outline, pins, and an obstruction on their layers over all that is deeper than these.
+
+    taken: LEF names of further layers that are obstructed.
+    """
     grid_um = coriolis_platform(pdk).grid_um
     pieces: dict[str, list[tuple[Pin, str]]] = {}
     for pin in block.pins:
@@ -65,7 +68,7 @@ def lef(block: Block, pdk: str, supply_um: float) -> str:
     ]
     deep = DEEP_UM + supply_um
     inside = [(deep, deep, block.width_um - deep, block.height_um - deep)]
-    layers = dict.fromkeys(of for found in pieces.values() for _, of in found)
+    layers = dict.fromkeys([*(of for found in pieces.values() for _, of in found), *taken])
     obstructions = [lef_text.Rectangles(of, inside) for of in layers]
     macro = lef_text.macro(
         block.name,
@@ -83,6 +86,16 @@ def black_box(block: Block, pdk: str, supply_um: float) -> "db.Layout":
     tech, layout = coriolis_platform(pdk), db.Layout()
     layout.dbu = 0.001
     cell = layout.create_cell(block.name)
+    draw_pins(layout, cell, block, pdk, supply_um)
+    cell.shapes(layout.layer(*tech.outline)).insert(db.DBox(0, 0, block.width_um, block.height_um))
+    return layout
+
+
+def draw_pins(layout: "db.Layout", cell: "db.Cell", block: Block, pdk: str, supply_um: float) -> None:
+    """Draw the pins of a block into its cell, with their names."""
+    import klayout.db as db
+
+    tech = coriolis_platform(pdk)
     for pin in block.pins:
         metal = layer(pin, pdk)
         corners = db.DBox(*box(pin, block, supply_um, tech.grid_um))
@@ -90,8 +103,6 @@ def black_box(block: Block, pdk: str, supply_um: float) -> "db.Layout":
         cell.shapes(layout.layer(*metal.gds)).insert(corners)
         for numbers in (metal.pin, metal.label):
             cell.shapes(layout.layer(*numbers)).insert(text)
-    cell.shapes(layout.layer(*tech.outline)).insert(db.DBox(0, 0, block.width_um, block.height_um))
-    return layout
 
 
 def write(out: str | Path, made: Iterable[Block], pdk: str, supply_um: float) -> None:

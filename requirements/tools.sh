@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # Tools beside the Python environment, from Debian's packages: Icarus, a native Verilator, Yosys, z3; for cells and
 # layouts ngspice, OpenSTA and KLayout; for the tests of the foundry's checks and of OpenROAD's scripts Magic and Tcl;
-# for waves as FST the headers of zlib and lz4.
+# for waves as FST the headers of zlib and lz4; for make cosim ngspice as a library.
 # With --missing [COMMAND ...] only where one of the commands, by default those of cells and layouts, is missing.
 set -euo pipefail
-packages=(iverilog verilator yosys z3 ngspice opensta klayout magic tcl zlib1g-dev liblz4-dev)
+packages=(iverilog verilator yosys z3 ngspice opensta klayout magic tcl zlib1g-dev liblz4-dev libngspice0-dev)
 
 wanted=()
 if [ "${1:-}" = --missing ]; then

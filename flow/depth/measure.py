@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy.ndimage import maximum_filter
 
 from talbot.flow.frame.reading import full, rms
 from talbot.flow.frame.result import PHASE_TURN, GoldenResult
@@ -15,6 +14,7 @@ from talbot.flow.lightfield.fields import estimator_of
 from talbot.models.digital.phase import phase_samples
 from talbot.models.pixel.time_of_flight import SPEED_OF_LIGHT, demodulate
 from talbot.models.reconstruct import white_sum
+from talbot.models.reconstruct.bad_pixels import beside, dead_pixels
 from talbot.models.reconstruct.bayes import FieldPrior
 from talbot.models.reconstruct.depth_field import DepthField, depth_field, foreground, refocused, unwrap
 from talbot.models.scene import Sampling, camera
@@ -56,7 +56,8 @@ def read_depth(frames: DepthFrames, prior: FieldPrior, note: Callable[[str], Non
     note("field")
     white = white_sum(result.request.lit, result.request.frame.exposing)
     diodes = frames.diodes()
-    over = _beside(full(diodes, (0, 1)), prior.margin)
+    dead = dead_pixels(diodes.sum(0) / (2 * white))
+    over = beside(full(diodes, (0, 1)) | dead, prior.margin)
     start = perf_counter()
     estimator = estimator_of(result, prior)
     field = depth_field(estimator, diodes / white)
@@ -87,12 +88,6 @@ def read_depth(frames: DepthFrames, prior: FieldPrior, note: Callable[[str], Non
         "seconds": seconds,
     }
     return Depth(frames, field, coarse, depth, sure, behind, summary)
-
-
-def _beside(pixels: Bools, reach: int) -> Bools:
-    """Pixels (..., rows, cols) and those around them."""
-    size = 2 * reach + 1
-    return np.asarray(maximum_filter(pixels, (1,) * (pixels.ndim - 2) + (size, size)), bool)
 
 
 def _phases(frames: DepthFrames, field: DepthField, ideal: DepthField, white: float) -> dict[str, Values]:
@@ -165,7 +160,7 @@ def _behind(
     phasors = field.phasors
     rough = _beyond(np.angle(phasors[middle, middle]), limit, ambiguity)[~near[middle, middle]]
     disparity = float(np.median(camera.disparity(rough, Sampling.of(result.sensor))))
-    clear = ~_beside(near, 1)  # rays beside the occluder's are mixtures: only where no other
+    clear = ~beside(near, 1)  # rays beside the occluder's are mixtures: only where no other
     passed, edge, everything = (refocused(phasors, disparity, rays) for rays in (clear, ~near, None))
     passed = np.where(np.abs(passed) > 0, passed, edge)
     seen = np.abs(passed) > 0

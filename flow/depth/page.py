@@ -63,17 +63,18 @@ def rows(s: dict[str, Any]) -> list[tuple[str, ...]]:
 
 def _row(m: dict[str, Any], span: float) -> tuple[str, ...]:
     share = "-" if m["rms_m"] is None or not span else f"{100 * m['rms_m'] / span:.2f} %"
-    return number(m["rms_m"], 4, " m"), share, f"{100 * m['sure']:.1f} %", number(m["rms_all_m"], 4, " m")
+    whole = f" ({100 * m['rms_all_m'] / span:.2f} %)" if span else ""
+    return number(m["rms_m"], 4, " m"), share, f"{100 * m['sure']:.1f} %", number(m["rms_all_m"], 4, " m") + whole
 
 
 def _headline(s: dict[str, Any]) -> list[Tile]:
     free, best = s["baselines"], s["methods"][BEST]
-    _, share, sure, _ = _row(best, s["range_m"])
+    _, share, sure, whole = _row(best, s["range_m"])
     return [
         Tile(
             number(best["rms_m"], 4, " m"), f"{share} of the range (one depth: {number(free['constant']['rms_m'])} m)"
         ),
-        Tile(sure, "of the pixels are sure"),
+        Tile(sure, f"of the pixels are sure; over all {whole}"),
         Tile(number(s["methods"]["divider"]["rms_m"], 4, " m"), "by the chip's divider"),
         agreement(s),
     ]

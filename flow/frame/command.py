@@ -79,6 +79,7 @@ def add_frame_arguments(
 
     add("--sensor", help="sensor file; talbot sensor prints one to start from. What is given here replaces what it has")
     add_pixel(parser)
+    add("--calibration", help="calibration.json of talbot calibrate, known in place of the sensor's true optics")
     add_camera_arguments(parser, camera)
     add(
         "--views",
@@ -147,7 +148,7 @@ def name_of(typed: dict[str, Any]) -> str:
     """A folder's name: coins-raw, motorcycle-types=low,high-window=10_40,8_50; a long one ends in a digest."""
     parts = [Path(typed["scene"]).stem]
     for name, value in list(typed.items())[1:]:
-        value = Path(value).stem if name in ("depth", "sensor") else value
+        value = Path(value).stem if name in ("depth", "sensor", "calibration") else value
         parts.append(value if name == "mode" else name if value is True else f"{name}={value}")
     text = re.sub(r"[^\w.,=+-]", "_", "-".join(parts))
     return text if len(text) <= NAME_MAX else f"{text[: NAME_MAX - 17]}-{digest(text)}"
@@ -173,6 +174,8 @@ def request_of(a: Namespace, sensor: SensorParameters | None = None) -> "FrameRe
 
     sensor: in place of that of the options, their camera included.
     """
+    from talbot.models.calibrate import read_calibration
+
     from .request import request
 
     sensor = sensor or asked_sensor(a)
@@ -182,6 +185,7 @@ def request_of(a: Namespace, sensor: SensorParameters | None = None) -> "FrameRe
     }
     rows = numbers.get("rows", sensor.array.rows)
     views = None if a.views == "auto" else text.integer("views", a.views, 1, 31, also=" or auto")
+    known = read_calibration(typed["calibration"]) if typed.get("calibration") else None
     waves = (0, min(3, rows - 1)) if a.waves == "1" else text.span("waves", a.waves, 0, rows - 1) if a.waves else None
     names = ("scene", "depth", "mode", "phase", "out", "waves_format", "converter")
     plain = {name: typed[name] for name in names if name in typed}
@@ -206,6 +210,7 @@ def request_of(a: Namespace, sensor: SensorParameters | None = None) -> "FrameRe
         waves=waves,
         lux=lux,
         exposure=exposure,
+        calibration=known,
     )
 
 
@@ -232,6 +237,9 @@ def _print_figures(s: dict[str, Any], folder: Path) -> None:
         f"SNR {decibels(s['snr_db'])} (nothing sent: {decibels(s['snr_nothing_sent_db'])})"
     )
     print(f"  2-D image: {against(s)}")
+    if "light_field_psnr_true_optics_db" in s:
+        found, true = (decibels(s[f"light_field_psnr{end}_db"]) for end in ("", "_true_optics"))
+        print(f"  light field {found}; with the true optics in place of the calibration {true}")
     if depth_line(s):
         print(f"  {depth_line(s)}")
     if s["capture_error_codes"] is not None:

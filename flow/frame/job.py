@@ -86,8 +86,10 @@ def expose(
 
 
 def trimmed(request: FrameRequest) -> FrontEnd:
-    """The sensor's front end; its trims come from a frame of a flat field."""
-    return front_end_of(request.lit, trim_codes(measured_gains(flat_field(request), request.lit.tile)))
+    """The sensor's front end; its trims come from a frame of a flat field, or from a calibration."""
+    known = request.calibration
+    gains = known.gains if known else measured_gains(flat_field(request), request.lit.tile)
+    return front_end_of(request.lit, trim_codes(gains))
 
 
 def _numbered(front_end: FrontEnd, sensor: SensorParameters, number: int) -> FrontEnd:

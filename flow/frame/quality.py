@@ -3,6 +3,7 @@
 Defined in docs/figures.md. None where a figure has no meaning: no such samples, no error at all, too few pixels.
 """
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -138,7 +139,11 @@ def field_quality(result: GoldenResult) -> dict[str, float | None]:
     truth = np.asarray(result.exposed.scene.full_light_field, float)[part]
     field = result.light_field[part]
     copied = np.broadcast_to(result.image[part[1:]], truth.shape)
-    return {"light_field_psnr_db": psnr_db(field, truth), "light_field_psnr_copied_db": psnr_db(copied, truth)}
+    out = {"light_field_psnr_db": psnr_db(field, truth), "light_field_psnr_copied_db": psnr_db(copied, truth)}
+    if result.request.calibration:
+        true = replace(result, request=replace(result.request, calibration=None))
+        out["light_field_psnr_true_optics_db"] = psnr_db(true.light_field[part], truth)
+    return out
 
 
 def depth_quality(result: GoldenResult) -> dict[str, float | None]:

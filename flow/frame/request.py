@@ -8,6 +8,7 @@ from typing import Any
 
 from talbot.flow.simulate.frame import WAVES
 from talbot.models import parameters
+from talbot.models.calibrate import Calibration
 from talbot.models.parameters import (
     ALL_TYPES,
     STANDARD,
@@ -54,9 +55,12 @@ class FrameRequest:
     waves: tuple[int, int] | None = None
     waves_format: str = WAVES[0]
     out: Path | None = None
+    calibration: Calibration | None = None
 
     def __post_init__(self) -> None:
         self.sensor.check_window(self.frame.window)
+        if self.calibration is not None:
+            self.calibration.applied(self.sensor)  # fits
         parameters.check_real("noise", self.noise, 0, 100)
         parameters.check_int("seed", self.seed, 0, 2**32 - 1)
         if self.views is not None:

@@ -58,8 +58,9 @@ class GoldenResult:
 
     @cached_property
     def sensor(self) -> SensorParameters:
-        """The sensor in the light of the frame, with as many views as the scene: a light field has its own."""
-        sensor = self.request.lit
+        """The sensor as it is known, in the light of the frame, with as many views as the scene has."""
+        sensor, calibration = self.request.lit, self.request.calibration
+        sensor = calibration.applied(sensor) if calibration else sensor
         return replace(sensor, optics=replace(sensor.optics, views=self.exposed.scene.views))
 
     @cached_property

@@ -25,23 +25,24 @@ def add_prior_arguments(parser: ArgumentParser) -> None:
     add("--disparities", default="21", help="how many are tried, 1..500")
 
 
-def prior_asked(options: Namespace, noise: float) -> "FieldPrior":
-    """The prior of `add_prior_arguments` for a frame's ``noise``. Raises ParameterError."""
+def prior_asked(options: Namespace, noise: float, **rest: Any) -> "FieldPrior":
+    """The prior of `add_prior_arguments` for a frame's ``noise``; rest: fields of it. Raises ParameterError."""
     from .fields import prior_of
 
     far = text.real("far", options.far, -20, 20)
     near = text.real("near", options.near, far, 20)
-    return prior_of(noise, far=far, near=near, disparities=text.integer("disparities", options.disparities, 1, 500))
+    disparities = text.integer("disparities", options.disparities, 1, 500)
+    return prior_of(noise, far=far, near=near, disparities=disparities, **rest)
 
 
 def run(options: Namespace) -> int:
     """Read one frame back and print the figures; 1 where the chip and the golden model differ."""
     from . import page  # Matplotlib: not before it is needed
-    from .fields import Fields, read_back
+    from .fields import TRUST, Fields, read_back
     from .methods import METHODS
 
     asked, typed = reading.asked(options, "lightfield", add_arguments)
-    prior = prior_asked(options, asked.noise)
+    prior = prior_asked(options, asked.noise, trust=TRUST)
 
     def found(note: reading.Note) -> Fields:
         return read_back(reading.frame_of(asked, note, options.golden), prior, note)
@@ -57,6 +58,8 @@ def _print(s: dict[str, Any], folder: Path) -> None:
     for name, psnr, gain, _, slope, *_, seconds, once in table(s):
         rest = f"  gain {gain:>8}  slope {slope}  {seconds} s (once {once} s)" if gain else ""
         print(f"  {name:<42}{psnr:>8}{rest}")
+    for name, psnr in s.get("true_optics", {}).items():
+        print(f"  {f'{name}, with the true optics':<42}{reading.number(psnr)} dB")
     error, constant = reading.number(s["disparity_rms_px"]), reading.number(s["disparity_rms_constant_px"])
     print(f"  disparity {error} px RMS where it is sure ({100 * s['depth_sure']:.0f} %); one for all: {constant} px")
     if s["depth_rms_m"] is not None:

@@ -1,25 +1,27 @@
 """What a raw frame gives by every method, with its figures, beside what costs nothing."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from talbot.flow.frame.reading import about, rms
+from talbot.flow.frame.reading import about, full, rms
 from talbot.flow.frame.result import GoldenResult
 from talbot.models.capture import CaptureOperator, cells
 from talbot.models.parameters import ParameterError
 from talbot.models.reconstruct import psnr_db, white_sum
+from talbot.models.reconstruct.bad_pixels import dead_pixels, repaired
 from talbot.models.reconstruct.bayes import Estimate, FieldEstimator, FieldPrior
 from talbot.models.scene import Sampling
 from talbot.models.scene.camera import depth as depth_of_disparity
 
-from .methods import METHODS, Found, figures, measure
+from .methods import Found, applicable, figures, measure
 
 Values = npt.NDArray[np.floating]
-BEST = "mixture"  # the method that has a disparity, too
+BEST = "mixture"  # the method whose pictures and disparity are shown
+TRUST = 0.2  # of the prior: more parallax than with less, by dead leaves
 PUPIL = 7  # points across the pupil at which the estimators take a scene that can be seen from anywhere
 QUIET = 0.5  # of the physical noise: what rounding to codes leaves without any other
 SURE = 0.5  # px per view step: a disparity of a larger standard deviation is none
@@ -43,32 +45,48 @@ def read_back(result: GoldenResult, prior: FieldPrior, note: Callable[[str], Non
     """
     estimator, scene = estimator_of(result, prior), result.exposed.scene
     truth = np.asarray(scene.full_light_field, np.float32)
-    sent, ideal = (_pair(result, samples) for samples in (result.decoded.samples, result.exposed.ideal))
-    operator, reached = CaptureOperator(result.sensor), _reached(result)
-    seen = truth * reached
+    sent, bad = sent_pair(result)
+    ideal = pair_of(result, result.exposed.ideal)
+    operator, corners = CaptureOperator(result.sensor), reached(result)
+    seen = truth * corners
     free, found, figured = baselines(result.image, seen), {}, {}
-    for name in METHODS:
+    for name in applicable(operator):
         note(name)
         got, seconds = measure(name, estimator, operator, sent)
+        got = _unsure(got, bad, estimator)
         float_got = measure(name, estimator, operator, ideal)[0]
-        found[name] = got._replace(light_field=got.light_field * reached)
-        figured[name] = figures(got.light_field * reached, seen, free["sum_image_psnr_db"]) | seconds
-        figured[name]["psnr_db_float"] = psnr_db(float_got.light_field * reached, seen)
-    summary = about(result) | {"methods": figured, "baselines": free}
-    field, disparity, spread = found[BEST]
+        found[name] = got._replace(light_field=got.light_field * corners)
+        figured[name] = figures(got.light_field * corners, seen, free["sum_image_psnr_db"]) | seconds
+        figured[name]["left_out"] = got.plain
+        figured[name]["psnr_db_float"] = psnr_db(float_got.light_field * corners, seen)
+    summary = about(result) | {"methods": figured, "best": BEST, "baselines": free}
+    if result.request.calibration:
+        note("with the true optics")
+        summary["true_optics"] = _by_truth(result, prior, truth * corners, sent)
+    field, disparity, spread, plain = found[BEST]
     assert disparity is not None and spread is not None
-    best = Estimate(field, disparity, spread)
+    best = Estimate(field, disparity, spread, plain)
     return Fields(result, truth, found, best, summary | depth_figures(result, best))
 
 
+def _by_truth(result: GoldenResult, prior: FieldPrior, seen: Values, sent: Values) -> dict[str, float | None]:
+    """PSNR in dB of every method that knows the sensor's true optics in place of a calibration."""
+    true = replace(result, request=replace(result.request, calibration=None))
+    estimator, operator, corners = estimator_of(true, prior), CaptureOperator(true.sensor), reached(true)
+    found = {name: measure(name, estimator, operator, sent)[0].light_field for name in applicable(operator)}
+    return {name: psnr_db(field * corners, seen) for name, field in found.items()}
+
+
 def estimate(result: GoldenResult, method: str = BEST, prior: FieldPrior | None = None) -> Found:
-    """The light field of a raw frame by a method, one of `METHODS`. prior: by default `prior_of` the frame's noise.
+    """The light field of a raw frame by an `applicable` method. prior: by default `prior_of` the frame's noise.
 
     Raises ParameterError as `read_back`.
     """
-    estimator = estimator_of(result, prior or prior_of(result.request.noise))
-    found = measure(method, estimator, CaptureOperator(result.sensor), _pair(result, result.decoded.samples))[0]
-    return found._replace(light_field=found.light_field * _reached(result))
+    prior = prior or prior_of(result.request.noise, trust=TRUST)
+    sent, bad = sent_pair(result)
+    estimator = estimator_of(result, prior)
+    found = _unsure(measure(method, estimator, CaptureOperator(result.sensor), sent)[0], bad, estimator)
+    return found._replace(light_field=found.light_field * reached(result))
 
 
 def prior_of(noise: float, **rest: Any) -> FieldPrior:
@@ -84,13 +102,28 @@ def estimator_of(result: GoldenResult, prior: FieldPrior) -> FieldEstimator:
     return FieldEstimator(result.sensor, scene.views, prior, scene.views if scene.render is None else PUPIL)
 
 
-def _pair(result: GoldenResult, samples: npt.NDArray[Any]) -> Values:
+def sent_pair(result: GoldenResult) -> tuple[Values, npt.NDArray[np.bool_]]:
+    """Samples of a raw frame as `pair_of`, dead pixels repaired, and the pixels that are dead or full."""
+    samples = result.decoded.samples
+    pair = pair_of(result, samples)
+    dead = dead_pixels(pair)
+    return repaired(pair, dead), dead | full(np.asarray(samples, float), (2,))
+
+
+def _unsure(found: Found, bad: npt.NDArray[np.bool_], estimator: FieldEstimator) -> Found:
+    """``found`` without a disparity wherever a window holds a bad pixel."""
+    if found.spread is None or not bad.any():
+        return found
+    return found._replace(spread=np.where(estimator.told_by(bad), np.inf, found.spread))
+
+
+def pair_of(result: GoldenResult, samples: npt.NDArray[Any]) -> Values:
     """Samples (rows, cols, 2) as (2, rows, cols), 1 = the average diode in a flat white scene."""
     white = white_sum(result.request.lit, result.request.frame.exposing)
     return np.moveaxis(np.asarray(samples, float), 2, 0) / white
 
 
-def _reached(result: GoldenResult) -> npt.NDArray[np.bool_]:
+def reached(result: GoldenResult) -> npt.NDArray[np.bool_]:
     """Corners that the round pupil does not reach have no light."""
     return cells(result.exposed.scene.views)[..., None, None]
 

@@ -1,6 +1,7 @@
 """Methods that give a light field back from the diodes, by name, and their figures beside what costs nothing."""
 
 from collections.abc import Callable, Mapping
+from functools import lru_cache
 from time import perf_counter
 from typing import NamedTuple
 
@@ -9,19 +10,27 @@ import numpy.typing as npt
 from skimage.metrics import structural_similarity
 
 from talbot.models.capture import CaptureOperator
+from talbot.models.parameters import SensorParameters
 from talbot.models.reconstruct import light_field_estimate, psnr_db
 from talbot.models.reconstruct.bayes import FieldEstimator
+from talbot.models.reconstruct.network import VIEWS, Network
+from talbot.models.reconstruct.sparse import Coding, Dictionary, SparseEstimator
 
 Values = npt.NDArray[np.floating]
 SSIM_WINDOW = 7  # px
 
 
 class Found(NamedTuple):
-    """What a method gives. light_field: l[v, u, y, x], white = 1. disparity, spread: (rows, cols) in px, or None."""
+    """What a method gives.
+
+    light_field: l[v, u, y, x], white = 1. disparity, spread: (rows, cols) in px, or None. plain: share of the windows
+    that are left out, since their samples show no angular content.
+    """
 
     light_field: Values
     disparity: Values | None = None
     spread: Values | None = None
+    plain: float = 0.0
 
 
 Method = Callable[[FieldEstimator, CaptureOperator, Values], Found]
@@ -39,12 +48,45 @@ def _mixture(estimator: FieldEstimator, operator: CaptureOperator, pair: Values)
     return Found(*estimator.mixture(pair))
 
 
+def _network(estimator: FieldEstimator, operator: CaptureOperator, pair: Values) -> Found:
+    mixture = estimator.mixture(pair)
+    field = Network.shipped().correct(estimator.linear(pair), mixture, estimator.prior.noise)
+    return Found(*mixture._replace(light_field=field))
+
+
+def _sparse(estimator: FieldEstimator, operator: CaptureOperator, pair: Values) -> Found:
+    return Found(_coder(estimator, operator).estimate(pair))
+
+
+def _coder(estimator: FieldEstimator, operator: CaptureOperator) -> SparseEstimator:
+    return _prepared(operator.sensor, Coding(noise=estimator.prior.noise))
+
+
+@lru_cache(maxsize=1)
+def _prepared(sensor: SensorParameters, coding: Coding) -> SparseEstimator:
+    coder = SparseEstimator(sensor, coding)
+    coder.prepare()
+    return coder
+
+
 # direct: Sigma^-1 Phi' i [Jayasuriya2017, Sec. 3.3.2]. linear, mixture: models/reconstruct/bayes
-METHODS: Mapping[str, Method] = {"direct": _direct, "linear": _linear, "mixture": _mixture}
-PREPARE: Mapping[str, Callable[[FieldEstimator], object]] = {
-    "linear": lambda estimator: estimator.filters,
-    "mixture": lambda estimator: estimator.components,
+METHODS: Mapping[str, Method] = {"direct": _direct, "linear": _linear, "sparse": _sparse, "mixture": _mixture} | {
+    "network": _network
 }
+PREPARE: Mapping[str, Callable[[FieldEstimator, CaptureOperator], object]] = {
+    "linear": lambda estimator, operator: estimator.filters,
+    "sparse": _coder,
+    "mixture": lambda estimator, operator: (estimator.filters, estimator.components),
+    "network": lambda estimator, operator: (estimator.filters, estimator.components, Network.shipped()),
+}
+
+
+def applicable(operator: CaptureOperator) -> list[str]:
+    """Methods for frames of this size and light fields of as many views; what is learned has a size of its own."""
+    views, _, *shape = operator.shape
+    _, own, _, *patch = Dictionary.shipped().atoms.shape
+    fits = {"network": views == VIEWS, "sparse": views == own and min(np.subtract(shape, patch)) >= 0}
+    return [name for name in METHODS if fits.get(name, True)]
 
 
 def measure(
@@ -56,7 +98,7 @@ def measure(
     those that it takes once a sensor.
     """
     start = perf_counter()
-    PREPARE.get(name, lambda estimator: None)(estimator)
+    PREPARE.get(name, lambda estimator, operator: None)(estimator, operator)
     ready = perf_counter()
     found = METHODS[name](estimator, operator, pair)
     return found, {"seconds": perf_counter() - ready, "seconds_once": ready - start}

@@ -13,7 +13,7 @@ from talbot.flow.frame.reading import agreement, line, number
 from talbot.flow.frame.report import Views, decibels
 from talbot.models.reconstruct.refocus import refocus
 
-from .fields import BEST, SURE, Fields, depth_map
+from .fields import SURE, Fields, depth_map
 
 Values = npt.NDArray[np.floating]
 MOVING = "views.webp"
@@ -28,7 +28,7 @@ def write(folder: Path, fields: Fields) -> None:
     top = pictures.brightest(fields.truth)
     _moving(folder / MOVING, best.light_field, top)
     shown = [("the scene", fields.truth)] + [(name, found.light_field) for name, found in fields.found.items()]
-    groups = [("Depth", _depth(fields)), ("Refocused, by the mixture", _refocused(fields, top))]
+    groups = [("Depth", _depth(fields)), (f"Refocused, by the {fields.summary['best']}", _refocused(fields, top))]
     s = fields.summary
     text = page.render(
         Path(__file__).with_name("page.html"),
@@ -46,10 +46,10 @@ def write(folder: Path, fields: Fields) -> None:
 
 def headline(s: dict[str, Any]) -> list[Tile]:
     """The figures of the summary ``s`` to see first."""
-    linear, best = s["methods"]["linear"], s["methods"][BEST]
+    linear, best = s["methods"]["linear"], s["methods"][s["best"]]
     free, constant = decibels(s["baselines"]["sum_image_psnr_db"]), number(s["disparity_rms_constant_px"])
     return [
-        Tile(decibels(best["psnr_db"]), f"{BEST} (sum image copied: {free})"),
+        Tile(decibels(best["psnr_db"]), f"{s['best']} (sum image copied: {free})"),
         Tile(decibels(linear["psnr_db"]), f"linear, {linear['seconds']:.2f} s a frame"),
         Tile(number(best["slope"]), f"slope of the parallax (linear {number(linear['slope'])})"),
         agreement(s),

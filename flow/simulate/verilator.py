@@ -26,7 +26,7 @@ def bench_program(build: Build, note: Callable[[str], None] = lambda text: None)
     """
     options = [*build.parameters("-G"), *([f"--trace-{build.waves}"] if build.waves else [])]
     sources = [PACKAGE / "pixels" / "afe.sv", FRAME / "bench.sv"]
-    return _cached(build, "Bench", options, sources, FRAME / "main.cpp", note)
+    return program_of(build, "Bench", options, sources, FRAME / "main.cpp", note)
 
 
 def bare_program(
@@ -39,10 +39,10 @@ def bare_program(
 
     options: of g++, as -shared for a library.
     """
-    return _cached(build, "AspChip", [], [], main, note, options)
+    return program_of(build, "AspChip", [], [], main, note, options)
 
 
-def _cached(
+def program_of(
     build: Build,
     top: str,
     options: Sequence[str],
@@ -51,6 +51,10 @@ def _cached(
     note: Callable[[str], None],
     cxx: Sequence[str] = (),
 ) -> Path:
+    """Path of the program of module ``top`` of the Verilog and ``sources``, with ``main`` around it: from the cache.
+
+    options: of Verilator; cxx: of g++. note: called with a line of text before each long step. Raises ToolError.
+    """
     key = digest(code(__name__), *sources, main, build, top, options, cxx, verilator_version())
 
     def make(work: Path) -> None:

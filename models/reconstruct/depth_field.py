@@ -4,7 +4,8 @@ A tap is a light field behind Phi. Each is given back by itself, with the dispar
 quadrature is then a phasor, albedo exp(i phase), of every ray.
 """
 
-from typing import NamedTuple
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -21,10 +22,16 @@ Floats = npt.NDArray[np.floating]
 Complexes = npt.NDArray[np.complexfloating]
 Bools = npt.NDArray[np.bool_]
 SMOOTH = 0.01  # turns: by this much neighbours may differ from what their phases say
-JUMP = 0.03  # turns between neighbours beyond which a depth edge is between them
+BEND = 0.03  # turns between two steps along a line beyond which a depth edge is there
+FOLLOWED = 1.0  # weight of neighbours over an edge, 1 / turns**2: what hangs on nothing else follows them
+ROUNDS = 2  # of weighing again what the solution contradicts
+APART = 0.2  # turns by which a solution departs from a step that counts half in power: an edge of whole turns
+AWAY = 0.3  # the same from a coarse depth, or its doubt where that is more
 SURE = 0.3  # turns from a whole number beyond which the number of turns is not known
 IGNORANCE = 1e-3  # weight of no turns, 1 / turns**2: keeps the equation regular where nothing is known
 TOLD = 0.9  # of a number of turns must be from the coarse depth
+AGREED = 0.3  # mean weight of the coarse depths around a pixel below which they contradict its turns
+LOCAL = 0.05  # of the links: the same is a mean over a few pixels
 DOUBT_MIN = 0.02  # turns: no disparity is surer
 BINS = 128  # of the histogram of phases
 
@@ -108,7 +115,9 @@ def unwrap(phase: Floats, coarse: Floats, doubt: Floats) -> Unwrapped:
     """Whole turns of a phase, from a coarse depth that is nowhere exact and somewhere unknown.
 
     The smoothest field of turns that follows the phase from pixel to pixel and the coarse depth at large: a screened
-    Poisson equation. Neighbours whose phases jump do not hold each other.
+    Poisson equation. Neighbours whose phase bends between them do not hold each other: a slope may be steep. A coarse
+    depth that is smeared over an edge, and an edge of whole turns, which no phase shows, are what the solution
+    contradicts: both count less when it is found again [Geman1987].
 
     Parameters
     ----------
@@ -122,7 +131,7 @@ def unwrap(phase: Floats, coarse: Floats, doubt: Floats) -> Unwrapped:
     Returns
     -------
     Unwrapped
-        0 turns where there is no phase.
+        Where there is no phase, the mean of what is around; 0 turns where there is none at all.
 
     References
     ----------
@@ -130,29 +139,78 @@ def unwrap(phase: Floats, coarse: Floats, doubt: Floats) -> Unwrapped:
     """
     known = np.isfinite(phase)
     fine = np.where(known, phase, 0) / (2 * np.pi) % 1
-    trust = np.where(known & np.isfinite(doubt), 1 / np.maximum(doubt, DOUBT_MIN) ** 2, 0)
-    number = np.arange(phase.size).reshape(phase.shape)
-    parts = []
-    for axis in (0, 1):
-        first, last = (np.take(number, np.arange(*ends), axis).ravel() for ends in _ends(phase.shape[axis]))
-        step = (fine.ravel()[last] - fine.ravel()[first] + 0.5) % 1 - 0.5
-        link = known.ravel()[first] * known.ravel()[last] * np.exp(-((step / JUMP) ** 2)) / SMOOTH**2
-        parts.append((first, last, link, step))
-    first, last, link, step = (np.concatenate(part) for part in zip(*parts, strict=True))
-    size = phase.size
+    told_by = known & np.isfinite(doubt) & np.isfinite(coarse)
+    coarse, doubt = np.where(told_by, coarse, 0), np.where(told_by, doubt, 1)
+    trust = told_by / np.maximum(doubt, DOUBT_MIN) ** 2
+    steps = [_steps(fine, known, axis) for axis in (0, 1)]
+    solve = _followed(steps, trust)
+    smooth = solve(coarse)
+    for _ in range(ROUNDS):
+        away = (smooth - coarse) / np.maximum(doubt, AWAY)
+        apart = [(np.diff(smooth, axis=axis) - step) / APART for axis, (step, _) in enumerate(steps)]
+        links = [(step, link * _counts(by)) for (step, link), by in zip(steps, apart, strict=True)]
+        solve = _followed(links, trust * _counts(away))
+        smooth = solve(coarse)
+    told = solve(np.ones(phase.shape), False)  # 1: all from the coarse depth, here or along the phase
+    around = _followed([(step, LOCAL * link) for step, link in steps], trust)
+    agreed = around(_counts((smooth - coarse) / np.maximum(doubt, AWAY)), False)
+    whole = np.abs(smooth - fine - np.rint(smooth - fine)) < SURE
+    sure = known & whole & (told > TOLD) & (agreed > AGREED)
+    turns = fine + np.maximum(np.rint(smooth - fine), 0)
+    return Unwrapped(np.where(known, turns, np.maximum(smooth, 0) * known.any()), sure)
+
+
+def _counts(residual: Floats) -> Floats:
+    """Weight of a residual, 1 = of its scale, in the next round."""
+    return 1 / (1 + residual**2) ** 2
+
+
+def _steps(fine: Floats, known: Bools, axis: int) -> tuple[Floats, Floats]:
+    """Steps of the phase from pixel to pixel along an axis, in turns, and how firmly each links the two."""
+    both = np.logical_and(*_pairs(known, axis))
+    step = np.where(both, _short(np.diff(fine, axis=axis)), 0)
+    run = np.moveaxis(both, axis, 0)
+    turn = np.moveaxis(np.abs(_short(np.diff(step, axis=axis))), axis, 0)
+    turn = np.where(run[1:] & run[:-1], turn, np.inf)
+    bend = np.moveaxis(np.abs(step), axis, 0).copy()  # of a flat surface there is none
+    if len(turn):
+        bend[1:] = np.minimum(bend[1:], turn)
+        bend[:-1] = np.minimum(bend[:-1], turn)
+    firm = np.moveaxis(run * np.exp(-((bend / BEND) ** 2)), 0, axis)
+    return step, firm / SMOOTH**2 + FOLLOWED
+
+
+def _short(turns: Floats) -> Floats:
+    """The same modulo a turn, in -0.5..0.5."""
+    return (turns + 0.5) % 1 - 0.5
+
+
+def _pairs(values: npt.NDArray[Any], axis: int) -> tuple[npt.NDArray[Any], npt.NDArray[Any]]:
+    """Each pixel that has a next one along an axis, and that."""
+    lines = np.moveaxis(values, axis, 0)
+    return np.moveaxis(lines[:-1], 0, axis), np.moveaxis(lines[1:], 0, axis)
+
+
+def _followed(links: Sequence[tuple[Floats, Floats]], trust: Floats) -> Callable[..., Floats]:
+    """Function of a coarse depth: what follows ``links``, steps and their weights along both axes, and it.
+
+    Its second argument is False for no steps: a mean along the links.
+    """
+    size, number = trust.size, np.arange(trust.size).reshape(trust.shape)
+    ends = [_pairs(number, axis) for axis in range(len(links))]
+    first, last = (np.concatenate([pair[side].ravel() for pair in ends]) for side in (0, 1))
+    step, link = (np.concatenate([pair[part].ravel() for pair in links]) for part in (0, 1))
     pull = np.bincount(last, link * step, size) - np.bincount(first, link * step, size)
     held = np.bincount(last, link, size) + np.bincount(first, link, size)
     between = csr_array((np.tile(link, 2), (np.r_[first, last], np.r_[last, first])), (size, size))
-    solve = splu((diags_array(trust.ravel() + held + IGNORANCE) - between).tocsc()).solve
-    smooth = np.reshape(solve((trust * np.where(np.isfinite(coarse), coarse, 0)).ravel() + pull), phase.shape)
-    told = np.reshape(solve(trust.ravel()), phase.shape)  # 1: all from the coarse depth, here or along the phase
-    sure = known & (told > TOLD) & (np.abs(smooth - fine - np.rint(smooth - fine)) < SURE)
-    whole = np.maximum(np.rint(smooth - fine), 0)
-    return Unwrapped(np.where(known, fine + whole, 0), sure)
+    equations = (diags_array(trust.ravel() + held + IGNORANCE) - between).tocsc()
+    # Positive definite and symmetric: an order for Cholesky has a third of the fill, and no pivot is needed
+    solve = splu(equations, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0, options={"SymmetricMode": True}).solve
 
+    def _solved(coarse: Floats, stepped: bool = True) -> Floats:
+        return np.reshape(solve((trust * coarse).ravel() + stepped * pull), trust.shape)
 
-def _ends(length: int) -> tuple[tuple[int, int], tuple[int, int]]:
-    return (0, length - 1), (1, length)
+    return _solved
 
 
 def refocused(field: Complexes, disparity: float, rays: Bools | None = None) -> Complexes:

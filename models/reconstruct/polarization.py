@@ -56,7 +56,7 @@ class Polarization(NamedTuple):
     @property
     def degree(self) -> Floats:
         """Degree of linear polarization, 0..1."""
-        return np.hypot(self.s1, self.s2)
+        return np.minimum(np.hypot(self.s1, self.s2), 1)  # rounding may pass it
 
     @property
     def confidence(self) -> Floats:

@@ -8,6 +8,7 @@ from talbot.models.parameters import ParameterError
 
 from . import polarized, solids, targets
 from .clip import VIDEOS
+from .leaves import leaves
 from .light_field import LightField
 from .light_field_file import named
 from .motorcycle import motorcycle
@@ -30,11 +31,13 @@ scenes: dict[str, Callable[..., Scene]] = {
     "specular": polarized.specular,
     "cornell": solids.cornell,
     "fence": solids.fence,
+    "leaves": leaves,
     **{name: partial(photograph, name) for name in PHOTOGRAPHS},
 }
 NUMBERS = {
     "edge": ("degrees", -360.0, 360.0),
     "flat": ("percent", 0.0, 1600.0),
+    "leaves": ("seed", 0.0, 1e9),
     "moving": ("px/s", 0.0, 1e6),
     "polarized": ("percent", 0.0, 100.0),
     "stress": ("degrees", -360.0, 360.0),

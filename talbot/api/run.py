@@ -13,11 +13,12 @@ from talbot.flow.frame.result import FrameResult, GoldenResult
 from talbot.flow.lightfield.fields import SURE, estimate
 from talbot.flow.lightfield.methods import METHODS
 from talbot.models.parameters import ParameterError, check_choice
-from talbot.models.pixel import depth_of
+from talbot.models.pixel import depth_of as depth_of_phase
 from talbot.models.scene import RADIANCE_MAX
 
 from .image import Image, embedded, png, table
 from .light_field import LightField
+from .measured import DISPARITIES, FAR, NEAR, DepthResult, PolarizationResult, depth_of, polarization_of
 
 WHAT = {"edge": ("image", "edges"), "image": ("image",), "raw": ("image", "edges", "light_field", "disparity")} | {
     "tof": ("image", "depth")
@@ -72,8 +73,8 @@ class Run:
         disparity (raw mode): px of the array per view step, Image (rows, cols), NaN where the mixture is not sure.
         depth (tof mode): in m, Image (rows, cols), NaN where there is no amplitude.
 
-        method: of a light field, as in `make lightfield`: direct (the thesis's; the default), linear or mixture, by
-        Bayes' rule (models/reconstruct/bayes).
+        method: of a light field (flow/lightfield/README.md): direct (the thesis's; the default), linear, sparse,
+        mixture, network.
         disparity: (rows, cols), px of the array per view step, for an image from edges; by default the scene's own.
         Raises ParameterError.
         """
@@ -98,12 +99,30 @@ class Run:
             return Image.of(result.edges)
         if what == "depth":
             phase, strength = result.echo
-            far = depth_of(phase, result.request.sensor.electrical.f_mod)
+            far = depth_of_phase(phase, result.request.sensor.electrical.f_mod)
             return Image.of(np.where(self.read & (strength > 0), far, np.nan))
         if disparity is not None:
             scene = replace(result.exposed.scene, disparity=np.asarray(disparity, float))
             result = replace(result, exposed=replace(result.exposed, scene=scene))
         return Image.of(result.image)
+
+    def polarization(self, highlight: float = 0.1) -> PolarizationResult:
+        """Angle and degree of linear polarization at every pixel, and highlights, of a raw frame; as `make polar`.
+
+        highlight: polarized light of one, of white, 0..16. The frame may be of any part of the array. Its summary has
+        the errors against the scene, where that is polarized. Raises ParameterError in other modes.
+        """
+        return polarization_of(self.result, highlight)
+
+    def depth(self, near: float = NEAR, far: float = FAR, disparities: int = DISPARITIES) -> DepthResult:
+        """Depth in m at every pixel of a frame in tof mode, its whole turns found by the light field; as `make depth`.
+
+        The exposure of the frame is read out six times, by the chip's Verilog where the run was: seconds to minutes.
+        near, far: disparities that are tried, far..20 and -20..20 px per view step, of which a depth beyond them is not
+        sure; disparities: how many, 1..500. For a room, a lens of life size: talbot.Sensor(scale=1, focus=3,
+        focal_length=25e-3, f_mod=100e6). Raises ParameterError in other modes, and for a part of the array.
+        """
+        return depth_of(self.result, near, far, disparities)
 
     def __repr__(self) -> str:
         s = self.summary

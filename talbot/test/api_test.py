@@ -1,5 +1,6 @@
 """The public API as a stranger uses it: README's example, and a sensor, a response and a light field of one's own."""
 
+import json
 import os
 import re
 import subprocess
@@ -158,3 +159,39 @@ def test_a_light_field_by_every_method():
     for what, method in (("light_field", "best"), ("image", "linear")):
         with pytest.raises(talbot.ParameterError, match="method = "):
             run.reconstruct(what, method=method)
+
+
+def test_polarization_of_a_run_is_that_of_the_command(tmp_path):
+    run = talbot.Sensor(rows=48, cols=54).golden("specular", mode="raw")
+    found = run.polarization(highlight=0.05)
+    words = "--rows=48", "--cols=54", "--golden", "--highlight=0.05", f"--out={tmp_path}"
+    assert main(["polar", *words]) == 0
+    said = json.loads((tmp_path / "summary.json").read_text())
+    assert found.summary["psi_error_deg"] == said["psi_error_deg"] and found.summary["f1"] == said["f1"]
+    assert found.psi.shape == found.highlights.shape == (48, 54) and found.highlights.any()
+    assert np.abs(found.psi).max() <= np.pi / 2 and 0 <= found.degree.min() <= found.degree.max() <= 1
+    assert found._repr_png_().startswith(b"\x89PNG") and "<table>" in found._repr_html_()
+    for wrong in (lambda: run.depth(), lambda: run.polarization(highlight=-1)):
+        with pytest.raises(talbot.ParameterError, match="mode = 'raw': must be 'tof'|highlight = -1"):
+            wrong()
+
+
+def test_depth_of_a_run_is_that_of_the_command(tmp_path):
+    lens = {"focal_length": 25e-3, "focus": 3.0, "scale": 1.0}
+    sensor = talbot.Sensor(rows=40, cols=48, f_mod=100e6, **lens)
+    run = sensor.golden("tilted", mode="tof")
+    found = run.depth(disparities=11)
+    sensor.save(tmp_path / "sensor.toml")
+    words = f"--sensor={tmp_path / 'sensor.toml'}", "--scene=tilted", "--disparities=11", "--golden"
+    assert main(["depth", *words, f"--out={tmp_path / 'out'}"]) == 0
+    said = json.loads((tmp_path / "out" / "summary.json").read_text())
+    assert found.summary["depth_rms_m"] == said["depth_rms_m"]
+    truth = run.result.exposed.scene.depth
+    error = np.sqrt(np.mean((found.depth - truth)[found.sure] ** 2))
+    assert error == pytest.approx(said["depth_rms_m"]) and found.behind is None
+    assert error < 0.05 * np.ptp(truth) < np.nanstd(run.reconstruct("depth") - truth)  # a phase alone wraps
+    assert found.light_field.values.shape == (5, 5, 40, 48) and found._repr_png_().startswith(b"\x89PNG")
+    with pytest.raises(talbot.ParameterError, match="mode = 'tof': must be 'raw'"):
+        run.polarization()
+    with pytest.raises(talbot.ParameterError, match="near = -3"):
+        run.depth(near=-3)

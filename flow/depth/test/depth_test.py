@@ -49,6 +49,12 @@ def test_files(done):
     assert f"{s['depth_rms_m']:.4f} m" in text and "Past the occluder" not in text
 
 
+def test_depth_edges_have_their_own_turns(tmp_path):
+    s = measured(tmp_path, "--scene=cornell", "--rows=96", "--cols=96", "--golden")
+    best, free = s["methods"]["field"], s["baselines"]["light_field"]
+    assert best["rms_all_m"] < 0.012 * s["range_m"] < 0.1 * free["rms_all_m"] and best["sure"] > 0.8
+
+
 def test_a_wall_behind_a_fence(tmp_path):
     s = measured(tmp_path, "--scene=fence", "--rows=72", "--cols=72", "--f-mod=25e6", "--golden")
     past = s["behind"]

@@ -175,6 +175,17 @@ def repaired(plan: Plan, drives: Drives, kept: Collection[str], slacks: Slacks |
     return counts
 
 
+def borne(plan: Plan, drives: Drives) -> dict[str, float]:
+    """Length (um) of every net at which its driver's load is at its limit."""
+    made = {}
+    for net, (driver, pin, sinks) in connected(plan.instances).items():
+        limit = drives.limits.get((plan.instances[driver].cell, pin))
+        if limit is not None:
+            pins = sum(drives.inputs.get((plan.instances[name].cell, end), 0.0) for name, end in sinks)
+            made[net] = round(max(limit - pins - plan.outside.get(net, 0.0), 0) * 1000 / plan.femtofarad_um, 3)
+    return made
+
+
 def shortened(plan: Plan, drives: Drives, kept: Collection[str]) -> int:
     """Put a buffer halfway to the sinks that are farther than FAR_UM from their driver or port; how many.
 

@@ -123,8 +123,12 @@ class Board:
     def charge(self, present: int) -> None:
         """Let places that nets have cost others so much, at most PRESENT_MOST."""
         more = min(present, PRESENT_MOST) - self.present
-        for net, (rows, _) in self.rows.items():
-            self.grid.use(rows[rows[:, 0] > 0], more * self.weights[net])
+        by_weight = defaultdict[int, list[Rows]](list)
+        for net, (rows, _) in self.rows.items() if more else ():
+            by_weight[self.weights[net]].append(rows)
+        for weight, made in by_weight.items():
+            rows = np.concatenate(made)
+            self.grid.use(rows[rows[:, 0] > 0], more * weight)
         self.present += more
 
     def price(self, net: str) -> int:

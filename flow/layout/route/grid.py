@@ -15,7 +15,8 @@ WRONG_WAY = 3  # cost of a step against the preferred direction of a layer, in s
 LAYER_COSTS = 3.0, 1.5  # of a step on the lowest layers, where pins are met, in steps on another
 VIA_NM = 2000  # cost of a via, as that of so long a segment
 CONFLICT_NM = 500  # cost of a place where nets contended once, as that of so long a segment
-HASTE = 5, 4  # factor of the remaining cost: paths of up to so much more are taken for a search so much shorter
+HASTE = 5  # quarters of the remaining cost: paths of up to a quarter more are taken for a search so much shorter
+EXACT = 4
 FREE, BLOCKED = 0, -1  # of `Grid.fixed`; else the number of the only net that may pass, and 1
 PAID = 1 << 27  # marks a place in the queue as the end of a path
 METAL, BELOW, ABOVE = range(3)  # what is at a place of a layer: a segment, the pad of a via upwards, of one from below
@@ -79,34 +80,38 @@ class Grid:
 
     def search(
         self, net: int, box: Box, sources: Sequence[Place], targets: Sequence[Place],
-        costs: Mapping[Place, int] | None = None,
+        costs: Mapping[Place, int] | None = None, straight_nm: int | None = None,
     ) -> list[Place] | None:  # fmt: skip
         """Return the places of the cheapest path within ``box`` (nm) from a source to a target, or None.
 
-        net: its number. costs: of sources and targets, in conflicts.
+        net: its number. costs: of sources and targets, in conflicts. straight_nm: cost of a conflict for a path that
+        is to be short, which is searched for exactly.
         """
+        conflict, haste = (CONFLICT_NM, HASTE) if straight_nm is None else (straight_nm, EXACT)
         low = np.maximum(np.array(box[:2]) // self.step - self.first, 1)
         high = np.minimum(np.array(box[2:]) // self.step - self.first, (self.columns - 2, self.rows - 2))
         (begins, at_begin), (ends, at_end) = (
-            self._numbers(places, low, high, costs or {}) for places in (sources, targets)
+            self._numbers(places, low, high, costs or {}, conflict) for places in (sources, targets)
         )
         if not len(begins) or not len(ends):
             return None
         self.searches += 1
         path = _search(
             self.fixed, self.used, self.cost, self.seen, self.came, self.goal, self.due, self.searches, net + 1, begins,
-            ends, at_begin, at_end, low, high, self.prices,
+            ends, at_begin, at_end, low, high, self.prices, conflict, haste,
         )  # fmt: skip
         levels, columns, rows = np.unravel_index(path[::-1], self.fixed.shape[1:])
         made = zip((levels + 1).tolist(), (columns + self.first[0]).tolist(), (rows + self.first[1]).tolist())
         return list(made) or None
 
-    def _numbers(self, places: Sequence[Place], low: Rows, high: Rows, costs: Mapping[Place, int]) -> tuple[Rows, Rows]:
+    def _numbers(
+        self, places: Sequence[Place], low: Rows, high: Rows, costs: Mapping[Place, int], conflict: int
+    ) -> tuple[Rows, Rows]:
         """Numbers of those of ``places`` that are within the window, and what each costs."""
         found = np.array(places, np.int64).reshape(-1, 3) - (1, *self.first)
         inside = ((found[:, 1:] >= low) & (found[:, 1:] <= high)).all(1)
         numbers = np.asarray(np.ravel_multi_index(tuple(found[inside].T), self.fixed.shape[1:]), np.int64)
-        return numbers, np.array([costs.get(place, 0) for place in places], np.int64)[inside] * CONFLICT_NM
+        return numbers, np.array([costs.get(place, 0) for place in places], np.int64)[inside] * conflict
 
 
 def _reaches(rules: RoutingRules) -> Rows:
@@ -166,7 +171,7 @@ def _use(used: Counts, rows: Rows, reach: Rows, step: Rows, first: Rows, times: 
 def _search(
     fixed: Owners, used: Counts, cost: Owners, seen: Owners, came: npt.NDArray[np.int8], goal: Owners,
     due: Owners, search: int, owner: int, sources: Rows, ends: Rows, at_begin: Rows, at_end: Rows, low: Rows,
-    high: Rows, prices: Rows,
+    high: Rows, prices: Rows, conflict: int, haste: int,
 ) -> Rows:  # fmt: skip
     """Numbers of the places of the path, from its end to its begin; none without one."""
     levels, columns, rows = fixed.shape[1:]
@@ -192,7 +197,7 @@ def _search(
         place = sources[k]
         if seen[place] != search or at_begin[k] < cost[place]:
             cost[place], seen[place], came[place] = at_begin[k], search, -1
-            heapq.heappush(heap, (at_begin[k] + _least(place, layer, rows, levels, box, least)) << 28 | place)
+            heapq.heappush(heap, (at_begin[k] + _least(place, layer, rows, levels, box, least, haste)) << 28 | place)
     while heap:
         entry = heapq.heappop(heap)
         here = entry & (PAID - 1)
@@ -202,7 +207,7 @@ def _search(
                 path.append(path[-1] - moves[came[path[-1]]])
             return np.array(path)
         level, at = here // layer, here % layer
-        if (entry >> 28) - _least(here, layer, rows, levels, box, least) > cost[here]:
+        if (entry >> 28) - _least(here, layer, rows, levels, box, least, haste) > cost[here]:
             continue
         if goal[here] == search:
             heapq.heappush(heap, (cost[here] + due[here]) << 28 | PAID | here)
@@ -219,23 +224,23 @@ def _search(
                 below, cut = (level, here) if move == 4 else (level - 1, there)
                 if not 0 <= below < levels - 1 or (via[cut] != FREE and via[cut] != owner):
                     continue
-                price = VIA_NM + of_via[cut] * CONFLICT_NM
+                price = VIA_NM + of_via[cut] * conflict
             if metal[there] != FREE and metal[there] != owner:
                 continue
-            price += of_metal[there] * CONFLICT_NM
+            price += of_metal[there] * conflict
             total = cost[here] + price
             if seen[there] != search or total < cost[there]:
                 cost[there], seen[there], came[there] = total, search, move
-                heapq.heappush(heap, (total + _least(there, layer, rows, levels, box, least)) << 28 | there)
+                heapq.heappush(heap, (total + _least(there, layer, rows, levels, box, least, haste)) << 28 | there)
     return np.empty(0, np.int64)
 
 
 @njit(cache=True)
-def _least(here: int | np.int64, layer: int, rows: int, levels: int, box: Rows, least: Rows) -> np.int64:
+def _least(here: int | np.int64, layer: int, rows: int, levels: int, box: Rows, least: Rows, haste: int) -> np.int64:
     """Lower bound of the cost from a place to the box around the targets: up to the best level, along, and down."""
     level, i, j = here // layer, here % layer // rows, here % rows
     across, along = max(box[0] - i, i - box[1], 0), max(box[2] - j, j - box[3], 0)
     found = np.int64(1) << 60
     for top in range(max(level, box[4]), levels):
         found = min(found, VIA_NM * (2 * top - level - box[4]) + across * least[top, 0] + along * least[top, 1])
-    return found * HASTE[0] // HASTE[1]
+    return found * haste // EXACT

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import combinations
 
 import numpy as np
 
@@ -10,7 +11,7 @@ from .access import accesses
 from .area import meet_area
 from .board import Board
 from .route import Place, Point, Route
-from .view import NetView
+from .view import NetView, Straight
 
 MARGINS_NM = (10_000, 40_000)  # of the window around two places to be joined: of a try, of the next
 DETOUR_NM = 240_000  # the same where there was no path at all: round a block
@@ -50,13 +51,15 @@ class End:
         return np.array(list(self.ways)[:: SAMPLE if not self.pins else len(self.ways)])
 
 
-def route_net(board: Board, net: str, hasty: bool = False, kept: Sequence[Leg] = ()) -> Found | None:
+def route_net(
+    board: Board, net: str, hasty: bool = False, kept: Sequence[Leg] = (), straight: Straight | None = None
+) -> Found | None:
     """Route ``net``, which has no shapes on the ``board``, with the fewest nets in its way.
 
-    hasty: whether the first path that there is will do. kept: legs that stay. None when there is no path past what is
-    fixed, or no room for what a rule requires.
+    hasty: whether the first path that there is will do. kept: legs that stay. straight: how short, if at all. None when
+    there is no path past what is fixed, or no room for what a rule requires.
     """
-    view = NetView(board, board.numbers[net])
+    view = NetView(board, board.numbers[net], straight)
     try:
         return _best(view, net, hasty, kept)
     finally:
@@ -117,7 +120,7 @@ def _diodes(view: NetView, net: str, kept: Sequence[Leg]) -> list[Leg]:
         if not here or not there:
             continue
         box = _box(*_nearest(view, *(np.array(list(ways)) for ways in (here, there)))[1:], MARGINS_NM[0])
-        if path := view.board.grid.search(view.net, box, list(here), list(there), view.costs):
+        if path := view.search(box, list(here), list(there)):
             route = Route.of((here[path[0]], there[path[-1]]))
             route.draw(view.rules, path)
             made.append(Leg(np.array(path), route, frozenset((gate, diode))))
@@ -134,12 +137,8 @@ def _jumpers(view: NetView, net: str, kept: Sequence[Leg]) -> list[Leg]:
             continue
         grid, (_, i, j), reach = view.board.grid, next(iter(ways)), range(-REACH, REACH + 1, 2)
         x, y = grid.at(i, j)
-        path = grid.search(
-            view.net,
-            _box((x, y), (x, y), MARGINS_NM[0]),
-            list(ways),
-            [(top, i + a, j + b) for a in reach for b in reach],
-            view.costs,
+        path = view.search(
+            _box((x, y), (x, y), MARGINS_NM[0]), list(ways), [(top, i + a, j + b) for a in reach for b in reach]
         )
         if path is None:
             continue
@@ -190,14 +189,16 @@ def _ends(view: NetView, net: str, kept: Sequence[Leg]) -> list[End]:
 
 def _connected(view: NetView, ends: Sequence[End], margin: int) -> list[Leg] | None:
     """Join the ``ends``, always the one nearest to what is joined, by legs; None without a path."""
+    if trunk := len(ends) > 2 and bool(view.straight and view.straight.trunk):
+        ends = _farthest_first(view, ends)
     legs, tree, first = list[Leg](), dict[Place, None](), ends[0]
     left = list(range(1, len(ends)))
     nearest = {k: _nearest(view, ends[k].sample, first.sample) for k in left}
     while left:
-        k = min(left, key=lambda k: nearest[k][0])
+        k = 1 if trunk and not legs else min(left, key=lambda k: nearest[k][0])
         left.remove(k)
         box, sources = _box(*nearest[k][1:], margin), list(tree or first.ways)
-        path = view.board.grid.search(view.net, box, sources, list(ends[k].ways), view.costs)
+        path = view.search(box, sources, list(ends[k].ways))
         if path is None:
             return None
         pins, route = ends[k].pins, Route()
@@ -215,6 +216,13 @@ def _connected(view: NetView, ends: Sequence[End], margin: int) -> list[Leg] | N
             closer = _nearest(view, ends[other].sample, np.array(new[::SAMPLE] + new[-1:]))
             nearest[other] = closer if closer[0] < nearest[other][0] else nearest[other]
     return legs
+
+
+def _farthest_first(view: NetView, ends: Sequence[End]) -> list[End]:
+    """The ``ends``, the two that are farthest from one another first."""
+    pairs = combinations(range(len(ends)), 2)
+    one, other = max(pairs, key=lambda pair: _nearest(view, *(ends[k].sample for k in pair))[0])
+    return [ends[one], ends[other], *(end for k, end in enumerate(ends) if k not in (one, other))]
 
 
 def _nearest(view: NetView, places: Boxes, joined: Boxes) -> tuple[int, Point, Point]:

@@ -30,6 +30,11 @@ class Route:
             made.join(part)
         return made
 
+    @property
+    def nm(self) -> int:
+        """Length of all segments."""
+        return sum(self.lengths.values())
+
     def near(self, other: "Route", rules: RoutingRules) -> bool:
         """Whether a segment is nearer to one of ``other`` than the least space."""
         for level in self.segments.keys() & other.segments.keys():

@@ -1,6 +1,7 @@
 """The board as one net sees it: what is clear to it, and whom it is too near to."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,18 +14,30 @@ OWN = 40  # cost of a via too near to another one of its net, in conflicts
 AVOIDED = 2000  # cost of a place too near to what its net is to avoid, in conflicts
 
 
+class Straight(NamedTuple):
+    """How a net is to be short. conflict_nm: of Grid.search. trunk: whether its farthest ends are joined first."""
+
+    conflict_nm: int
+    trunk: bool = False
+
+
 class NetView:
     """The board as the net with the number ``net`` sees it.
 
-    costs: of places from which its pins are met, in conflicts. vias, avoided: of its own, from
-    which others keep away.
+    straight: how it is to be short. costs: of places from which its pins are met, in conflicts. vias, avoided: of its
+    own, from which others keep away.
     """
 
-    def __init__(self, board: Board, net: int) -> None:
-        self.board, self.rules, self.net = board, board.rules, net
+    def __init__(self, board: Board, net: int, straight: Straight | None = None) -> None:
+        self.board, self.rules, self.net, self.straight = board, board.rules, net, straight
         self.costs: dict[Place, int] = {}
         self.vias: list[Boxes] = []
         self.avoided: list[Rows] = []
+
+    def search(self, box: Box, sources: Sequence[Place], targets: Sequence[Place]) -> list[Place] | None:
+        """Return the cheapest path of this net, as Grid.search does."""
+        straight_nm = self.straight.conflict_nm if self.straight else None
+        return self.board.grid.search(self.net, box, sources, targets, self.costs, straight_nm)
 
     def hold(self, places: Boxes) -> None:
         """Let other vias of this net keep away from those of a path, rows (level, i, j), until `release`."""

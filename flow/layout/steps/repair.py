@@ -18,13 +18,14 @@ from ..geometry.instances import insert
 from ..netlist.netlist import Netlist
 from ..repair.clock import regrouped
 from ..repair.drive import Drives
-from ..repair.repair import OWN, Plan, clock_nets, planned, repaired, shortened
+from ..repair.repair import OWN, Plan, borne, clock_nets, planned, repaired, shortened
 from ..repair.speed import Delays, quickened
 from ..repair.wires import femtofarad_um
 from ..timing.estimate import setup_slacks
 from .synthesis import CLOCK_CELLS, CLOCK_GATE, REGISTERS
 
 MARGIN_NS = 0.8  # of the estimated setup slack
+ROUTED_NS = 1.2  # slew of a net as long as it may be when it is routed: the rest is what neighbours add
 CLOCK_NS, BUFFERED_NS = 0.7, 0.3  # most slew of a register's clock; behind a buffer of a late path
 # Nets with at most so much slack more than the worst are changed in a round; less after one that did not help
 ROUNDS, WINDOW_NS, SHRINK, LEAST_NS = 40, 0.3, 0.6, 0.01
@@ -50,6 +51,7 @@ class RepairParameters:
 class Repair(Step[RepairParameters]):
     """Drivers that are too weak at the slowest corner for the wires that a placement implies get larger or a buffer.
 
+    lengths: um of nets that their drivers bear when they are routed, {net: um}.
     estimate_ns: the setup slack that is expected. Without timing nothing changes but that all
     masks of the cells are drawn, which Coriolis does not know.
     """
@@ -63,7 +65,12 @@ class Repair(Step[RepairParameters]):
         "masks": "library.gds",
         "areas": "library.areas",
     }
-    outputs = {"gds": "repaired.gds", "netlist": "netlist.json", "placement": "placement.json"}
+    outputs = {
+        "gds": "repaired.gds",
+        "netlist": "netlist.json",
+        "placement": "placement.json",
+        "lengths": "lengths.json",
+    }
     metrics = {
         "clock_drivers": "",
         "halfway": "",
@@ -85,9 +92,10 @@ class Repair(Step[RepairParameters]):
         p, tech = self.parameters, coriolis_platform(self.parameters.pdk)
         netlist, placement = Netlist.read(inputs["netlist"]), json.loads(inputs["placement"].read_text())
         areas = json.loads(inputs["areas"].read_text())
-        layout, counts = (
+        layout, counts, lengths = (
             read_gds(inputs["gds"]),
             {"clock_drivers": 0, "halfway": 0, "sized": 0, "buffers": 0, "estimate_ns": None},
+            dict[str, float](),
         )
         if p.corner:
             begin = planned(netlist, placement, json.loads(inputs["floorplan"].read_text()), areas, tech)
@@ -95,10 +103,12 @@ class Repair(Step[RepairParameters]):
             outputs_of = (net for port in netlist.ports if port.direction == "output" for net in port.bits())
             begin.outside = dict.fromkeys(outputs_of, p.load_pf)
             plan, counts = self.best(begin, netlist, inputs)
+            lengths = borne(plan, Drives.of(read(inputs["liberty"]), ROUTED_NS))
             netlist, placement["instances"] = plan.listed(netlist, placement["instances"], tech.fill_cells)
         draw(layout, read_gds(inputs["masks"]), areas, placement["instances"])
         write_gds(layout, outputs["gds"])
         netlist.write(outputs["netlist"])
+        outputs["lengths"].write_text(json.dumps(lengths, indent=0) + "\n")
         outputs["placement"].write_text(json.dumps(placement, indent=0) + "\n")
         cells = [instance.cell for instance in netlist.instances if instance.pins]
         return counts | {"cells": len(cells), "cell_area_um2": round(sum(areas.get(cell, 0) for cell in cells), 2)}

@@ -29,7 +29,7 @@ class Route(Step[RouteParameters]):
     """Negotiated congestion on a grid, from nothing.
 
     open_nets: that found no path. evictions: times that a net was rerouted for another. respaced_nets: rerouted because
-    of a rule of space or width. diodes: against antennas.
+    of a rule of space or width. long_nets: longer than their drivers bear. diodes: against antennas.
     """
 
     name = "route"
@@ -44,9 +44,18 @@ class Route(Step[RouteParameters]):
         "cells": "library.gds",
         "areas": "library.areas",
         "plan": "floorplan.floorplan",
+        "lengths": "repair.lengths",
     }
     outputs = {"gds": "routed.gds", "placement": "placement.json", "diodes": "diodes.json"}
-    metrics = {"open_nets": "", "evictions": "", "respaced_nets": "", "diodes": "", "wire_um": "um", "vias": ""}
+    metrics = {
+        "open_nets": "",
+        "evictions": "",
+        "respaced_nets": "",
+        "long_nets": "",
+        "diodes": "",
+        "wire_um": "um",
+        "vias": "",
+    }
     tools = ("python klayout",)
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
@@ -65,7 +74,8 @@ class Route(Step[RouteParameters]):
             area = left + EDGE_NM, bottom + EDGE_NM, right - EDGE_NM, top - EDGE_NM
         board = Board(read_gds(inputs["gds"]), rules, dict(sorted(shapes.items())), area)
         diodes = Diodes(placement["instances"], masters, read_gds(inputs["cells"]), areas, tech)
-        found = route(board, [net for net, pins in board.pins.items() if len(pins) > 1], tech, diodes)
+        wanted = [net for net, pins in board.pins.items() if len(pins) > 1]
+        found = route(board, wanted, tech, diodes, json.loads(inputs["lengths"].read_text()))
         segments = {net: found.routes[net].listed(rules) if net in found.routes else [] for net in board.nets}
         placement["segments"] = segments
         write_gds(board.drawn(), outputs["gds"])
@@ -76,6 +86,7 @@ class Route(Step[RouteParameters]):
             "open_nets": len(found.open),
             "evictions": found.evictions,
             "respaced_nets": len(found.respaced),
+            "long_nets": len(found.long),
             "diodes": len(diodes.nets),
             "wire_um": round(sum(lengths), 1),
             "vias": lengths.count(0),

@@ -53,6 +53,14 @@ def test_more_nodes_err_less_for_uniform_light(tables):
     assert fine < coarse / 10
 
 
+def test_denser_patches_and_more_atoms_err_less(tables):
+    rows = {(r["method"], r["setting"]): r["psnr_db"] for r in tables[1]["light_field"]}
+    by_stride = [rows["sparse", setting] for setting in ("stride 9", "", "stride 3", "stride 2")]
+    assert by_stride == sorted(by_stride)
+    assert rows["sparse", "atoms 64"] < rows["sparse", "atoms 192"] < rows["sparse", ""]
+    assert rows["direct", ""] + 2 < rows["linear", ""] < rows["sparse", ""]
+
+
 def test_unknown_sweep_is_named(tmp_path):
     with pytest.raises(ParameterError, match="only = 'speed'"):
         run_sweeps(tmp_path / "out", ["speed"])

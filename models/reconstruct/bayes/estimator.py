@@ -25,7 +25,6 @@ from .windows import Axis, Group, even
 
 Floats = npt.NDArray[np.floating]
 UNLIKELY = 1e-3  # probability below which a disparity is left out of a mixture
-PLAIN = 2.0  # times the noise's variance: windows that differ less from a uniform one show no disparity
 FLOOR = 0.05  # of a whitened sample's variance, below which windows count as equally well explained
 
 
@@ -70,11 +69,14 @@ class Estimate(NamedTuple):
         Mean of the disparity's probability, px per view step.
     spread : float32 (rows, cols)
         Its standard deviation: 0 is certain.
+    plain : float
+        Share of the windows, 0..1, that show no more than noise on a uniform scene: they take the linear estimate.
     """
 
     light_field: Floats
     disparity: Floats
     spread: Floats
+    plain: float = 0.0
 
 
 class FieldEstimator:
@@ -147,6 +149,39 @@ class FieldEstimator:
         """For each disparity, made once a sensor."""
         return [Component(*self._filters(self.covariances.of(float(d)))) for d in self.prior.grid]
 
+    def told_by(self, pixels: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
+        """Where the mixture's disparity is from any of some pixels.
+
+        Parameters
+        ----------
+        pixels : bool (rows, cols)
+            Dead or full ones, for example.
+
+        Returns
+        -------
+        bool (rows, cols)
+            True where one of them is in a window.
+        """
+        windows = sliding_window_view(pixels, (self.y.window, self.x.window))[np.ix_(self.y.firsts, self.x.firsts)]
+        return np.asarray(self.y.spread() @ windows.any((2, 3)) @ self.x.spread().T > 0)
+
+    def condition(self, disparity: float | None = None) -> float:
+        """Condition of the covariance of the samples in a window, noise included.
+
+        Parameters
+        ----------
+        disparity : float, optional
+            In px per view step; None is the mean over the prior's, that of `linear`.
+
+        Returns
+        -------
+        float
+            Greatest of all groups of windows.
+        """
+        tables = self.covariances.mean() if disparity is None else self.covariances.of(disparity)
+        groups = {(down.phase, across.phase): (down, across) for down, across in self._groups()}
+        return max(float(np.linalg.cond(self._whiten(tables, *group))) ** 2 for group in groups.values())
+
     def mixture(self, pair: Floats, evidence: Floats | None = None) -> Estimate:
         """Mean over the disparities, each as probable as the samples make it.
 
@@ -173,53 +208,52 @@ class FieldEstimator:
         if evidence is not None:
             seen = self._turned(evidence)
             told = [(d, a, self._samples(seen, d, a)) for d, a in self._groups()]
-        grid, level, plain = self.prior.grid, self._uniform(groups)[0], self._uniform(told)[1]
-        chance = self._probability(np.stack([self._score(c, told) for c in self.components]))
+        grid, plain = self.prior.grid, self._plain(told)
+        chance = self._probability(np.stack([self._score(c, told, ~plain) for c in self.components]))
         chance[:, plain] = 1 / len(grid)
         mean = np.tensordot(grid, chance, 1)
         spread = np.sqrt(np.maximum(np.tensordot(grid**2, chance, 1) - mean**2, 0))
         down, across = self.y.spread(), self.x.spread()
-        chance[:, plain] = 0  # no disparity is needed: all views are equal
-        flat = (down @ (plain * level) @ across.T).astype(np.float32)
-        out = np.tile(flat, (self.views, self.views, 1, 1))
-        for part, component in zip(chance, self.components, strict=True):
+        chance[:, plain] = 0
+        out = np.zeros((self.views, self.views, *self.shape), np.float32)
+        # What shows no disparity takes the linear estimate
+        ways = [(plain.astype(float), self.filters), *zip(chance, (c.filters for c in self.components), strict=True)]
+        for part, filters in ways:
             near = maximum_filter(part, 3) > 0  # each pixel is between the middles of at most 2 x 2 blocks
             if near.any():
-                out += self._estimate(component, groups, near) * (down @ part @ across.T).astype(np.float32)
-        return Estimate(out, *((down @ values @ across.T).astype(np.float32) for values in (mean, spread)))
+                out += self._estimate(filters, groups, near) * (down @ part @ across.T).astype(np.float32)
+        disparity, doubt = ((down @ values @ across.T).astype(np.float32) for values in (mean, spread))
+        return Estimate(out, disparity, doubt, float(plain.mean()))
 
-    def _uniform(
-        self, groups: Sequence[tuple[Group, Group, Floats]]
-    ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.bool_]]:
-        """Radiance of the uniform scene that is nearest to each window, and whether the noise explains the rest.
-
-        Both (block rows, block cols).
-        """
-        level = np.zeros((len(self.y.blocks), len(self.x.blocks)))
-        plain = np.zeros(level.shape, bool)
+    def _plain(self, groups: Sequence[tuple[Group, Group, Floats]]) -> npt.NDArray[np.bool_]:
+        """Whether noise explains what each window has beside the nearest uniform scene, (block rows, block cols)."""
+        plain = np.zeros((len(self.y.blocks), len(self.x.blocks)), bool)
         totals = self.covariances.weights.sum((1, 2))
         for down, across, samples in groups:
             white = totals[self._diodes(down, across)[2]].astype(np.float32)
             found = white @ samples / (white @ white)
             rest = np.square(samples - white[:, None] * found).mean(0)
-            place = down.blocks, across.blocks
-            level[place] = found.reshape(level[place].shape)
-            plain[place] = (rest < PLAIN * self.prior.noise**2).reshape(level[place].shape)
-        return level, plain
+            part = plain[down.blocks, across.blocks]
+            part[:] = (rest < self.prior.plain * self.prior.noise**2).reshape(part.shape)
+        return plain
 
-    def _score(self, component: Component, groups: Sequence[tuple[Group, Group, Floats]]) -> Floats:
+    def _score(
+        self, component: Component, groups: Sequence[tuple[Group, Group, Floats]], wanted: npt.NDArray[np.bool_]
+    ) -> Floats:
         """How badly each window fits to a disparity: -2 log p(differences | sums), (block rows, block cols).
+
+        0 where it is not wanted.
 
         Given the sums, since these alone would call every smooth surface a blurred one. Of an unknown contrast: a
         Gaussian whose variance is unknown, too, is a Student's t.
         """
         out = np.zeros((len(self.y.blocks), len(self.x.blocks)), np.float32)
         for (down, across, samples), whitener in zip(groups, component.whiteners, strict=True):
-            white = whitener.matrix @ samples
+            some = wanted[down.blocks, across.blocks]
+            white = whitener.matrix @ (samples if some.all() else samples[:, some.ravel()])
             count = len(white)
             fit = count * np.log(np.einsum("nb,nb->b", white, white) + FLOOR * count) + whitener.log_determinant
-            part = out[down.blocks, across.blocks]
-            part[:] = fit.reshape(part.shape)
+            out[down.blocks, across.blocks][some] = fit
         return out
 
     def _probability(self, score: Floats) -> Floats:
@@ -229,15 +263,15 @@ class FieldEstimator:
         return chance / chance.sum(0)
 
     def _estimate(
-        self, component: Component, groups: Sequence[tuple[Group, Group, Floats]], wanted: npt.NDArray[np.bool_]
+        self, filters: list[Floats], groups: Sequence[tuple[Group, Group, Floats]], wanted: npt.NDArray[np.bool_]
     ) -> Floats:
-        """The light field for one disparity in the blocks that are wanted; 0 in the others."""
+        """The light field by filters of every group in the blocks that are wanted; 0 in the others."""
         out = np.zeros((self.views, self.views, *self.shape), np.float32)
-        for (down, across, samples), filters in zip(groups, component.filters, strict=True):
+        for (down, across, samples), matrix in zip(groups, filters, strict=True):
             some = np.flatnonzero(wanted[down.blocks, across.blocks])
             if len(some):
-                found = np.zeros((len(filters), samples.shape[1]), np.float32)
-                found[:, some] = filters @ samples[:, some]
+                found = np.zeros((len(matrix), samples.shape[1]), np.float32)
+                found[:, some] = matrix @ samples[:, some]
                 self._place(out, found, down, across)
         return out
 

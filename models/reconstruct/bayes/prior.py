@@ -32,6 +32,9 @@ class FieldPrior:
         Pixels around a block that its estimate uses, 0..16.
     trust : float
         Share of the evidence for a disparity that counts, 0.001..1: a scene is not the prior's texture.
+    plain : float
+        Windows that differ from a uniform one by less than this, times the noise's variance, take the linear estimate,
+        0..1000: no disparity shows in them.
 
     References
     ----------
@@ -47,6 +50,7 @@ class FieldPrior:
     disparities: int = 21
     margin: int = 4
     trust: float = 0.1
+    plain: float = 1.25
 
     def __post_init__(self) -> None:
         check_real("level", self.level, 0.01, 100)
@@ -58,6 +62,7 @@ class FieldPrior:
         check_int("disparities", self.disparities, 1, 500)
         check_int("margin", self.margin, 0, 16)
         check_real("trust", self.trust, 1e-3, 1)
+        check_real("plain", self.plain, 0, 1000)
         if self.far > self.near:
             raise ParameterError(f"near = {self.near:g}: must be in [{self.far:g}, 20], far and more")
 

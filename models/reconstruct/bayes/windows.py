@@ -72,6 +72,11 @@ class Axis:
         """First pixel of each block; the last ends with the array."""
         return np.minimum(np.arange(0, self.length, self.block), self.length - self.block)
 
+    @property
+    def firsts(self) -> npt.NDArray[np.int64]:
+        """First pixel of the window of each block."""
+        return np.clip(self.blocks - (self.window - self.block) // 2, 0, self.length - self.window)
+
     def spread(self) -> npt.NDArray[np.float64]:
         """Make the matrix from values at the middles of the blocks to values at the pixels, linear between.
 
@@ -91,7 +96,7 @@ class Axis:
         Group
             Every block is in one.
         """
-        first = np.clip(self.blocks - (self.window - self.block) // 2, 0, self.length - self.window)
+        first = self.firsts
         # The last block may begin out of step; a group is evenly spaced
         keys = np.stack([first % self.period, self.blocks - first, self.blocks % self.block], 1)
         for key in np.unique(keys, axis=0):

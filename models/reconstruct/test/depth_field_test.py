@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.ndimage import minimum_filter
 
 from talbot.models.parameters import ArrayParameters, ParameterError, SensorParameters
 from talbot.models.reconstruct.bayes import FieldEstimator
@@ -40,6 +41,37 @@ def test_an_edge_of_more_than_a_turn_has_its_own_turns_on_both_sides():
 def test_a_phase_near_the_wrap(turns):
     found = unwrap(np.full(SHAPE, 2 * np.pi * (turns % 1)), np.full(SHAPE, turns + 0.1), np.full(SHAPE, 0.1))
     np.testing.assert_allclose(found.turns, turns, atol=1e-9)
+
+
+def corner():
+    """A wall, one that runs towards it, and 0.86 of a turn in front a block that hides parts of both."""
+    x, y = np.arange(SHAPE[1]), np.arange(SHAPE[0])[:, None]
+    turns = np.where(x < 20, 3.06, 3.06 - 0.08 * (x - 19)) * np.ones(SHAPE)
+    return np.where((y > 14) & (x > 8) & (x < 22), 2.2, turns)
+
+
+def test_a_coarse_depth_that_is_smeared_over_the_edges():
+    turns = corner()
+    coarse = minimum_filter(turns, 7) + np.random.default_rng(4).normal(0, 0.1, SHAPE)  # the block grows by 3 px
+    found = unwrap(phase_of(turns), coarse, np.full(SHAPE, 0.15))
+    plain = turns - np.rint(turns - coarse)
+    assert (np.abs(found.turns - turns) > 0.5).mean() == 0 < 0.05 < (np.abs(plain - turns) > 0.5).mean()
+
+
+@pytest.mark.parametrize("width", [8, 17, 30])
+def test_an_edge_of_exactly_a_turn_is_right_or_not_sure(width):
+    turns = np.where(np.arange(SHAPE[1]) < width, 0.7, 1.7) * np.ones(SHAPE)
+    coarse = turns + np.random.default_rng(4).normal(0, 0.2, SHAPE)
+    found = unwrap(phase_of(turns), coarse, np.full(SHAPE, 0.2))
+    wrong = np.abs(found.turns - turns) > 0.5
+    assert wrong.mean() >= 0.2 and (wrong & found.sure).mean() < 0.02  # no phase shows it
+
+
+def test_a_pixel_without_phase_has_the_depth_around_it():
+    phase = phase_of(SLOPE)
+    phase[7, 9] = np.nan
+    found = unwrap(phase, SLOPE, np.full(SHAPE, 0.1))
+    assert found.turns[7, 9] == pytest.approx(SLOPE[7, 9], abs=0.05) and not found.sure[7, 9]
 
 
 def test_no_phase_and_no_depth_are_not_sure():

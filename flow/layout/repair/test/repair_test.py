@@ -15,6 +15,7 @@ from talbot.flow.layout.repair.repair import (
     HALFWAY,
     OWN,
     Plan,
+    borne,
     clock_nets,
     connected,
     length,
@@ -119,6 +120,16 @@ def test_the_smallest_larger_form_is_taken():
     plan = chain([10.0, 80.0])
     assert repaired(plan, drives(), set()) == {"sized": 1, "buffers": 0}
     assert plan.instances["first"].cell == "inv_x4"
+
+
+def test_a_net_bears_the_length_at_which_its_load_is_the_limit():
+    plan, table = chain([10.0, 20.0, 30.0]), drives()
+    # inv_x1 drives 0.010 pF; its two sinks take 0.002 and the port, where it is one's, 0.003: 0.2 fF a um
+    assert borne(plan, table)["n"] == pytest.approx(40.0)
+    plan.outside = {"n": 0.003}
+    assert borne(plan, table)["n"] == pytest.approx(25.0)
+    plan.outside = {"n": 1.0}
+    assert borne(plan, table)["n"] == 0
 
 
 def test_a_net_that_is_kept_stays():

@@ -13,7 +13,7 @@ from talbot.flow.layout.geometry.test.gate import gate
 from talbot.flow.layout.netlist.netlist import Instance, Netlist, with_diodes
 from talbot.flow.layout.route.board import Board
 from talbot.flow.layout.route.diodes import Diodes
-from talbot.flow.layout.route.negotiate import negotiate, route
+from talbot.flow.layout.route.negotiate import negotiate, route, straighten
 from talbot.flow.layout.route.nets import clear_of, route_net
 from talbot.flow.layout.route.route import Route
 from talbot.flow.layout.route.rules import RoutingRules
@@ -233,6 +233,63 @@ def test_of_two_nets_in_the_way_the_lighter_one_is_evicted(light):
         board.put(net, Route(dict.fromkeys((1, 2, 3, 4), rows), {}), 1 if net == light else 5)
     assert {net: board.price(net) for net in gaps} == {net: board.present * (1 if net == light else 5) for net in gaps}
     assert route_net(board, "w1", False).evicted == {light}
+
+
+def bent():
+    """Two nets whose straight ways cross in a hall without room for both; the first was routed later, around it."""
+    layout, top = empty()
+    pins = {
+        "w1": [pin(layout, top, 5_000, 20_000), pin(layout, top, 35_020, 20_000)],
+        "w2": [pin(layout, top, 12_035, 20_000), pin(layout, top, 28_015, 20_000)],
+    }
+    for level in (1, 2, 3, 4):
+        for bottom, end in ((12_000, 19_100), (20_900, 28_000)):
+            draw(layout, top, level, 20_000, bottom, 20_400, end)
+    shapes = {net: {"segments": [], "vias": [], "pins": list(map(um, made))} for net, made in pins.items()}
+    board = Board(layout, RULES, shapes)
+    rows = [(19_000, at - 150, 21_000, at + 150) for at in range(19_400, 20_601, 300)]
+    board.put("w2", Route(dict.fromkeys((1, 2, 3, 4), rows), {}), 50)
+    state = negotiate(board, ["w1"])
+    assert state.evictions == 0
+    board.put("w2", Route(), 1)
+    return board, negotiate(board, ["w2"], state)
+
+
+def lengths(state):
+    return {net: made.nm / 1000 for net, made in state.routes.items()}
+
+
+def test_a_net_that_is_too_long_gets_straight():
+    board, state = bent()
+    before = lengths(state)
+    assert before["w1"] > 40  # um, between pins 30 um apart
+    assert straighten(board, state, {"w1": 35.0}) == set()
+    assert lengths(state)["w1"] < 35 and not state.open
+    drawn = board.drawn()
+    assert broken(drawn, drawn.top_cell()) == {}
+    first, second, third, fourth = nets(
+        drawn, drawn.top_cell(), [(0, 5_000, 20_000), (0, 35_020, 20_000), (0, 12_035, 20_000), (0, 28_015, 20_000)]
+    )
+    assert first == second != third == fourth
+
+
+def test_a_net_that_bears_its_length_stays():
+    board, state = bent()
+    before = dict(state.routes)
+    assert straighten(board, state, {"w1": 100.0}) == set()
+    assert all(state.routes[net] is made for net, made in before.items())
+
+
+def test_where_others_would_be_too_long_all_stays():
+    """The hall has no room for both, and the other net bears no detour either."""
+    board, state = bent()
+    assert straighten(board, state, {"w1": 35.0}) == set()
+    before, boxes = dict(state.routes), dict(board.boxes)
+    most = {"w1": before["w1"].nm / 1000, "w2": before["w2"].nm / 1000 - 5}
+    assert straighten(board, state, most) == {"w2"}
+    assert sum(made.nm / 1000 - most[net] for net, made in state.routes.items()) <= 5.001
+    assert {net for net, made in before.items() if state.routes[net] is not made} in (set(), {"w1", "w2"}, {"w2"})
+    assert boxes.keys() == board.boxes.keys() and all(board.boxes.values())
 
 
 def test_a_board_draws_what_it_lifted():

@@ -126,7 +126,7 @@ def test_a_missing_pixel_type_costs_little():
 @pytest.mark.parametrize("rows, cols", [(1, 1), (3, 5), (4, 6)])
 def test_small_arrays(rows, cols):
     found = FieldEstimator(_sensor(rows, cols), 5, PRIOR).mixture(_seen(np.full((5, 5, rows, cols), 0.3)))
-    np.testing.assert_allclose(found.light_field, 0.3, atol=0.02)
+    np.testing.assert_allclose(found.light_field, 0.3, atol=0.03)
 
 
 def test_refocus_brings_a_plane_back():

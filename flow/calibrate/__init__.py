@@ -1,0 +1,1 @@
+"""Calibration of the simulated chip on a simulated bench: `talbot calibrate`."""

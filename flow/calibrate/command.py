@@ -1,0 +1,67 @@
+"""A calibration on the bench: pixel types, trims, chief ray and optical centre from noisy frames of the chip."""
+
+import json
+from argparse import ArgumentParser, Namespace
+from pathlib import Path
+from typing import Any
+
+from talbot.base.files import check_folder, staged
+from talbot.base.progress import Steps
+from talbot.flow.frame import arguments as text
+from talbot.flow.frame.command import add_frame_arguments, name_of, request_of, typed_of
+from talbot.flow.frame.reading import WHOLE
+
+SCENE = "motorcycle"
+SIDE = "96"  # pixels: 16 x 24 of each type
+STEPS = ("bench", "fit", "picture", "report")
+
+
+def add_arguments(parser: ArgumentParser) -> None:
+    """Options of `talbot calibrate`: texts, checked by `run`."""
+    parser.add_argument("--scene", default=SCENE, help=f"of the picture that it is tried on ({SCENE})")
+    parser.add_argument("--depth", help="depth file for --scene (models/scene/README.md)")
+    add_frame_arguments(parser, WHOLE | {"mode": "raw", "calibration": None})
+    parser.set_defaults(rows=SIDE, cols=SIDE)
+    parser.add_argument("--out", help="folder for the results (default: build/calibrate)")
+    parser.add_argument("--holes", default="13", help="places of the hole along the pupil's diameter, 5..31")
+
+
+def run(options: Namespace) -> int:
+    """Calibrate, write calibration.json and its page, and print the figures."""
+    from . import page  # Matplotlib: not before it is needed
+    from .measure import calibrate
+
+    holes = text.integer("holes", options.holes, 5, 31)
+    typed = typed_of(options, add_arguments)
+    standard = list(typed.items()) == [("scene", SCENE)]
+    options.out = options.out or Path("build/calibrate") / ("" if standard else name_of(typed))
+    asked = request_of(options)
+    check_folder("out", asked.folder)
+    with Steps(STEPS, lines=True) as progress:
+        done = calibrate(asked, holes, progress.note)
+        progress.note("report")
+        with staged(asked.folder, page.NAMES) as part:
+            page.write(part, done)
+            summary = done.summary | {"arguments": typed}
+            (part / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n")
+    _print(done.summary, asked.folder)
+    return 0
+
+
+def _print(s: dict[str, Any], folder: Path) -> None:
+    from .page import lens_rows, picture_rows
+
+    print(f"calibration of {s['rows']} x {s['cols']} pixels by {s['holes']} places of the hole, noise {s['noise']:g}")
+    errors = {
+        name: max(abs(kind[name] - kind[f"{name}_true"]) for kind in s["types"])
+        for name in ("beta", "gamma_deg", "alpha", "m")
+    }
+    print("  largest errors: " + ", ".join(f"{name} {value:.4f}" for name, value in errors.items()))
+    print(f"  difference over sum: {s['response_rms']:.4f} RMS (of none: {s['response_rms_constant']:.4f})")
+    print(f"  trims' ratios: {s['gains_rms']:.4f} RMS")
+    for name, measured, true in lens_rows(s):
+        print(f"  {name:<42}{measured:>20}  true {true}")
+    for name, calibrated, true in picture_rows(s):
+        print(f"  {name:<42}{calibrated:>8} dB" + (f"  true optics {true} dB" if true else ""))
+    print(f"  condition of the worst fit {s['condition']:.1f}; make sim CALIBRATION={folder / 'calibration.json'}")
+    print(f"  look at {folder / 'calibrate.html'}")

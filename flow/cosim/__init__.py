@@ -1,0 +1,1 @@
+"""A row of the sensor with its analog circuits in the loop of the chip's Verilog."""

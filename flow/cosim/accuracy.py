@@ -1,0 +1,58 @@
+"""How exactly ngspice solves the circuit of a row, and what is tried when it gives up."""
+
+from dataclasses import dataclass, replace
+
+from talbot.models.parameters import check_choice, check_real
+
+METHODS = ("trap", "gear")
+
+
+@dataclass(frozen=True)
+class Accuracy:
+    """Tolerances of ngspice.
+
+    Attributes
+    ----------
+    reltol, trtol : float
+        Of the solution, 1e-8..0.1, and of the time step, 0.1..100.
+    chgtol, abstol : float
+        Charge (C) and current (A) below which neither counts, 1e-20..1e-12 each.
+    method : str
+        trap or gear.
+    step : float
+        Longest time step, 1e-12..1e-6 s.
+    gmin : float
+        Conductance across every junction, 1e-16..1e-9 S.
+    """
+
+    reltol: float = 1e-3
+    trtol: float = 7.0
+    chgtol: float = 1e-15
+    abstol: float = 1e-12
+    method: str = "trap"
+    step: float = 10e-9
+    gmin: float = 1e-15
+
+    def __post_init__(self) -> None:
+        check_real("reltol", self.reltol, 1e-8, 0.1)
+        check_real("trtol", self.trtol, 0.1, 100)
+        check_real("chgtol", self.chgtol, 1e-20, 1e-12)
+        check_real("abstol", self.abstol, 1e-20, 1e-12)
+        check_choice("method", self.method, METHODS)
+        check_real("step", self.step, 1e-12, 1e-6)
+        check_real("gmin", self.gmin, 1e-16, 1e-9)
+
+    @property
+    def options(self) -> list[str]:
+        """The .option lines of a deck."""
+        return [
+            f".option reltol={self.reltol:g} trtol={self.trtol:g} method={self.method} gmin={self.gmin:g}",
+            f".option abstol={self.abstol:g} chgtol={self.chgtol:g} itl1=300 itl2=200 itl4=100",
+        ]
+
+    @property
+    def ladder(self) -> "tuple[Accuracy, ...]":
+        """These, then what is tried after them: Gear's method; also looser tolerances; also a greater gmin."""
+        gear = replace(self, method="gear")
+        loose = replace(gear, reltol=max(self.reltol, 5e-3), chgtol=1e-14)
+        return self, gear, loose, replace(loose, gmin=1e-12)

@@ -1,0 +1,93 @@
+"""Rows of a small array with the analog circuits in the loop: the chip's Verilog and ngspice in lock-step."""
+
+import json
+from argparse import ArgumentParser, Namespace
+from pathlib import Path
+from typing import Any
+
+from talbot.base.progress import Steps
+from talbot.models.parameters import ParameterError
+
+
+def add_arguments(parser: ArgumentParser) -> None:
+    """Options of `talbot cosim`: texts, checked by `run`."""
+    add = parser.add_argument
+    add("--modes", default="edge,image,tof", help="modes whose row is read (edge,image,tof)")
+    add("--cols", default="12", help="columns of the array, 6..48 (12)")
+    add("--lanes", default="2", help="converters, 1, 2 or 4 (2)")
+    add("--types", default="6", help="pixel types of the row that are read, 1..6 (6; in time of flight 2 at most)")
+    add("--threshold", default="10", help="of edge mode, 0..127 (10)")
+    add("--seed", default="1", help="of the pixels' values (1)")
+    add("--t-int", default="20000", help="cycles of integration, 1..65535 (20000, 2 ms)")
+    add("--reltol", default="1e-3", help="ngspice's relative tolerance, 1e-8..0.1 (1e-3)")
+    add("--method", default="trap", help="ngspice's integration, trap or gear (trap)")
+    add("--study", action="store_true", help="error against run time on one sample, beside an off-line reference, too")
+    add("--faults", action="store_true", help="faults planted in the circuit, and what the codes say of each, too")
+    add("--out", type=Path, help="folder for the results (default: build/cosim)")
+
+
+def run(options: Namespace) -> int:
+    """Read the rows, write the page and print the figures; 1 where a code is more than 1 LSB off, a fault not found."""
+    from talbot.base.files import check_folder, staged
+    from talbot.base.paths import RESULTS
+    from talbot.flow.frame import arguments as text
+
+    from . import page, study
+    from .accuracy import Accuracy
+    from .job import STEPS, model_alone, rows, summary
+    from .row import MODES, RowRequest
+
+    modes = options.modes.split(",")
+    if not set(modes) <= set(MODES):
+        raise ParameterError(f"modes = {options.modes!r}: must be some of {','.join(MODES)}")
+    types = text.integer("types", options.types, 1, 6)
+    accuracy = Accuracy(reltol=text.real("reltol", options.reltol, 1e-8, 0.1), method=options.method)
+    shared: dict[str, Any] = {
+        "cols": text.integer("cols", options.cols, 6, 48),
+        "lanes": text.integer("lanes", options.lanes, 1, 4),
+        "t_int": text.integer("t_int", options.t_int, 1, 65535),
+        "threshold": text.integer("threshold", options.threshold, 0, 127),
+        "seed": text.integer("seed", options.seed, 0, 2**32 - 1),
+        "accuracy": accuracy,
+    }
+    asked = [RowRequest(mode=mode, types=min(types, 2) if mode == "tof" else types, **shared) for mode in modes]
+    out = options.out or RESULTS / "cosim"
+    check_folder("out", out)
+    with Steps(STEPS, lines=True) as steps:
+        done = rows(asked, steps.note)
+        found: dict[str, Any] = {"rows": [summary(row) for row in done], "model": model_alone(asked[0])}
+        steps.note("study")
+        found["study"] = study.accuracy(steps.note) if options.study else []
+        found["left_out"] = study.leaving_out(steps.note) if options.study else []
+        found["faults"] = study.faults(steps.note) if options.faults else []
+        steps.note("report")
+        with staged(out, page.names(MODES)) as part:
+            page.write(part, done, found)
+            (part / "summary.json").write_text(json.dumps(found, indent=1, allow_nan=False) + "\n")
+    _print(found, out)
+    missed = [line for line in found["faults"] if line["planted"] != line["name"]]
+    return int(bool(missed) or any(row["largest_difference_lsb"] > 1 for row in found["rows"]))
+
+
+def _print(s: dict[str, Any], folder: Path) -> None:
+    for row in s["rows"]:
+        print(
+            f"{row['mode']}: {row['differing']} of {row['samples']} codes differ, by "
+            f"{row['largest_difference_lsb']} LSB at most; {row['differing_decisions']} of {row['decisions']} "
+            f"decisions; slowest {1e9 * row['slowest_decision_s']:.2f} ns; {row['circuit_cycles']} cycles of "
+            f"{row['transistors']} transistors in {row['seconds']:.1f} s"
+        )
+    for line in s["study"]:
+        error = (
+            f"decisions {1e12 * line['largest_error_s']:.1f} ps off at most, " if line.get("largest_error_s") else ""
+        )
+        print(f"  {line['name']}: {error}{line['time_points']} time points, {line['seconds']:.1f} s")
+    for line in s["left_out"]:
+        print(
+            f"  left out: {line['name']}: {line['seconds']:.1f} s in place of {line['seconds_with']:.1f}, "
+            f"error {line['error_lsb']:+.4f} LSB at the lane"
+        )
+    for line in s["faults"]:
+        print(f"  planted: {line['planted']}; found: {line['name']} (codes {line['error']} LSB from it in all)")
+    print(f"  real-number front end: {s['model']['cycles_per_s']:,.0f} cycles a second")
+    print(f"  look at {folder / 'cosim.html'}")

@@ -1,0 +1,199 @@
+"""The circuit of one row: its netlist, and what drives each of its switches."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from talbot.cells.corner import Corner
+from talbot.models.parameters import check_real
+from talbot.pixels.circuits import lane as lanes_of
+from talbot.pixels.circuits.gates import LENGTH, inverter
+from talbot.pixels.circuits.netlist import Circuit, Instance, Transistor
+from talbot.pixels.circuits.specification import CODES, LaneSpec
+from talbot.platforms.sky130 import analog
+
+from . import pixels
+from .accuracy import Accuracy
+from .faults import Fault
+
+SUBS = 4  # sub-samples of a column, as in front_end.sv
+BITS = 8
+MIDDLE = CODES // 2
+CORNER = Corner("tt", 25.0, 1.8)
+SELECT_W = 16.0  # um, n transistor between a column and its lane: 4.3 pF settle in a cycle
+LANE_NODES = ("top", "other", "xcomparator.outp", "xcomparator.outn")  # in the waves
+Values = Mapping[tuple[int, int], float]
+
+
+@dataclass(frozen=True)
+class RowOfPixels:
+    """Pixels of a row. diodes: (a, b) in LSB of each column and tap; cols: of the array; integration: s."""
+
+    diodes: Mapping[int, Mapping[int, tuple[float, float]]]
+    cols: int
+    gain: float
+    integration: float
+    sizes: pixels.PixelSizes = pixels.PixelSizes()
+
+
+@dataclass(frozen=True)
+class Timing:
+    """Clock period (1e-9..1), length of every ramp (1e-12..1e-9), and time from the strobe to sampling, all in s.
+
+    The chip lets a lane hold the next value in the cycle of its last decision: a lane whose DAC samples must decide
+    first. `sample` is thus high in the second half of hold's cycle, from ``after`` (0..1e-8) on.
+    """
+
+    period: float = 100e-9
+    edge: float = 100e-12
+    after: float = 5e-9
+
+    def __post_init__(self) -> None:
+        check_real("period", self.period, 1e-9, 1.0)
+        check_real("edge", self.edge, 1e-12, 1e-9)
+        check_real("after", self.after, 0.0, 1e-8)
+
+
+@dataclass
+class Deck:
+    """A netlist and its drive.
+
+    answers: of each lane of the chip, the node of its decision, or "-". lanes, columns: those that are simulated.
+    lines: of the netlist. drive: those of +drive below its head. saved: nodes of the waves. supply: V.
+    """
+
+    answers: list[str]
+    lanes: tuple[int, ...]
+    columns: tuple[int, ...]
+    lines: list[str] = field(default_factory=list)
+    drive: list[str] = field(default_factory=list)
+    saved: list[str] = field(default_factory=list)
+    sources: list[str] = field(default_factory=list)
+    transistors: int = 0
+    supply: float = 1.8
+
+
+def build(
+    values: Values,
+    lanes: int,
+    tile_cols: int,
+    unsigned: bool,
+    spec: LaneSpec,
+    timing: Timing,
+    accuracy: Accuracy,
+    fault: Fault | None = None,
+    everything: bool = False,
+    row: "RowOfPixels | None" = None,
+) -> Deck:
+    """The circuit that reads one row.
+
+    values: LSB at (column, sub-sample). lanes: of the chip; only those that serve one of these columns are built, with
+    ``everything`` all. unsigned: the range of all values; else -128..127. row: pixels in place of ideal columns.
+    """
+    columns = tuple(sorted({column for column, _ in values}))
+    used = {column // tile_cols % lanes for column in columns}
+    served = tuple(sorted(range(lanes) if everything else used))
+    deck = Deck([f"q{i}" if i in served else "-" for i in range(lanes)], served, columns, supply=spec.supply)
+    sound = lanes_of.sar_lane(lanes_of.size(spec, analog))
+    body, own = [], []
+    circuits = {"selector": _selector()}
+    for i in served:
+        one = fault.of_lane(sound, i) if fault else sound
+        circuits[one.name] = one
+        bits = [_source(deck, f"d{i}_{k}", lanes + BITS * i + k, spec.supply) for k in range(BITS)]
+        pins = [
+            *(f"in{i}", "ref", _source(deck, f"sample{i}", i, spec.supply, half=True, rise=timing.after)),
+            _source(deck, f"strobe{i}", 9 * lanes + i, spec.supply, half=True),
+            *(*reversed(bits), f"q{i}", "refp", "refn", "vcm", "vdd", "0"),
+        ]
+        body += [f"Xlane{i} {' '.join(pins)} {one.name}", f"Cin{i} in{i} 0 50f"]
+        deck.saved += [f"q{i}", f"in{i}", *(f"xlane{i}.{node}" for node in LANE_NODES)]
+    level = 0.5 * (spec.refp + spec.refn)
+    for (column, sub), value in sorted(values.items()):
+        name, into = f"{column}_{sub}", column // tile_cols % lanes
+        on = _source(deck, f"select{name}", 10 * lanes + SUBS * column + sub, spec.supply)
+        body.append(f"Xselect{name} column{name} in{into} {on} vdd 0 selector")
+        if row is None:
+            body.append(f"Vcolumn{name} column{name} 0 {level + (value - MIDDLE * unsigned) * spec.lsb:.9g}")
+    if row is not None:
+        circuits |= {one.name: one for one in (pixels.pixel(row.sizes), pixels.clear(), pixels.sampler())}
+        own = pixels.amplifier(row.sizes)
+        body += _row(deck, row, unsigned, spec, level, fault)
+        deck.saved += [f"out_{d}{c}" for c in columns for d in "ab"] + [f"value{c}" for c in columns]
+        first = 10 * lanes + SUBS * row.cols
+        for i, line in enumerate((*pixels.LINES, "clear")):
+            _source(deck, f"{line}_row", first + i, spec.supply)
+        for tap in range(SUBS):
+            _source(deck, f"tap{tap}", first + 3 + tap, spec.supply)
+            _source(deck, f"light{tap}", -1, 1.0)
+    if not fault:
+        for circuit in circuits.values():
+            circuit.check(analog)
+    sizes = set().union(*(circuit.sizes() for circuit in circuits.values()))
+    called = [line.split()[-1] for line in body if line[0] == "X"]
+    deck.transistors = sum(_count(circuits["charge_clear" if name == "charge" else name]) for name in called)
+    supplies = {"refp": spec.refp, "refn": spec.refn, "vcm": spec.vcm, "ref": level}
+    deck.lines = [
+        "* one row of a sensor",
+        *accuracy.options,
+        f".temp {CORNER.temperature:g}",
+        *analog.cards(CORNER.process, sizes),
+        ".param cscale=1",
+        *dict.fromkeys(text for circuit in circuits.values() for text in _subcircuits(circuit)),
+        *own,
+        f"Vdd vdd 0 {spec.supply:g}",
+        *(f"V{name} {name}_out 0 {volts:g}" for name, volts in supplies.items()),
+        *(f"R{name} {name}_out {name} {spec.reference_resistance:g}" for name in supplies),
+        _breaks(timing),
+        *deck.sources,
+        *body,
+        ".save " + " ".join(f"v({node})" for node in deck.saved),
+        ".end",
+    ]
+    return deck
+
+
+def _row(deck: Deck, row: RowOfPixels, unsigned: bool, spec: LaneSpec, level: float, fault: Fault | None) -> list[str]:
+    """Lines of the pixels and columns."""
+    columns = {c: row.diodes[c] for c in deck.columns}
+    middle = level - MIDDLE * unsigned * spec.lsb
+    swapped = frozenset(fault.where if fault and fault.kind == "diodes" else ())
+    cut = fault.where[0] if fault and fault.kind == "row" else None
+    return pixels.lines(columns, not unsigned, row.gain, spec.lsb, middle, row.integration, row.sizes, swapped, cut)
+
+
+def _subcircuits(circuit: Circuit) -> list[str]:
+    """Each of a circuit's subcircuits as one text, so that what two circuits share is written once."""
+    texts: list[list[str]] = []
+    for line in circuit.lines(analog):
+        if line.startswith(".subckt"):
+            texts.append([])
+        texts[-1].append(line)
+    return ["\n".join(text) for text in texts]
+
+
+def _count(circuit: Circuit) -> int:
+    """Transistors in a circuit and those inside it."""
+    return len(circuit.transistors) + sum(_count(one.circuit) for one in circuit.instances)
+
+
+def _breaks(timing: Timing) -> str:
+    """A source without a load whose corners are those of clock and strobe: ngspice lowers its order there."""
+    t = timing
+    return f"Vbreak break 0 PULSE(0 1 0 {t.edge:.9g} {t.edge:.9g} {0.5 * t.period - t.edge:.9g} {t.period:.9g})"
+
+
+def _source(deck: Deck, name: str, bit: int, high: float, half: bool = False, rise: float = 0.0) -> str:
+    """A control of ``high`` V that rises ``rise`` s late; returns its node. half: in a cycle's second half."""
+    deck.sources.append(f"V{name} {name} 0 external")
+    deck.drive.append(f"v{name} {bit} 0 {high:g} {int(half)} {rise:.9g} 0")
+    return name
+
+
+def _selector() -> Circuit:
+    """The switch from a column to its lane. Pins: a b on vdd vss."""
+    through = (
+        Transistor("n", "a", "on", "b", "vss", "n_lvt", SELECT_W, LENGTH),
+        Transistor("p", "a", "off", "b", "vdd", "p_lvt", 2 * SELECT_W, 0.35),
+    )
+    off = Instance("off", inverter(2), ("on", "off", "vdd", "vss"))
+    return Circuit("selector", ("a", "b", "on", "vdd", "vss"), through, instances=(off,))

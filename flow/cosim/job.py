@@ -1,0 +1,71 @@
+"""The rows of one `talbot cosim`, what was measured of them, and their files."""
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from talbot.flow.frame.hardware import program as bench
+from talbot.flow.frame.hardware import simulate
+
+from . import lockstep
+from .row import Row, RowRequest, read_row
+
+STEPS = ("build", "rows", "study", "report")
+
+
+def rows(asked: Sequence[RowRequest], note: Callable[[str], None]) -> list[Row]:
+    """Each row read with the circuit in the loop. Raises ParameterError, ToolError."""
+    note("build")
+    programs = {}
+    for one in asked:
+        sensor, _ = one.frame
+        key = one.cols, one.lanes, len(one.samples)
+        programs[key] = programs.get(key) or lockstep.program(sensor, len(one.samples), note)
+    note("rows")
+    done = []
+    for one in asked:
+        row = read_row(one, note, programs[one.cols, one.lanes, len(one.samples)])
+        seconds, cycles = row.run.stats["seconds"], row.run.stats["circuit_cycles"]
+        note(f"{one.mode}: {len(row.samples)} samples, {cycles} cycles of the circuit in {seconds:.1f} s")
+        done.append(row)
+    return done
+
+
+def summary(row: Row) -> dict[str, Any]:
+    """Figures of one row."""
+    run, off = row.run, row.differences
+    times = row.decision[np.isfinite(row.decision)]
+    decisions = run.cycles.deciding & np.isin(np.arange(run.cycles.answer.shape[1]), row.deck.lanes)
+    return {
+        "mode": row.request.mode,
+        "samples": len(row.samples),
+        "differing": int((off != 0).sum()),
+        "largest_difference_lsb": int(np.abs(off).max(initial=0)),
+        "decisions": int(decisions.sum()),
+        "differing_decisions": int((run.cycles.answer != run.cycles.expected)[decisions].sum()),
+        "undecided": int(np.isnan(row.decision[run.cycles.deciding]).sum()),
+        "slowest_decision_s": float(times.max(initial=0.0)),
+        "median_decision_s": float(np.median(times)) if times.size else None,
+        "transistors": row.deck.transistors,
+        "lanes": list(row.deck.lanes),
+        "columns": len(row.deck.columns),
+        "chip_cycles": run.stats["cycles"],
+        "circuit_cycles": run.stats["circuit_cycles"],
+        "time_points": run.stats["accepted"],
+        "rejected_points": run.stats["rejected"],
+        "attempts": run.attempts,
+        "seconds": run.stats["seconds"],
+        "circuit_cycles_per_s": run.stats["circuit_cycles"] / run.stats["seconds"],
+        "codes": [
+            {"column": s.column, "sub": s.sub, "value": s.value, "code": s.code, "model": s.expected}
+            for s in row.samples
+        ],
+    }
+
+
+def model_alone(asked: RowRequest) -> dict[str, float]:
+    """Speed of the same frame with the real-number front end. Raises ToolError."""
+    sensor, frame = asked.frame
+    done = simulate(bench(sensor, len(asked.samples)), sensor, frame, asked.samples, asked.front_end)
+    return {"cycles": done.cycles, "seconds": done.seconds, "cycles_per_s": done.cycles / done.seconds}

@@ -1,0 +1,145 @@
+"""The files of a co-simulation: page, waves, codes."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from markupsafe import Markup
+from matplotlib.figure import Figure
+
+from talbot.base.charts import COLOURS, svg
+from talbot.base.page import TABLES, Section, Tile, render
+
+from .row import Row, Sample
+from .waves import write_vcd
+
+SHOWN = 12  # cycles in the picture of waves
+PAGE = "cosim.html"
+
+
+def names(modes: Sequence[str]) -> tuple[str, ...]:
+    """Files of an earlier run that a new one replaces."""
+    return (PAGE, "summary.json", *(f"{mode}.vcd" for mode in modes))
+
+
+def write(folder: Path, rows: Sequence[Row], s: Mapping[str, Any]) -> None:
+    """Write everything but summary.json into ``folder``, which exists."""
+    for row in rows:
+        write_vcd(folder / f"{row.request.mode}.vcd", row.run, row.request.timing.period)
+    sections = [
+        Section("Rows", ABOUT, head=HEAD, rows=[_line(one) for one in s["rows"]]),
+        *(_codes(row) for row in rows),
+        *_studies(s),
+        Section("Waves of the first conversion", WAVES, charts=[_waves(rows[0])]),
+    ]
+    text = render(
+        TABLES, "The chip's Verilog and a circuit in lock-step", about=_about(s), tiles=_tiles(s), sections=sections
+    )
+    (folder / PAGE).write_text(text)
+
+
+HEAD = ("", "samples", "codes that differ", "largest, LSB", "decisions", "that differ", "slowest, ns")
+HEAD += ("transistors", "cycles of the circuit", "of the chip", "time points", "attempts", "s")
+ABOUT = (
+    "Each row leaves the chip as its stream; the codes are decoded from it. The real-number front end is asked the "
+    "same questions as the circuit in the same cycle: decisions that differ are counted one by one."
+)
+WAVES = "Both sides are in <mode>.vcd; here, voltages between the comparator's inputs and at its outputs."
+
+
+def _line(s: Mapping[str, Any]) -> tuple[str, ...]:
+    numbers = (s["samples"], s["differing"], s["largest_difference_lsb"], s["decisions"], s["differing_decisions"])
+    more = (s["transistors"], s["circuit_cycles"], s["chip_cycles"], s["time_points"], s["attempts"])
+    ns = f"{1e9 * s['slowest_decision_s']:.2f}"
+    return (s["mode"], *map(str, numbers), ns, *map(str, more), f"{s['seconds']:.1f}")
+
+
+def _codes(row: Row) -> Section:
+    head = ("column", "sub-sample", "lane", "value, LSB", "circuit", "model", "first decision that differs")
+    lines = [
+        (f"{x.column}", f"{x.sub}", f"{x.lane}", f"{x.value:.3f}", f"{x.code}", f"{x.expected}", _why(x))
+        for x in row.samples
+    ]
+    return Section(f"Codes: {row.request.mode}", head=head, rows=lines)
+
+
+def _studies(s: Mapping[str, Any]) -> list[Section]:
+    """Error against run time, and faults, where they were asked for."""
+    sections = []
+    if s["study"]:
+        head = ("", "s", "time points", "decisions", "largest error, ps", "rms, ps", "code", "attempts")
+        lines = [_studied(line) for line in s["study"]]
+        sections.append(Section("Error against run time", STUDY, head=head, rows=lines))
+    if s["left_out"]:
+        head = ("left out", "s", "s with it", "cycles", "with it", "transistors", "with it", "error, LSB", "codes")
+        keys = ("cycles", "cycles_with", "transistors", "transistors_with")
+        lines = [
+            (x["name"], f"{x['seconds']:.1f}", f"{x['seconds_with']:.1f}", *(str(x[key]) for key in keys))
+            + (f"{x['error_lsb']:+.4f}", ", ".join(map(str, x["codes"])))
+            for x in s["left_out"]
+        ]
+        sections.append(Section("Leaving out", head=head, rows=lines))
+    if s["faults"]:
+        head = ("planted", "found", "codes from it, LSB", "from the next", "from a sound circuit")
+        errors = ("error", "next_error", "sound_error")
+        lines = [(f["planted"], f["name"], *(str(f[key]) for key in errors)) for f in s["faults"]]
+        sections.append(Section("Planted faults", FAULTS, head=head, rows=lines))
+    return sections
+
+
+STUDY = (
+    "One sample. Times of the comparator's decisions against those of the same drive off-line: piecewise linear "
+    "sources in ngspice alone, with tight tolerances."
+)
+FAULTS = "Found: of all faults of the dictionary, the one whose codes, computed from charge alone, are the nearest."
+
+
+def _studied(line: Mapping[str, Any]) -> tuple[str, ...]:
+    def ps(key: str) -> str:
+        return f"{1e12 * line[key]:.2f}" if line.get(key) is not None else ""
+
+    numbers = (str(line.get(key, "")) for key in ("code", "attempts"))
+    times = (f"{line['seconds']:.1f}", str(line["time_points"]), str(line.get("decisions", "")))
+    return (line["name"], *times, ps("largest_error_s"), ps("rms_error_s"), *numbers)
+
+
+def _why(x: Sample) -> str:
+    return f"at DAC code {x.why[0]}, {x.why[1]:+.3f} LSB from its level" if x.why else ""
+
+
+def _tiles(s: Mapping[str, Any]) -> list[Tile]:
+    rows = s["rows"]
+    worst, count = max(r["largest_difference_lsb"] for r in rows), sum(r["samples"] for r in rows)
+    differing = sum(r["differing"] for r in rows)
+    return [
+        Tile(
+            f"{worst} LSB", "largest difference of a code from the real-number model's", "good" if worst <= 1 else "bad"
+        ),
+        Tile(f"{differing} of {count}", "codes differ"),
+        Tile(f"{1e9 * max(r['slowest_decision_s'] for r in rows):.2f} ns", "slowest decision"),
+        Tile(f"{min(r['circuit_cycles_per_s'] for r in rows):.2f}", "cycles of the circuit a second"),
+    ]
+
+
+def _about(s: Mapping[str, Any]) -> str:
+    one = s["rows"][0]
+    return f"{one['columns']} columns, {len(one['lanes'])} lanes in {one['transistors']} transistors of SKY130"
+
+
+def _waves(row: Row) -> Markup:
+    lane, period = row.deck.lanes[0], row.request.timing.period
+    run = row.run
+    begin = int(np.flatnonzero(run.cycles.hold)[0])
+    at = (run.time >= begin * period) & (run.time <= (begin + SHOWN) * period)
+    micro = 1e6 * run.time[at]
+    figure = Figure(figsize=(9.0, 4.2), layout="constrained")
+    above, below = figure.subplots(2, 1, sharex=True)
+    for axes, pair in ((above, ("top", "other")), (below, ("xcomparator.outp", "xcomparator.outn"))):
+        for colour, node in zip(COLOURS, pair, strict=False):
+            axes.plot(micro, run.waves[f"xlane{lane}.{node}"][at], color=colour, linewidth=0.9, label=node)
+        axes.legend(fontsize=8, frameon=False, loc="right")
+        axes.set_ylabel("V", fontsize=9)
+        axes.tick_params(labelsize=8)
+    below.set_xlabel("us of the circuit", fontsize=9)
+    return svg(figure)

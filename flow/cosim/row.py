@@ -1,0 +1,226 @@
+"""One row through the chip's Verilog with the circuit in the loop, and its codes beside the real-number model's."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from talbot.flow.frame.request import request
+from talbot.models.afe import Converter, FrontEnd
+from talbot.models.chip import golden_frame
+from talbot.models.digital.stream import decode_stream
+from talbot.models.parameters import SHORT_TIMING, FrameParameters, SensorParameters, check_choice, check_int
+from talbot.pixels.circuits.specification import LaneSpec
+
+from . import lockstep
+from .accuracy import Accuracy
+from .deck import Deck, RowOfPixels, Timing, build
+from .faults import Fault
+
+MODES = ("edge", "image", "tof")
+GAIN = 4.0
+
+
+@dataclass(frozen=True)
+class RowRequest:
+    """A row of a small array.
+
+    Attributes
+    ----------
+    mode : str
+        Of MODES.
+    cols : int
+        Columns of the array, 6..48.
+    lanes : int
+        Converters, 1, 2 or 4.
+    types : int
+        Pixel types that are read, the first of the row's tile, 1..6.
+    threshold : int
+        Of edge mode, 0..127.
+    seed : int
+        Of the pixels' values, 0..2**32-1.
+    fault : Fault or None
+        Planted in the circuit.
+    everything : bool
+        Lanes that the row does not read are simulated, too.
+    pixels : bool
+        Pixels and column amplifiers are in the circuit; else ideal voltages.
+    t_int : int
+        Cycles of integration, 1..65535.
+    whole : bool
+        Every cycle of the integration is simulated, not one in place of all.
+    """
+
+    mode: str = "image"
+    cols: int = 12
+    lanes: int = 2
+    types: int = 6
+    threshold: int = 10
+    seed: int = 1
+    fault: Fault | None = None
+    everything: bool = False
+    pixels: bool = True
+    t_int: int = 20000
+    whole: bool = False
+    timing: Timing = Timing()
+    accuracy: Accuracy = Accuracy()
+    spec: LaneSpec = LaneSpec()
+
+    def __post_init__(self) -> None:
+        check_choice("mode", self.mode, MODES)
+        check_int("cols", self.cols, 6, 48)
+        check_choice("lanes", self.lanes, (1, 2, 4))
+        check_int("types", self.types, 1, 6)
+        check_int("threshold", self.threshold, 0, 127)
+        check_int("t_int", self.t_int, 1, 65535)
+        check_int("seed", self.seed, 0, 2**32 - 1)
+
+    @cached_property
+    def frame(self) -> tuple[SensorParameters, FrameParameters]:
+        """The sensor, and a frame that reads one row of it."""
+        rows = 4
+        asked = request(rows=rows, cols=self.cols, lanes=self.lanes, mode=self.mode, converter="ideal")
+        sensor = asked.sensor
+        mask = sum(1 << kind for kind in set(sensor.tile.order[: self.types]))
+        edge = self.mode == "edge"
+        frame = FrameParameters(
+            window=sensor.full_window,
+            mode=self.mode,
+            mask=mask,
+            threshold=self.threshold if edge else 0,
+            timing=replace(SHORT_TIMING, t_int=self.t_int, n_cm=0),
+        )
+        return sensor, frame
+
+    @cached_property
+    def front_end(self) -> FrontEnd:
+        """The real-number front end: ideal converters."""
+        sensor, _ = self.frame
+        none = (0,) * sensor.tile.n_types
+        return FrontEnd(GAIN, none, self.lanes, Converter.ideal(self.lanes), sensor.tile)
+
+    @cached_property
+    def samples(self) -> npt.NDArray[np.float64]:
+        """Diodes (taps, rows, cols, 2): sums over the whole range, differences of up to 30 LSB."""
+        sensor, _ = self.frame
+        rng = np.random.default_rng(self.seed)
+        shape = (4 if self.mode == "tof" else 1, *sensor.shape)
+        sums, differences = rng.uniform(35, 220, shape), rng.uniform(-30, 30, shape)
+        return np.stack([(sums + differences) / 2, (sums - differences) / 2], -1)
+
+    @cached_property
+    def values(self) -> dict[tuple[int, int], float]:
+        """LSB at (column, sub-sample) of the row's pixels that are read."""
+        sensor, frame = self.frame
+        read = golden_frame(self.samples, sensor, frame, self.front_end).read
+        values = self.front_end.values(self.samples, self.mode)
+        return {(int(c), s): float(values[s, 0, c]) for c in np.flatnonzero(read[0]) for s in range(len(values))}
+
+    def deck(self, accuracy: Accuracy | None = None) -> Deck:
+        """The circuit."""
+        tile_cols = self.frame[0].tile.cols
+        return build(
+            self.values,
+            self.lanes,
+            tile_cols,
+            self.mode != "edge",
+            self.spec,
+            self.timing,
+            accuracy or self.accuracy,
+            self.fault,
+            self.everything,
+            self._pixels if self.pixels else None,
+        )
+
+    @property
+    def _pixels(self) -> RowOfPixels:
+        diodes = {
+            c: {tap: (float(row[0, c, 0]), float(row[0, c, 1])) for tap, row in enumerate(self.samples)}
+            for c in range(self.cols)
+        }
+        return RowOfPixels(diodes, self.cols, GAIN, self.t_int * self.timing.period)
+
+
+@dataclass(frozen=True)
+class Sample:
+    """One sample of the row. value: LSB at the lane. code, expected: of the circuit and of the real-number model.
+
+    why: of the first decision in which they differ, (DAC code, volts' distance from the level in LSB), or None.
+    """
+
+    column: int
+    sub: int
+    lane: int
+    value: float
+    code: int
+    expected: int
+    why: tuple[int, float] | None
+
+
+@dataclass(frozen=True)
+class Row:
+    """A row that was read. decision: s from the strobe to the comparator's decision, (cycles, lanes), nan for none."""
+
+    request: RowRequest
+    deck: Deck
+    run: lockstep.Run
+    samples: list[Sample]
+    decision: npt.NDArray[np.float64]
+
+    @property
+    def differences(self) -> npt.NDArray[np.int64]:
+        """Codes of the circuit less those of the real-number model."""
+        return np.array([s.code - s.expected for s in self.samples])
+
+
+def read_row(asked: RowRequest, note: Callable[[str], None] = lambda text: None, program: Path | None = None) -> Row:
+    """Read one row with the circuit in the loop. Raises ParameterError, ToolError."""
+    sensor, frame = asked.frame
+    binary = program or lockstep.program(sensor, len(asked.samples), note)
+    run = lockstep.run(
+        binary, asked.deck, frame, asked.samples, asked.front_end, asked.timing, asked.accuracy, asked.whole
+    )
+    codes = decode_stream(run.stream, sensor.tile)[0].samples[0]
+    expected = golden_frame(asked.samples, sensor, frame, asked.front_end).codes[0]
+    deck = asked.deck()
+    found = []
+    for (column, sub), value in asked.values.items():
+        lane = column // sensor.tile.cols % asked.lanes
+        why = _first_difference(run.cycles, lane, column, sub, sensor.tile.cols * asked.lanes, sensor.tile.cols)
+        found.append(Sample(column, sub, lane, value, int(codes[column, sub]), int(expected[column, sub]), why))
+    return Row(asked, deck, run, found, decision_times(run, deck, asked.timing))
+
+
+def _first_difference(
+    c: lockstep.Cycle, lane: int, column: int, sub: int, group: int, tile_cols: int
+) -> tuple[int, float] | None:
+    """The first decision on a sample in which circuit and model differ."""
+    at = c.hold & (c.group == column // group) & (c.k == column % tile_cols) & (c.sub == sub)
+    for start in np.flatnonzero(at):
+        for i in range(start + 1, len(c.hold)):
+            if c.deciding[i, lane] and c.answer[i, lane] != c.expected[i, lane]:
+                level = c.asked[i, lane] - (0.5 if c.unsigned[i] else 128.5)
+                return int(c.asked[i, lane]), float(c.held[i, lane] - level)
+            if c.hold[i]:
+                break
+    return None
+
+
+def decision_times(run: lockstep.Run, deck: Deck, timing: Timing) -> npt.NDArray[np.float64]:
+    """S from the middle of the strobe's rise until the comparator's outputs are half the supply apart."""
+    times = np.full(run.cycles.answer.shape, np.nan)
+    half = 0.5 * deck.supply
+    for lane in deck.lanes:
+        apart = np.abs(run.waves[f"xlane{lane}.xcomparator.outp"] - run.waves[f"xlane{lane}.xcomparator.outn"])
+        for i in np.flatnonzero(run.cycles.deciding[:, lane]):
+            strobe = (i + 0.5) * timing.period + 0.5 * timing.edge
+            first, last = np.searchsorted(run.time, (strobe, (i + 1) * timing.period))
+            over = np.flatnonzero(apart[first:last] >= half)
+            if over.size:
+                j = first + over[0]
+                part = (half - apart[j - 1]) / (apart[j] - apart[j - 1])
+                times[i, lane] = run.time[j - 1] + part * (run.time[j] - run.time[j - 1]) - strobe
+    return times

@@ -1,0 +1,109 @@
+"""Error of the lock-step against its run time, on one sample; and the faults that are planted and found."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from .accuracy import Accuracy
+from .diagnose import diagnose
+from .faults import Fault
+from .replay import TIGHT, replay
+from .row import Row, RowRequest, decision_times, read_row
+
+ONE = RowRequest(mode="image", cols=6, lanes=1, types=1, pixels=False)
+SETTINGS = {
+    "default": Accuracy(),
+    "reltol 1e-2": Accuracy(reltol=1e-2, chgtol=1e-14),
+    "reltol 1e-4, chgtol 1e-16": Accuracy(reltol=1e-4, chgtol=1e-16),
+    "reltol 1e-5, chgtol 1e-17": Accuracy(reltol=1e-5, chgtol=1e-17),
+    "gear": Accuracy(method="gear"),
+    "step 1 ns": Accuracy(step=1e-9),
+}
+PLANTED = (Fault("comparator", (0,)), Fault("capacitor", (1, 6)), Fault("diodes", (6,)), Fault("row", (1,)))
+FAULTY = RowRequest(mode="edge", cols=12, lanes=2, types=2)
+
+
+def accuracy(note: Callable[[str], None], asked: RowRequest = ONE) -> list[dict[str, Any]]:
+    """A line for each of SETTINGS: run time, and the decisions' times beside the reference's. Raises ToolError.
+
+    The reference is the default's drive off-line with TIGHT; decisions of another drive are compared as long as their
+    questions are the same.
+    """
+    done = {}
+    for name, one in SETTINGS.items():
+        done[name] = read_row(replace(asked, accuracy=one))
+        note(f"{name}: {done[name].run.stats['seconds']:.1f} s")
+    first = done["default"]
+    sensor, _ = asked.frame
+    off = replay(asked.deck(TIGHT), first.run, asked.lanes, sensor.tile.cols, asked.timing)
+    note(f"reference: {off.stats['seconds']:.1f} s, {off.stats['accepted']} points")
+    exact = decision_times(off, first.deck, asked.timing)
+    lines = [_line(name, row, first, exact) for name, row in done.items()]
+    return [
+        *lines,
+        {"name": "reference, off-line", "seconds": off.stats["seconds"], "time_points": off.stats["accepted"]},
+    ]
+
+
+def _line(name: str, row: Row, first: Row, exact: npt.NDArray[np.float64]) -> dict[str, Any]:
+    ours, theirs = row.run.cycles, first.run.cycles
+    n = min(len(ours.hold), len(theirs.hold))
+    same = (ours.asked[:n] == theirs.asked[:n]).all(1) & (ours.hold[:n] == theirs.hold[:n])
+    until = int(np.argmin(same)) if not same.all() else n
+    off = np.abs(row.decision[:until] - exact[:until])[ours.deciding[:until]]
+    off = off[np.isfinite(off)]
+    return {
+        "name": name,
+        "seconds": row.run.stats["seconds"],
+        "time_points": row.run.stats["accepted"],
+        "cycles_per_s": row.run.stats["circuit_cycles"] / row.run.stats["seconds"],
+        "attempts": row.run.attempts,
+        "code": row.samples[0].code,
+        "decisions": int(off.size),
+        "largest_error_s": float(off.max()) if off.size else None,
+        "rms_error_s": float(np.sqrt((off**2).mean())) if off.size else None,
+    }
+
+
+def faults(note: Callable[[str], None], asked: RowRequest = FAULTY) -> list[dict[str, Any]]:
+    """Each of PLANTED in the circuit of ``asked``, and what its codes say. Raises ToolError."""
+    lines = []
+    for fault in (None, *PLANTED):
+        found = diagnose(read_row(replace(asked, fault=fault)))
+        lines.append({"planted": fault.name if fault else "no fault", **found._asdict()})
+        note(f"{lines[-1]['planted']}: found: {found.name}")
+    return lines
+
+
+def leaving_out(note: Callable[[str], None]) -> list[dict[str, Any]]:
+    """What is left out, simulated all the same: cycles of an integration, and a lane that the row does not read."""
+    light = RowRequest(mode="image", cols=6, lanes=1, types=1, t_int=100)
+    narrow = RowRequest(mode="image", cols=6, lanes=2, types=1, pixels=False)
+    pairs = {
+        "an integration of 100 cycles": (light, replace(light, whole=True)),
+        "a lane that the row does not read": (narrow, replace(narrow, everything=True)),
+    }
+    lines = []
+    for name, (lean, full) in pairs.items():
+        a, b = read_row(lean), read_row(full)
+        node = "in0"  # of the lane that is read, as it lets go
+        ends = [(np.flatnonzero(r.run.cycles.hold)[0] + 1) * lean.timing.period for r in (a, b)]
+        last = [np.interp(t, r.run.time, r.run.waves[node]) for t, r in zip(ends, (a, b), strict=True)]
+        lines.append(
+            {
+                "name": name,
+                "seconds": a.run.stats["seconds"],
+                "seconds_with": b.run.stats["seconds"],
+                "cycles": a.run.stats["circuit_cycles"],
+                "cycles_with": b.run.stats["circuit_cycles"],
+                "transistors": a.deck.transistors,
+                "transistors_with": b.deck.transistors,
+                "error_lsb": float(last[0] - last[1]) / lean.spec.lsb,
+                "codes": [a.samples[0].code, b.samples[0].code],
+            }
+        )
+        note(f"{name}: {lines[-1]['seconds']:.1f} s in place of {lines[-1]['seconds_with']:.1f}")
+    return lines

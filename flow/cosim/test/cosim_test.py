@@ -1,0 +1,135 @@
+"""Co-simulation: the chip's Verilog against the lane in transistors."""
+
+import ctypes.util
+
+import numpy as np
+import pytest
+
+from talbot.base.tools import ToolError
+from talbot.flow.cosim import lockstep
+from talbot.flow.cosim.accuracy import Accuracy
+from talbot.flow.cosim.diagnose import code_of, value_of
+from talbot.flow.cosim.faults import Fault
+from talbot.flow.cosim.row import Row, RowRequest, read_row
+from talbot.flow.cosim.waves import write_vcd
+from talbot.models.parameters import ParameterError
+from talbot.pixels.circuits.lane import sar_lane, size
+from talbot.pixels.circuits.specification import LaneSpec
+from talbot.platforms.sky130 import analog
+
+library = pytest.mark.skipif(not ctypes.util.find_library("ngspice"), reason="needs libngspice (make tools)")
+SMALL = RowRequest(mode="image", cols=6, lanes=1, types=1)  # its pixels, too
+
+
+@pytest.fixture(scope="module")
+def row() -> Row:
+    return read_row(SMALL)
+
+
+@library
+def test_a_sample_converts_as_in_the_model(row: Row):
+    (sample,) = row.samples
+    assert abs(sample.code - sample.expected) <= 1 and (sample.code == sample.expected) == (sample.why is None)
+    assert abs(sample.why[1] if sample.why else 0.0) < 1.0  # LSB from the level at which they part
+    assert row.run.cycles.deciding.sum() >= 8 and row.run.attempts == 1
+
+
+@library
+def test_pixels_give_the_charge_of_two_milliseconds_from_one_cycle(row: Row):
+    """The wells, the column's charge amplifiers and the sample together: the value of models/afe."""
+    (sample,), cycles = row.samples, row.run.cycles
+    sampled = (np.flatnonzero(cycles.hold)[0] + 1) * SMALL.timing.period
+    at_lane = np.interp(sampled, row.run.time, row.run.waves["in0"])
+    value = (at_lane - 0.5 * (SMALL.spec.refp + SMALL.spec.refn)) / SMALL.spec.lsb + 128
+    assert value == pytest.approx(sample.value, abs=0.35)
+    assert row.run.stats["cycles"] > SMALL.t_int > 100 * row.run.stats["circuit_cycles"]
+
+
+@pytest.mark.parametrize(
+    ("fault", "code"), [(None, 111), ("comparator:0", -128), ("capacitor:0:6", 115), ("diodes:0", -111), ("row:0", 0)]
+)
+def test_the_dictionary_knows_what_each_fault_does(fault: str | None, code: int):
+    planted = Fault.parse(fault) if fault else None
+    assert code_of(value_of(110.8, 0, True, planted), 0, False, 0, planted) == code
+
+
+@library
+def test_every_decision_is_made_in_its_half_cycle(row: Row):
+    times = row.decision[row.run.cycles.deciding & row.run.cycles.hold.cumsum()[:, None].astype(bool)]
+    made = times[np.isfinite(times)]
+    assert made.size >= 8 and (made > 0).all() and made.max() < 0.5 * SMALL.timing.period
+
+
+@library
+def test_time_points_lie_on_every_clock_edge(row: Row):
+    """No step goes past a corner of the drive."""
+    edges = np.arange(1, row.run.stats["circuit_cycles"]) * SMALL.timing.period
+    for corner in (0.0, SMALL.timing.edge, 0.5 * SMALL.timing.period):
+        nearest = np.abs(row.run.time[:, None] - (edges + corner)).min(0)
+        assert nearest.max() < 1e-15
+
+
+@library
+def test_waves_hold_both_sides(row: Row, tmp_path):
+    write_vcd(tmp_path / "w.vcd", row.run, SMALL.timing.period)
+    text = (tmp_path / "w.vcd").read_text()
+    head, _, body = text.partition("$enddefinitions $end\n")
+    assert "$var real 64" in head and "dac" in head and "xlane0_top" in head
+    times = [int(line[1:]) for line in body.splitlines() if line.startswith("#")]
+    assert times == sorted(times) and times[-1] <= row.run.time[-1] / 1e-14 + 1
+
+
+def test_only_lanes_that_the_row_reads_are_built():
+    whole = RowRequest(mode="image", cols=12, lanes=4, types=1)
+    lean, full = whole.deck(), RowRequest(mode="image", cols=12, lanes=4, types=1, everything=True).deck()
+    assert lean.lanes == (0, 1) and full.lanes == (0, 1, 2, 3)
+    assert lean.answers[2:] == ["-", "-"] and full.transistors > 1.9 * lean.transistors - 20
+
+
+def test_a_fault_is_in_one_lane_alone():
+    sound = RowRequest(mode="image", cols=12, lanes=2, types=1)
+    deck = RowRequest(mode="image", cols=12, lanes=2, types=1, fault=Fault("capacitor", (1, 7))).deck()
+    lines = [line for text in deck.lines for line in text.splitlines()]
+    assert sum(line.endswith(" sar_lane_faulty") and line.startswith("Xlane1") for line in lines) == 1
+    assert sum(line.startswith("Cbit7 ") for line in lines) == 1  # the sound lane's
+    with pytest.raises(ParameterError, match="net b7 at device switch7: must have two ends"):
+        Fault("capacitor", (1, 7)).of_lane(sar_lane(size(LaneSpec(), analog)), 1).check(analog)
+    assert not any("faulty" in line for line in sound.deck().lines)
+
+
+@pytest.mark.parametrize("text", ["", "capacitor:1", "comparator:x", "diode:1", "row:", "comparator:1:2"])
+def test_a_fault_that_is_none_is_refused(text: str):
+    with pytest.raises(ParameterError, match=r"fault = .* must be one of"):
+        Fault.parse(text)
+
+
+def test_the_ladder_ends_with_the_loosest():
+    first, *rest = Accuracy().ladder
+    assert first == Accuracy() and [step.method for step in rest] == ["gear"] * 3
+    assert rest[-1].gmin > first.gmin and rest[-1].reltol > first.reltol
+
+
+@library
+def test_ngspice_that_gives_up_is_an_error_after_the_whole_ladder(monkeypatch):
+    tried = []
+
+    def gives_up(*arguments: object) -> None:
+        tried.extend(one for one in arguments if isinstance(one, Accuracy))
+        raise ToolError("the simulation stopped with status 5: timestep too small")
+
+    monkeypatch.setattr(lockstep, "_run", gives_up)
+    with pytest.raises(ToolError, match="gave up with every setting"):
+        sensor, frame = SMALL.frame
+        lockstep.run(
+            lockstep.program(sensor, 1), SMALL.deck, frame, SMALL.samples, SMALL.front_end, SMALL.timing, Accuracy()
+        )
+    assert tried == list(Accuracy().ladder)
+
+
+@pytest.mark.parametrize(
+    ("field", "value"),
+    [("mode", "raw"), ("cols", 5), ("lanes", 3), ("types", 7), ("t_int", 0), ("threshold", 128), ("seed", -1)],
+)
+def test_requests_are_checked(field: str, value: object):
+    with pytest.raises(ParameterError, match=field):
+        RowRequest(**{field: value})  # pyright: ignore[reportArgumentType]

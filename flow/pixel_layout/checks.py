@@ -1,0 +1,94 @@
+"""Design rules and layout against circuit of drawn pixels, by the decks that PDKMaster exports for the process."""
+
+import importlib
+from pathlib import Path
+
+from talbot.base.cache import cached, digest
+from talbot.base.gds import db, read_gds
+from talbot.base.paths import BUILD
+from talbot.base.sources import code
+from talbot.base.steps import StepError
+from talbot.flow.layout.geometry.decks import hole_rules, run_exported, via_rules, violations
+from talbot.flow.layout.pdkmaster import export_decks
+from talbot.platforms.coriolis import coriolis_platform
+from talbot.platforms.pixel import pixel_process
+
+STORE = BUILD / "pixel" / "decks"
+# Rules that pixels break on purpose: what they ask, and why they are waived
+WAIVERS = {
+    "x.2": "Edges at a multiple of 45 degrees. Types of beta 18 modulate at 22.5 and 67.5 degrees: their lines are "
+    "exact rectangles along (12, 5) of the grid, in the gratings' metals alone. A mask shop that takes no such angle "
+    "would have them as steps of the grid."
+}
+
+
+def decks(pdk: str) -> tuple[str, str]:
+    """The decks of design rules and of LVS, text, with what pixels need beyond PDKMaster's."""
+    tech, process = coriolis_platform(pdk), pixel_process(pdk)
+
+    def make(folder: Path) -> None:
+        devices = importlib.import_module(tech.package).prims_spiceparams
+        exported = export_decks(importlib.import_module(f"{tech.package}.pdkmaster"), devices)
+        for name, text in exported.items():
+            (folder / name).write_text(text)
+
+    kept = cached(STORE / digest(code("talbot.flow.layout.pdkmaster"), pdk), make)
+    masks = [tech.masks.read_text()] if tech.masks else []
+    rules = [(kept / "drc").read_text(), *hole_rules(tech), *via_rules(tech), *masks, process.masks.read_text()]
+    lvs, mark = (kept / "lvs").read_text(), "\nnetlist\n"
+    if lvs.count(mark) != 1:
+        raise StepError("lvs: the deck has no single line 'netlist' before which diodes could be extracted")
+    return "\n".join([*rules, ""]), lvs.replace(mark, f"\n{process.lvs.read_text()}{mark}")
+
+
+def drc(gds: Path, pdk: str, report: Path) -> dict[str, int]:
+    """Violations by rule, waived ones among them. report: KLayout's report database. Raises StepError."""
+    deck = report.with_suffix(".drc")
+    deck.write_text(decks(pdk)[0])
+    status, output = run_exported(deck, gds, report)
+    if status:
+        raise StepError(f"drc: KLayout failed with status {status}: {output.strip().splitlines()[-1:]}")
+    return violations(report)
+
+
+def unwaived(found: dict[str, int]) -> int:
+    """Violations of rules that are not waived."""
+    return sum(count for rule, count in found.items() if rule not in WAIVERS)
+
+
+def lvs(gds: Path, spice: str, pdk: str, report: Path) -> bool:
+    """Whether the top cell of ``gds`` is the circuit that the text ``spice`` has last. Raises StepError."""
+    deck, source = report.with_suffix(".lvs"), report.with_suffix(".spice")
+    deck.write_text(decks(pdk)[1])
+    source.write_text(spice)
+    _, output = run_exported(deck, gds, report, SPICE_FILE=source)
+    if ("LVS OK" in output) == ("LVS Failed" in output):
+        raise StepError(f"lvs: KLayout gave no verdict: {output.strip().splitlines()[-1:]}")
+    return "LVS OK" in output
+
+
+def densities(gds: Path, pdk: str) -> dict[str, float]:
+    """Share of the top cell's outline that each metal covers, by its LEF name."""
+    process, layout = pixel_process(pdk), read_gds(gds)
+    top = layout.top_cell()
+    box = db.Region(top.begin_shapes_rec(layout.layer(*process.outline))).bbox()
+
+    def covered(metal: tuple[int, int]) -> float:
+        shapes = db.Region(top.begin_shapes_rec(layout.layer(*metal))) & db.Region(box)
+        return shapes.merged().area() / box.area()
+
+    return {metal.lef: covered(metal.gds) for metal in process.metals}
+
+
+def placed(gds: Path) -> "dict[tuple[int, int], str]":
+    """Names of the cells below the top one of a file, by the corner of each instance in nm, arrays expanded."""
+    layout = read_gds(gds)
+    out = {}
+    for instance in layout.top_cell().each_inst():
+        name, a, b = instance.cell.name, instance.a, instance.b
+        x, y = instance.trans.disp.x, instance.trans.disp.y
+        for i in range(max(1, instance.na)):
+            for k in range(max(1, instance.nb)):
+                if name.startswith("pixel"):
+                    out[x + i * a.x + k * b.x, y + i * a.y + k * b.y] = name
+    return out

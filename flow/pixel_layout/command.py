@@ -1,0 +1,41 @@
+"""The pixel drawn in a process's masks: 24 types, tile, array with dummies and guard rings, checked."""
+
+from argparse import ArgumentParser, Namespace
+from pathlib import Path
+from typing import Any
+
+from talbot.base.progress import Steps
+from talbot.models.parameters import ArrayParameters
+
+
+def add_arguments(parser: ArgumentParser) -> None:
+    """Options of `talbot pixel-layout`."""
+    parser.add_argument("--pdk", default="sky130", help="process, sky130")
+    parser.add_argument("--rows", type=int, default=ArrayParameters().rows, help="pixels down")
+    parser.add_argument("--cols", type=int, default=ArrayParameters().cols, help="pixels across")
+    parser.add_argument("--out", type=Path, help="folder for the results (default: build/pixel-layout/<pdk>)")
+
+
+def run(options: Namespace) -> int:
+    """Draw, check, write the page and print the figures; 1 where a check fails."""
+    from talbot.base.paths import RESULTS
+
+    from .job import STEPS, make
+
+    out = options.out or RESULTS / "pixel-layout" / options.pdk
+    with Steps(STEPS, lines=True) as steps:
+        summary = make(options.pdk, options.rows, options.cols, out, steps.note)
+    _print(summary, out)
+    return 0 if summary["passed"] else 1
+
+
+def _print(s: dict[str, Any], folder: Path) -> None:
+    print(f"{s['process']}: {s['rows']} x {s['cols']} pixels, {s['width_um']:g} x {s['height_um']:g} um")
+    print(f"  GDS of {s['gds_bytes'] / 1e6:.2f} MB in {s['gds_s']:.1f} s; {s['misplaced']} pixels not of their type")
+    waived = ", ".join(f"{w['count']} of {rule} waived" for rule, w in s["waivers"].items())
+    print(f"  DRC: {s['drc_violations']} violations{f' ({waived})' if waived else ''}")
+    for name, same in s["lvs_match"].items():
+        print(f"  LVS of {name}: {'matches' if same else 'DIFFERS'}")
+    dense = max(s["density"], key=lambda name: s["density"][name])
+    print(f"  fill factor {s['fill_factor']:.3f}; densest metal {dense}, {100 * s['density'][dense]:.0f} % of the tile")
+    print(f"  {s['wall_s']:.0f} s; look at {folder / 'pixel_layout.html'}")

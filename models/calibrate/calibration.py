@@ -1,0 +1,143 @@
+"""What a calibration knows, and the sensor that it describes; a JSON file."""
+
+import json
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import Any, Self
+
+import numpy as np
+
+from talbot.models.parameters import ParameterError, PixelType, SensorParameters, check_real
+
+VIGNETTING = 4.0  # power of the natural law; the aperture's sigma holds what else there is
+PUPIL_MAX = 1000.0  # m, of CameraParameters
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """Pixel types and lens as measured.
+
+    Attributes
+    ----------
+    types : tuple of PixelType
+        beta, gamma, alpha, m of every type, in the tile's order.
+    gains : tuple of float
+        Capacitor ratio of every type, 0..64.
+    sigma : float
+        Of the aperture in rad, 0.01..10, beside cos**4 of the lens.
+    pupil_power : float
+        Inverse distance of the exit pupil from the sensor in 1/m, 0..1e4; 0 is telecentric.
+    centre : tuple of float or None
+        Optical centre (y, x) in px from the array's middle; None where the lens is telecentric.
+    """
+
+    types: tuple[PixelType, ...]
+    gains: tuple[float, ...]
+    sigma: float
+    pupil_power: float
+    centre: tuple[float, float] | None
+
+    def __post_init__(self) -> None:
+        if len(self.types) != len(self.gains):
+            raise ParameterError(f"gains = {len(self.gains)}: must be as many as types, {len(self.types)}")
+        for gain in self.gains:
+            check_real("gains", gain, 0, 64)
+        check_real("sigma", self.sigma, 0.01, 10)
+        check_real("pupil_power", self.pupil_power, 0, 1e4)
+
+    def applied(self, sensor: SensorParameters) -> SensorParameters:
+        """The sensor with what was measured in place of its own pixel types, aperture, vignetting and exit pupil.
+
+        Parameters
+        ----------
+        sensor : SensorParameters
+            Has the tile's order, the rest of the lens and the chip.
+
+        Returns
+        -------
+        SensorParameters
+            The optical centre stays the array's middle.
+
+        Raises
+        ------
+        ParameterError
+            For another number of types.
+        """
+        tile, optics = sensor.tile, sensor.optics
+        if len(self.types) != tile.n_types:
+            raise ParameterError(f"calibration = {len(self.types)} pixel types: must be {tile.n_types}, as the sensor")
+        camera, pupil = optics.camera, None
+        if self.pupil_power > 1 / PUPIL_MAX:
+            pupil = max(1 / self.pupil_power, 4 * camera.focal_length**2 / camera.focus)
+        optics = replace(
+            optics, camera=replace(camera, exit_pupil=pupil), aperture_sigma=self.sigma, vignetting_power=VIGNETTING
+        )
+        return replace(sensor, tile=replace(tile, types=self.types), optics=optics)
+
+    @property
+    def table(self) -> dict[str, Any]:
+        """Plain values, for a JSON file."""
+        kinds = [{name: value for name, value in asdict(kind).items() if name != "response"} for kind in self.types]
+        return {
+            "types": kinds,
+            "gains": [*self.gains],
+            "sigma": self.sigma,
+            "pupil_power": self.pupil_power,
+            "centre": self.centre and [*self.centre],
+        }
+
+    @classmethod
+    def of(cls, table: dict[str, Any]) -> Self:
+        """Calibration of `table`.
+
+        Parameters
+        ----------
+        table : dict
+            Its keys; others are left alone.
+
+        Returns
+        -------
+        Calibration
+            The same.
+
+        Raises
+        ------
+        ParameterError
+            For a key that is missing, or a value out of range.
+        """
+        try:
+            types = tuple(PixelType(**kind) for kind in table["types"])
+            centre = table["centre"]
+            middle = None if centre is None else (float(centre[0]), float(centre[1]))
+            gains = tuple(float(gain) for gain in np.atleast_1d(table["gains"]))
+            return cls(types, gains, table["sigma"], table["pupil_power"], middle)
+        except (KeyError, TypeError, IndexError) as error:
+            raise ParameterError(f"calibration = a table: must have types, gains, sigma, ... ({error!r})") from None
+
+
+def read_calibration(path: str | Path) -> Calibration:
+    """Read the calibration.json that `make calibrate` writes.
+
+    Parameters
+    ----------
+    path : path
+        The file.
+
+    Returns
+    -------
+    Calibration
+        As measured.
+
+    Raises
+    ------
+    ParameterError
+        For a file that is missing, no JSON, or out of range.
+    """
+    try:
+        table = json.loads(Path(path).read_text())
+        if not isinstance(table, dict):
+            raise ParameterError("calibration = a list: must be a table")
+        return Calibration.of(table)
+    except (OSError, ValueError) as error:
+        said = f"calibration = {str(path)!r}: must be a calibration.json of talbot calibrate ({error})"
+        raise ParameterError(said) from None

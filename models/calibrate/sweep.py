@@ -1,0 +1,71 @@
+"""What a bench measures: frames of a white screen through a small hole that moves across the lens's pupil.
+
+A hole at the tangents nu lights the pixel at X with one ray alone, of the tangents nu + chief ray (X): one sweep shows
+the angular response of every type, the aperture, and how the chief ray turns over the array.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from talbot.models.parameters import ParameterError, TileParameters
+
+Floats = npt.NDArray[np.float64]
+BLOCK = 12  # px along a side of what is averaged: the chief ray hardly turns within
+
+
+@dataclass(frozen=True, eq=False)
+class Sweep:
+    """Means of blocks of pixels, by pixel type.
+
+    Attributes
+    ----------
+    holes : float64 (n, 2)
+        Tangents (y, x) of the hole's places against the lens's axis.
+    diodes : float64 (n, blocks, types, 2)
+        Mean signal in any unit, offset taken off; NaN where a block has no pixel of a type.
+    places : float64 (blocks, types, 2)
+        Mean place (y, x) of these pixels in px from the array's middle.
+    gains : float64 (types,)
+        Capacitor ratio of each type from frames through the whole pupil.
+    """
+
+    holes: Floats
+    diodes: Floats
+    places: Floats
+    gains: Floats
+
+    def __post_init__(self) -> None:
+        n, blocks, types = len(self.holes), *self.places.shape[:2]
+        if self.diodes.shape != (n, blocks, types, 2) or self.holes.shape != (n, 2) or self.gains.shape != (types,):
+            raise ParameterError(f"diodes = array of shape {self.diodes.shape}: must be {(n, blocks, types, 2)}")
+        if n < 5:
+            raise ParameterError(f"holes = {n}: must be at least 5")
+
+
+def block_means(samples: Floats, tile: TileParameters) -> Floats:
+    """Mean of every type in every block of an array.
+
+    Parameters
+    ----------
+    samples : float64 (rows, cols, ...)
+        Values of every pixel.
+    tile : TileParameters
+        Pixel types.
+
+    Returns
+    -------
+    float64 (blocks, types, ...)
+        NaN where a block has no pixel of a type.
+    """
+    rows, cols = samples.shape[:2]
+    down, across = (np.minimum(np.arange(n) // BLOCK, max(n // BLOCK - 1, 0)) for n in (rows, cols))
+    blocks = (down[-1] + 1) * (across[-1] + 1)
+    number = (down[:, None] * (across[-1] + 1) + across) * tile.n_types + tile.type_map(rows, cols)
+    size = blocks * tile.n_types
+    count = np.bincount(number.ravel(), minlength=size)
+    flat = samples.reshape(rows * cols, -1)
+    sums = np.stack([np.bincount(number.ravel(), one, size) for one in flat.T], -1)
+    means = np.where(count[:, None] > 0, sums / np.maximum(count, 1)[:, None], np.nan)
+    return means.reshape(blocks, tile.n_types, *samples.shape[2:])

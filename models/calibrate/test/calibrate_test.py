@@ -1,0 +1,97 @@
+"""Types, aperture and chief ray from synthetic sweeps, and what cannot be told."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from talbot.models.calibrate import Calibration, Sweep, block_means, calibrated, fit_pupil, fit_types, read_calibration
+from talbot.models.parameters import OpticsParameters, ParameterError, SensorParameters, TileParameters
+from talbot.models.pixel.weights import density
+
+TILE, PITCH = TileParameters(), 1e-5
+SIDE = np.linspace(-0.38, 0.38, 13)
+HOLES = np.stack([g.ravel() for g in np.meshgrid(SIDE, SIDE, indexing="ij")], 1)
+HOLES = HOLES[np.hypot(*HOLES.T) <= 0.39]
+OPTICS = OpticsParameters()
+
+
+def swept(optics=OPTICS, slope=0.0, centre=(0.0, 0.0), noise=0.1, size=48):
+    """Sweep of an array of ``size`` pixels; slope: of the chief ray's tangent, 1/px; noise in codes a pixel."""
+    places = np.stack(np.meshgrid(*[np.arange(size) - (size - 1) / 2] * 2, indexing="ij"), -1)
+    kinds, random = TILE.type_map(size, size), np.random.default_rng(3)
+    diodes = np.empty((len(HOLES), size, size, 2))
+    for i, hole in enumerate(HOLES):
+        y, x = np.moveaxis(hole + slope * (places - centre), -1, 0)
+        for number, kind in enumerate(TILE.types):
+            own = kinds == number
+            diodes[i, own] = 100 * density((kind,), optics, x[own], y[own])[0].T
+    diodes += random.normal(0, noise, diodes.shape)
+    means = np.stack([block_means(frame, TILE) for frame in diodes])
+    return Sweep(HOLES, means, block_means(places, TILE), np.ones(TILE.n_types))
+
+
+def test_what_was_put_in():
+    found, pupil, fits = calibrated(swept(), PITCH)
+    assert pupil.sigma == pytest.approx(0.2, abs=1e-3) and pupil.condition < 20
+    assert found.pupil_power == 0 and found.centre is None
+    for fit, true in zip(fits, TILE.types, strict=True):
+        assert fit.kind.beta == pytest.approx(true.beta, abs=0.02)
+        assert fit.kind.gamma_deg == pytest.approx(true.gamma_deg, abs=0.1)
+        assert fit.kind.alpha == pytest.approx(true.alpha, abs=2e-3)
+        assert fit.kind.m == pytest.approx(0.7, abs=2e-3) and fit.condition < 2
+    known = found.applied(SensorParameters(tile=TILE))
+    assert known.tile.types == found.types and known.optics.camera.exit_pupil is None
+
+
+def test_errors_are_what_they_say():
+    many = [fit_types(s := swept(noise=5.0, size=24), fit_pupil(s))]
+    wrong = np.array([[(fit.kind.m - 0.7) / fit.m_error for fit in fits] for fits in many])
+    assert 0.3 < np.sqrt((wrong**2).mean()) < 2
+
+
+def test_chief_ray_and_optical_centre():
+    found, pupil, fits = calibrated(swept(slope=8e-4, centre=(4.0, -3.0)), PITCH)
+    assert found.pupil_power == pytest.approx(80, rel=0.01)
+    assert found.centre == pytest.approx((4.0, -3.0), abs=0.2)
+    error = [fit.kind.alpha - true.alpha for fit, true in zip(fits, TILE.types, strict=True)]
+    assert np.abs(error).max() < 0.02
+    blind = fit_types(swept(slope=8e-4), pupil._replace(slope=0.0))  # the wave is washed out by a mean over the array
+    lost, rest = (0.7 - np.mean([fit.kind.m for fit in some]) for some in (blind, fits))
+    assert lost > 0.01 > 5 * abs(rest)
+
+
+@pytest.mark.parametrize("m", [0.0, 1.0])
+def test_extremes_of_the_modulation(m):
+    fits = calibrated(swept(OpticsParameters(m=m)), PITCH)[2]
+    found = np.array([fit.kind.m for fit in fits])
+    np.testing.assert_allclose(found, m, atol=5e-3)
+    assert all(fit.alpha_error == np.pi and fit.kind.beta == 0 for fit in fits) == (m == 0)
+
+
+def test_a_missing_type_has_no_modulation():
+    sweep = swept(size=24)
+    diodes, places = sweep.diodes.copy(), sweep.places.copy()
+    diodes[:, :, 5], places[:, 5] = np.nan, np.nan
+    found, _, fits = calibrated(replace(sweep, diodes=diodes, places=places), PITCH)
+    assert fits[5].kind.m == 0 and fits[5].alpha_error == np.pi and fits[4].kind.m == pytest.approx(0.7, abs=0.01)
+    assert Calibration.of(found.table) == found
+
+
+def test_no_light():
+    sweep = swept(size=24)
+    with pytest.raises(ParameterError, match="must have light"):
+        calibrated(replace(sweep, diodes=0 * sweep.diodes), PITCH)
+
+
+def test_files(tmp_path):
+    found = calibrated(swept(size=24), PITCH)[0]
+    (tmp_path / "bad.json").write_text('{"types": []}')
+    with pytest.raises(ParameterError, match="bad.json': must be a calibration.json"):
+        read_calibration(tmp_path / "bad.json")
+    with pytest.raises(ParameterError, match="none.json"):
+        read_calibration(tmp_path / "none.json")
+    with pytest.raises(ParameterError, match="calibration = 24 pixel types: must be 4"):
+        found.applied(SensorParameters(tile=TileParameters.small(2, 2)))
+    with pytest.raises(ParameterError, match="sigma = 0: must be"):
+        replace(found, sigma=0)

@@ -1,0 +1,184 @@
+"""Stiff and extreme cases of the inverse side: from samples to light fields, polarization, turns and a calibration.
+
+Each has a bounded answer or a confidence of 0. Run with NumPy's warnings as errors, as models/stability.py.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from talbot.models.calibrate import Sweep, block_means, calibrated
+from talbot.models.capture import CaptureOperator
+from talbot.models.parameters import ArrayParameters, OpticsParameters, ParameterError, SensorParameters, TileParameters
+from talbot.models.pixel import demodulate
+from talbot.models.pixel.polarization import transmission
+from talbot.models.pixel.weights import density
+from talbot.models.reconstruct import polarization
+from talbot.models.reconstruct.bad_pixels import dead_pixels, repaired
+from talbot.models.reconstruct.bayes import Estimate, FieldEstimator, FieldPrior
+from talbot.models.reconstruct.depth_field import DepthField, depth_field, foreground, refocused, unwrap
+from talbot.models.stability import Case
+
+Floats = npt.NDArray[np.floating]
+PRIOR = FieldPrior(disparities=11)
+SHAPE = 24, 30
+SURE = 0.5  # px per view step: a larger standard deviation is no disparity
+BOUND = 2.0  # times the brightest light of the scene, of every ray
+
+
+def inverse_cases() -> list[Case]:
+    """Run all cases of the inverse side."""
+    return [*_fields(), *_polarizations(), *_depths(), *_calibrations()]
+
+
+def _scene(slope: float = 1.0) -> Floats:
+    """A light field of texture at a disparity of ``slope`` px per view step, 0.1..0.9, (5, 5, rows, cols)."""
+    y, x = np.indices(SHAPE)
+    steps = np.arange(-2, 3) * slope
+    return np.array(
+        [[0.5 + 0.2 * (np.sin(0.9 * (x + u)) + np.sin(0.7 * (y + v) + 0.4 * (x + u))) for u in steps] for v in steps]
+    )
+
+
+def _sensor(m: float = 0.7) -> SensorParameters:
+    return SensorParameters(array=ArrayParameters(*SHAPE), optics=OpticsParameters(m=m))
+
+
+def _fields() -> list[Case]:
+    """Light fields from samples that are nothing, too much, wrong, or do not tell an angle."""
+    sensor, truth, draw = _sensor(), _scene(), np.random.default_rng(5)
+    estimator = FieldEstimator(sensor, 5, PRIOR)
+    pair = CaptureOperator(sensor).forward(truth)
+    dead = pair.copy()
+    dead[:, :, 7::10] = 0
+    one = pair.copy()
+    one[:, 3, 4] = 0
+    wrong = np.abs((found := _amid_dead(estimator, one)).disparity - 1)[found.spread < SURE]
+    dimmed = CaptureOperator(flat := _sensor(0.0)).forward(truth)
+    out = [
+        _bounded("black", estimator.mixture(0 * pair), 0.0, known=0.0),
+        _bounded("full", estimator.mixture(np.ones_like(pair)), 1.0, known=0.0),
+        _bounded("a third of it full", estimator.mixture(np.minimum(pair, 0.55)), 1.0),
+        _bounded("dead columns", _amid_dead(estimator, dead), 1.0, known=0.0),
+        _bounded("a dead pixel", _amid_dead(estimator, one), 1.0),
+        _bounded("noise of 40 %", estimator.mixture(pair * (1 + 0.4 * draw.standard_normal(pair.shape))), 1.5),
+        _bounded("m = 0", FieldEstimator(flat, 5, PRIOR).mixture(dimmed), 1.0, known=0.0),
+    ]
+    out.append(_at_most("disparity amid a dead pixel: greatest error where sure", float(wrong.max(initial=0)), 0.3))
+    some = np.arange(sensor.tile.n_types) != 9
+    whole, part = (
+        float(np.sqrt(np.mean((e.mixture(pair).light_field - truth) ** 2)))
+        for e in (estimator, FieldEstimator(sensor, 5, PRIOR, measured=some))
+    )
+    name, bound = "light field without one pixel type", "at most 1.25 times the error of all types"
+    out.append(Case(name, bound, f"{part:.4f}, {whole:.4f}", bool(part <= 1.25 * whole)))
+    for shape in ((1, 1), (1, 7)):
+        small = FieldEstimator(replace(sensor, array=ArrayParameters(*shape)), 5, PRIOR)
+        name = f"of {shape[0]} x {shape[1]} pixels"
+        out.append(_bounded(name, small.mixture(np.full((2, *shape), 0.5)), 0.5))
+    worst = max(estimator.condition(d) for d in (None, *map(float, PRIOR.grid)))
+    ends = 1 + 4 * estimator.covariances.height * estimator.covariances.width / PRIOR.noise**2
+    out.append(_at_most("condition of a window's covariance", worst, ends))
+    return out
+
+
+def _amid_dead(estimator: FieldEstimator, pair: Floats) -> Estimate:
+    """The estimate with dead pixels found, repaired, and no disparity beside them."""
+    dead = dead_pixels(pair)
+    found = estimator.mixture(repaired(pair, dead))
+    return found._replace(spread=np.where(estimator.told_by(dead), np.inf, found.spread))
+
+
+def _bounded(name: str, found: Estimate, top: float, known: float | None = None) -> Case:
+    """An estimate within BOUND times the light ``top``; known: share of the pixels that may have a disparity."""
+    field, sure = found.light_field, float((found.spread < SURE).mean())
+    finite = bool(np.isfinite(field).all() and np.isfinite(found.disparity).all() and not np.isnan(found.spread).any())
+    peak = float(np.abs(field).max())
+    ok = finite and peak <= BOUND * top + 1e-6 and (known is None or sure <= known)
+    bound = f"|light| <= {BOUND * top:g}" + ("" if known is None else f", disparity of {100 * known:g} %")
+    return Case(f"light field: {name}", bound, f"{peak:.3g}, {100 * sure:.0f} %", ok)
+
+
+def _at_most(name: str, value: float, limit: float) -> Case:
+    return Case(name, f"<= {limit:.3g}", f"{value:.3g}", bool(0 <= value <= limit))
+
+
+def _polarizations() -> list[Case]:
+    """Polarization from noise, dead columns, few pixels and gratings that hardly polarize."""
+    tile, draw, d = TileParameters(), np.random.default_rng(6), 1 / 3
+    gamma = np.array([t.gamma for t in tile.types])[tile.type_map(*SHAPE)]
+    psi, plain = 0.6, np.full(SHAPE, 0.5)
+    stokes = 0.5 * np.stack([np.full(SHAPE, np.cos(2 * psi)), np.full(SHAPE, np.sin(2 * psi))])
+    seen = 0.5 * transmission(stokes, gamma, d)
+    found = polarization(plain * (1 + 0.4 * draw.standard_normal(SHAPE)), tile, d, 0.003)
+    wrong = float((found.confidence > 0).mean())
+    out = [_at_most("unpolarized light with noise of 40 %: share that has a confidence", wrong, 0.01)]
+    found = polarization(seen * (1 + 0.4 * draw.standard_normal(SHAPE)), tile, d, 0.003)
+    out.append(_at_most("polarized light with noise of 40 %: greatest degree", float(found.degree.max()), 1.0))
+    found = polarization(np.where(np.arange(SHAPE[1]) % 10 == 7, 0, seen), tile, d, 0.003)
+    turned = np.rad2deg(np.abs((found.psi - psi + np.pi / 2) % np.pi - np.pi / 2))[found.confidence > 0.5]
+    out.append(_at_most("dead columns in polarized light: error of psi in degrees where sure", float(turned.max()), 2))
+    kept = tile.type_map(*SHAPE) != 9
+    found = polarization(seen, tile, d, 0.003, kept)
+    error = float(np.hypot(found.s1 - stokes[0], found.s2 - stokes[1]).max())
+    out.append(_at_most("polarized light without one pixel type: error of the Stokes parameters", error, 1e-3))
+    for shape in ((1, 1), (1, 7)):
+        found = polarization(np.full(shape, 0.5), tile, d, 0.003)
+        values = found.confidence + 0 * (found.light + found.psi + found.degree)
+        out.append(_at_most(f"polarization of {shape[0]} x {shape[1]} pixels: confidence", float(values.max()), 0))
+    found = polarization(0.5 * transmission(stokes, gamma, 1e-3), tile, 1e-3, 0.003)
+    out.append(_at_most("gratings that hardly polarize: confidence", float(found.confidence.max()), 0))
+    return out
+
+
+def _depths() -> list[Case]:
+    """Time of flight without light, of one pixel, and of edges that no phase shows."""
+    estimator = FieldEstimator(_sensor(), 5, PRIOR)
+    dark = depth_field(estimator, np.zeros((4, 2, *SHAPE)))
+    phase, strength = demodulate(dark.centre)
+    measured = float(np.abs(dark.taps).max() + np.abs(strength).max() + np.abs(refocused(dark.phasors, 0.7)).max())
+    out = [_at_most("depth field of zero albedo: phasors", measured + 0 * float(np.abs(phase).max()), 1e-6)]
+    none = foreground(DepthField(np.zeros((4, 3, 3, 1, 1)), np.zeros((1, 1)), np.ones((1, 1))), np.zeros((1, 1)))
+    out.append(Case("occluder of one dark pixel", "none", "none" if none is None else "one", none is None))
+    for turns in (0.0, 2.37):
+        found = unwrap(np.full((1, 1), 2 * np.pi * (turns % 1)), np.full((1, 1), turns + 0.1), np.full((1, 1), 0.1))
+        out.append(_at_most(f"turns of one pixel, {turns:g}", float(np.abs(found.turns - turns).max()), 1e-6))
+    true = np.where(np.arange(SHAPE[1]) < 12, 0.7, 1.7) * np.ones(SHAPE)
+    coarse = true + np.random.default_rng(7).normal(0, 0.2, SHAPE)
+    found = unwrap(2 * np.pi * (true % 1), coarse, np.full(SHAPE, 0.2))
+    wrong = float(((np.abs(found.turns - true) > 0.5) & found.sure).mean())
+    out.append(_at_most("edge of exactly a turn: share wrong and sure", wrong, 0.02))
+    found = unwrap(np.random.default_rng(8).uniform(0, 6, SHAPE), coarse, np.full(SHAPE, np.inf))
+    out.append(_at_most("phase of noise, no disparity: share sure", float(found.sure.mean()), 0))
+    far = unwrap(np.full(SHAPE, 1.0), np.full(SHAPE, 1e4), np.full(SHAPE, 1e3))
+    out.append(_at_most("disparity at infinity: turns", float(np.abs(far.turns).max()), 2e4))
+    return out
+
+
+def _calibrations() -> list[Case]:
+    """A calibration without modulation, without a type, and without light."""
+    tile, side = TileParameters(), np.linspace(-0.38, 0.38, 9)
+    holes = np.stack([grid.ravel() for grid in np.meshgrid(side, side, indexing="ij")], 1)
+    places = np.stack(np.meshgrid(*(np.arange(12.0) - 5.5 for _ in range(2)), indexing="ij"), -1)
+    kinds, out = tile.type_map(12, 12), []
+
+    def _swept(m: float) -> Sweep:
+        light = 100 * density(tile.types, OpticsParameters(m=m), holes[:, 1], holes[:, 0])
+        frames = np.moveaxis(light[kinds], -1, 0) + np.random.default_rng(9).normal(0, 0.3, (len(holes), 12, 12, 2))
+        means = np.stack([block_means(frame, tile) for frame in frames])
+        return Sweep(holes, means, block_means(places, tile), np.ones(tile.n_types))
+
+    for m in (0.0, 1e-4, 1.0):
+        found, pupil, fits = calibrated(_swept(m), 1e-5)
+        error = max(abs((kind.m or 0) - m) for kind in found.types)
+        out.append(_at_most(f"calibration of m = {m:g}: error of m", error, 0.01))
+    out.append(_at_most("condition of a calibration", max(pupil.condition, *(fit.condition for fit in fits)), 100))
+    dark = _swept(0.7)
+    try:
+        calibrated(replace(dark, diodes=0 * dark.diodes), 1e-5)
+        said = "accepted"
+    except ParameterError as error:
+        said = str(error)
+    out.append(Case("calibration without light", "an error that names the field", said, said.startswith("diodes = ")))
+    return out

@@ -1,0 +1,130 @@
+"""Lines of a grating on the manufacturing grid, in any direction.
+
+A line has its long sides along a whole-number direction (p, q) of the grid and its ends along (-q, p): an exact
+rectangle on the grid, of which no width is lost to rounding and no corner is below 90 degrees, so that rules of widths
+and spaces hold in every direction. Its width is a whole number of |(p, q)|. Lengths are in steps of the grid.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from math import atan2, ceil, cos, floor, gcd, hypot, inf, pi, sin
+
+from talbot.models.parameters import ParameterError
+
+LARGEST = 24  # of a direction's two whole numbers
+NEAR = pi / 720  # rad, of a direction to the wanted one: a quarter of a degree
+WIDER = 1.05  # most that a period may grow
+Point = tuple[int, int]
+Box = tuple[int, int, int, int]  # left, bottom, right, top
+
+
+@dataclass(frozen=True)
+class Lines:
+    """A grating as it is drawn.
+
+    normal: direction in which it modulates, rad. direction: (p, q) along its lines, p >= 0. upright: whether lines
+    follow one another along y, else along x. pitch: along that axis. width: of a line, in lengths of (p, q).
+    """
+
+    normal: float
+    direction: Point
+    upright: bool
+    pitch: int
+    width: int
+
+    @property
+    def across(self) -> float:
+        """Length across the lines of one step along the axis."""
+        p, q = self.direction
+        return abs(p if self.upright else q) / hypot(p, q)
+
+    @property
+    def side(self) -> Point:
+        """From one long side of a line to the other."""
+        p, q = self.direction
+        return -q * self.width, p * self.width
+
+    @property
+    def line(self) -> float:
+        """Width of a line."""
+        return self.width * hypot(*self.direction)
+
+    @property
+    def period(self) -> float:
+        """Period across the lines."""
+        return self.pitch * self.across
+
+    @property
+    def fill(self) -> float:
+        """Share of metal."""
+        return self.line / self.period
+
+    @property
+    def off(self) -> float:
+        """Angle between the lines and those wanted, rad."""
+        along = atan2(self.direction[1], self.direction[0]) - self.normal - pi / 2
+        return along - pi * round(along / pi)
+
+    def along_axis(self, shift: float) -> float:
+        """Steps along the axis that are ``shift`` periods along the normal."""
+        return shift * self.pitch * (1 if (sin if self.upright else cos)(self.normal) > 0 else -1)
+
+
+@lru_cache(maxsize=64)
+def nearest_direction(angle: float) -> Point:
+    """Smallest whole numbers (p, q), p >= 0, whose direction is within `NEAR` of ``angle`` in rad."""
+    pairs = [(p, q) for p in range(LARGEST + 1) for q in range(-LARGEST, LARGEST + 1) if gcd(p, abs(q)) == 1]
+    for p, q in sorted(pairs, key=lambda pair: hypot(*pair)):
+        off = atan2(q, p) - angle
+        if abs(off - pi * round(off / pi)) < NEAR:
+            return p, q
+    raise ParameterError(f"angle = {angle:g}: must be a finite angle in rad")
+
+
+def lines(normal: float, period: float, fill: float, least_width: float, least_space: float) -> Lines:
+    """The lines nearest to a grating that keep the least width and space.
+
+    normal: direction in which it modulates, rad. fill: share of metal. Raises ParameterError where the period has no
+    room for both.
+    """
+    p, q = nearest_direction(normal + pi / 2)
+    unit = hypot(p, q)
+    width = max(round(fill * period / unit), ceil(least_width / unit - 1e-9))
+    made = Lines(normal, (p, q), abs(p) >= abs(q), 1, width)
+    pitch = max(round(period / made.across), ceil((made.line + least_space) / made.across - 1e-9))
+    if pitch * made.across > WIDER * period:
+        raise ParameterError(
+            f"period = {period:g} steps of the grid: must have room for a line of {least_width:g} and a space of "
+            f"{least_space:g} at {normal:.3f} rad"
+        )
+    return replace(made, pitch=pitch)
+
+
+def polygons(made: Lines, window: Box, shift: float) -> Iterator[list[Point]]:
+    """Corners of every line in ``window``, a rectangle each, of at least three widths.
+
+    shift: of the middle of a line from the window's middle, in periods along the normal.
+    """
+    left, bottom, right, top = window
+    (p, q), (side_x, side_y) = made.direction, made.side
+    middle_x, middle_y = (left + right - side_x) / 2, (bottom + top - side_y) / 2
+    at = made.along_axis(shift)
+    x0, y0 = round(middle_x + (0 if made.upright else at)), round(middle_y + (at if made.upright else 0))
+    reach = ceil((right - left + top - bottom) / made.pitch) + 2
+    for k in range(-reach, reach + 1):
+        x, y = (x0, y0 + k * made.pitch) if made.upright else (x0 + k * made.pitch, y0)
+        spans = [_span(x, p, left - min(side_x, 0), right - max(side_x, 0))]
+        spans.append(_span(y, q, bottom - min(side_y, 0), top - max(side_y, 0)))
+        first, last = max(span[0] for span in spans), min(span[1] for span in spans)
+        if (last - first) * hypot(p, q) >= 3 * made.line:
+            (x1, y1), (x2, y2) = ((x + t * p, y + t * q) for t in (floor(first + 1), floor(last)))
+            yield [(x1, y1), (x2, y2), (x2 + side_x, y2 + side_y), (x1 + side_x, y1 + side_y)]
+
+
+def _span(start: int, step: int, low: float, high: float) -> tuple[float, float]:
+    """Where start + t step is between low and high: more than the first t, up to the second."""
+    if not step:
+        return (-inf, inf) if low <= start <= high else (inf, -inf)
+    ends = sorted(((low - start) / step, (high - start) / step))
+    return ceil(ends[0] - 1e-9) - 1, floor(ends[1] + 1e-9)

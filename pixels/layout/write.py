@@ -1,0 +1,83 @@
+"""LEF and GDS of the drawn pixel array, from the gratings that a process keeps."""
+
+import argparse
+import sys
+from functools import lru_cache
+from pathlib import Path
+
+from talbot.base.command import main
+from talbot.base.files import staged
+from talbot.base.gds import db, write_gds
+from talbot.models.parameters import ArrayParameters, ParameterError, TileParameters
+from talbot.pixels.blocks import AnalogSizes
+from talbot.pixels.designs import gratings
+from talbot.pixels.footprints import lef
+from talbot.pixels.optics.design import REACHED, measure
+from talbot.pixels.optics.fit import Fit
+from talbot.pixels.optics.geometry import PixelGeometry
+from talbot.platforms.pixel import pixel_process
+
+from .array import ArrayLayout, draw_array, draw_pixels
+from .pixel import PixelLayout, pixel_layout
+
+NAME = "pixel_array"
+
+
+def drawn_pixels(pdk: str, tile: TileParameters) -> tuple[PixelLayout, ...]:
+    """The tile's types on the gratings that ``pdk`` keeps. Raises ParameterError for a beta that it does not have."""
+    pixel_process(pdk)
+    chosen, out = gratings(pdk), []
+    for kind in tile.types:
+        beta = min(chosen.geometries, key=lambda b: abs(b - kind.beta))
+        if abs(beta - kind.beta) > REACHED * beta:
+            known = ", ".join(f"{b:g}" for b in chosen.geometries)
+            raise ParameterError(f"beta = {kind.beta:g}: must be one of {known}, which {pdk!r} has gratings for")
+        geometry = chosen.geometries[beta]
+        out.append(pixel_layout(geometry, kind, fitted(geometry, chosen.wavelength_um)))
+    return tuple(out)
+
+
+@lru_cache(maxsize=64)
+def fitted(geometry: PixelGeometry, wavelength_um: float) -> Fit:
+    """Eq. 3.1 fitted to a geometry."""
+    return measure(geometry, wavelength_um).fit
+
+
+def array_layout(pdk: str, rows: int, cols: int) -> ArrayLayout:
+    """An array of the standard tile. Raises ParameterError."""
+    tile = TileParameters()
+    return ArrayLayout(ArrayParameters(rows, cols), tile, drawn_pixels(pdk, tile))
+
+
+def array_lef(made: ArrayLayout) -> str:
+    """The LEF of the array: outline, pins, all metals taken."""
+    process = made.pixels[0].process
+    return lef(made.block, process.name, AnalogSizes().supply_um, [metal.lef for metal in process.metals])
+
+
+def write(out: str | Path, made: ArrayLayout) -> None:
+    """Write pixel_array.lef and pixel_array.gds into ``out``."""
+    layout = db.Layout()
+    layout.dbu = 0.001
+    cell = draw_array(layout, made, draw_pixels(layout, made))
+    with staged(out) as part:
+        (part / f"{NAME}.lef").write_text(array_lef(made))
+        write_gds(layout, part / f"{NAME}.gds", cell)
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Options of `python -m talbot.pixels.layout.write`."""
+    parser.add_argument("--pdk", default="sky130", help="process")
+    parser.add_argument("--rows", type=int, default=ArrayParameters().rows, help="pixels down")
+    parser.add_argument("--cols", type=int, default=ArrayParameters().cols, help="pixels across")
+    parser.add_argument("--out", type=Path, required=True, help="folder of the files")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Write the files."""
+    write(options.out, array_layout(options.pdk, options.rows, options.cols))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.modules[__name__]))
