@@ -21,3 +21,4 @@ class Found:
     enob: list[float]
     ktc: dict[str, float]
     amplifiers: dict[str, AmplifierResult]
+    amplifier_ktc: dict[str, float]

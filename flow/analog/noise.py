@@ -17,7 +17,7 @@ from talbot.pixels.circuits.lane import LaneSizes
 from .deck import Setup, clock, deck, patient, simulator
 
 LOAD = 5e-15  # F at the decision
-PERIOD = 6e-9  # s, of decisions whose outcome alone counts: half of it decides
+PERIOD = 8e-9  # s, of decisions whose outcome alone counts: half of it decides
 NOISY = 48  # decisions at each of two inputs
 NOISE_STEP = 20e-12  # s between the noise's samples: 25 GHz of bandwidth
 SENSE = 10.0  # ohm between the tail and vss
@@ -104,6 +104,8 @@ def _probit(ones: list[int], step: float) -> tuple[float, float, float]:
     """Rms noise in the unit of ``step`` from decisions at -step and +step, and its 95 % interval."""
     low_share, high_share = ((n + 0.5) / (NOISY + 1) for n in ones)  # never 0 or 1
     slope = float(ndtri(high_share) - ndtri(low_share)) / (2 * step)
+    if slope <= 0:
+        raise ParameterError(f"decisions = {ones} of {NOISY}: must be more at the greater input")
     density = [float(np.exp(-(ndtri(p) ** 2) / 2) / sqrt(2 * np.pi)) for p in (low_share, high_share)]
     variance = sum(p * (1 - p) / NOISY / d**2 for p, d in zip((low_share, high_share), density, strict=True))
     error = 1.96 * sqrt(variance) / (2 * step)

@@ -22,7 +22,7 @@ from .netlist import Capacitor, Circuit, Instance, Transistor
 
 TRIM_BITS = 10
 UNITS = 512  # of the first diode's capacitor
-BIAS = 20e-6  # A
+BIAS = 10e-6  # A
 PINS = ("column_a", "column_b", "reset", *(f"g{k}" for k in reversed(range(TRIM_BITS))))
 PINS += ("out", "vref", "ibias", "vdd", "vss")
 
@@ -33,8 +33,9 @@ class AmplifierSpec:
 
     vref: V, its output's zero, and lane_b, 0.3..1.5. reset_level: V of a column without light, 0.3..1.8. swing: V of a
     full well, 0.01..1.5. hold: s, one cycle of the chip: the time for its output. settling: LSB that may be left then.
-    inl: LSB, peak, over three quarters of the range. ambient: LSB by which a difference may change where ambient light
-    is 100 times it. trim: steps, peak error of a step of the trim. energy: J a sample, Table 6.1's.
+    gain: relative, by which it may be off: common to all columns of a lane. inl: LSB, peak, over three quarters of the
+    range. ktc: LSB, rms, of what the reset's end leaves. ambient: LSB by which a difference may change where ambient
+    light is 100 times it. trim: steps, peak error of a step of the trim. energy: J a sample, Table 6.1's.
     """
 
     vref: float = 0.8
@@ -42,7 +43,9 @@ class AmplifierSpec:
     swing: float = 1.0
     hold: float = 100e-9
     settling: float = 0.5
+    gain: float = 0.05
     inl: float = 0.5
+    ktc: float = 0.15
     ambient: float = 0.5
     trim: float = 1.0
     energy: float = 203e-12
@@ -52,7 +55,8 @@ class AmplifierSpec:
         check_real("reset_level", self.reset_level, 0.3, 1.8)
         check_real("swing", self.swing, 0.01, 1.5)
         check_real("hold", self.hold, 1e-9, 1e-3)
-        for name in ("settling", "inl", "ambient", "trim"):
+        check_real("gain", self.gain, 1e-3, 1)
+        for name in ("settling", "inl", "ktc", "ambient", "trim"):
             check_real(name, getattr(self, name), 0.01, 16)
         check_real("energy", self.energy, 1e-15, 1e-6)
 
@@ -71,7 +75,7 @@ class AmplifierSpec:
 class AmplifierSizes:
     """Sizes; unit: F, of a capacitor. gain: of a column's volts, 0.1..16. scale: of widths and currents, 0.1..1.
 
-    At scale 1 the input pair has 100 uA a side, and as much flows in each output branch.
+    At scale 1 the input pair has 185 uA a side at the typical corner, each output branch 60 uA.
     """
 
     unit: float = 0.7833e-15
@@ -90,40 +94,46 @@ class AmplifierSizes:
 
 
 def ota(scale: float) -> Circuit:
-    """A folded cascode with p inputs. Pins: inp inn out ibias vdd vss; the input range begins at vss."""
+    """A folded cascode with p inputs. Pins: inp inn out ibias vdd vss; the input range begins at vss.
+
+    Tail and sinks are long: where they are not, the tail's current grows with the supply until the sinks do not carry
+    it any more (ff, 1.98 V). The mirror's upper transistors are of the regular threshold, so that its cascode stays
+    saturated in the branch where the mirror's gate is its drain (ff, 125 degrees).
+    """
     s = scale
 
     def n(name: str, drain: str, gate: str, source: str, w: float, length: float = 0.5) -> Transistor:
         return Transistor(name, drain, gate, source, "vss", "n_lvt", w, length)
 
-    def p(name: str, drain: str, gate: str, source: str, w: float, length: float = 0.5) -> Transistor:
-        return Transistor(name, drain, gate, source, "vdd", "p_lvt", w, length)
+    def p(
+        name: str, drain: str, gate: str, source: str, w: float, length: float = 0.5, role: str = "p_lvt"
+    ) -> Transistor:
+        return Transistor(name, drain, gate, source, "vdd", role, w, length)
 
     return Circuit(
         "ota",
         ("inp", "inn", "out", "ibias", "vdd", "vss"),
         (
             # Bias: mirrors of ibias, and a stack's worth of overdrive for each cascode's gate
-            n("bias_n", "ibias", "ibias", "vss", 10, 1.0),
-            n("bias_to_p", "vbp", "ibias", "vss", 10, 1.0),
-            p("bias_p", "vbp", "vbp", "vdd", 20),
-            p("bias_to_n", "vcn", "vbp", "vdd", 20),
-            n("cascode_n", "vcn", "vcn", "vss", 2, 2.0),
-            n("bias_to_pc", "vcp", "ibias", "vss", 10, 1.0),
-            p("cascode_p", "vcp", "vcp", "vdd", 32, 2.0),
+            n("bias_n", "ibias", "ibias", "vss", 3.9, 1.0),
+            n("bias_to_p", "vbp", "ibias", "vss", 4.5, 1.0),
+            p("bias_p", "vbp", "vbp", "vdd", 10, 1.0),
+            p("bias_to_n", "vcn", "vbp", "vdd", 5, 1.0),
+            n("cascode_n", "vcn", "vcn", "vss", 1, 2.0),
+            n("bias_to_pc", "vcp", "ibias", "vss", 2.25, 1.0),
+            p("cascode_p", "vcp", "vcp", "vdd", 3.5, 2.0),
             # Input pair and its tail
-            p("tail_p", "tail", "vbp", "vdd", 100 * s),
-            p("tail_n", "tail", "vbp", "vdd", 100 * s),
-            p("inp", "fold_p", "inp", "tail", 80 * s, 0.35),
-            p("inn", "fold_n", "inn", "tail", 80 * s, 0.35),
+            *(p(f"tail_{k}", "tail", "vbp", "vdd", 97 * s, 1.0) for k in range(3)),
+            *(p(f"inp_{k}", "fold_p", "inp", "tail", 75 * s, 0.35) for k in range(2)),
+            *(p(f"inn_{k}", "fold_n", "inn", "tail", 75 * s, 0.35) for k in range(2)),
             # Folding: each sink carries the pair's and the branch's current
             n("sink_p", "fold_p", "ibias", "vss", 100 * s, 1.0),
             n("sink_n", "fold_n", "ibias", "vss", 100 * s, 1.0),
             n("up_p", "mirror", "vcn", "fold_p", 60 * s),
             n("up_n", "out", "vcn", "fold_n", 60 * s),
             # Cascoded mirror
-            p("top_p", "high_p", "mirror", "vdd", 80 * s),
-            p("top_n", "high_n", "mirror", "vdd", 80 * s),
+            p("top_p", "high_p", "mirror", "vdd", 60 * s, 0.5, "p"),
+            p("top_n", "high_n", "mirror", "vdd", 60 * s, 0.5, "p"),
             p("down_p", "mirror", "vcp", "high_p", 80 * s),
             p("down_n", "out", "vcp", "high_n", 80 * s),
         ),
@@ -166,9 +176,9 @@ def amplifier(sizes: AmplifierSizes) -> Circuit:
     switches = tuple(
         Transistor(name, a, gate, b, bulk, role, w, length)
         for name, a, b, gate, bulk, role, w, length in (
-            ("follow_n", "xm", "out", "reset", "vss", "n_lvt", 2.0, 0.15),
+            ("follow_n", "xm", "out", "reset", "vss", "n", 2.0, 0.15),
             ("follow_p", "xm", "out", "resetn", "vdd", "p_lvt", 2.0, 0.35),
-            ("zero_n", "xp", "vref", "reset", "vss", "n_lvt", 2.0, 0.15),
+            ("zero_n", "xp", "vref", "reset", "vss", "n", 2.0, 0.15),
             ("zero_p", "xp", "vref", "resetn", "vdd", "p_lvt", 2.0, 0.35),
         )
     )
