@@ -84,7 +84,8 @@ class Sensor:
     tile: rows of PixelType, 1..4 of 1..6 each, [[a, b], [c, d]]; or TileParameters. A PixelType has beta, gamma_deg,
     alpha, perhaps an m of its own, or response=f: a function of the incidence angles theta_x and theta_y, arrays (n,)
     in rad, that gives the response of both diodes, (2, n), 0 or more.
-    converter: 'typical', 'ideal', or a dict of inl, dnl, offset, noise, ktc (LSB) and seed.
+    converter: 'typical', 'ideal', 'circuit' (as ngspice has it), or a dict of inl, dnl, offset, noise, ktc (LSB),
+        unit_mismatch (relative) and seed.
 
     Raises ParameterError for an unknown name or a value out of range.
     """
