@@ -2,8 +2,10 @@
 
 from dataclasses import dataclass
 
-from .comparator import Decisions, Noise
+from .amplifier import AmplifierResult
+from .comparator import Decisions
 from .lane import LaneResult
+from .noise import Noise
 
 
 @dataclass(frozen=True)
@@ -18,3 +20,5 @@ class Found:
     dnl: list[float]
     enob: list[float]
     ktc: dict[str, float]
+    amplifiers: dict[str, AmplifierResult]
+    amplifier_ktc: dict[str, float]

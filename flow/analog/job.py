@@ -16,15 +16,19 @@ from talbot.base.records import from_json
 from talbot.cells.corner import Corner
 from talbot.models.parameters import ParameterError, check_int
 from talbot.pixels.circuits import lane as lanes
+from talbot.pixels.circuits.amplifier import AmplifierSizes, AmplifierSpec
 from talbot.pixels.circuits.lane import LaneSizes
 from talbot.pixels.circuits.specification import LaneSpec
 
-from . import comparator, lane, linearity
-from .comparator import BATCH, Decisions, Noise, spread
+from . import amplifier, comparator, lane, linearity
+from . import noise as noises
+from .amplifier import AmplifierResult
+from .comparator import BATCH, Decisions, spread
 from .datasheet import Row, over_corners
 from .deck import Setup, deck, process_of
 from .found import Found
 from .lane import LaneResult, inl
+from .noise import Noise
 
 STEPS = "check", "corners", "mismatch", "noise", "linearity", "report"
 STORE = BUILD / "analog" / "measured"
@@ -79,13 +83,23 @@ def make(
     note("check")
     typical = Corner.parse(TYPICAL)
     deck(lanes.sar_lane(sizes), setup, typical)
-    whole = Job("faults", lane.faults, (setup, sizes, typical), (repr((setup, sizes)),))
-    if wrong := run([whole], STORE, "check", workers)[0]:
+    spec_a, sizes_a = AmplifierSpec.of(), AmplifierSizes()
+    given = repr((setup, sizes))
+    checks = [
+        Job("faults", lane.faults, (setup, sizes, typical), (given,)),
+        Job(
+            "amplifier-faults",
+            amplifier.faults,
+            (setup, spec_a, sizes_a, sizes, typical),
+            (given, repr((spec_a, sizes_a))),
+        ),
+    ]
+    if wrong := [fault for faults in run(checks, STORE, "check", workers) for fault in faults]:
         raise ParameterError(wrong[0])
     found = measured(setup, sizes, corners, draws, workers, note)
     note("report")
     rows = datasheet(setup.spec, found, len(found.offsets))
-    counts = [*found.decisions.values(), *found.lanes.values()]
+    counts = [*found.decisions.values(), *found.lanes.values(), *found.amplifiers.values()]
     summary = {
         "pdk": pdk,
         "corners": list(corners),
@@ -126,6 +140,17 @@ def measured(
     ]
     note("corners")
     results = run(jobs, STORE, "corners", workers)
+    spec_a, sizes_a = AmplifierSpec.of(), AmplifierSizes()
+    amplified = [
+        Job(
+            f"amplifier-{name}",
+            amplifier.measure,
+            (setup, spec_a, sizes_a, sizes, corner),
+            (given, repr((spec_a, sizes_a)), name),
+        )
+        for name, corner in places.items()
+    ]
+    amplifiers = run(amplified, STORE, "amplifier", workers)
     note("mismatch")
     typical = places[TYPICAL]
     batches = range(1, -(-draws // BATCH) + 1)
@@ -133,7 +158,7 @@ def measured(
     offsets = [value for batch in run(drawn, STORE, "mismatch", workers) for value in batch]
     note("noise")
     noise: Noise = from_json(
-        Noise, run([Job("noise", comparator.noise, (setup, sizes, typical), (given,))], STORE, "noise", workers)[0]
+        Noise, run([Job("noise", noises.noise, (setup, sizes, typical), (given,))], STORE, "noise", workers)[0]
     )
     note("linearity")
     ktc = {name: linearity.ktc(setup.spec, sizes, one.temperature + 273.15) for name, one in places.items()}
@@ -152,6 +177,8 @@ def measured(
         [one[1] for one in arrays],
         [one[2] for one in arrays if one[2] is not None],
         ktc,
+        {name: from_json(AmplifierResult, one) for name, one in zip(places, amplifiers, strict=True)},
+        {name: amplifier.ktc(setup, sizes_a, corner) for name, corner in places.items()},
     )
 
 
@@ -203,6 +230,32 @@ def datasheet(spec: LaneSpec, found: Found, draws: int) -> list[Row]:
             over=f"{len(found.enob)} drawn arrays, with noise",
         ),
         corners("lane", "energy of a decision", "pJ", energies, share),
+        *_amplifier(found),
+    ]
+
+
+def _amplifier(found: Found) -> list[Row]:
+    """The rows of the difference amplifier."""
+    spec = AmplifierSpec.of()
+
+    def corners(name: str, unit: str, values: dict[str, float], most: float | None) -> Row:
+        return over_corners("amplifier", name, unit, values.items(), TYPICAL, most=most)
+
+    def row(name: str, unit: str, field: str, most: float | None, scale: float = 1.0) -> Row:
+        values = {corner: scale * abs(getattr(one, field)) for corner, one in found.amplifiers.items()}
+        return corners(name, unit, values, most)
+
+    gains = {corner: 100 * abs(one.gain - 1) for corner, one in found.amplifiers.items()}
+    return [
+        corners("gain, off by", "%", gains, 100 * spec.gain),
+        row("offset", "LSB", "offset", None),
+        row("INL", "LSB", "inl", spec.inl),
+        row("settling to half an LSB", "ns", "settling", 1e9 * spec.hold, 1e9),
+        row("left after one cycle", "LSB", "left", spec.settling),
+        row("change under 100 times ambient light", "LSB", "ambient", spec.ambient),
+        row("steps of the trim, off by", "steps", "trim", spec.trim),
+        corners("sampled noise, rms", "LSB", found.amplifier_ktc, spec.ktc),
+        row("energy of a sample", "pJ", "energy", 1e12 * spec.energy, 1e12),
     ]
 
 
@@ -224,7 +277,7 @@ def converter(spec: LaneSpec, sizes: LaneSizes, found: Found) -> dict[str, Any]:
             "dnl": 0.0,
             "offset": round(rms, 4),
             "noise": round(found.noise.rms, 4),
-            "ktc": round(found.ktc[TYPICAL], 4),
+            "ktc": round(float(np.hypot(found.ktc[TYPICAL], found.amplifier_ktc[TYPICAL])), 4),
             "unit_mismatch": round(sizes.dac.unit_mismatch, 6),
         },
         "sources": {
@@ -232,7 +285,7 @@ def converter(spec: LaneSpec, sizes: LaneSizes, found: Found) -> dict[str, Any]:
             "dnl": "steps come from unit_mismatch",
             "offset": f"{len(found.offsets)} draws of the models' mismatch in ngspice",
             "noise": f"{2 * found.noise.decisions} decisions with transient noise in ngspice",
-            "ktc": "closed form, both common plates",
+            "ktc": "closed form: both common plates of the lane, both inputs of the amplifier",
             "unit_mismatch": f"{sizes.dac.source}",
         },
         "errors": {
@@ -241,6 +294,8 @@ def converter(spec: LaneSpec, sizes: LaneSizes, found: Found) -> dict[str, Any]:
             "noise": round(interval, 4),
             "offset_systematic": round(abs(shape[0]), 4),
             "gain": round(abs(shape[1]), 4),
+            "amplifier_inl": round(found.amplifiers[TYPICAL].inl, 4),
+            "amplifier_settling": round(found.amplifiers[TYPICAL].left, 4),
             "settling": round(_left(spec, found.lanes[TYPICAL]), 6),
             "droop": round(found.lanes[TYPICAL].droop, 4),
         },

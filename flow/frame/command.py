@@ -12,7 +12,15 @@ from typing import TYPE_CHECKING, Any
 from talbot.base.cache import digest
 from talbot.base.progress import Steps
 from talbot.flow.simulate.frame import WAVES
-from talbot.models.parameters import EXPOSURE_MAX, LANES, MODES, CameraParameters, SensorParameters
+from talbot.models.parameters import (
+    EXPOSURE_MAX,
+    LANES,
+    MODES,
+    CameraParameters,
+    ParameterError,
+    SensorParameters,
+    check_choice,
+)
 
 from . import arguments as text
 from .sensor import add_pixel, asked_sensor
@@ -92,6 +100,7 @@ def add_frame_arguments(
     add("--lanes", default=Own("8"), help="converters, one of " + ", ".join(map(str, LANES)))
     add("--phase", action="store_true", help="tof mode: phase and amplitude from the chip's divider")
     add("--converter", default=Own("typical"), help="typical (INL, DNL, offset, noise as in the report) or ideal")
+    add("--afe", default="ideal", help="ideal: arithmetic, and --converter; circuit: converters as ngspice has them")
     add("--noise", default="1.0", help="times the physical noise, 0..100")
     add("--seed", default="1", help="of every random draw, 0..4294967295")
 
@@ -180,6 +189,11 @@ def request_of(a: Namespace, sensor: SensorParameters | None = None) -> "FrameRe
     waves = (0, min(3, rows - 1)) if a.waves == "1" else text.span("waves", a.waves, 0, rows - 1) if a.waves else None
     names = ("scene", "depth", "mode", "phase", "out", "waves_format", "converter")
     plain = {name: typed[name] for name in names if name in typed}
+    check_choice("afe", a.afe, ("ideal", "circuit"))
+    if a.afe == "circuit":
+        if "converter" in typed:
+            raise ParameterError(f"converter = {a.converter!r}: must be left out with afe = circuit, which has its own")
+        plain["converter"] = "circuit"
     exposure = None if a.exposure == "auto" else text.integer("exposure", a.exposure, 0, EXPOSURE_MAX, also=" or auto")
     lux = text.real("lux", a.lux, 1e-3, 1e6)
     mask, noise = text.pixel_types(a.types), text.real("noise", a.noise, 0, 100)

@@ -10,7 +10,7 @@ from markupsafe import Markup
 from talbot.base.charts import bars, svg
 from talbot.base.page import Picture, Scale
 from talbot.flow.simulate.frame import WAVES
-from talbot.models.parameters import EnergyParameters, LightParameters, sensor_text, sources
+from talbot.models.parameters import EnergyParameters, LightParameters, circuit_converter, sensor_text, sources
 
 from . import error_plots, pictures
 from .chip_picture import chip_svg
@@ -187,7 +187,8 @@ def _where(s: dict[str, Any]) -> list[Markup]:
 def assumptions(result: FrameResult) -> list[tuple[str, object, str]]:
     """Every parameter of the camera, of noise and energy, its value in SI units and where it comes from."""
     sensor = result.request.sensor
-    converter = [(f"converter {name}", value, "assumed") for name, value in vars(sensor.converter).items()]
+    source = "ngspice: models/parameters/circuit.json" if sensor.converter == circuit_converter() else "assumed"
+    converter = [(f"converter {name}", value, source) for name, value in vars(sensor.converter).items()]
     optics, array = sensor.optics, sensor.array
     known = (
         optics.camera,

@@ -24,7 +24,11 @@ from talbot.models.parameters import (
 from talbot.models.plan.exposure import exposed_for, fitting
 from talbot.models.scene import LightField
 
-CONVERTERS = {"typical": TYPICAL_CONVERTER, "ideal": parameters.ConverterParameters()}
+CONVERTERS = {
+    "typical": TYPICAL_CONVERTER,
+    "ideal": parameters.ConverterParameters(),
+    "circuit": parameters.circuit_converter(),
+}
 Cut = Callable[[Window], Window]  # of the full window
 
 

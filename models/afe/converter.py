@@ -13,6 +13,14 @@ from .noise import KTC_DECISION, NOISE_SCALE, noise_counts
 CODES = 256
 
 
+def _binary(rng: np.random.Generator) -> npt.NDArray[np.float64]:
+    """Error of every code in LSB, for units that are off by 1 (rms, relative): first order, its ends at zero."""
+    weights = 2.0 ** np.arange(CODES.bit_length() - 1)
+    off = np.sqrt(weights) * rng.standard_normal(weights.size)
+    error = (np.arange(CODES)[:, None] >> np.arange(weights.size) & 1) @ off
+    return error - np.arange(CODES) / (CODES - 1) * error[-1]
+
+
 @dataclass(frozen=True, eq=False)
 class Converter:
     """Converters with imperfections drawn from ConverterParameters, in LSB.
@@ -40,7 +48,8 @@ class Converter:
         """Draw converters; the first lanes of a wider bank are those of a narrower one.
 
         The DAC's error is `inl` times a parabola that is 0 at both ends and 1 at mid-scale, up or down at random,
-        plus a random walk of step `dnl` with its ends pinned to zero. It is the same for both ranges.
+        plus a random walk of step `dnl` with its ends pinned to zero, plus what `unit_mismatch` makes of eight binary
+        capacitors and a terminator, less its gain: 0 at both ends. It is the same for both ranges.
 
         Parameters
         ----------
@@ -68,6 +77,7 @@ class Converter:
             walk = np.concatenate(([0.0], np.cumsum(rng.standard_normal(CODES - 1)) * parameters.dnl))
             error[lane] = bow * 4 * x * (1 - x) + (walk - x * walk[-1])
             offset[lane] = rng.standard_normal() * parameters.offset
+            error[lane] += parameters.unit_mismatch * _binary(rng)
         ideal = np.arange(CODES) - np.array([[128.5], [0.5]])
         return cls(
             ideal[:, None] + error,

@@ -4,6 +4,7 @@ from .array import COLS_MAX, ROWS_MAX, ArrayParameters
 from .camera import FOCUS_MAX, CameraParameters
 from .checks import ParameterError, check_choice, check_int, check_real
 from .chip import ASYNCHRONOUS, LANES, SPI_INPUTS, ChipParameters
+from .circuit import circuit_converter
 from .divider import DIVIDERS
 from .electrical import ELEMENTARY_CHARGE, TYPICAL_CONVERTER, ConverterParameters, ElectricalParameters
 from .energy import EnergyParameters, LightParameters
@@ -51,6 +52,7 @@ __all__ = [
     "check_choice",
     "check_int",
     "check_real",
+    "circuit_converter",
     "read_sensor",
     "sensor_of",
     "sensor_text",

@@ -108,6 +108,9 @@ class ConverterParameters:
         RMS noise of the comparator at each decision, 0..16 LSB.
     ktc : float
         RMS kT/C noise of the sampling capacitor, 0..16 LSB.
+    unit_mismatch : float
+        RMS of a unit capacitor of a binary-weighted DAC, relative, 0..0.2: code k's level is off by what 256 such units
+        make of it.
     seed : int
         Seed of every draw above, 0..2**32-1.
     """
@@ -117,6 +120,7 @@ class ConverterParameters:
     offset: float = sourced(0.0, "ideal")
     noise: float = sourced(0.0, "ideal")
     ktc: float = sourced(0.0, "ideal")
+    unit_mismatch: float = sourced(0.0, "ideal")
     seed: int = sourced(1, "any")
 
     def __post_init__(self) -> None:
@@ -125,6 +129,7 @@ class ConverterParameters:
         check_real("offset", self.offset, 0, 16)
         check_real("noise", self.noise, 0, 16)
         check_real("ktc", self.ktc, 0, 16)
+        check_real("unit_mismatch", self.unit_mismatch, 0, 0.2)
         check_int("seed", self.seed, 0, 2**32 - 1)
 
 

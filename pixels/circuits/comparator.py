@@ -11,7 +11,7 @@ from types import ModuleType
 
 from talbot.models.parameters import check_real
 
-from .gates import nand
+from .gates import inverter, nor
 from .netlist import Circuit, Instance, Transistor
 from .specification import LaneSpec
 
@@ -81,14 +81,20 @@ def strong_arm(sizes: ComparatorSizes) -> Circuit:
 
 
 def comparator(sizes: ComparatorSizes) -> Circuit:
-    """Pins inp inn strobe q vdd vss."""
-    arm, gate = strong_arm(sizes), nand()
+    """Pins inp inn strobe q vdd vss.
+
+    Inverters are between the strong-arm latch and the one that holds q: a gate whose other input is q loads its input
+    by what q is, and the decision before would shift the next by 0.2 LSB.
+    """
+    arm, gate, buffer = strong_arm(sizes), nor(), inverter()
     return Circuit(
         "comparator",
         ("inp", "inn", "strobe", "q", "vdd", "vss"),
         instances=(
             Instance("arm", arm, ("inp", "inn", "strobe", "outp", "outn", "vdd", "vss")),
-            Instance("set", gate, ("outn", "qn", "q", "vdd", "vss")),
-            Instance("clear", gate, ("outp", "q", "qn", "vdd", "vss")),
+            Instance("buffer_n", buffer, ("outn", "set", "vdd", "vss")),
+            Instance("buffer_p", buffer, ("outp", "clear", "vdd", "vss")),
+            Instance("hold_n", gate, ("set", "q", "qn", "vdd", "vss")),
+            Instance("hold", gate, ("clear", "qn", "q", "vdd", "vss")),
         ),
     )

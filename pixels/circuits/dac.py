@@ -16,7 +16,7 @@ from types import ModuleType
 
 from talbot.models.parameters import ParameterError, check_real
 
-from .gates import LENGTH, nand, nor
+from .gates import SWITCH_LENGTH, nand, nor
 from .netlist import Capacitor, Circuit, Instance, Transistor
 from .specification import CODES, LaneSpec
 
@@ -84,9 +84,9 @@ def _switches(name: str, width: float, *, fixed: str = "") -> Circuit:
 
     A fixed one samples `in` and then goes to its reference.
     """
-    low, high = ("n", max(width, 0.65), LENGTH), ("p_lvt", 2 * max(width, 0.65), 0.35)
+    low, high = ("n", max(width, 0.65), SWITCH_LENGTH), ("p_lvt", 2 * max(width, 0.65), 0.35)
     throughs = (
-        Transistor("in_n", "bottom", "sample", "in", "vss", "n_lvt", 2 * width, LENGTH),
+        Transistor("in_n", "bottom", "sample", "in", "vss", "n_lvt", 2 * width, SWITCH_LENGTH),
         Transistor("in_p", "bottom", "samplen", "in", "vdd", "p_lvt", 4 * width, 0.35),
     )
     to_low = Transistor("low", "bottom", "low", "refn", "vss", *low)
@@ -110,7 +110,7 @@ def _half(name: str, width: float) -> Circuit:
         name,
         ("bottom", "sample", "samplen", "refp", "refn", "vdd", "vss"),
         (
-            Transistor("low", "bottom", "samplen", "refn", "vss", "n", width, LENGTH),
+            Transistor("low", "bottom", "samplen", "refn", "vss", "n", width, SWITCH_LENGTH),
             Transistor("high", "bottom", "samplen", "refp", "vdd", "p_lvt", 2 * width, 0.35),
         ),
     )

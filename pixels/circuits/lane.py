@@ -18,7 +18,7 @@ from types import ModuleType
 
 from . import comparator as comparators
 from . import dac as dacs
-from .gates import LENGTH, inverter, nor
+from .gates import SWITCH_LENGTH, inverter, nor
 from .netlist import Circuit, Instance, Transistor
 from .specification import LaneSpec
 
@@ -28,7 +28,7 @@ PINS += ("comparator", "refp", "refn", "vcm", "vdd", "vss")
 
 @dataclass(frozen=True)
 class LaneSizes:
-    """Sizes of a lane's parts. plate_w: um, of the switches between the common plates and vcm."""
+    """Sizes of a lane's parts. plate_w: um, of the n switches between the common plates and vcm."""
 
     comparator: comparators.ComparatorSizes
     dac: dacs.DacSizes
@@ -55,18 +55,21 @@ def sar_lane(sizes: LaneSizes) -> Circuit:
     supplies, references = ("vdd", "vss"), ("refp", "refn", "vdd", "vss")
     bits = tuple(f"d{k}" for k in reversed(range(dacs.BITS)))
     drive = inverter(8)
-    plate = ("n_lvt", sizes.plate_w, LENGTH)
+    plate_n = ("vss", "n_lvt", sizes.plate_w, SWITCH_LENGTH)
+    plate_p = ("vdd", "p_lvt", 2 * sizes.plate_w, 0.35)
     return Circuit(
         "sar_lane",
         PINS,
         (
-            Transistor("plate_p", "top", "sample_1", "vcm", "vss", *plate),
-            Transistor("plate_n", "other", "sample_1", "vcm", "vss", *plate),
+            Transistor("plate_top_n", "top", "sample_1", "vcm", *plate_n),
+            Transistor("plate_top_p", "top", "sample_2", "vcm", *plate_p),
+            Transistor("plate_other_n", "other", "sample_1", "vcm", *plate_n),
+            Transistor("plate_other_p", "other", "sample_2", "vcm", *plate_p),
         ),
         instances=(
             Instance("sample_0", inverter(2), ("sample", "sample_0", *supplies)),
             Instance("sample_1", inverter(4), ("sample_0", "sample_1", *supplies)),
-            Instance("sample_2", inverter(2), ("sample_1", "sample_2", *supplies)),
+            Instance("sample_2", inverter(4), ("sample_1", "sample_2", *supplies)),
             Instance("sample_3", inverter(4), ("sample_2", "sample_3", *supplies)),
             Instance("sample_n", drive, ("sample_3", "bottoms_n", *supplies)),
             Instance("sample_p", drive, ("bottoms_n", "bottoms", *supplies)),

@@ -54,7 +54,7 @@ class LaneSpec:
     supply: float = 1.8
     refn: float = 0.2
     refp: float = 1.4
-    vcm: float = 0.9
+    vcm: float = 0.8
     reference_resistance: float = 50.0
     f_clk: float = 10e6
     offset: float = 0.5

@@ -1,7 +1,18 @@
+from argparse import ArgumentParser
+
 import pytest
 
 from talbot.flow.frame.arguments import pixel_types, span, window
-from talbot.models.parameters import ALL_TYPES, ParameterError, Window
+from talbot.flow.frame.command import add_arguments, request_of, typed_of
+from talbot.models.parameters import (
+    ALL_TYPES,
+    TYPICAL_CONVERTER,
+    ParameterError,
+    SensorParameters,
+    Window,
+    circuit_converter,
+    sensor_text,
+)
 
 FULL = Window(0, 95, 0, 63)
 
@@ -42,3 +53,32 @@ def test_window_refused(text):
 def test_span_names_field_value_and_range():
     with pytest.raises(ParameterError, match=r"waves = '9:12'|waves = '12'.*0\.\.10"):
         span("waves", "9:12", 0, 10)
+
+
+def parsed(*words):
+    parser = ArgumentParser()
+    add_arguments(parser)
+    return parser.parse_args(words)
+
+
+def test_the_circuits_converters_are_asked_for():
+    assert request_of(parsed()).sensor.converter == TYPICAL_CONVERTER
+    assert request_of(parsed("--afe", "ideal")).sensor.converter == TYPICAL_CONVERTER
+    found = request_of(parsed("--afe", "circuit")).sensor.converter
+    assert found == circuit_converter() and found.unit_mismatch > 0
+    assert typed_of(parsed("--afe", "circuit"), add_arguments)["afe"] == "circuit"
+
+
+def test_the_circuits_converters_replace_those_of_a_sensor_file(tmp_path):
+    file = tmp_path / "sensor.toml"
+    file.write_text(sensor_text(SensorParameters(converter=circuit_converter())))
+    assert request_of(parsed("--sensor", str(file))).sensor.converter == circuit_converter()
+    file.write_text(sensor_text(SensorParameters(converter=TYPICAL_CONVERTER)))
+    assert request_of(parsed("--sensor", str(file), "--afe", "circuit")).sensor.converter == circuit_converter()
+
+
+def test_afe_is_refused_by_name():
+    with pytest.raises(ParameterError, match="afe = 'spice': must be one of ideal, circuit"):
+        request_of(parsed("--afe", "spice"))
+    with pytest.raises(ParameterError, match="converter = 'ideal': must be left out with afe = circuit"):
+        request_of(parsed("--afe", "circuit", "--converter", "ideal"))

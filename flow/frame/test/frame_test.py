@@ -13,7 +13,7 @@ from talbot.flow.simulate.build import Build
 from talbot.flow.simulate.icarus import icarus_program
 from talbot.models.chip import front_end_of, golden_frame
 from talbot.models.digital.stream import decode_stream
-from talbot.models.parameters import MODES, ConverterParameters, SensorParameters, Window
+from talbot.models.parameters import MODES, ConverterParameters, SensorParameters, Window, circuit_converter
 
 SIZES = {"odd": (13, 50, 4), "row": (1, 37, 8), "tile": (4, 6, 1)}  # rows, cols, lanes
 TAPS = 4
@@ -91,12 +91,14 @@ def test_windows_masks_and_back_pressure(
     check(programs["odd"], asked, front_end, exposure(asked.sensor, seed), stall)
 
 
+ROUGH = ConverterParameters(inl=2, dnl=0.5, offset=3, noise=1.5, ktc=1, unit_mismatch=0.05, seed=5)
+
+
+@pytest.mark.parametrize("converter", [ROUGH, circuit_converter()], ids=["rough", "circuit"])
 @pytest.mark.parametrize("mode", MODES)
-def test_imperfect_converters(programs, mode):
-    rows, cols, lanes = SIZES["odd"]
+def test_imperfect_converters(programs, mode, converter):
     asked = asked_of("odd", mode=mode, threshold=9)
-    rough = ConverterParameters(inl=2, dnl=0.5, offset=3, noise=1.5, ktc=1, seed=5)
-    sensor = SensorParameters(array=asked.sensor.array, chip=asked.sensor.chip, converter=rough)
+    sensor = SensorParameters(array=asked.sensor.array, chip=asked.sensor.chip, converter=converter)
     front_end = front_end_of(sensor, [0] * 24)
     assert front_end.converter is not None
     samples = exposure(sensor, 3)

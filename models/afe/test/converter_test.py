@@ -26,6 +26,16 @@ def test_step_errors_have_the_drawn_rms():
     assert np.allclose(error[:, [0, 255]], 0)
 
 
+def test_unit_mismatch_is_that_of_binary_capacitors():
+    """The step at mid-scale is 255 units; the code below it has all bits but one. Ends stay."""
+    drawn = [Converter.draw(ConverterParameters(unit_mismatch=0.004, seed=n), 32) for n in range(40)]
+    error = np.concatenate([c.levels[1] - Converter.ideal(32).levels[1] for c in drawn])
+    assert np.allclose(error[:, [0, 255]], 0)
+    assert abs((error[:, 128] - error[:, 127]).std() / (0.004 * 255**0.5) - 1) < 0.06
+    # Weights are the same wherever a bit is switched
+    assert np.allclose(error[:, 192] - error[:, 128], error[:, 64] - error[:, 0])
+
+
 def test_offset_kTC_and_noise_have_the_drawn_rms():
     c = Converter.draw(ConverterParameters(offset=2, noise=0.5, ktc=3, seed=9), 32)
     assert abs(c.offset.std() - 2) < 0.7

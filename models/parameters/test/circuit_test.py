@@ -1,0 +1,33 @@
+"""The table that `make analog TABLE=` writes: every value has its source, and what it says is in range."""
+
+import json
+from dataclasses import fields
+
+import pytest
+
+from talbot.models.parameters import TYPICAL_CONVERTER, ConverterParameters, ParameterError, circuit_converter
+from talbot.models.parameters.circuit import TABLE
+
+WRITTEN = json.loads(TABLE.read_text())
+
+
+def test_every_value_has_a_source():
+    names = {field.name for field in fields(ConverterParameters)} - {"seed"}
+    assert WRITTEN["parameters"].keys() == WRITTEN["sources"].keys() == names
+    assert all(WRITTEN["sources"].values()) and WRITTEN["command"].startswith("make analog")
+    assert all(0 <= error < 1 for error in WRITTEN["errors"].values())
+
+
+def test_the_circuit_is_what_it_was_sized_for():
+    """Offset, noise and sampled noise within the limits of its specification; steps by its capacitors alone."""
+    found = circuit_converter()
+    assert 0 < found.noise <= TYPICAL_CONVERTER.noise and 0 < found.ktc <= TYPICAL_CONVERTER.ktc
+    assert 0 < found.offset <= TYPICAL_CONVERTER.offset and found.inl <= TYPICAL_CONVERTER.inl
+    assert found.dnl == 0 and 3 * 255**0.5 * found.unit_mismatch <= 0.5
+
+
+def test_a_value_out_of_range_is_refused_by_name(tmp_path):
+    file = tmp_path / "circuit.json"
+    file.write_text(json.dumps(WRITTEN | {"parameters": WRITTEN["parameters"] | {"ktc": -1}}))
+    with pytest.raises(ParameterError, match="ktc = -1"):
+        circuit_converter(file)
