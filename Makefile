@@ -90,6 +90,10 @@ cosim: $(TESTS_READY) $(LAYOUT_READY)  ## a row with transistors in the loop: th
 pixel-layout: $(TESTS_READY) $(LAYOUT_READY)  ## the pixel drawn: 24 types, tile, array with dummies and rings; DRC, LVS: build/pixel-layout/<pdk>/pixel_layout.html (ROWS= COLS=)
 	@$(talbot) pixel-layout
 
+.PHONY: pixel-circuit
+pixel-circuit: $(LAYOUT_READY) have-tools  ## the drawn pixel in ngspice: full well, gain, noise, lag over corners, an EMVA 1288 style table: build/pixel-circuit/<pdk>/pixel_circuit.html (CORNERS= GATE= SINK=)
+	@$(talbot) pixel-circuit
+
 .PHONY: analog
 analog: $(LAYOUT_READY) have-tools  ## the analog circuits in ngspice and their datasheet: build/analog/<pdk>/datasheet.html [CORNERS=all DRAWS=200 TABLE=file]
 	@$(talbot) analog

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
+from types import ModuleType
 
 from talbot.models.parameters import ParameterError
 
@@ -58,3 +59,8 @@ class PixelProcess:
 def pixel_process(pdk: str) -> PixelProcess:
     """The process ``pdk`` for pixels. Raises ParameterError for one whose pixels are not drawn."""
     return import_module(f"talbot.platforms.{package(pdk, PROCESSES, ' for a drawn pixel')}.pixel").PROCESS
+
+
+def pixel_models(pdk: str) -> ModuleType:
+    """The process's SPICE models of a pixel: a module like `platforms.sky130.photodiode`. Raises ParameterError."""
+    return import_module(f"talbot.platforms.{package(pdk, PROCESSES, ' for a drawn pixel')}.photodiode")

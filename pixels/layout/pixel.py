@@ -95,6 +95,19 @@ class PixelLayout:
         return circuit(self.well_um, self.w_um, self.l_um)
 
     @property
+    def gates_um(self) -> tuple[float, float, float]:
+        """Left edges of the gates of reset, follower and select along x, in the pixel's western half."""
+        node, supply, _ = _contacts(self)
+        return node + 0.205, supply + 0.205, supply + 0.505 + self.l_um
+
+    @property
+    def node_wire_um(self) -> tuple[float, float]:
+        """Area in um2 and perimeter in um of a diode's node on the lowest metal: to the follower's gate and the tap."""
+        node, (_, _, bottom), follower = _contacts(self)[0], DIFFUSION, self.gates_um[1] + self.l_um / 2
+        upright, across = TAP_Y - bottom - 0.5, follower - node - 0.085
+        return 0.17 * (upright + across), 2 * (upright + across + 0.17)
+
+    @property
     def fill_factor(self) -> float:
         """Share of the pixel that is photodiode."""
         width, height = self.well_um
@@ -194,7 +207,7 @@ def _transistors(canvas: Canvas, made: PixelLayout) -> None:
     for mask, around in p.thick:
         canvas.box(mask, left - around, bottom - around, right + around, top + around)
     node, supply, column = _contacts(made)
-    gates = [node + 0.205, supply + 0.205, supply + 0.505 + made.l_um]
+    gates = made.gates_um
     reset, follower, select = (gate + made.l_um / 2 for gate in gates)
     for gate, middle_x, (low, high) in zip(
         gates,

@@ -29,6 +29,10 @@ def test_a_solution_by_the_public_name():
         ("pixel --kind phase", "kind = 'phase': must be one of amplitude, interleaved, photogate, all"),
         ("pixel --heights high", "heights = 'high': must be one of met2-2.006, met2-2.301"),
         ("pixel --pdk ihp-sg13g2 --kind photogate", "kind = photogate: must be one that ihp-sg13g2 can make"),
+        ("pixel-circuit --pdk ihp-sg13g2", "pdk = 'ihp-sg13g2': must be one of sky130"),
+        ("pixel-circuit --corners tt_30", "corners = 'tt_30': must be all, typical, or some of tt_-40"),
+        ("pixel-circuit --gate 9", "gate_v = 9.0: must be"),
+        ("pixel-circuit --sink 0", "sink_a = 0.0: must be"),
         ("sim --pixel gf180", "pixel = 'gf180': must be one of ideal, sky130, ihp-sg13g2"),
     ],
 )
