@@ -24,10 +24,7 @@ COMMANDS = {
     "pixel": ("talbot.flow.pixel.command", "a process's pixel: gratings in its metals, solved, fitted to Eq. 3.1"),
     "cosim": ("talbot.flow.cosim.command", "a row with analog circuits: Verilog and ngspice in lock-step"),
     "pixel-layout": ("talbot.flow.pixel_layout.command", "the pixel drawn: 24 types, tile, array; design rules, LVS"),
-    "pixel-circuit": (
-        "talbot.flow.pixel_circuit.command",
-        "the drawn pixel in ngspice: full well, noise, lag, EMVA",
-    ),
+    "pixel-circuit": ("talbot.flow.pixel_circuit.command", "the drawn pixel in ngspice: full well, noise, lag, EMVA"),
     "analog": ("talbot.flow.analog.command", "the analog circuits in ngspice: corners, mismatch, noise, datasheet"),
     "polar": ("talbot.flow.polar.command", "polarization and highlights from a raw frame, beside free baselines"),
     "depth": ("talbot.flow.depth.command", "depth field by time of flight, unwrapped by the light field"),

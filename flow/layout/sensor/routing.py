@@ -4,14 +4,15 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from talbot.base.steps import StepError
+from talbot.flow.layout.route.ports import LEVELS
 from talbot.flow.layout.route.rules import RoutingRules
 
 from .channel import check_apart, free, left_edge
 from .plan import CORE, SIGNALS, SUPPLIES, Block, Box, DieParameters, Terminal, check_way, nm, touching
 
 # Places in RoutingRules.layers. Branches are the highest: a net is connected only there, with its driver, so that no
-# gate has a trunk or a branch as an antenna before
-STUB, TRUNK, BRANCH = 1, 3, 4
+# gate has a trunk or a branch as an antenna before. Stubs are where the chip's ports are
+STUB, TRUNK, BRANCH = LEVELS["west"], 3, 4
 Nets = Mapping[str, list[Terminal]]
 
 

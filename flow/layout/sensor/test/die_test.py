@@ -21,7 +21,7 @@ from . import small
 pytest.importorskip("klayout.db", reason="klayout: not installed")
 
 
-EXTRA = "  PIN more\n    DIRECTION INPUT ;\n    PORT\n      LAYER met1 ;\n      RECT 0 390 1 391 ;\n    END\n  END more"
+EXTRA = "  PIN more\n    DIRECTION INPUT ;\n    PORT\n      LAYER met3 ;\n      RECT 0 390 1 391 ;\n    END\n  END more"
 
 
 @pytest.fixture(scope="module")
@@ -72,7 +72,7 @@ def index(plan, net, layer):
     return max(found)[1]
 
 
-@pytest.mark.parametrize("layer, net", [(70, "dac[3]"), (71, "tap[1]"), (68, "miso"), (71, "vdda"), (72, "vssa")])
+@pytest.mark.parametrize("layer, net", [(70, "dac[3]"), (71, "tap[1]"), (70, "miso"), (71, "vdda"), (72, "vssa")])
 def test_a_missing_wire_is_an_open_net(made, tmp_path, layer, net):
     metrics, report = matched(made, tmp_path, lambda plan: plan["shapes"].pop(index(plan, net, layer)))
     assert not metrics["lvs_match"] and metrics["shorts"] == 0 and list(report["open"]) == [net]

@@ -6,6 +6,7 @@ import re
 import pytest
 
 from talbot.flow.layout.sensor.elmore import delays
+from talbot.flow.layout.sensor.routing import STUB
 from talbot.flow.layout.sensor.steps.die_antenna import DieAntenna
 from talbot.flow.layout.sensor.steps.die_parasitics import DieParasitics, DieParasiticsParameters
 from talbot.flow.layout.sensor.steps.die_sta import over
@@ -50,15 +51,16 @@ def test_a_net_by_hand(parasitics):
     tech, tracks, route = coriolis_platform("sky130"), plan["tracks"], plan["routes"]["tap[0]"]
     assert len(route["branches"]) == 3 and nets["tap[0]"]["driver"] == "core"
     xs = [branch["x"] for branch in route["branches"]]
-    lengths = {
-        (3, tracks["trunk"]): max(xs) - min(xs),
-        (4, tracks["branch"]): sum(abs(branch["end"] - route["y"]) for branch in route["branches"]),
-    }
     (core,) = [branch for branch in route["branches"] if branch["block"] == "core"]
-    lengths[1, core["box"][3] - core["box"][1]] = max(core["box"][0] - core["x"], core["x"] - core["box"][2])
+    left, bottom, right, top = core["box"]
+    pieces = (
+        (3, tracks["trunk"], max(xs) - min(xs)),
+        (4, tracks["branch"], sum(abs(branch["end"] - route["y"]) for branch in route["branches"])),
+        (STUB, top - bottom, max(left - core["x"], core["x"] - right)),
+    )
     femto = sum(
         length * 1e-6 * (width / 1000 * tech.metals[level].area_af_um2 + 2 * tech.metals[level].fringe_af_um)
-        for (level, width), length in lengths.items()
+        for level, width, length in pieces
     )
     assert nets["tap[0]"]["wire_ff"] == pytest.approx(femto, abs=1e-3)
     assert nets["tap[0]"]["load_pf"] == pytest.approx(femto / 1000 + 0.06, abs=1e-5)

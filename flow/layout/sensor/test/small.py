@@ -2,6 +2,7 @@
 
 import json
 
+from talbot.flow.layout.route.ports import LEVELS
 from talbot.flow.layout.sensor.plan import BLOCKS, CORE, SIGNALS, DieParameters
 from talbot.flow.layout.sensor.steps.die_connectivity import DieConnectivity
 from talbot.flow.layout.sensor.steps.die_gds import DieGds, DieGdsParameters
@@ -10,6 +11,7 @@ from talbot.flow.layout.steps.parameters import PdkParameters
 from talbot.models.parameters import ArrayParameters, ChipParameters
 from talbot.pixels.blocks import AnalogSizes, blocks
 from talbot.pixels.footprints import write
+from talbot.platforms.coriolis import coriolis_platform
 
 DIE = DieParameters(1700.0, 1300.0, pad_um=20.0)
 RULES = {
@@ -70,9 +72,10 @@ def core(folder):
             cell.shapes(layout.layer(layer, 16)).insert(db.DText(name, db.DTrans(db.DBox(*box).center() - db.DPoint())))
         lines.extend(["    END", f"  END {name}"])
 
+    metal = coriolis_platform("sky130").metals[LEVELS["west"]]
     for k, (name, direction) in enumerate(core_pins().items()):
         left, bottom = (0.0 if k % 2 == 0 else WIDTH - 0.3), 5 + 4.0 * (k // 2)
-        draw(name, 68, "met1", direction, [(left, bottom, left + 0.3, bottom + 0.32)])
+        draw(name, metal.layer, metal.lef, direction, [(left, bottom, left + 0.3, bottom + 0.32)])
     for net, xs in (("vss", (50.0, 110.0)), ("vdd", (80.0, 140.0))):
         draw(net, 71, "met4", "inout", [(x - 0.6, 0.0, x + 0.6, HEIGHT) for x in xs])
     (folder / "core.lef").write_text("\n".join([*lines, "END Core", "END LIBRARY", ""]))
