@@ -6,6 +6,9 @@ from .amplifier import AmplifierResult
 from .comparator import Decisions
 from .lane import LaneResult
 from .noise import Noise
+from .support import SupportResult
+
+TYPICAL = "tt_027C_1v80"  # the corner of typical values
 
 
 @dataclass(frozen=True)
@@ -22,3 +25,4 @@ class Found:
     ktc: dict[str, float]
     amplifiers: dict[str, AmplifierResult]
     amplifier_ktc: dict[str, float]
+    supports: dict[str, SupportResult]

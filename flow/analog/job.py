@@ -19,20 +19,21 @@ from talbot.pixels.circuits import lane as lanes
 from talbot.pixels.circuits.amplifier import AmplifierSizes, AmplifierSpec
 from talbot.pixels.circuits.lane import LaneSizes
 from talbot.pixels.circuits.specification import LaneSpec
+from talbot.pixels.circuits.support import SupportSpec
 
-from . import amplifier, comparator, lane, linearity
+from . import amplifier, comparator, lane, linearity, support
 from . import noise as noises
 from .amplifier import AmplifierResult
 from .comparator import BATCH, Decisions, spread
-from .datasheet import Row, over_corners
 from .deck import Setup, deck, process_of
-from .found import Found
+from .found import TYPICAL, Found
 from .lane import LaneResult, inl
 from .noise import Noise
+from .rows import datasheet
+from .support import SupportResult
 
 STEPS = "check", "corners", "mismatch", "noise", "linearity", "report"
 STORE = BUILD / "analog" / "measured"
-TYPICAL = "tt_027C_1v80"
 QUICK = (TYPICAL, "ss_n40C_1v62", "ff_125C_1v98")
 ALL = (
     TYPICAL,
@@ -99,7 +100,7 @@ def make(
     found = measured(setup, sizes, corners, draws, workers, note)
     note("report")
     rows = datasheet(setup.spec, found, len(found.offsets))
-    counts = [*found.decisions.values(), *found.lanes.values(), *found.amplifiers.values()]
+    counts = [*found.decisions.values(), *found.lanes.values(), *found.amplifiers.values(), *found.supports.values()]
     summary = {
         "pdk": pdk,
         "corners": list(corners),
@@ -151,6 +152,12 @@ def measured(
         for name, corner in places.items()
     ]
     amplifiers = run(amplified, STORE, "amplifier", workers)
+    spec_s = SupportSpec.of()
+    standing = [
+        Job(f"support-{name}", support.measure, (setup, spec_s, corner), (repr((setup, spec_s)), name))
+        for name, corner in places.items()
+    ]
+    supports = run(standing, STORE, "support", workers)
     note("mismatch")
     typical = places[TYPICAL]
     batches = range(1, -(-draws // BATCH) + 1)
@@ -179,89 +186,8 @@ def measured(
         ktc,
         {name: from_json(AmplifierResult, one) for name, one in zip(places, amplifiers, strict=True)},
         {name: amplifier.ktc(setup, sizes_a, corner) for name, corner in places.items()},
+        {name: from_json(SupportResult, one) for name, one in zip(places, supports, strict=True)},
     )
-
-
-def datasheet(spec: LaneSpec, found: Found, draws: int) -> list[Row]:
-    """The rows, with limits from the specification."""
-    half, share = 1e9 * spec.half_cycle, 1e12 * spec.decision_energy
-    rms, _, high = spread(found.offsets)
-
-    def corners(circuit: str, name: str, unit: str, values: dict[str, float], most: float | None) -> Row:
-        return over_corners(circuit, name, unit, values.items(), TYPICAL, most=most)
-
-    decisions, results = found.decisions, found.lanes
-    energies = {name: 1e12 * sum(one.energy.values()) for name, one in results.items()}
-    shapes = {name: inl(one.levels) for name, one in results.items()}
-    wrong = {name: float(not one.right) for name, one in decisions.items()}
-    missed = {name: float(abs(one.code - round(lane.VALUE))) for name, one in results.items()}
-    over = f"{draws} draws, max: 95 % interval"
-    arrays = f"{len(found.inl)} drawn arrays; max: 3 sigma in the middle 99.7 %"
-    noise = found.noise
-    return [
-        corners("comparator", "decision, half an LSB", "ns", {n: 1e9 * d.delay for n, d in decisions.items()}, half),
-        corners("comparator", "wrong decisions", "", wrong, 0.0),
-        corners(
-            "comparator",
-            "energy of a decision",
-            "pJ",
-            {n: 1e12 * d.energy for n, d in decisions.items()},
-            share * spec.comparator_share,
-        ),
-        Row("comparator", "offset, rms", "LSB", rms, None, high, most=spec.offset, over=over),
-        Row("comparator", "noise, rms", "LSB", noise.rms, None, noise.high, most=spec.noise, over="95 % interval"),
-        corners("DAC", "settling to half an LSB", "ns", {n: 1e9 * r.settling for n, r in results.items()}, half),
-        corners("DAC", "INL, schematic", "LSB", {n: s[2] for n, s in shapes.items()}, spec.inl),
-        _quantile("DAC", "INL, mismatch", found.inl, spec.inl, arrays),
-        _quantile("DAC", "DNL, mismatch", found.dnl, spec.dnl, arrays),
-        corners("lane", "offset, systematic", "LSB", {n: abs(s[0]) for n, s in shapes.items()}, spec.offset),
-        corners("lane", "gain error over the range", "LSB", {n: abs(s[1]) for n, s in shapes.items()}, None),
-        corners("lane", "sampled noise, rms", "LSB", found.ktc, spec.ktc),
-        corners("lane", "droop in a conversion", "LSB", {n: r.droop for n, r in results.items()}, spec.droop),
-        corners("lane", f"conversion of {lane.VALUE:g}, off by", "codes", missed, 0.0),
-        Row(
-            "lane",
-            "ENOB of a sine",
-            "bit",
-            float(np.median(found.enob)),
-            float(min(found.enob)),
-            float(max(found.enob)),
-            least=spec.enob,
-            over=f"{len(found.enob)} drawn arrays, with noise",
-        ),
-        corners("lane", "energy of a decision", "pJ", energies, share),
-        *_amplifier(found),
-    ]
-
-
-def _amplifier(found: Found) -> list[Row]:
-    """The rows of the difference amplifier."""
-    spec = AmplifierSpec.of()
-
-    def corners(name: str, unit: str, values: dict[str, float], most: float | None) -> Row:
-        return over_corners("amplifier", name, unit, values.items(), TYPICAL, most=most)
-
-    def row(name: str, unit: str, field: str, most: float | None, scale: float = 1.0) -> Row:
-        values = {corner: scale * abs(getattr(one, field)) for corner, one in found.amplifiers.items()}
-        return corners(name, unit, values, most)
-
-    gains = {corner: 100 * abs(one.gain - 1) for corner, one in found.amplifiers.items()}
-    return [
-        corners("gain, off by", "%", gains, 100 * spec.gain),
-        row("offset", "LSB", "offset", None),
-        row("INL", "LSB", "inl", spec.inl),
-        row("settling to half an LSB", "ns", "settling", 1e9 * spec.hold, 1e9),
-        row("left after one cycle", "LSB", "left", spec.settling),
-        row("change under 100 times ambient light", "LSB", "ambient", spec.ambient),
-        row("steps of the trim, off by", "steps", "trim", spec.trim),
-        corners("sampled noise, rms", "LSB", found.amplifier_ktc, spec.ktc),
-        row("energy of a sample", "pJ", "energy", 1e12 * spec.energy, 1e12),
-    ]
-
-
-def _quantile(circuit: str, name: str, values: Sequence[float], most: float, over: str) -> Row:
-    ordered = np.quantile(values, (0.0, 0.5, 0.997))
-    return Row(circuit, name, "LSB", float(ordered[1]), float(ordered[0]), float(ordered[2]), most=most, over=over)
 
 
 def converter(spec: LaneSpec, sizes: LaneSizes, found: Found) -> dict[str, Any]:

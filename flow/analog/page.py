@@ -14,6 +14,7 @@ from .found import Found
 from .lane import inl
 
 NAMES = ("datasheet.html", "summary.json")
+AMPLIFIER = ("corner", "gain", "INL LSB", "settling ns", "left LSB", "ambient LSB", "energy pJ", "retries")
 CORNERS = ("corner", "decision ns", "energy pJ", "settling ns", "INL LSB", "droop LSB", "lane pJ a decision", "retries")
 
 
@@ -27,7 +28,7 @@ def write(folder: Path, summary: dict[str, Any], rows: list[Row], found: Found) 
     spec, sizes = summary["specification"], summary["sizes"]
     text = render(
         TABLES,
-        f"{summary['pdk']}: the converter lane in transistors",
+        f"{summary['pdk']}: amplifier and converter lane in transistors",
         about=f"{len(summary['corners'])} corners, {summary['draws']} draws; make analog",
         tiles=tiles,
         sections=[
@@ -40,6 +41,7 @@ def write(folder: Path, summary: dict[str, Any], rows: list[Row], found: Found) 
                 numbers=False,
             ),
             Section(head=CORNERS, rows=[_corner(name, found) for name in summary["corners"]]),
+            Section("Amplifier", head=AMPLIFIER, rows=[_amplifier(name, found) for name in summary["corners"]]),
             Section(
                 "Mismatch",
                 "Comparators with the mismatch of the models, and capacitor arrays in closed form.",
@@ -70,6 +72,12 @@ def _corner(name: str, found: Found) -> tuple[str, ...]:
     values = (1e9 * one.delay, 1e12 * one.energy, 1e9 * lane.settling, inl(lane.levels)[2], lane.droop)
     values += (1e12 * sum(lane.energy.values()),)
     return (name, *(f"{value:.3g}" for value in values), str(one.repeated + lane.repeated))
+
+
+def _amplifier(name: str, found: Found) -> tuple[str, ...]:
+    one = found.amplifiers[name]
+    values = (one.gain, one.inl, 1e9 * one.settling, one.left, one.ambient, 1e12 * one.energy)
+    return (name, *(f"{value:.3g}" for value in values), str(one.repeated))
 
 
 def _histograms(found: Found) -> Figure:

@@ -1,0 +1,119 @@
+"""The rows of the datasheet, with limits from the specifications."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from talbot.pixels.circuits.amplifier import BIAS, AmplifierSpec
+from talbot.pixels.circuits.specification import LaneSpec
+from talbot.pixels.circuits.support import SupportSpec
+
+from .comparator import spread
+from .datasheet import Row, over_corners
+from .found import TYPICAL, Found
+from .lane import VALUE, inl
+from .support import SupportResult
+
+
+def datasheet(spec: LaneSpec, found: Found, draws: int) -> list[Row]:
+    """The rows, with limits from the specification."""
+    half, share = 1e9 * spec.half_cycle, 1e12 * spec.decision_energy
+    rms, _, high = spread(found.offsets)
+
+    def corners(circuit: str, name: str, unit: str, values: dict[str, float], most: float | None) -> Row:
+        return over_corners(circuit, name, unit, values.items(), TYPICAL, most=most)
+
+    decisions, results = found.decisions, found.lanes
+    energies = {name: 1e12 * sum(one.energy.values()) for name, one in results.items()}
+    shapes = {name: inl(one.levels) for name, one in results.items()}
+    wrong = {name: float(not one.right) for name, one in decisions.items()}
+    missed = {name: float(abs(one.code - round(VALUE))) for name, one in results.items()}
+    over = f"{draws} draws, max: 95 % interval"
+    arrays = f"{len(found.inl)} drawn arrays; max: 3 sigma in the middle 99.7 %"
+    noise = found.noise
+    return [
+        corners("comparator", "decision, half an LSB", "ns", {n: 1e9 * d.delay for n, d in decisions.items()}, half),
+        corners("comparator", "wrong decisions", "", wrong, 0.0),
+        corners(
+            "comparator",
+            "energy of a decision",
+            "pJ",
+            {n: 1e12 * d.energy for n, d in decisions.items()},
+            share * spec.comparator_share,
+        ),
+        Row("comparator", "offset, rms", "LSB", rms, None, high, most=spec.offset, over=over),
+        Row("comparator", "noise, rms", "LSB", noise.rms, None, noise.high, most=spec.noise, over="95 % interval"),
+        corners("DAC", "settling to half an LSB", "ns", {n: 1e9 * r.settling for n, r in results.items()}, half),
+        corners("DAC", "INL, schematic", "LSB", {n: s[2] for n, s in shapes.items()}, spec.inl),
+        _quantile("DAC", "INL, mismatch", found.inl, spec.inl, arrays),
+        _quantile("DAC", "DNL, mismatch", found.dnl, spec.dnl, arrays),
+        corners("lane", "offset, systematic", "LSB", {n: abs(s[0]) for n, s in shapes.items()}, spec.offset),
+        corners("lane", "gain error over the range", "LSB", {n: abs(s[1]) for n, s in shapes.items()}, None),
+        corners("lane", "sampled noise, rms", "LSB", found.ktc, spec.ktc),
+        corners("lane", "droop in a conversion", "LSB", {n: r.droop for n, r in results.items()}, spec.droop),
+        corners("lane", f"conversion of {VALUE:g}, off by", "codes", missed, 0.0),
+        Row(
+            "lane",
+            "ENOB of a sine",
+            "bit",
+            float(np.median(found.enob)),
+            float(min(found.enob)),
+            float(max(found.enob)),
+            least=spec.enob,
+            over=f"{len(found.enob)} drawn arrays, with noise",
+        ),
+        corners("lane", "energy of a decision", "pJ", energies, share),
+        *_amplifier(found),
+        *_support(found.supports),
+    ]
+
+
+def _amplifier(found: Found) -> list[Row]:
+    """The rows of the difference amplifier."""
+    spec = AmplifierSpec.of()
+
+    def corners(name: str, unit: str, values: dict[str, float], most: float | None) -> Row:
+        return over_corners("amplifier", name, unit, values.items(), TYPICAL, most=most)
+
+    def row(name: str, unit: str, field: str, most: float | None, scale: float = 1.0) -> Row:
+        values = {corner: scale * abs(getattr(one, field)) for corner, one in found.amplifiers.items()}
+        return corners(name, unit, values, most)
+
+    gains = {corner: 100 * abs(one.gain - 1) for corner, one in found.amplifiers.items()}
+    return [
+        corners("gain, off by", "%", gains, 100 * spec.gain),
+        row("offset", "LSB", "offset", None),
+        row("INL", "LSB", "inl", spec.inl),
+        row("settling to half an LSB", "ns", "settling", 1e9 * spec.hold, 1e9),
+        row("left after one cycle", "LSB", "left", spec.settling),
+        row("change under 100 times ambient light", "LSB", "ambient", spec.ambient),
+        row("steps of the trim, off by", "steps", "trim", spec.trim),
+        corners("sampled noise, rms", "LSB", found.amplifier_ktc, spec.ktc),
+        row("energy of a sample", "pJ", "energy", 1e12 * spec.energy, 1e12),
+    ]
+
+
+def _support(found: dict[str, SupportResult]) -> list[Row]:
+    """The rows of row driver, switch drivers and bias."""
+    spec = SupportSpec.of()
+
+    def row(circuit: str, name: str, unit: str, field: str, scale: float, **limits: float) -> Row:
+        values = {corner: scale * getattr(one, field) for corner, one in found.items()}
+        return over_corners(circuit, name, unit, values.items(), TYPICAL, **limits)
+
+    off = {corner: 100 * abs(one.bias / BIAS - 1) for corner, one in found.items()}
+    return [
+        row("row driver", "far end within 1 %", "ns", "line", 1e9, most=1e9 * spec.settle),
+        row("row driver", "energy of a pulse", "pJ", "line_energy", 1e12),
+        row("switch drivers", "shortest gap", "ns", "gap", 1e9, least=1e9 * spec.gap),
+        row("switch drivers", "longest gap", "ns", "lost", 1e9, most=1e9 * spec.lost),
+        row("bias", "current", "uA", "bias", 1e6),
+        over_corners("bias", "current, off by", "%", off.items(), TYPICAL, most=100 * spec.bias),
+        row("bias", "start", "us", "start", 1e6, most=1e6 * spec.start),
+        row("bias", "current of the whole", "uA", "idle", 1e6),
+    ]
+
+
+def _quantile(circuit: str, name: str, values: Sequence[float], most: float, over: str) -> Row:
+    ordered = np.quantile(values, (0.0, 0.5, 0.997))
+    return Row(circuit, name, "LSB", float(ordered[1]), float(ordered[0]), float(ordered[2]), most=most, over=over)

@@ -1,0 +1,76 @@
+"""Row line, switch drivers and bias in ngspice against closed forms, and with planted faults."""
+
+import shutil
+from dataclasses import replace
+from math import log, pi
+
+import numpy as np
+import pytest
+
+from talbot.cells.corner import Corner
+from talbot.flow.analog import job, support
+from talbot.pixels.circuits.amplifier import BIAS
+from talbot.pixels.circuits.gates import inverter
+from talbot.pixels.circuits.netlist import Circuit, Instance
+from talbot.pixels.circuits.support import SupportSpec, bias, row_line
+
+pytestmark = pytest.mark.skipif(not shutil.which("ngspice"), reason="needs ngspice (make tools)")
+SETUP, _ = job.setup_of("sky130")
+CORNER = Corner.parse(job.TYPICAL)
+SPEC = SupportSpec.of()
+
+
+def test_the_far_end_follows_the_diffusion_equation():
+    """A line that is driven at one end: 4 / pi exp(-pi2 t / 4 RC) is left at the other; the driver adds a little."""
+    wave, _ = support.pulse(SETUP, SPEC, CORNER)
+    line = 384 * SPEC.ohm * 384 * SPEC.farad * 4 / pi**2 * log(4 / pi / support.FAR)
+    found = support.settled(wave, SPEC, CORNER)
+    assert line < found < line + 2e-9
+    # A pulse takes C V2 from the supply, and the driver's own
+    energy = wave.charge("vdd", 0.0, float(wave.time[-1])) * CORNER.supply
+    closed = 384 * SPEC.farad * CORNER.supply**2
+    assert closed < energy < 1.3 * closed
+
+
+def test_a_line_that_is_cut_is_found():
+    """One resistor of 1e12 ohm, as a break is: the far end stays where it was."""
+    line = row_line(SPEC)
+    cut = replace(line, resistors=tuple(r._replace(value=1e12) if r.name == "b7" else r for r in line.resistors))
+    wave, _ = support.pulse(SETUP, SPEC, CORNER, cut)
+    assert support.settled(wave, SPEC, CORNER) > SPEC.settle
+
+
+def test_phases_do_not_overlap_and_those_of_two_inverters_do():
+    gaps, _ = support.phases(SETUP, SPEC, CORNER)
+    assert SPEC.gap < min(gaps) <= max(gaps) < SPEC.lost
+    supplies = ("vdd", "vss")
+    plain = Circuit(
+        "plain",
+        ("clk", "phi1", "phi2", *supplies),
+        instances=(
+            Instance("one", inverter(6), ("clk", "phi1", *supplies)),
+            Instance("two", inverter(6), ("phi1", "phi2", *supplies)),
+        ),
+    )
+    gaps, _ = support.phases(SETUP, SPEC, CORNER, plain)
+    assert min(gaps) < 0
+
+
+def test_the_bias_starts_and_its_current_is_that_of_its_resistor():
+    wave, _ = support.started(SETUP, CORNER)
+    current = -float(wave.current["ibias"][-1])
+    assert current == pytest.approx(BIAS, rel=SPEC.bias)
+    # In weak inversion it is n kT/q ln 4 / R, which it is never below; in strong inversion it falls with the square
+    wave, _ = support.started(SETUP, CORNER, bias(ohm=18e3))
+    half = -float(wave.current["ibias"][-1])
+    assert 0.25 * current < half < 0.55 * current
+    assert half > 0.0259 * np.log(4) / 18e3
+
+
+def test_a_cold_bias_without_its_starter_does_not_start():
+    """At 27 degrees leakage starts it; at ss, -40 degrees it has no current after 30 us."""
+    cold = Corner.parse("ss_n40C_1v62")
+    found = [
+        -float(support.started(SETUP, cold, one)[0].current["ibias"][-1]) for one in (bias(), bias().without("start"))
+    ]
+    assert found[0] == pytest.approx(BIAS, rel=SPEC.bias) and abs(found[1]) < 0.01 * BIAS

@@ -1,0 +1,120 @@
+"""What the lanes and rows stand on: row driver with its line, non-overlapping switch drivers, bias with start-up.
+
+Pins of `row_driver`: row phase line vdd vss; the line is high where both are. `row_line`: near far vss, a ladder.
+`non_overlap`: clk phi1 phi2 vdd vss; phi2 follows clk, phi1 is high while it is low, and both are low in between.
+`bias`: ibias vdd vss; BIAS amperes leave ibias (the amplifier's pin) at the typical corner.
+"""
+
+from dataclasses import dataclass
+from typing import Self
+
+from talbot.models.parameters import ArrayParameters, SensorParameters, check_int, check_real
+
+from .gates import inverter, nand, nor
+from .netlist import Capacitor, Circuit, Instance, Resistor, Transistor
+
+SECTIONS = 32  # of the ladder; its delay is within 0.2 % of that of an infinite number
+DELAYS = 4  # inverters in each loop of the switch drivers
+
+
+@dataclass(frozen=True)
+class SupportSpec:
+    """Limits and loads.
+
+    cols: pixels at a row line, 1..100000. ohm, farad: of the line for each, 0..1e5 ohm, 1e-17..1e-11 F: 10 um of thin
+    metal and two gates. settle: s, for the line's far end: a guard's cycle. gap: s, least between two phases. lost: s,
+    most. switches: F, 1e-17..1e-9, of the switches on each phase. bias: relative, by which its current may be off
+    BIAS. start: s, most until it is there.
+    """
+
+    cols: int = ArrayParameters().cols
+    ohm: float = 20.0
+    farad: float = 5e-15
+    settle: float = 100e-9
+    gap: float = 0.1e-9
+    lost: float = 5e-9
+    switches: float = 0.2e-12
+    bias: float = 0.3
+    start: float = 10e-6
+
+    def __post_init__(self) -> None:
+        check_int("cols", self.cols, 1, 100_000)
+        check_real("ohm", self.ohm, 0.01, 1e5)
+        check_real("farad", self.farad, 1e-17, 1e-11)
+        for name in ("settle", "gap", "lost", "start"):
+            check_real(name, getattr(self, name), 1e-12, 1e-3)
+        check_real("bias", self.bias, 0.01, 1)
+        check_real("switches", self.switches, 1e-17, 1e-9)
+
+    @classmethod
+    def of(cls, sensor: SensorParameters | None = None) -> Self:
+        """Of a sensor: the columns of its array, the cycle of its chip."""
+        sensor = sensor or SensorParameters()
+        return cls(cols=sensor.array.cols, settle=1 / sensor.chip.f_clk)
+
+
+def row_driver() -> Circuit:
+    """Pins row phase line vdd vss."""
+    supplies = ("vdd", "vss")
+    return Circuit(
+        "row_driver",
+        ("row", "phase", "line", *supplies),
+        instances=(
+            Instance("select", nand(), ("row", "phase", "selectn", *supplies)),
+            Instance("first", inverter(3), ("selectn", "selected", *supplies)),
+            Instance("second", inverter(9), ("selected", "linen", *supplies)),
+            Instance("last", inverter(30), ("linen", "line", *supplies)),
+        ),
+    )
+
+
+def row_line(spec: SupportSpec) -> Circuit:
+    """A line as a ladder of T sections. Pins near far vss."""
+    ohm, farad = spec.ohm * spec.cols / SECTIONS, spec.farad * spec.cols / SECTIONS
+    nodes = ["near", *(f"n{k}" for k in range(1, SECTIONS)), "far"]
+    resistors, capacitors = [], []
+    for k, (a, b) in enumerate(zip(nodes, nodes[1:], strict=False)):
+        resistors += [Resistor(f"a{k}", a, f"m{k}", ohm / 2), Resistor(f"b{k}", f"m{k}", b, ohm / 2)]
+        capacitors.append(Capacitor(f"c{k}", f"m{k}", "vss", farad))
+    return Circuit("row_line", ("near", "far", "vss"), (), tuple(capacitors), tuple(resistors))
+
+
+def non_overlap() -> Circuit:
+    """Pins clk phi1 phi2 vdd vss."""
+    supplies, instances = ("vdd", "vss"), [Instance("not", inverter(), ("clk", "clkn", "vdd", "vss"))]
+    for name, start, other in (("phi1", "clk", "phi2"), ("phi2", "clkn", "phi1")):
+        nodes = [f"{name}_0", *(f"{name}_{k}" for k in range(1, DELAYS)), name]
+        instances.append(Instance(f"{name}_nor", nor(), (start, other, f"{name}_0", *supplies)))
+        for k, (a, b) in enumerate(zip(nodes, nodes[1:], strict=False)):
+            strength = (1, 2, 6, 12)[k]
+            instances.append(Instance(f"{name}_delay{k}", inverter(strength), (a, b, *supplies)))
+    return Circuit("non_overlap", ("clk", "phi1", "phi2", *supplies), instances=tuple(instances))
+
+
+def bias(ohm: float = 9e3) -> Circuit:
+    """A current of 2 (1 - 1/sqrt(4))2 / (k w/l ohm2): a pair of 1 to 4 with ``ohm`` between, and what starts it.
+
+    While no current flows, `start` is high and draws the mirror's gate down; the current then pulls `start` low.
+    """
+
+    def n(name: str, drain: str, gate: str, source: str, w: float, length: float) -> Transistor:
+        return Transistor(name, drain, gate, source, "vss", "n", w, length)
+
+    def p(name: str, drain: str, gate: str, w: float, length: float) -> Transistor:
+        return Transistor(name, drain, gate, "vdd", "vdd", "p_lvt", w, length)
+
+    return Circuit(
+        "bias",
+        ("ibias", "vdd", "vss"),
+        (
+            n("one", "vbn", "vbn", "vss", 5, 2.0),
+            n("four", "vbp", "vbn", "source", 20, 2.0),
+            p("mirror_one", "vbn", "vbp", 10, 2.0),
+            p("mirror_four", "vbp", "vbp", 10, 2.0),
+            p("out", "ibias", "vbp", 10, 2.0),
+            p("keep", "start", "vss", 0.42, 8.0),
+            n("stop", "start", "vbn", "vss", 4, 0.5),
+            n("start", "vbp", "start", "vss", 1, 0.5),
+        ),
+        resistors=(Resistor("r", "source", "vss", ohm),),
+    )
