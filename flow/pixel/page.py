@@ -54,7 +54,7 @@ def write(
                 "Eq. 3.1 fitted to the rigorous response over -20..20 degrees, light without polarization. Residual: "
                 "of four diodes against the formula, relative to their mean; unexplained: share of the differences' "
                 "variance. Quantum efficiency: share of the light on the pixel that enters the silicon of both diodes.",
-                charts=[svg(section), svg(shown)],
+                charts=[svg(section), svg(shown), svg(polar(measured))],
             ),
             Section(head=HEAD, rows=[_row(beta, plan, one) for beta, one in measured.items()]),
             Section(
@@ -179,6 +179,24 @@ def responses(measured: dict[float, Measured]) -> Figure:
         axes.set_ylabel("light in a diode, % of the pixel's", fontsize=9)
         axes.tick_params(labelsize=8)
         axes.grid(alpha=0.25)
+    return figure
+
+
+def polar(measured: dict[float, Measured]) -> Figure:
+    """A pair of diodes of each design as antennas are drawn, along the ray's direction; the formula dotted."""
+    figure = Figure(figsize=(4 * len(measured), 2.6), layout="constrained")
+    panels = figure.subplots(1, len(measured), squeeze=False, subplot_kw={"projection": "polar"})[0]
+    for axes, (beta, one) in zip(panels, measured.items(), strict=True):
+        shares, angles = one.response.unpolarized[len(one.fits) // 2], one.response.angles
+        form = one.fit.curve(angles)
+        form *= shares.mean() / form.mean()
+        for diode, colour in zip((0, 2), COLOURS, strict=False):
+            axes.plot(angles, 100 * shares[diode], color=colour, linewidth=1.4)
+            axes.plot(angles, 100 * form[diode], ":", color=colour, linewidth=1)
+        axes.set_theta_zero_location("N")
+        axes.set_thetalim(float(angles.min()), float(angles.max()))
+        axes.set_title(f"beta {beta:g}: a pair of diodes, %", fontsize=9, loc="left")
+        axes.tick_params(labelsize=7)
     return figure
 
 

@@ -18,9 +18,10 @@ Floats = npt.NDArray[np.float64]
 NODES = "photo_a", "photo_b"
 PORTS = "pixel_reset", "read", "column_a", "column_b", "vdda", "vssa"
 
-SINK_ENDS = 0.02  # V
-# gmin and abstol are below a diode's dark current, 0.2 fA
-OPTIONS = ".option gmin=1e-21 abstol=1e-19 chgtol=1e-20 reltol=1e-5 itl1=500 itl2=300 itl4=200"
+SINK_ENDS, SINK_OHM = 0.02, 1e9  # V, ohm
+# abstol is below a diode's dark current, 0.2 fA, and what gmin carries is 1 % of that
+OPTIONS = ".option gmin=1e-18 abstol=1e-19 chgtol=1e-20 reltol=1e-5 itl1=500 itl2=300 itl4=200"
+LINEAR = ".option gmin=1e-18 abstol=1e-13 reltol=1e-4 itl1=500"  # of analyses at a point, with currents of 1 uA
 
 
 @dataclass(frozen=True)
@@ -98,6 +99,7 @@ def pixel_deck(made: PixelLayout, corner: Corner, bench: Bench, mismatch: int | 
         lines += [
             # a sink ends at the ground
             f"Bsink_{side} column_{side} 0 I={bench.sink_a:g}*tanh(v(column_{side})/{SINK_ENDS:g})",
+            f"Rsink_{side} column_{side} 0 {SINK_OHM:g}",
             f"Cline_{side} column_{side} 0 {column_farads(made, bench.rows):.6g}",
             f"Xothers_{side} column_{side} 0 0 vssa {process.transistor} w={one.w_um:g} l={one.l_um:g} {junction} "
             f"sa=0.3 sb=0.3 sd=0 m={bench.rows - 1}",

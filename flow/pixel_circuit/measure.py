@@ -10,7 +10,7 @@ from talbot.models.parameters import ELEMENTARY_CHARGE, AmpTiming, ParameterErro
 from talbot.models.parameters.electrical import BOLTZMANN
 from talbot.pixels.layout.pixel import PixelLayout
 
-from .deck import Bench, Floats, analyse, pixel_deck, pulses
+from .deck import LINEAR, OPTIONS, Bench, Floats, analyse, pixel_deck, pulses
 
 F_CLK = 10e6  # Hz, of the chip
 LEVELS = 0.25, 0.5, 0.75, 0.95  # of the full well, a frame each; a dark one follows the last
@@ -190,6 +190,7 @@ def _light(
 def _reset_noise(deck: list[str], corner: Corner, gate_v: float) -> tuple[float, float]:
     """V rms on the node while it is reset, and its capacitance (F) then, with the reset transistor's channel."""
     lines = [f"Vrst pixel_reset 0 {gate_v:g} ac 1", "Vread read 0 0", "Vb photo_b 0 2"]
+    deck = [LINEAR if line == OPTIONS else line for line in deck]
     volts = _total(lines, deck, "noise v(photo_a) Vrst dec 20 1 1e14")
     lines[0] = f"Vrst pixel_reset 0 {gate_v:g}"
     driven = [*deck, *lines, f"Vnode photo_a 0 {corner.supply:g} ac 1"]
@@ -200,6 +201,7 @@ def _reset_noise(deck: list[str], corner: Corner, gate_v: float) -> tuple[float,
 def _read_noise(deck: list[str], gate_v: float, node_v: float) -> float:
     """V rms on the column with the node at a voltage: thermal and 1/f noise of follower and select."""
     lines = ["Vrst pixel_reset 0 0", f"Vread read 0 {gate_v:g}", f"Vnode photo_a 0 {node_v:g} ac 1", "Vb photo_b 0 2"]
+    deck = [LINEAR if line == OPTIONS else line for line in deck]
     return _total(lines, deck, f"noise v(column_a) Vnode dec 20 {NOISE_FROM:g} {NOISE_TO:g}")
 
 

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from talbot.flow.pixel.page import polar
 from talbot.flow.pixel.search import Plan, search
 from talbot.flow.pixel.types import measured, solve_one, stacked
 from talbot.models.parameters import PixelType
@@ -41,3 +42,13 @@ def test_types_have_diodes_of_their_phase():
     assert difference[0, middle] > 0  # cos(0)
     assert difference[1, middle + 4] < 0  # cos(beta theta + pi/2) falls where the angle rises
     assert rows(np.pi / 2, one.fit) == rows(-np.pi / 2, one.fit)[::-1]
+
+
+def test_the_polar_picture_is_of_the_solved_curves():
+    chosen = DESIGNS["sky130"]
+    design = measure(chosen.geometries[12.0], chosen.wavelength_um)
+    one = measured(design, [chosen.wavelength_um], [solve_one(design.geometry, chosen.wavelength_um)])
+    (axes,) = polar({12.0: one}).axes
+    first, form, second, _ = (np.asarray(line.get_ydata(), float) for line in axes.get_lines())
+    np.testing.assert_allclose([first, second], 100 * one.response.unpolarized[0][[0, 2]])
+    assert np.corrcoef(first, form)[0, 1] > 0.6 and np.corrcoef(first, second)[0, 1] < 0
