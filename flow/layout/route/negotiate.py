@@ -35,6 +35,8 @@ TOLD = 100  # nets in a turn that takes seconds, of which a line is printed
 # What a net that is too long may do, turn by turn: it first goes around others at a small cost, then hardly
 STRAIGHT = tuple(Straight(nm, trunk) for nm in (500, 100) for trunk in (False, True))
 PROTECTED = 8  # weight of a net that was straightened
+# Weight, from the start, of a net that may be no longer than so many of its half perimeters: others go around it
+TIGHT, HELD = 1.75, 4
 MOST_EVICTED = 12  # nets in the way of one that is to get shorter
 MOST_BROKEN = 0.2  # share of the nets that a check may find to be rerouted
 
@@ -46,7 +48,7 @@ class Routed:
     routes: of the nets that were routed; legs: of these, what is left of them where they are evicted. open: nets
     without a route. tries, lost: of every net, how often it was routed at all, found no path. evictions: times that a
     net was. respaced: nets that were too near to others. bent: nets that `straighten` tried to make shorter, long: that
-    are longer than allowed.
+    are longer than allowed. tight: that have a weight of HELD.
     """
 
     routes: dict[str, Route] = field(default_factory=dict)
@@ -58,6 +60,7 @@ class Routed:
     respaced: set[str] = field(default_factory=set)
     bent: set[str] = field(default_factory=set)
     long: set[str] = field(default_factory=set)
+    tight: Collection[str] = ()
 
 
 def negotiate(board: Board, wanted: Collection[str], state: Routed | None = None, allowed: int = ALLOWED) -> Routed:
@@ -91,7 +94,7 @@ def negotiate(board: Board, wanted: Collection[str], state: Routed | None = None
                     evicted.append(net)
                 continue
             patience -= len(found.evicted)
-            place(board, net, found, state, 1 + state.tries[net] // EASY)
+            place(board, net, found, state, (HELD if net in state.tight else 1) + state.tries[net] // EASY)
             evicted += sorted(found.evicted)
         waiting = list(dict.fromkeys(evicted))
         if waiting:
@@ -169,7 +172,8 @@ def route(
 
     most: um of nets, which `straighten` sees to.
     """
-    state, before = negotiate(board, nets), None
+    tight = {net for net, um in (most or {}).items() if net in board.pins and 1000 * um < TIGHT * _hpwl(board, net)}
+    state, before = negotiate(board, nets, Routed(tight=tight)), None
     for _ in range(ROUNDS):
         if state.open:
             break

@@ -13,7 +13,7 @@ from talbot.flow.layout.geometry.test.gate import gate
 from talbot.flow.layout.netlist.netlist import Instance, Netlist, with_diodes
 from talbot.flow.layout.route.board import Board
 from talbot.flow.layout.route.diodes import Diodes
-from talbot.flow.layout.route.negotiate import negotiate, route, straighten
+from talbot.flow.layout.route.negotiate import HELD, negotiate, route, straighten
 from talbot.flow.layout.route.nets import clear_of, route_net
 from talbot.flow.layout.route.route import Route
 from talbot.flow.layout.route.rules import RoutingRules
@@ -235,8 +235,8 @@ def test_of_two_nets_in_the_way_the_lighter_one_is_evicted(light):
     assert route_net(board, "w1", False).evicted == {light}
 
 
-def bent():
-    """Two nets whose straight ways cross in a hall without room for both; the first was routed later, around it."""
+def hall():
+    """Two nets whose straight ways cross in a hall without room for both."""
     layout, top = empty()
     pins = {
         "w1": [pin(layout, top, 5_000, 20_000), pin(layout, top, 35_020, 20_000)],
@@ -246,7 +246,21 @@ def bent():
         for bottom, end in ((12_000, 19_100), (20_900, 28_000)):
             draw(layout, top, level, 20_000, bottom, 20_400, end)
     shapes = {net: {"segments": [], "vias": [], "pins": list(map(um, made))} for net, made in pins.items()}
-    board = Board(layout, RULES, shapes)
+    return Board(layout, RULES, shapes)
+
+
+def test_a_net_that_may_not_be_much_longer_is_dear_to_evict():
+    """w1 bears 30 um more than its least length, w2 half a um."""
+    board = hall()
+    diodes = Diodes([], db.Layout(), db.Layout(), {}, TECH)
+    state = route(board, ["w1", "w2"], TECH, diodes, {"w1": 60.0, "w2": 16.6})
+    assert state.tight == {"w2"} and board.weights == {"w1": 1, "w2": HELD}
+    assert board.price("w2") == HELD * board.price("w1")
+
+
+def bent():
+    """The nets of the hall, of which the first was routed around the second."""
+    board = hall()
     rows = [(19_000, at - 150, 21_000, at + 150) for at in range(19_400, 20_601, 300)]
     board.put("w2", Route(dict.fromkeys((1, 2, 3, 4), rows), {}), 50)
     state = negotiate(board, ["w1"])
