@@ -14,7 +14,7 @@ from .deck import LINEAR, OPTIONS, Bench, Floats, analyse, pixel_deck, pulses
 
 F_CLK = 10e6  # Hz, of the chip
 LEVELS = 0.25, 0.5, 0.75, 0.95  # of the full well, a frame each; a dark one follows the last
-RAMP = 1e3  # V/s: slow for all capacitances, fast for the dark current
+RAMP = 1e3  # V/s: slow for all capacitances
 NOISE_FROM, NOISE_TO = 30.0, 1e9  # Hz, of the follower's: a frame's rate, beyond the column's band
 MIDDLE = 0.05, 0.95  # of the full well, between which linearity counts
 SETTLED = 1 / 512  # of the full well's swing: half an LSB
@@ -128,6 +128,7 @@ def characteristic(deck: list[str], corner: Corner, gate_v: float) -> Characteri
     time, node, column, current = analyse(
         [*deck, *sources, "Vb photo_b 0 2"], [run], ["time", "v(photo_a)", "v(column_a)", "i(vnode)"]
     )
+    current = current + _dark_current(deck, corner.supply / 2)  # the source feeds it all the while
     steps = np.diff(time) * (current[1:] + current[:-1]) / 2
     kept = np.concatenate([[True], np.diff(node) < 0])
     return Characteristic(node[kept], column[kept], np.concatenate([[0.0], np.cumsum(steps)])[kept])
