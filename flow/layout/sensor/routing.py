@@ -33,12 +33,13 @@ class Branch:
 
 @dataclass(frozen=True)
 class Tracks:
-    """Pitches and widths of branches and trunks."""
+    """Pitches and widths of branches and trunks, least height of stubs."""
 
     branch_pitch: int
     trunk_pitch: int
     branch: int
     trunk: int
+    stub: int
 
     @classmethod
     def of(cls, rules: RoutingRules) -> "Tracks":
@@ -48,7 +49,7 @@ class Tracks:
         trunk = 2 * max(via.below[1], -(-rules.layers[TRUNK].width // 2))
         sizes = (branch, rules.layers[BRANCH]), (trunk, rules.layers[TRUNK])
         branch_pitch, trunk_pitch = (-(-max(2 * width, width + layer.space) // 10) * 10 for width, layer in sizes)
-        return cls(branch_pitch, trunk_pitch, branch, trunk)
+        return cls(branch_pitch, trunk_pitch, branch, trunk, rules.layers[STUB].width)
 
 
 def split_nets(blocks: Mapping[str, Block], nets: Nets) -> tuple[Nets, Nets]:
@@ -89,15 +90,30 @@ def _beside(core: Block, routed: Nets, tracks: Tracks, layer: str) -> Iterator[t
     """Pairs (net, Branch) of the chip's pins, from its sides outwards; the lowest pin has the nearest branch."""
     left = set(core.pins) & set(routed)
     for side, edge, way in (("west", core.x, -1), ("east", core.box[2], 1)):
-        pieces: dict[str, Box] = {}
+        pieces: dict[str, list[Box]] = {}
         for pin, of, box in core.at(side):
             if of == layer and pin in left:
-                pieces[pin] = max(pieces.get(pin, box), box, key=lambda b: (b[2] - b[0], b))
-        for place, (pin, box) in enumerate(sorted(pieces.items(), key=lambda item: item[1][1]), 2):
+                pieces.setdefault(pin, []).append(box)
+        boxes = {pin: _whole(found, tracks.stub) for pin, found in pieces.items()}
+        for place, (pin, box) in enumerate(sorted(boxes.items(), key=lambda item: item[1][1]), 2):
             left.discard(pin)
             yield pin, Branch(CORE, pin, edge + way * place * tracks.branch_pitch, (box[1] + box[3]) // 10 * 5, box)
     if left:
         raise StepError(f"{CORE}: its pins {', '.join(sorted(left)[:5])} do not reach its west or east side on {layer}")
+
+
+def _whole(pieces: Sequence[Box], least: int) -> Box:
+    """Metal of a pin's ``pieces`` at a side that is ``least`` high: of one, or of some on top of each other."""
+    ranked, found = sorted(pieces, key=lambda box: box[1]), list[Box]()
+    for i in range(len(ranked)):
+        left, bottom, right, top = ranked[i]
+        for box in ranked[i:]:
+            if box[1] > top:
+                break
+            left, right, top = max(left, box[0]), min(right, box[2]), max(top, box[3])
+            found.append((left, bottom, right, top))
+    high = [box for box in found if box[3] - box[1] >= least]
+    return min(high or found, key=lambda box: (box[3] - box[1] if high else box[1] - box[3], box[0] - box[2], box))
 
 
 def _pads(

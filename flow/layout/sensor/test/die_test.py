@@ -72,6 +72,15 @@ def index(plan, net, layer):
     return max(found)[1]
 
 
+def test_a_stub_has_the_width_of_its_metal(made):
+    """The chip's LEF has a port's metal in pieces; one of them alone was a stub of 0.065 um."""
+    _, plan = made
+    boxes = [
+        branch["box"] for route in plan["routes"].values() for branch in route["branches"] if branch["block"] == "core"
+    ]
+    assert len(boxes) > small.SPLIT and min(top - bottom for _, bottom, _, top in boxes) >= 300
+
+
 @pytest.mark.parametrize("layer, net", [(70, "dac[3]"), (71, "tap[1]"), (70, "miso"), (71, "vdda"), (72, "vssa")])
 def test_a_missing_wire_is_an_open_net(made, tmp_path, layer, net):
     metrics, report = matched(made, tmp_path, lambda plan: plan["shapes"].pop(index(plan, net, layer)))

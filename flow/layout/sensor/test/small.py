@@ -1,5 +1,6 @@
 """A small die: 16 x 120 pixels, two lanes, and a core that has the chip's pins and straps and nothing in it."""
 
+import itertools
 import json
 
 from talbot.flow.layout.route.ports import LEVELS
@@ -34,6 +35,7 @@ RULES = {
 }
 CORE_INPUTS = {"clk", "reset", "sclk", "csn", "mosi", "link_rdy"}
 WIDTH, HEIGHT = 200.0, 400.0
+SPLIT = 6  # the place of the pin whose metal is in pieces, each of them too small for a stub
 
 
 def analog():
@@ -75,7 +77,9 @@ def core(folder):
     metal = coriolis_platform("sky130").metals[LEVELS["west"]]
     for k, (name, direction) in enumerate(core_pins().items()):
         left, bottom = (0.0 if k % 2 == 0 else WIDTH - 0.3), 5 + 4.0 * (k // 2)
-        draw(name, metal.layer, metal.lef, direction, [(left, bottom, left + 0.3, bottom + 0.32)])
+        ends = (0.0, 0.13, 0.32) if k == SPLIT else (0.0, 0.32)
+        pieces = [(left, bottom + low, left + 0.3, bottom + high) for low, high in itertools.pairwise(ends)]
+        draw(name, metal.layer, metal.lef, direction, pieces)
     for net, xs in (("vss", (50.0, 110.0)), ("vdd", (80.0, 140.0))):
         draw(net, 71, "met4", "inout", [(x - 0.6, 0.0, x + 0.6, HEIGHT) for x in xs])
     (folder / "core.lef").write_text("\n".join([*lines, "END Core", "END LIBRARY", ""]))
