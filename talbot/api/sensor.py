@@ -87,7 +87,7 @@ class Sensor:
     alpha, perhaps an m of its own, or response=f: a function of the incidence angles theta_x and theta_y, arrays (n,)
     in rad, that gives the response of both diodes, (2, n), 0 or more.
     converter: 'typical', 'ideal', 'circuit' (as ngspice has it), or a dict of inl, dnl, offset, noise, ktc (LSB),
-        unit_mismatch (relative) and seed.
+    unit_mismatch (relative) and seed.
     pixel: 'ideal' (Eq. 3.1), 'sky130' or 'ihp-sg13g2': what the process's gratings do, as `make sim PIXEL=sky130`;
     types with a response of their own keep it. Tables are computed once, in half a minute.
 
