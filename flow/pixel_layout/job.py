@@ -16,13 +16,15 @@ from talbot.pixels.layout.array import DUMMIES, SOUTH, WEST, draw_array, draw_pi
 from talbot.pixels.layout.circuit import Diode, spice, spice_array
 from talbot.pixels.layout.pixel import PixelLayout
 from talbot.pixels.layout.write import array_layout, array_lef, fitted
+from talbot.platforms.foundry import installed
 
+from . import foundry
 from .checks import WAIVERS, densities, drc, lvs, placed, unwaived
 from .made import SMALL, Made
 
-STEPS = "optics", "draw", "count", "drc", "lvs", "report"
+STEPS = "optics", "draw", "count", "drc", "foundry", "lvs", "report"
 FILES = "pixel_array.gds", "pixel_array.lef", "tile.gds", "pixel.gds", "small_array.gds", "pixel.spice", "summary.json"
-REPORTS = "drc.lyrdb", "pixel.lvsdb", "small_array.lvsdb"
+REPORTS = "drc.lyrdb", "pixel.lvsdb", "small_array.lvsdb", *foundry.REPORTS
 MOST_SECONDS, MOST_BYTES = 30.0, 20e6  # of the array's GDS
 
 
@@ -32,6 +34,7 @@ def make(pdk: str, rows: int, cols: int, out: Path, note: Callable[[str], None] 
 
     start = perf_counter()
     check_folder("out", out)
+    decks = installed(pdk)
     array, small = array_layout(pdk, rows, cols), array_layout(pdk, *SMALL)
     types = [_type(pixel, gratings(pdk).wavelength_um) for pixel in array.pixels]
     with staged(out, (*FILES, *REPORTS, *page.NAMES)) as folder:
@@ -42,6 +45,8 @@ def make(pdk: str, rows: int, cols: int, out: Path, note: Callable[[str], None] 
         wrong = _misplaced(made)
         note("drc")
         found = drc(made.path("small_array.gds"), pdk, made.path("drc.lyrdb"))
+        note("foundry")
+        theirs = foundry.check(array, pdk, folder, decks)
         note("lvs")
         same = {
             name: lvs(made.path(f"{name}.gds"), text, pdk, made.path(f"{name}.lvsdb")) for name, text in _spice(made)
@@ -63,10 +68,11 @@ def make(pdk: str, rows: int, cols: int, out: Path, note: Callable[[str], None] 
             "drc": found,
             "drc_violations": unwaived(found),
             "waivers": {rule: {"count": found[rule], "reason": WAIVERS[rule]} for rule in found if rule in WAIVERS},
+            "foundry": theirs,
             "density": share,
             "density_most": most,
             "lvs_match": same,
-            "passed": not (wrong or unwaived(found) or max(share.values()) > most)
+            "passed": not (wrong or unwaived(found) or foundry.total(theirs) or max(share.values()) > most)
             and all(same.values())
             and seconds < MOST_SECONDS
             and size < MOST_BYTES,

@@ -86,6 +86,15 @@ def _sections(s: dict[str, Any]) -> list[Section]:
             numbers=False,
         ),
         Section(
+            "The foundry's rules",
+            "Violations by the decks of the PDK that PDK_ROOT has; Magic's, where lines are at multiples of 45 degrees."
+            if s["foundry"]
+            else "Not run: PDK_ROOT has no installed PDK.",
+            head=("deck", "file", "rule", "count"),
+            rows=[row for deck, files in s["foundry"].items() for name, f in files.items() for row in _broken(deck, name, f)],
+            numbers=False,
+        ),
+        Section(
             "Metal",
             f"Share of the tile, at most {100 * s['density_most']:.0f} %.",
             head=("metal", "share"),
@@ -99,6 +108,10 @@ def _sections(s: dict[str, Any]) -> list[Section]:
             rows=[_row(one) for one in s["types"]],
         ),
     ]
+
+
+def _broken(deck: str, name: str, rules: dict[str, int]) -> list[tuple[str, str, str, str]]:
+    return [(deck, name, rule, str(count)) for rule, count in rules.items()] or [(deck, name, "all", "0")]
 
 
 def _row(one: dict[str, Any]) -> tuple[str, ...]:
