@@ -38,11 +38,11 @@ def prior_asked(options: Namespace, noise: float, **rest: Any) -> "FieldPrior":
 def run(options: Namespace) -> int:
     """Read one frame back and print the figures; 1 where the chip and the golden model differ."""
     from . import page  # Matplotlib: not before it is needed
-    from .fields import TRUST, Fields, read_back
+    from .fields import Fields, read_back
     from .methods import METHODS
 
     asked, typed = reading.asked(options, "lightfield", add_arguments)
-    prior = prior_asked(options, asked.noise, trust=TRUST)
+    prior = prior_asked(options, asked.noise)
 
     def found(note: reading.Note) -> Fields:
         return read_back(reading.frame_of(asked, note, options.golden), prior, note)

@@ -21,7 +21,6 @@ from .methods import Found, applicable, figures, measure
 
 Values = npt.NDArray[np.floating]
 BEST = "mixture"  # the method whose pictures and disparity are shown
-TRUST = 0.2  # of the prior: more parallax than with less, by dead leaves
 PUPIL = 7  # points across the pupil at which the estimators take a scene that can be seen from anywhere
 QUIET = 0.5  # of the physical noise: what rounding to codes leaves without any other
 SURE = 0.5  # px per view step: a disparity of a larger standard deviation is none
@@ -82,7 +81,7 @@ def estimate(result: GoldenResult, method: str = BEST, prior: FieldPrior | None 
 
     Raises ParameterError as `read_back`.
     """
-    prior = prior or prior_of(result.request.noise, trust=TRUST)
+    prior = prior or prior_of(result.request.noise)
     sent, bad = sent_pair(result)
     estimator = estimator_of(result, prior)
     found = _unsure(measure(method, estimator, CaptureOperator(result.sensor), sent)[0], bad, estimator)

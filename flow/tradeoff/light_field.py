@@ -15,7 +15,7 @@ from talbot.flow.frame.job import golden_result
 from talbot.flow.frame.request import request
 from talbot.flow.frame.result import GoldenResult
 from talbot.flow.lightfield import methods
-from talbot.flow.lightfield.fields import TRUST, estimator_of, pair_of, prior_of, reached
+from talbot.flow.lightfield.fields import estimator_of, pair_of, prior_of, reached
 from talbot.models.capture import CaptureOperator
 from talbot.models.reconstruct import psnr_db
 from talbot.models.reconstruct.sparse import Coding, SparseEstimator
@@ -63,7 +63,7 @@ def measure(point: tuple[float, str, Mapping[str, Any], int]) -> dict[str, Any]:
     corners = reached(result)
     truth, pair = result.exposed.scene.full_light_field * corners, pair_of(result, result.decoded.samples)
     free = np.broadcast_to(result.image, truth.shape) * corners
-    prior, plain = prior_of(noise, trust=TRUST, **(change if name != "sparse" else {})), 0.0
+    prior, plain = prior_of(noise, **(change if name != "sparse" else {})), 0.0
     if name == "sparse":
         coder = SparseEstimator(result.sensor, Coding(noise=prior.noise, **change))
         coder.prepare()

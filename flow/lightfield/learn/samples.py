@@ -1,14 +1,14 @@
-"""Scenes to learn from: dead leaves before the sensor, and what the Bayes estimators make of their noisy samples."""
+"""Scenes to learn from, dead leaves and planes of them before the sensor, and what the Bayes estimators make of each."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+from scipy.ndimage import gaussian_filter, map_coordinates, spline_filter
 
 from talbot.base.progress import each
-from talbot.flow.lightfield.fields import TRUST
 from talbot.models.capture import CaptureOperator, cells
 from talbot.models.parameters import ArrayParameters, SensorParameters
 from talbot.models.reconstruct.bayes import FieldEstimator, FieldPrior
@@ -16,7 +16,11 @@ from talbot.models.reconstruct.network import NOISE, VIEWS, features
 from talbot.models.scene import Sampling, load
 
 Values = npt.NDArray[np.floating]
+View = Callable[[float, float], Values]  # at an offset in view steps
 SIZE = 96  # px: 4 x 4 tiles of 4 x 6 pixels and more
+AROUND = 12  # px around a plane, that other views show
+BLUR, BLURS = 0.7, (0.5, 2.5)  # px: of leaves, and the range of a plane's
+DEEP, SLOPE = 1.6, 1.2  # px per view step: greatest disparity of a plane's middle, and of its ends less that
 PUPIL = 11  # points across the pupil at which a scene is captured
 ESTIMATED = 7  # at which the estimators take it, as `make lightfield` does
 NOISES = (
@@ -47,15 +51,38 @@ def sensor(size: int = SIZE) -> SensorParameters:
 
 
 def shots(seeds: Sequence[int], size: int = SIZE) -> Iterator[Shot]:
-    """Dead leaves of these seeds."""
+    """A scene for each seed: by turns dead leaves, the same as a lens blurs them, and a slanted plane of them."""
     own = sensor(size)
     operator = CaptureOperator(replace(own, optics=replace(own.optics, views=PUPIL)))
-    steps = (np.arange(PUPIL) - (PUPIL - 1) / 2) * VIEWS / PUPIL
+    seen, given = (np.arange(n) - (n - 1) / 2 for n in (PUPIL, VIEWS))
     for seed in seeds:
-        scene = load(f"leaves:{seed}", Sampling.of(own))
-        see = scene.view(np.ones(scene.shape, bool))
-        field = np.array([[see(dv, du)[0] for du in steps] for dv in steps])
-        yield Shot(scene.full_light_field * cells(VIEWS)[..., None, None], operator.forward(field))
+        view = _plane(seed, size) if seed % 3 == 2 else _leaves(seed, size, BLUR * (seed % 3))
+        field, truth = (
+            np.array([[view(dv, du) for du in steps] for dv in steps]) for steps in (seen * VIEWS / PUPIL, given)
+        )
+        yield Shot(truth * cells(VIEWS)[..., None, None], operator.forward(field))
+
+
+def _leaves(seed: int, size: int, blur: float) -> View:
+    """Views of dead leaves, blurred by a Gaussian of ``blur`` px."""
+    see = load(f"leaves:{seed}", Sampling.of(sensor(size))).view(np.ones((size, size), bool))
+    return lambda dv, du: gaussian_filter(see(dv, du)[0], blur) if blur else see(dv, du)[0]
+
+
+def _plane(seed: int, size: int) -> View:
+    """Views of a slanted plane: a picture of dead leaves, blurred, whose disparity is linear in the pixel's place."""
+    rng, wide = np.random.default_rng(seed), size + 2 * AROUND
+    image = load(f"leaves:{seed}", Sampling.of(sensor(wide))).image.astype(float)
+    image = spline_filter(gaussian_filter(image, rng.uniform(*BLURS)))
+    middle, down, across = rng.uniform(-DEEP, DEEP), *rng.uniform(-SLOPE, SLOPE, 2) / size
+    y, x = np.indices((size, size)) - (size - 1) / 2
+
+    def view(dv: float, du: float) -> Values:
+        disparity = (middle + down * y + across * x) / (1 - dv * down - du * across)  # of the point that is seen here
+        places = np.stack([y + dv * disparity, x + du * disparity]) + (wide - 1) / 2
+        return map_coordinates(image, places, prefilter=False, mode="nearest")
+
+    return view
 
 
 def noisy(pair: Values, noise: float, rng: np.random.Generator) -> Values:
@@ -83,7 +110,7 @@ def lessons(seeds: Sequence[int], seed: int, noises: Sequence[float] = NOISES, s
     rng, out, taken = np.random.default_rng(seed), [], list(shots(seeds, size))
     reached = cells(VIEWS)[..., None, None]
     for noise in noises:
-        estimator = FieldEstimator(sensor(size), VIEWS, FieldPrior(noise=noise, trust=TRUST), ESTIMATED)
+        estimator = FieldEstimator(sensor(size), VIEWS, FieldPrior(noise=noise), ESTIMATED)
         for shot in each(taken, f"samples, noise {noise:g}"):
             pair = noisy(shot.pair, noise, rng)
             mixture = estimator.mixture(pair)

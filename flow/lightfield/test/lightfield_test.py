@@ -11,7 +11,7 @@ from talbot.commands import main
 from talbot.flow.frame.job import golden_result
 from talbot.flow.frame.request import request
 from talbot.flow.lightfield import page
-from talbot.flow.lightfield.fields import TRUST, estimate, prior_of, read_back
+from talbot.flow.lightfield.fields import estimate, prior_of, read_back
 from talbot.flow.lightfield.methods import figures, parallax
 from talbot.models.parameters import ParameterError
 from talbot.models.reconstruct.bayes import FieldPrior
@@ -97,6 +97,6 @@ def test_a_folder_tells_its_settings_and_what_it_replaced(tmp_path, monkeypatch,
 
 def test_an_estimate_alone_is_that_of_the_page():
     result = golden_result(request(scene="tilted", rows=24, cols=24, mode="raw"))
-    fields = read_back(result, prior_of(1.0, trust=TRUST))
+    fields = read_back(result, prior_of(1.0))
     for name, found in fields.found.items():
         np.testing.assert_array_equal(estimate(result, name).light_field, found.light_field)

@@ -5,7 +5,8 @@ estimate is the best one where the disparity may be any. How well the samples of
 evidence for it; the mixture is the mean of the estimates, each as probable as its disparity [Levin2008].
 """
 
-from collections.abc import Iterator, Sequence
+import math
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property
 from typing import NamedTuple
@@ -13,34 +14,22 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 from numpy.lib.stride_tricks import sliding_window_view
-from scipy.linalg import cholesky, solve_triangular
 from scipy.ndimage import maximum_filter
 
 from talbot.models.parameters import ParameterError, SensorParameters
 from talbot.models.pixel.weights import view_weights
 
 from .covariance import Covariances, Tables
+from .evidence import REACH, Residuals, badness, pooled, probability, whitener
 from .prior import FieldPrior
+from .scene import Scene
 from .windows import Axis, Group, even
 
 Floats = npt.NDArray[np.floating]
+Ints = npt.NDArray[np.int64]
+# What differs between the views, times its mean over what is not known, which shrinks it: by leaves and a tilted plane
+LINEAR, MIXTURE = 1.15, 1.04
 UNLIKELY = 1e-3  # probability below which a disparity is left out of a mixture
-FLOOR = 0.05  # of a whitened sample's variance, below which windows count as equally well explained
-
-
-class Whitener(NamedTuple):
-    """From the samples of a window to its differences made white, given its sums.
-
-    Attributes
-    ----------
-    matrix : float32 (differences, samples)
-        Sums come first in the samples.
-    log_determinant : float
-        Of the differences' covariance, given the sums.
-    """
-
-    matrix: Floats
-    log_determinant: float
 
 
 class Component(NamedTuple):
@@ -50,12 +39,15 @@ class Component(NamedTuple):
     ----------
     filters : list of float32 (pixels * views**2, samples)
         From samples to the views of a block.
-    whiteners : list of Whitener
+    residuals : list of Residuals
         For the evidence.
+    certain : float32 (rows, cols)
+        Mean around each pixel of the logarithm of 1 over the variance of an error.
     """
 
     filters: list[Floats]
-    whiteners: list[Whitener]
+    residuals: list[Residuals]
+    certain: Floats
 
 
 class Estimate(NamedTuple):
@@ -135,19 +127,45 @@ class FieldEstimator:
         """
         turned = self._turned(pair)
         out = np.zeros((self.views, self.views, *self.shape), np.float32)
-        for (down, across), filters in zip(self._groups(), self.filters, strict=True):
-            self._place(out, filters @ self._samples(turned, down, across), down, across)
+        number, inner = self._inner
+        for index, ((down, across), filters) in enumerate(zip(self._groups(), self.filters, strict=True)):
+            samples = self._samples(turned, down, across)
+            if index == number:
+                filters = inner.filters(samples, self._count(down, across))
+            self._place(out, filters @ samples, down, across)
         return out
+
+    @cached_property
+    def _inner(self) -> tuple[int, "Scene"]:
+        """The largest group of windows, and its estimator of a scene's own disparities."""
+        groups = list(self._groups())
+        number = max(range(len(groups)), key=lambda n: np.prod(self._count(*groups[n])))
+        ways = []
+        for d in self.prior.grid:
+            tables = self.covariances.of(float(d))
+            ways.append((self._shared(tables, *groups[number]), self._field(tables, *groups[number], LINEAR)))
+        return number, Scene(ways, *self._own(*groups[number]), self.prior)
 
     @cached_property
     def filters(self) -> list[Floats]:
         """Of each group of windows, from its samples to the views of its block, made once a sensor."""
-        return self._filters(self.covariances.mean())[0]
+        return [f for f, _ in self._solved(self.covariances.mean(), LINEAR)]
 
     @cached_property
     def components(self) -> list[Component]:
         """For each disparity, made once a sensor."""
-        return [Component(*self._filters(self.covariances.of(float(d)))) for d in self.prior.grid]
+        out = []
+        for d in self.prior.grid:
+            filters, residuals = zip(*self._solved(self.covariances.of(float(d)), MIXTURE), strict=True)
+            certain = pooled(self._map(residual.certain for residual in residuals), self.prior.pool) / self._read
+            out.append(Component(list(filters), list(residuals), certain))
+        return out
+
+    @cached_property
+    def _read(self) -> Floats:
+        """Share of the pixels around each that are read."""
+        kinds = self.tile.type_map(*self.shape)
+        return np.maximum(pooled(self.measured[kinds].astype(np.float32), self.prior.pool), np.float32(1e-6))
 
     def told_by(self, pixels: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
         """Where the mixture's disparity is from any of some pixels.
@@ -163,7 +181,8 @@ class FieldEstimator:
             True where one of them is in a window.
         """
         windows = sliding_window_view(pixels, (self.y.window, self.x.window))[np.ix_(self.y.firsts, self.x.firsts)]
-        return np.asarray(self.y.spread() @ windows.any((2, 3)) @ self.x.spread().T > 0)
+        told = self.y.spread() @ windows.any((2, 3)) @ self.x.spread().T > 0
+        return np.asarray(maximum_filter(told, 2 * math.ceil(REACH * self.prior.pool) + 1))
 
     def condition(self, disparity: float | None = None) -> float:
         """Condition of the covariance of the samples in a window, noise included.
@@ -180,7 +199,7 @@ class FieldEstimator:
         """
         tables = self.covariances.mean() if disparity is None else self.covariances.of(disparity)
         groups = {(down.phase, across.phase): (down, across) for down, across in self._groups()}
-        return max(float(np.linalg.cond(self._whiten(tables, *group))) ** 2 for group in groups.values())
+        return max(float(np.linalg.cond(self._shared(tables, *group))) for group in groups.values())
 
     def mixture(self, pair: Floats, evidence: Floats | None = None) -> Estimate:
         """Mean over the disparities, each as probable as the samples make it.
@@ -208,22 +227,27 @@ class FieldEstimator:
         if evidence is not None:
             seen = self._turned(evidence)
             told = [(d, a, self._samples(seen, d, a)) for d, a in self._groups()]
-        grid, plain = self.prior.grid, self._plain(told)
-        chance = self._probability(np.stack([self._score(c, told, ~plain) for c in self.components]))
-        chance[:, plain] = 1 / len(grid)
+        grid = self.prior.grid
+        chance = self._chance(told)
+        blank = self.y.spread() @ self._plain(told) @ self.x.spread().T
+        weights = [blank, *(chance * (1 - blank))]
+        chance = np.stack(weights[1:]) + blank / len(grid)
         mean = np.tensordot(grid, chance, 1)
         spread = np.sqrt(np.maximum(np.tensordot(grid**2, chance, 1) - mean**2, 0))
-        down, across = self.y.spread(), self.x.spread()
-        chance[:, plain] = 0
         out = np.zeros((self.views, self.views, *self.shape), np.float32)
         # What shows no disparity takes the linear estimate
-        ways = [(plain.astype(float), self.filters), *zip(chance, (c.filters for c in self.components), strict=True)]
-        for part, filters in ways:
-            near = maximum_filter(part, 3) > 0  # each pixel is between the middles of at most 2 x 2 blocks
-            if near.any():
-                out += self._estimate(filters, groups, near) * (down @ part @ across.T).astype(np.float32)
-        disparity, doubt = ((down @ values @ across.T).astype(np.float32) for values in (mean, spread))
-        return Estimate(out, disparity, doubt, float(plain.mean()))
+        for weight, filters in zip(weights, (self.filters, *(c.filters for c in self.components)), strict=True):
+            if weight.any():
+                out += self._estimate(filters, groups, weight > 0) * weight.astype(np.float32)
+        return Estimate(out, mean.astype(np.float32), spread.astype(np.float32), float(self._plain(told).mean()))
+
+    def _map(self, values: Iterable[Floats]) -> Floats:
+        """A value of each pixel from those of every group's blocks, each (pixels, windows) or (pixels,)."""
+        out = np.zeros((1, 1, *self.shape), np.float32)
+        for (down, across), part in zip(self._groups(), values, strict=True):
+            shape = len(part), math.prod(self._count(down, across))
+            self._place(out, np.broadcast_to(part.reshape(len(part), -1), shape), down, across)
+        return out[0, 0]
 
     def _plain(self, groups: Sequence[tuple[Group, Group, Floats]]) -> npt.NDArray[np.bool_]:
         """Whether noise explains what each window has beside the nearest uniform scene, (block rows, block cols)."""
@@ -237,38 +261,26 @@ class FieldEstimator:
             part[:] = (rest < self.prior.plain * self.prior.noise**2).reshape(part.shape)
         return plain
 
-    def _score(
-        self, component: Component, groups: Sequence[tuple[Group, Group, Floats]], wanted: npt.NDArray[np.bool_]
-    ) -> Floats:
-        """How badly each window fits to a disparity: -2 log p(differences | sums), (block rows, block cols).
-
-        0 where it is not wanted.
-
-        Given the sums, since these alone would call every smooth surface a blurred one. Of an unknown contrast: a
-        Gaussian whose variance is unknown, too, is a Student's t.
-        """
-        out = np.zeros((len(self.y.blocks), len(self.x.blocks)), np.float32)
-        for (down, across, samples), whitener in zip(groups, component.whiteners, strict=True):
-            some = wanted[down.blocks, across.blocks]
-            white = whitener.matrix @ (samples if some.all() else samples[:, some.ravel()])
-            count = len(white)
-            fit = count * np.log(np.einsum("nb,nb->b", white, white) + FLOOR * count) + whitener.log_determinant
-            out[down.blocks, across.blocks][some] = fit
-        return out
-
-    def _probability(self, score: Floats) -> Floats:
-        """Probabilities of the disparities from their scores, (disparities, ...): of sum 1, 0 below `UNLIKELY`."""
-        chance = np.exp(-self.prior.trust / 2 * (score - score.min(0)))
-        chance[chance < UNLIKELY * chance.sum(0)] = 0
-        return chance / chance.sum(0)
+    def _chance(self, groups: Sequence[tuple[Group, Group, Floats]]) -> Floats:
+        """Probability of every disparity at every pixel, (disparities, rows, cols): of sum 1, 0 below `UNLIKELY`."""
+        pool, scores = self.prior.pool, []
+        for component in self.components:
+            errors = [
+                residual.matrix @ samples for (*_, samples), residual in zip(groups, component.residuals, strict=True)
+            ]
+            squares = pooled(self._map(np.square(e) for e in errors), pool) / self._read
+            scores.append(badness(squares, component.certain, 4 * np.pi * pool**2))
+        return probability(self.prior.trust * np.stack(scores), UNLIKELY)
 
     def _estimate(
         self, filters: list[Floats], groups: Sequence[tuple[Group, Group, Floats]], wanted: npt.NDArray[np.bool_]
     ) -> Floats:
-        """The light field by filters of every group in the blocks that are wanted; 0 in the others."""
+        """The light field by filters of every group in the blocks that have a wanted pixel; 0 in the others."""
+        blocks = sliding_window_view(wanted, (self.y.block, self.x.block)).any((2, 3))
         out = np.zeros((self.views, self.views, *self.shape), np.float32)
         for (down, across, samples), matrix in zip(groups, filters, strict=True):
-            some = np.flatnonzero(wanted[down.blocks, across.blocks])
+            first, count = self.y.blocks[down.blocks], self.x.blocks[across.blocks]
+            some = np.flatnonzero(blocks[np.ix_(first, count)])
             if len(some):
                 found = np.zeros((len(matrix), samples.shape[1]), np.float32)
                 found[:, some] = matrix @ samples[:, some]
@@ -281,23 +293,27 @@ class FieldEstimator:
             raise ParameterError(f"pair shape = {pair.shape}: must be {(2, *self.shape)}")
         return np.stack([pair[0] + pair[1], pair[0] - pair[1]]).astype(np.float32) / np.float32(np.sqrt(2))
 
-    def _filters(self, tables: Tables) -> tuple[list[Floats], list[Whitener]]:
-        """Filters and whiteners of every group."""
-        made, filters, whiteners = {}, [], []
+    def _solved(self, tables: Tables, parallax: float) -> list[tuple[Floats, Residuals]]:
+        """Filters and residuals of every group."""
+        inverses, made, out = {}, {}, []
         for down, across in self._groups():
-            key = down.phase, across.phase
+            phase = down.phase, across.phase
+            key = *phase, down.offset, across.offset
+            if phase not in inverses:
+                inverses[phase] = whitener(self._shared(tables, down, across))
             if key not in made:
-                inverse = self._whiten(tables, down, across)
-                half = len(inverse) // 2
-                determinant = -2 * float(np.log(np.diag(inverse)[half:]).sum())
-                made[key] = inverse, Whitener(inverse[half:].astype(np.float32), determinant)
-            inverse, whitener = made[key]
-            filters.append((self._field(tables, down, across) @ inverse.T @ inverse).astype(np.float32))
-            whiteners.append(whitener)
-        return filters, whiteners
+                inverse = inverses[phase]
+                filters = (self._field(tables, down, across, parallax) @ inverse.T @ inverse).astype(np.float32)
+                made[key] = filters, Residuals.of(inverse, *self._own(down, across))
+            out.append(made[key])
+        return out
 
     def _groups(self) -> Iterator[tuple[Group, Group]]:
         return ((down, across) for down in self.y.groups() for across in self.x.groups())
+
+    def _count(self, down: Group, across: Group) -> tuple[int, int]:
+        """Blocks of a group, down and across."""
+        return len(self.y.blocks[down.blocks]), len(self.x.blocks[across.blocks])
 
     def _diodes(self, down: Group, across: Group) -> tuple[npt.NDArray[np.int64], ...]:
         """Row, column and number (2 type + 0 for sums, 1 for differences) of every sample of a window, sums first."""
@@ -320,27 +336,38 @@ class FieldEstimator:
         y, x, diode = self._diodes(down, across)
         return out[((diode % 2) * self.y.window + y) * self.x.window + x]
 
-    def _whiten(self, tables: Tables, down: Group, across: Group) -> npt.NDArray[np.float64]:
-        """Matrix that makes the samples of a window white: the inverse of their covariance's Cholesky factor."""
+    def _shared(self, tables: Tables, down: Group, across: Group) -> npt.NDArray[np.float64]:
+        """Covariance of the samples of a window, noise included."""
         y, x, diode = self._diodes(down, across)
         places = y - y[:, None] + self.y.window - 1, x - x[:, None] + self.x.window - 1
         shared = tables.samples[*places, diode[:, None], diode]
         shared[np.diag_indices(len(shared))] += self.prior.noise**2
-        unit = np.eye(len(shared))
-        return solve_triangular(cholesky(shared, lower=True), unit, lower=True)
+        return shared
 
-    def _field(self, tables: Tables, down: Group, across: Group) -> npt.NDArray[np.float64]:
-        """Covariance of the views of a block with the samples of its window, (pixels * views**2, samples)."""
+    def _own(self, down: Group, across: Group) -> tuple[Ints, Ints, int]:
+        """Which samples are differences of the block's pixels, these pixels' numbers in it, and how many it has."""
+        y, x, diode = self._diodes(down, across)
+        y, x = y - down.offset, x - across.offset
+        inside = (diode % 2 == 1) & (y >= 0) & (y < self.y.block) & (x >= 0) & (x < self.x.block)
+        return np.flatnonzero(inside), (y * self.x.block + x)[inside], self.y.block * self.x.block
+
+    def _field(self, tables: Tables, down: Group, across: Group, parallax: float) -> npt.NDArray[np.float64]:
+        """Covariance of the views of a block with the samples of its window, (pixels * views**2, samples).
+
+        parallax: factor on what differs between views.
+        """
         y, x, diode = self._diodes(down, across)
         own = np.indices((self.y.block, self.x.block)).reshape(2, -1, 1)
         dy, dx = y - own[0] - down.offset, x - own[1] - across.offset
         out = tables.field[dy + self.y.window - 1, dx + self.x.window - 1, :, diode]  # (pixels, samples, views)
-        return out.transpose(0, 2, 1).reshape(-1, len(diode))
+        out = out.transpose(0, 2, 1)
+        mean = out.mean(1, keepdims=True)
+        return (mean + parallax * (out - mean)).reshape(-1, len(diode))
 
     def _place(self, out: Floats, values: Floats, down: Group, across: Group) -> None:
         """Write the blocks of a group into the light field."""
         first, count = self.y.blocks[down.blocks], self.x.blocks[across.blocks]
-        part = values.reshape(self.y.block, self.x.block, self.views, self.views, len(first), len(count))
+        part = values.reshape(self.y.block, self.x.block, *out.shape[:2], len(first), len(count))
         lines, columns = even(first), even(count)
         for i, j in np.ndindex(self.y.block, self.x.block):
             rows = slice(lines.start + i, lines.stop + i, lines.step)

@@ -32,6 +32,8 @@ class FieldPrior:
         Pixels around a block that its estimate uses, 0..16.
     trust : float
         Share of the evidence for a disparity that counts, 0.001..1: a scene is not the prior's texture.
+    pool : float
+        Standard deviation of the weights around a pixel with which its neighbours' evidence counts, 0.1..100 px.
     plain : float
         Windows that differ from a uniform one by less than this, times the noise's variance, take the linear estimate,
         0..1000: no disparity shows in them.
@@ -49,7 +51,8 @@ class FieldPrior:
     near: float = 2.5
     disparities: int = 21
     margin: int = 4
-    trust: float = 0.1
+    trust: float = 0.25
+    pool: float = 2.5
     plain: float = 1.25
 
     def __post_init__(self) -> None:
@@ -62,6 +65,7 @@ class FieldPrior:
         check_int("disparities", self.disparities, 1, 500)
         check_int("margin", self.margin, 0, 16)
         check_real("trust", self.trust, 1e-3, 1)
+        check_real("pool", self.pool, 0.1, 100)
         check_real("plain", self.plain, 0, 1000)
         if self.far > self.near:
             raise ParameterError(f"near = {self.near:g}: must be in [{self.far:g}, 20], far and more")

@@ -1,0 +1,133 @@
+"""How well a disparity predicts each pixel's difference from all other samples of its window, pooled around the pixel.
+
+A sample of a Gaussian window of precision P is predicted from the others with the error (P i)_j / P_jj, of variance
+1 / P_jj. Errors of single pixels know where a surface ends, and their pool is as small as the noise lets it be.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from scipy.linalg import cholesky, solve_triangular
+from scipy.ndimage import gaussian_filter
+
+Floats = npt.NDArray[np.floating]
+Ints = npt.NDArray[np.int64]
+REACH = 2.0  # standard deviations, of the pool
+FLOOR = 0.05  # of a sample's variance, below which disparities count as equally good
+
+
+class Residuals(NamedTuple):
+    """From the samples of a window to the errors of its block's differences, each over its standard deviation.
+
+    Attributes
+    ----------
+    matrix : float32 (pixels, samples)
+        Of the pixels of a block; 0 for a pixel that is not read.
+    certain : float32 (pixels,)
+        Logarithm of 1 over each error's variance.
+    """
+
+    matrix: Floats
+    certain: Floats
+
+    @classmethod
+    def of(cls, inverse: Floats, rows: Ints, places: Ints, pixels: int) -> "Residuals":
+        """Take the block's differences out of a window's precision.
+
+        Parameters
+        ----------
+        inverse : float64 (samples, samples)
+            `whitener` of the samples' covariance.
+        rows : int64 (n,)
+            Which samples they are.
+        places : int64 (n,)
+            Their pixels in the block.
+        pixels : int
+            Of the block.
+
+        Returns
+        -------
+        Residuals
+            For this window.
+        """
+        precision = inverse[:, rows].T @ inverse
+        own = precision[np.arange(len(rows)), rows]
+        matrix, certain = np.zeros((pixels, len(inverse)), np.float32), np.zeros(pixels, np.float32)
+        matrix[places] = precision / np.sqrt(own)[:, None]
+        certain[places] = np.log(own)
+        return cls(matrix, certain)
+
+
+def whitener(shared: Floats) -> Floats:
+    """Matrix that makes samples white: the inverse of their covariance's Cholesky factor.
+
+    Parameters
+    ----------
+    shared : float64 (samples, samples)
+        The covariance.
+
+    Returns
+    -------
+    float64 (samples, samples)
+        Lower triangular.
+    """
+    return solve_triangular(cholesky(shared, lower=True), np.eye(len(shared)), lower=True)
+
+
+def pooled(values: Floats, pool: float) -> Floats:
+    """Mean around each pixel.
+
+    Parameters
+    ----------
+    values : array (rows, cols)
+        Of the pixels.
+    pool : float
+        Standard deviation of the weights, px.
+
+    Returns
+    -------
+    array (rows, cols)
+        The means.
+    """
+    return gaussian_filter(values, pool, truncate=REACH)
+
+
+def badness(squares: Floats, certain: Floats, count: float) -> Floats:
+    """-2 log p of errors of an unknown common scale: a Student's t.
+
+    Parameters
+    ----------
+    squares : array
+        Mean square of the errors, each over its standard deviation.
+    certain : array
+        Mean logarithm of 1 over their variances.
+    count : float
+        How many errors there are.
+
+    Returns
+    -------
+    array
+        Lower is more probable.
+    """
+    return count * (np.log(squares + FLOOR) - certain)
+
+
+def probability(scores: Floats, unlikely: float) -> Floats:
+    """Probabilities from scores.
+
+    Parameters
+    ----------
+    scores : array (disparities, ...)
+        -2 log p of each.
+    unlikely : float
+        Share of the sum below which a probability is 0.
+
+    Returns
+    -------
+    array (disparities, ...)
+        Of sum 1.
+    """
+    chance = np.exp(-(scores - scores.min(0)) / 2)
+    chance[chance < unlikely * chance.sum(0)] = 0
+    return chance / chance.sum(0)
