@@ -22,9 +22,9 @@ WAIVERS = {
 }
 
 
-def decks(pdk: str) -> tuple[str, str]:
-    """The decks of design rules and of LVS, text, with what pixels need beyond PDKMaster's."""
-    tech, process = coriolis_platform(pdk), pixel_process(pdk)
+def common_decks(pdk: str) -> tuple[list[str], str]:
+    """What drawn cells of all kinds are checked by: the rules as pieces of a deck, and PDKMaster's deck of LVS."""
+    tech = coriolis_platform(pdk)
 
     def make(folder: Path) -> None:
         devices = importlib.import_module(tech.package).prims_spiceparams
@@ -34,11 +34,17 @@ def decks(pdk: str) -> tuple[str, str]:
 
     kept = cached(STORE / digest(code("talbot.flow.layout.pdkmaster"), pdk), make)
     masks = [tech.masks.read_text()] if tech.masks else []
-    exported, lvs = (_with_taps((kept / name).read_text(), process) for name in ("drc", "lvs"))
-    rules, mark = [exported, *hole_rules(tech), *via_rules(tech), *masks, process.masks.read_text()], "\nnetlist\n"
+    return [(kept / "drc").read_text(), *hole_rules(tech), *via_rules(tech), *masks], (kept / "lvs").read_text()
+
+
+def decks(pdk: str) -> tuple[str, str]:
+    """The decks of design rules and of LVS, text, with what pixels need beyond PDKMaster's."""
+    process, mark = pixel_process(pdk), "\nnetlist\n"
+    (exported, *rules), lvs = common_decks(pdk)
+    exported, lvs = (_with_taps(deck, process) for deck in (exported, lvs))
     if lvs.count(mark) != 1:
         raise StepError("lvs: the deck has no single line 'netlist' before which diodes could be extracted")
-    return "\n".join([*rules, ""]), lvs.replace(mark, f"\n{process.lvs.read_text()}{mark}")
+    return "\n".join([exported, *rules, process.masks.read_text(), ""]), lvs.replace(mark, f"\n{process.lvs.read_text()}{mark}")
 
 
 def _with_taps(deck: str, process: PixelProcess) -> str:

@@ -1,0 +1,1 @@
+"""The analog circuits as masks: drawn, checked, extracted, simulated again."""

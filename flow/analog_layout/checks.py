@@ -1,0 +1,50 @@
+"""Design rules and layout against circuit of drawn analog circuits, by the decks that PDKMaster exports."""
+
+import re
+from pathlib import Path
+
+from talbot.base.steps import StepError
+from talbot.flow.layout.geometry.decks import run_exported, violations
+from talbot.flow.pixel_layout.checks import common_decks
+from talbot.platforms.analog import analog_masks
+
+
+def decks(pdk: str) -> tuple[str, str]:
+    """The decks of design rules and of LVS, text. Raises StepError where PDKMaster's are not as they were."""
+    masks = analog_masks(pdk)
+    rules, lvs = common_decks(pdk)
+    text = "\n".join([*rules, masks.rules.read_text(), ""])
+    for rule in masks.contradicted:
+        text, count = re.subn(rf"^\(\w+&\w+\)\.output\(\"{re.escape(rule)}\"\)\n", "", text, flags=re.M)
+        if count != 1:
+            raise StepError(f"drc: the deck has the rule {rule} {count} times, once was expected")
+    for line, other in masks.connections.items():
+        if lvs.count(f"\n{line}\n") != 1:
+            raise StepError(f"lvs: the deck has no single line {line!r}")
+        lvs = lvs.replace(line, other)
+    first, last = "extract_devices(", "\nnetlist\n"
+    if first not in lvs or lvs.count(last) != 1:
+        raise StepError("lvs: the deck has no extract_devices, or no single line 'netlist'")
+    lvs = lvs.replace(first, masks.lvs.read_text() + first, 1)
+    return text, lvs.replace(last, f"{last}netlist.simplify\nschematic.simplify\n")
+
+
+def drc(gds: Path, pdk: str, report: Path) -> dict[str, int]:
+    """Violations by rule. report: KLayout's report database. Raises StepError."""
+    deck = report.with_suffix(".drc")
+    deck.write_text(decks(pdk)[0])
+    status, output = run_exported(deck, gds, report)
+    if status:
+        raise StepError(f"drc: KLayout failed with status {status}: {output.strip().splitlines()[-1:]}")
+    return violations(report)
+
+
+def lvs(gds: Path, spice: str, pdk: str, report: Path) -> bool:
+    """Whether the top cell of ``gds`` is the circuit ``spice``, text. Raises StepError."""
+    deck, source = report.with_suffix(".lvs"), report.with_suffix(".spice")
+    deck.write_text(decks(pdk)[1])
+    source.write_text(spice)
+    _, output = run_exported(deck, gds, report, SPICE_FILE=source)
+    if ("LVS OK" in output) == ("LVS Failed" in output):
+        raise StepError(f"lvs: KLayout gave no verdict: {output.strip().splitlines()[-1:]}")
+    return "LVS OK" in output

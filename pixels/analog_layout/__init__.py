@@ -1,0 +1,1 @@
+"""The analog circuits drawn: transistors in strips, capacitors in arrays, comparator, lane, row driver."""

@@ -1,0 +1,235 @@
+"""An array of metal-insulator-metal capacitors: 16 x 16 units and half a one, dummies, a bus to the lower plates.
+
+The upper plates are the common node: over the lower plates, which stand between it and the lines under them, so that
+no line adds to the weight of a bit. Lines on the second metal run along a column below the plates, one for each
+capacitor that has units in it, to the bus beyond the dummies. The common node leaves on the other side, in the middle.
+Lower plates of different nets are 1.2 um apart (capm.2b): a unit takes more room than its plate and the space
+of two upper plates.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from math import sqrt
+
+import numpy as np
+import numpy.typing as npt
+
+from talbot.models.parameters import ParameterError
+from talbot.pixels.circuits.dac import DacSizes
+from talbot.pixels.layout.canvas import Canvas
+from talbot.platforms.analog import AnalogMasks
+
+from .device import Strap
+from .flat import Plate
+from .pattern import SIDE
+from .strip import FOURTH, SECOND, THIRD, TRACK, TRACK_PITCH
+
+# um
+AROUND, TAB, APART = 0.14, 0.45, 1.2  # lower plate around the upper one, on the side of its via; between lower plates
+VIA_IN = 0.24  # of that via's middle from the upper plate
+LINE, LINE_PITCH, LINES = 0.28, 0.60, 5
+COLUMN = 0.5  # width of the common node's metal
+RING_AWAY = 1.0  # of the bus's first track from the dummies
+GRID = 0.005
+OUT = "half"
+
+
+@dataclass(frozen=True)
+class ArrayPlan:
+    """An array that is to be drawn.
+
+    names: of the capacitor of each unit, [row, column] from the side of the bus; a half is beyond them. nets: of the
+    lower plates by name, and of half. common: net of the upper plates. edge_um, half_um: sides of a unit and of half a
+    one. left, right: ends of the bus, um.
+    """
+
+    names: npt.NDArray[np.str_]
+    nets: Mapping[str, str]
+    common: str
+    edge_um: float
+    half_um: float
+    left: float
+    right: float
+    ground: str = "vss"
+
+    @property
+    def pitch_um(self) -> tuple[float, float]:
+        """From column to column, from row to row."""
+        plate = self.edge_um + 2 * AROUND
+        return plate + APART, plate - AROUND + TAB + APART
+
+    @property
+    def size_um(self) -> tuple[float, float]:
+        """Width of the capacitors with their dummies; height of these and the bus."""
+        (across, along), tracks = self.pitch_um, len(self.buses())
+        return (SIDE + 2) * across - APART, (SIDE + 2) * along - APART + RING_AWAY + TRACK_PITCH * tracks
+
+    def buses(self) -> list[str]:
+        """Nets of the bus, from its far side on."""
+        return list(dict.fromkeys([self.ground, *self.nets.values()]))
+
+    def plates(self) -> list[Plate]:
+        """Every capacitor; the dummies, too."""
+        found = []
+        for name, net in self.nets.items():
+            count, side = (1, self.half_um) if name == OUT else (int((self.names == name).sum()), self.edge_um)
+            found.append(Plate(name, self.common, net, count * side**2, count * 4 * side))
+        count = (SIDE + 2) ** 2 - SIDE**2 - 1
+        found.append(Plate("dummies", self.ground, self.ground, count * self.edge_um**2, count * 4 * self.edge_um))
+        return found
+
+
+@dataclass
+class Array:
+    """A drawn array. tracks: of the bus. exit: (x, y) at which the common node leaves, on the fourth metal."""
+
+    plan: ArrayPlan
+    tracks: dict[str, Strap] = field(default_factory=dict)
+    exit: tuple[float, float] = (0.0, 0.0)
+
+
+def edges(sizes: DacSizes, masks: AnalogMasks) -> tuple[float, float]:
+    """Sides (um) of a unit and of half a one. Raises ParameterError where ``sizes`` has another kind of cell."""
+    if sizes.kind != "mim" or not sizes.source.startswith("cap_mim"):
+        raise ParameterError(f"unit = {sizes.source}: must be one cap_mim for a drawn array")
+
+    def side(farad: float) -> float:
+        a, b = masks.mim_area, 4 * masks.mim_edge
+        return round((sqrt(b * b + 4 * a * farad * 1e15) - b) / (2 * a) / GRID) * GRID
+
+    return side(sizes.unit), side(sizes.unit / 2)
+
+
+def draw_array(canvas: Canvas, masks: AnalogMasks, plan: ArrayPlan, y: float, bus_south: bool = True) -> Array:
+    """Draw an array in the middle of its bus, its southern edge at ``y``, or in the north with the bus there."""
+    width, height = plan.size_um
+    west = round(((plan.left + plan.right - width) / 2) / GRID) * GRID
+    return _Drawing(canvas, masks, plan, west, y if bus_south else y + height, 1 if bus_south else -1).draw()
+
+
+@dataclass
+class _Drawing:
+    canvas: Canvas
+    masks: AnalogMasks
+    plan: ArrayPlan
+    west: float
+    origin: float
+    way: int
+
+    def y(self, v: float) -> float:
+        """Of a distance from the bus's far side."""
+        return self.origin + self.way * v
+
+    def box(self, mask: tuple[int, int], left: float, low: float, right: float, high: float) -> None:
+        a, b = self.y(low), self.y(high)
+        self.canvas.box(mask, left, min(a, b), right, max(a, b))
+
+    def metal(self, level: int, left: float, low: float, right: float, high: float) -> None:
+        self.box(self.masks.base.metals[level].gds, left, low, right, high)
+
+    def middle(self, row: int, column: int) -> tuple[float, float]:
+        """Of a unit's upper plate; row and column from -1 of the dummies to SIDE."""
+        across, along = self.plan.pitch_um
+        first = TRACK_PITCH * len(self.plan.buses()) + RING_AWAY + TAB + self.plan.edge_um / 2
+        return (self.west + AROUND + self.plan.edge_um / 2 + (column + 1) * across, first + (row + 1) * along)
+
+    def draw(self) -> Array:
+        made = Array(self.plan)
+        for k, net in enumerate(self.plan.buses()):
+            v = TRACK_PITCH * (k + 0.5)
+            made.tracks[net] = Strap(net, self.plan.left, self.plan.right, self.y(v))
+            self.metal(THIRD, self.plan.left, v - TRACK / 2, self.plan.right, v + TRACK / 2)
+        for column in range(SIDE):
+            self._column(column, made)
+        self._half(made)
+        self._ring(made)
+        self._common(made)
+        return made
+
+    def _plate(self, row: int, column: int, edge: float) -> None:
+        """The upper plate with its via, in the middle of a place."""
+        x, v = self.middle(row, column)
+        self.box(self.masks.mim, x - edge / 2, v - edge / 2, x + edge / 2, v + edge / 2)
+        self.canvas.square(self.masks.base.vias[THIRD].gds, x, self.y(v), 0.2)
+
+    def _lower(self, row: int, column: int, edge: float) -> None:
+        x, v = self.middle(row, column)
+        half = edge / 2
+        self.metal(THIRD, x - half - AROUND, v - half - TAB, x + half + AROUND, v + half + AROUND)
+
+    def _line(self, net: str, x: float, end: float, made: Array) -> None:
+        """From the bus to ``end``, a distance from its far side."""
+        track = made.tracks[net].y
+        start = (track - self.origin) * self.way
+        self.metal(SECOND, x - LINE / 2, start, x + LINE / 2, end)
+        self.canvas.stack(x, track, SECOND, THIRD)
+
+    def _column(self, column: int, made: Array) -> None:
+        """The units of a column and their lines."""
+        own = self.plan.names[:, column]
+        kinds = [name for name in self.plan.nets if name in set(own.tolist())]
+        if len(kinds) > LINES:
+            raise ParameterError(f"column {column} = {len(kinds)} capacitors: must be {LINES} at most")
+        x0, _ = self.middle(0, column)
+        places = {name: x0 + (k - (len(kinds) - 1) / 2) * LINE_PITCH for k, name in enumerate(kinds)}
+        far = self.middle(SIDE - 1, column)[1] - self.plan.edge_um / 2 - VIA_IN + LINE
+        for name, x in places.items():
+            self._line(self.plan.nets[name], x, far, made)
+        for row in range(SIDE):
+            self._plate(row, column, self.plan.edge_um)
+            self._lower(row, column, self.plan.edge_um)
+            v = self.middle(row, column)[1] - self.plan.edge_um / 2 - VIA_IN
+            self.canvas.stack(places[str(own[row])], self.y(v), SECOND, THIRD)
+
+    def _half(self, made: Array) -> None:
+        """Half a unit in the place of a dummy, its line beside those of the column below it."""
+        column = SIDE // 2 - 1
+        edge, (x, v) = self.plan.half_um, self.middle(SIDE, column)
+        self._plate(SIDE, column, edge)
+        self._lower(SIDE, column, edge)
+        beside, at = x - self.plan.pitch_um[0] / 2 + 0.29, v - edge / 2 - VIA_IN
+        self._line(self.plan.nets[OUT], beside, at + LINE / 2, made)
+        self.metal(SECOND, beside - LINE / 2, at - LINE / 2, x, at + LINE / 2)
+        self.canvas.stack(x, self.y(at), SECOND, THIRD)
+
+    def _ring(self, made: Array) -> None:
+        """The dummies: lower plates in one piece but for the half's place, upper ones joined, both on the ground."""
+        p, half = self.plan, self.plan.edge_um / 2
+        inner, hole = range(SIDE), SIDE // 2 - 1
+        (west, low), (east, high) = self.middle(-1, -1), self.middle(SIDE, SIDE)
+        bottom, top = low - half - TAB, high + half + AROUND
+        for x in (west, east):
+            self.metal(THIRD, x - half - AROUND, bottom, x + half + AROUND, top)
+            self.metal(FOURTH, x - COLUMN / 2, bottom, x + COLUMN / 2, high + COLUMN / 2)
+            self._line(p.ground, x, low - half - VIA_IN + LINE, made)
+            for side in (-0.4, 0.4):
+                self.canvas.stack(x + side, self.y(low - half - VIA_IN), SECOND, THIRD)
+            self.metal(SECOND, x - 0.6, low - half - VIA_IN - 0.185, x + 0.6, low - half - VIA_IN + 0.185)
+            self.canvas.square(self.masks.base.vias[THIRD].gds, x, self.y(low - half - VIA_IN), 0.2)
+            for row in range(-1, SIDE + 1):
+                self._plate(row, -1 if x == west else SIDE, p.edge_um)
+        for column in inner:
+            self._plate(-1, column, p.edge_um)
+            if column != hole:
+                self._plate(SIDE, column, p.edge_um)
+        rows = [(low, west, east)]
+        rows += [(high, west, self.middle(0, hole - 1)[0]), (high, self.middle(0, hole + 1)[0], east)]
+        for v, left, right in rows:
+            self.metal(FOURTH, left - COLUMN / 2, v - COLUMN / 2, right + COLUMN / 2, v + COLUMN / 2)
+            self.metal(THIRD, left - half - AROUND, v - half - TAB, right + half + AROUND, v + half + AROUND)
+
+    def _common(self, made: Array) -> None:
+        """The upper plates' metal: a strip over each column, a bar at both ends, the way out between two columns."""
+        half, hole = self.plan.edge_um / 2, SIDE // 2 - 1
+        first, last = self.middle(0, 0), self.middle(SIDE - 1, SIDE - 1)
+        bars = first[1] - half - TAB - APART / 2, last[1] + half + AROUND + APART / 2
+        for column in range(SIDE):
+            x, _ = self.middle(0, column)
+            end = self.middle(SIDE, hole)[1] + COLUMN / 2 if column == hole else bars[1]
+            self.metal(FOURTH, x - COLUMN / 2, bars[0], x + COLUMN / 2, end)
+        for v in bars:
+            self.metal(FOURTH, first[0] - COLUMN / 2, v - COLUMN / 2, last[0] + COLUMN / 2, v + COLUMN / 2)
+        x = (self.middle(0, hole)[0] + self.middle(0, hole + 1)[0]) / 2
+        end = self.middle(SIDE, 0)[1] + half + AROUND
+        self.metal(FOURTH, x - COLUMN / 2, bars[1], x + COLUMN / 2, end)
+        made.exit = (x, self.y(end))

@@ -1,0 +1,71 @@
+"""Whole cells: strips joined by their rails, with pins and an outline, beside the circuit that they are."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from talbot.base.gds import db, write_gds
+from talbot.pixels.circuits.comparator import ComparatorSizes, comparator
+from talbot.pixels.circuits.netlist import Transistor
+from talbot.pixels.layout.canvas import Canvas
+from talbot.platforms.analog import AnalogMasks
+
+from . import flat
+from .comparator import comparator_plans, devices, draw_comparator, least_half
+from .device import Device
+from .strip import RAIL_ENDS, THIRD, Strip, join_rails
+
+MARGIN = 2.0  # of a cell beyond its rails, um
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A drawn cell. ports: in the order of its pins. devices: its transistors in fingers. plates: its capacitors."""
+
+    layout: "db.Layout"
+    cell: "db.Cell"
+    ports: tuple[str, ...]
+    devices: tuple[Device, ...]
+    plates: tuple[flat.Plate, ...] = ()
+
+    @property
+    def transistors(self) -> list[Transistor]:
+        """All transistors, dummies too."""
+        return [t for device in self.devices for t in (device.transistor, *device.off)]
+
+    def spice(self, masks: AnalogMasks) -> str:
+        """Its text for LVS."""
+        return flat.spice(self.cell.name, self.ports, self.transistors, masks, self.plates)
+
+    def write(self, path: Path) -> None:
+        """Write its GDS."""
+        write_gds(self.layout, path, self.cell)
+
+
+def new_canvas(masks: AnalogMasks, name: str) -> Canvas:
+    """An empty cell in a layout of its own."""
+    layout = db.Layout()
+    layout.dbu = 0.001
+    return Canvas(layout, name, masks.base)
+
+
+def comparator_cell(masks: AnalogMasks, sizes: ComparatorSizes) -> Cell:
+    """The comparator alone; its pins are at the west ends of its tracks."""
+    canvas, circuit, axis = new_canvas(masks, "comparator"), comparator(sizes), 40.0
+    drawn = devices(circuit)
+    half = least_half(comparator_plans(drawn, axis, (0, 2 * axis))) + 0.6
+    strips = draw_comparator(canvas, masks, comparator_plans(drawn, axis, (axis - half, axis + half)), MARGIN)
+    finish(canvas, strips, circuit.ports[:4])
+    return Cell(canvas.layout, canvas.cell, circuit.ports, tuple(drawn.values()))
+
+
+def finish(canvas: Canvas, strips: Sequence[Strip], pins: Iterable[str]) -> None:
+    """Join the rails, put the pins on the first track of their nets, draw the outline."""
+    join_rails(canvas, strips)
+    for net in pins:
+        track = next(strip.tracks[net] for strip in strips if net in strip.tracks)
+        canvas.label(THIRD, net, track.left + 0.3, track.y)
+    plan = strips[0].plan
+    bottom, top = strips[0].y, strips[-1].y + strips[-1].plan.height_um
+    ends = plan.left - RAIL_ENDS - MARGIN, plan.right + RAIL_ENDS + MARGIN
+    canvas.box(canvas.process.outline, ends[0], bottom - MARGIN, ends[1], top + MARGIN)

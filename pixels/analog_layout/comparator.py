@@ -1,0 +1,97 @@
+"""The comparator: the strong-arm latch symmetric about an axis, the latch that holds its decision above it.
+
+    holding     hold_n  hold_n  buffer_n | buffer_p  hold  hold
+    strong arm  switch  inp  latch_np  tail  latch_nn  inn  switch
+
+The pair and the n latch have dummies at their ends. In a lane the switches of the common plates are the outermost.
+"""
+
+from collections.abc import Mapping, Sequence
+
+from talbot.pixels.circuits.netlist import Circuit
+from talbot.pixels.layout.canvas import Canvas
+from talbot.platforms.analog import AnalogMasks
+
+from . import flat
+from .device import Device, swapped
+from .strip import Plan, Strip, draw_strip, mirrored, trunk
+
+WITH_DUMMIES = "inp", "inn", "latch_np", "latch_nn"
+ROOM, HOLD_ROOM = 0.6, 1.2  # um beside each device, for its drops
+BETWEEN_STRIPS = 1.5  # middles of rails, um
+CROSSING = 3.0  # of what joins the strips from the axis, um
+
+Pair = tuple[Device, Device]
+
+
+def devices(circuit: Circuit) -> dict[str, Device]:
+    """All transistors of a circuit by name, in fingers."""
+    found = {}
+    for t in flat.transistors(circuit):
+        last = t.name.rsplit(".", 1)[-1]
+        found[t.name] = Device(t, 2) if last == "tail" else Device.of(t, dummies=last in WITH_DUMMIES)
+    return found
+
+
+def pair(d: Mapping[str, Device], west: str, east: str) -> Pair:
+    """Two devices that are mirror images."""
+    return (d[west], d[east]) if d[west].fingers > 1 else (d[west], swapped(d[east]))
+
+
+def comparator_plans(
+    d: Mapping[str, Device],
+    axis: float,
+    ends: tuple[float, float],
+    prefix: str = "",
+    outer: Sequence[Pair] = (),
+    outer_p: Sequence[Pair] = (),
+    shared: frozenset[str] = frozenset(),
+) -> tuple[Plan, Plan]:
+    """Plans of the strips of the comparator whose transistors ``d`` are named from ``prefix`` on.
+
+    ends: of the strips. outer, outer_p: further pairs outside of it; shared: their nets that other strips have.
+    """
+
+    def named(*names: str) -> list[Pair]:
+        return [pair(d, *(prefix + name for name in names[k : k + 2])) for k in range(0, len(names), 2)]
+
+    arm = f"{prefix}arm."
+    inp, inn, latch_p, latch_n = (d[arm + name].transistor for name in ("inp", "inn", "latch_nn", "latch_np"))
+    strobe = d[f"{arm}tail"].transistor.gate
+    n = mirrored(d[f"{arm}tail"], [*named("arm.latch_np", "arm.latch_nn", "arm.inp", "arm.inn"), *outer], axis, ROOM)
+    p = mirrored(
+        None,
+        [
+            *named("arm.latch_pp", "arm.latch_pn", "arm.reset_outn", "arm.reset_outp", "arm.reset_xp", "arm.reset_xn"),
+            *outer_p,
+        ],
+        axis,
+        ROOM,
+    )
+    outputs = latch_p.drain, latch_n.drain
+    pairs = ((inn.gate, inp.gate), outputs, (inp.drain, inn.drain))
+    through = frozenset({inp.gate, inn.gate, strobe, *outputs, *shared})
+    arm_plan = Plan(n, p, *ends, through, pairs, axis)
+    rows = []
+    for kind in ("n", "p"):
+        kinds = [f"{side}.{kind}{leg}" for leg in ("a", "b") for side in ("hold_n", "hold")]
+        rows.append(mirrored(None, named(f"buffer_n.{kind}", f"buffer_p.{kind}", *kinds), axis, HOLD_ROOM))
+    held, inverse = (d[f"{prefix}{side}.na"].transistor.drain for side in ("hold", "hold_n"))
+    settled = tuple(d[f"{prefix}{side}.n"].transistor.drain for side in ("buffer_n", "buffer_p"))
+    hold_pairs = (outputs, (settled[0], settled[1]), (held, inverse))
+    return arm_plan, Plan(rows[0], rows[1], *ends, frozenset({*outputs, held}), hold_pairs, axis)
+
+
+def draw_comparator(canvas: Canvas, masks: AnalogMasks, plans: tuple[Plan, Plan], y: float) -> list[Strip]:
+    """Draw both strips, the lowest rail at ``y``, and join them."""
+    arm, hold = plans
+    lower = draw_strip(canvas, masks, arm, y)
+    upper = draw_strip(canvas, masks, hold, y + arm.height_um + BETWEEN_STRIPS)
+    for net, way in zip(arm.pairs[1], (-1, 1), strict=True):
+        trunk(canvas, (lower.tracks, upper.tracks), net, (arm.axis or 0.0) + way * CROSSING)
+    return [lower, upper]
+
+
+def least_half(plans: tuple[Plan, Plan]) -> float:
+    """Half the length that the strips must have, um."""
+    return max(placed.high - (plan.axis or 0.0) for plan in plans for placed in plan.placed())

@@ -1,0 +1,191 @@
+"""The converter lane: the comparator between its two arrays of capacitors, the switches beyond these.
+
+    balance switches        north: lane_a, lane_b
+    balance array           common node `other`
+    comparator              symmetric; both common nodes reach it over its axis
+    DAC array               common node `top`
+    DAC switches
+    drivers                 south: bits, sample, strobe, comparator
+
+Between strips and arrays nets run on the fourth metal: what passes an array beside it, the rest over the strips.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+from talbot.pixels.circuits.dac import BITS
+from talbot.pixels.circuits.lane import PINS, LaneSizes, sar_lane
+from talbot.pixels.layout.canvas import Canvas
+from talbot.platforms.analog import AnalogMasks
+
+from .array import Array, ArrayPlan, draw_array, edges
+from .cells import MARGIN, Cell, new_canvas
+from .comparator import BETWEEN_STRIPS, comparator_plans, devices, draw_comparator, pair
+from .device import Device, Strap
+from .pattern import binary, halves
+from .strip import (
+    FOURTH,
+    RAIL_AT,
+    RAIL_ENDS,
+    THIRD,
+    TRACK,
+    TRUNK,
+    WELL_ENDS,
+    Plan,
+    Strip,
+    draw_strip,
+    in_columns,
+    join_rails,
+    trunk,
+)
+
+# um
+CHANNEL, CHANNEL_FIRST, CHANNEL_PITCH = 9.0, 0.9, 1.6  # beside the arrays, for what passes them
+AWAY = 1.6  # of an array from a rail
+WEST, EAST = ("lane_a", "bottoms", "bottoms_n", "refp", "refn"), ("vcm", "fire", "comparator", "sample_1", "sample_2")
+GATES = (("n", "p"),), (("na", "pa"), ("nb", "pb"))  # of an inverter, of a gate of two inputs
+STEP = 3.0  # of the nets over the strips
+Column = tuple[Device | None, Device | None]
+
+
+@dataclass(frozen=True)
+class LanePlan:
+    """Strips and arrays of a lane, from the south; names of devices by strip."""
+
+    left: float
+    right: float
+    drivers: Plan
+    dac_switches: tuple[Plan, ...]
+    dac: ArrayPlan
+    comparator: tuple[Plan, Plan]
+    balance: ArrayPlan
+    balance_switches: Plan
+
+
+def _switch(d: dict[str, Device], prefix: str) -> list[Column]:
+    """Columns of the transistors of one switch circuit that are there."""
+    names = [("in_n", "in_p"), ("low", "high"), *((f"off_high.{n}", f"off_high.{p}") for n, p in GATES[1])]
+    names += [(f"on_low.{n}", f"on_low.{p}") for n, p in GATES[1]]
+    present = [(d.get(prefix + n), d.get(prefix + p)) for n, p in names]
+    return [column for column in present if any(column)]
+
+
+def _gates(d: dict[str, Device], names: Iterable[str]) -> list[Column]:
+    found: list[Column] = []
+    for name in names:
+        legs = GATES[0] if f"{name}.n" in d else GATES[1]
+        found += [(d[f"{name}.{n}"], d[f"{name}.{p}"]) for n, p in legs]
+    return found
+
+
+def lane_plan(masks: AnalogMasks, sizes: LaneSizes, d: dict[str, Device]) -> LanePlan:
+    """Where everything of a lane is. Raises ParameterError where it does not fit."""
+    edge, half = edges(sizes.dac, masks)
+    nets = {f"bit{k}": f"dac.b{k}" for k in reversed(range(BITS))} | {"terminator": "dac.bt", "half": "dac.bh"}
+    probe = ArrayPlan(binary(), nets, "top", edge, half, 0, 0)
+    left, right = 0.0, round(probe.size_um[0] + 2 * CHANNEL, 2)
+    axis = right / 2
+    dac = ArrayPlan(binary(), nets, "top", edge, half, left, right)
+    other = {"refp": "balance.b_refp", "refn": "balance.b_refn", "half": "refn"}
+    balance = ArrayPlan(halves(), other, "other", edge, half, left, right)
+
+    shared = {"lane_a", "lane_b", "bottoms", "bottoms_n", "refp", "refn", *nets.values(), *other.values()}
+    shared |= {f"d{k}" for k in range(BITS)}
+    switches = [_switch(d, f"dac.switch{k}.") for k in reversed(range(BITS))]
+    switches += [_switch(d, "dac.switch_t."), _switch(d, "dac.switch_h.")]
+    strips: list[list[Column]] = [[]]
+    for one in switches:
+        if in_columns([*strips[-1], *one], left)[2] > right:
+            strips.append([])
+        strips[-1] += one
+
+    def plan(columns: Sequence[Column], through: set[str]) -> Plan:
+        n, p, end = in_columns(columns, left, (right - in_columns(columns, left)[2]) / len(columns) - 1e-3)
+        present = {net for pl in (*n, *p) for net in pl.device.transistor.nodes}
+        return Plan(n, p, left, right, frozenset(through & present))
+
+    drivers = _gates(
+        d, ("sample_0", "sample_1", "sample_2", "sample_3", "sample_n", "sample_p", "strobe_n", "strobe_p")
+    )
+    plates = [pair(d, f"plate_other_{kind}", f"plate_top_{kind}") for kind in ("n", "p")]
+    names = _switch(d, "balance.switch_refp.") + _switch(d, "balance.switch_refn.")
+    return LanePlan(
+        left,
+        right,
+        plan(drivers, {"sample", "strobe", "fire", "sample_1", "sample_2", "bottoms", "bottoms_n"}),
+        tuple(plan(one, shared) for one in strips),
+        dac,
+        comparator_plans(
+            d, axis, (left, right), "comparator.", [plates[0]], [plates[1]], frozenset({"vcm", "sample_1", "sample_2"})
+        ),
+        balance,
+        plan(names, shared),
+    )
+
+
+def lane_cell(masks: AnalogMasks, sizes: LaneSizes) -> Cell:
+    """Draw the lane; its south-west corner is at the origin, its pins are in the south and in the north."""
+    canvas, d = new_canvas(masks, "sar_lane"), devices(sar_lane(sizes))
+    plan = lane_plan(masks, sizes, d)
+    y, south = MARGIN, list[Strip]()
+    for one in (plan.drivers, *plan.dac_switches):
+        south.append(draw_strip(canvas, masks, one, y))
+        y += one.height_um + BETWEEN_STRIPS
+    y += AWAY - BETWEEN_STRIPS
+    dac = draw_array(canvas, masks, plan.dac, y)
+    y += plan.dac.size_um[1] + AWAY
+    middle = draw_comparator(canvas, masks, plan.comparator, y)
+    y = middle[-1].y + middle[-1].plan.height_um + AWAY
+    balance = draw_array(canvas, masks, plan.balance, y, bus_south=False)
+    y += plan.balance.size_um[1] + AWAY
+    north = draw_strip(canvas, masks, plan.balance_switches, y)
+    top = y + plan.balance_switches.height_um + MARGIN
+    strips = [*south, *middle, north]
+    join_rails(canvas, strips)
+    for array, net in ((dac, "top"), (balance, "other")):
+        _meet(canvas, array, middle[0], net)
+        _ground(canvas, array, plan.left - RAIL_AT)
+    tracks = [strip.tracks for strip in south] + [dac.tracks, *(strip.tracks for strip in middle), balance.tracks]
+    tracks.append(north.tracks)
+    _nets(canvas, plan, tracks, top)
+    ends = RAIL_ENDS + WELL_ENDS
+    canvas.box(masks.base.outline, plan.left - ends, 0, plan.right + ends, top)
+    plates = [
+        plate._replace(name=f"{side}_{plate.name}")
+        for side, array in (("dac", plan.dac), ("balance", plan.balance))
+        for plate in array.plates()
+    ]
+    return Cell(canvas.layout, canvas.cell, PINS, tuple(d.values()), tuple(plates))
+
+
+def _meet(canvas: Canvas, array: Array, arm: Strip, net: str) -> None:
+    """A common node from its array to its track in the comparator."""
+    x, y = array.exit
+    end = arm.tracks[net].y
+    half = TRACK / 2
+    canvas.wire(FOURTH, x - TRUNK / 2, min(y, end - half), x + TRUNK / 2, max(y, end + half))
+    canvas.stack(x, end, THIRD, FOURTH)
+
+
+def _ground(canvas: Canvas, array: Array, x: float) -> None:
+    """The dummies' net to what joins the lower rails."""
+    track = array.tracks[array.plan.ground]
+    canvas.wire(THIRD, x - TRACK / 2, track.y - TRACK / 2, track.left, track.y + TRACK / 2)
+    canvas.stack(x, track.y, THIRD, FOURTH)
+
+
+def _nets(canvas: Canvas, plan: LanePlan, tracks: Sequence[Mapping[str, Strap]], top: float) -> None:
+    """What goes from strip to strip, up to the pins."""
+    places: dict[str, float] = {net: plan.left + CHANNEL_FIRST + CHANNEL_PITCH * k for k, net in enumerate(WEST)}
+    places |= {net: plan.right - CHANNEL_FIRST - CHANNEL_PITCH * k for k, net in enumerate(EAST)}
+    over = [*plan.dac.nets.values(), *(f"d{k}" for k in range(BITS)), "sample", "strobe"]
+    first = (plan.left + plan.right) / 2 - STEP * (len(over) - 1) / 2
+    places |= {net: first + STEP * k for k, net in enumerate(dict.fromkeys(over))}
+    beside = [*plan.balance.nets.values(), "lane_b"]
+    places |= {net: first + STEP * (3 * k + 1) for k, net in enumerate(beside) if net not in places}
+    north = {"lane_a", "lane_b", "refp", "refn", "vcm"}
+    for net, x in places.items():
+        edge = top if net in north else 0.0
+        trunk(canvas, tracks, net, x, *([edge] if net in PINS else []))
+        if net in PINS:
+            canvas.label(FOURTH, net, x, edge - 0.3 if edge else 0.3)

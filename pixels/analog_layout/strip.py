@@ -1,0 +1,341 @@
+"""A strip: a row of n transistors below a row of p transistors, or one of them, between the rails, and its nets.
+
+    rail vdd  =========================   taps of the n well under it
+              p transistors                every net has a track along the strip on the third metal; from each strap of
+              - - tracks - - - - - -       a transistor a drop on the second metal goes to its net's track
+              n transistors
+    rail vss  =========================   taps of the substrate under it
+
+Tracks of a pair (``pairs``) are neighbours of one length, and the drops to one of them cross the other, so that both
+have the same metal. In a strip with an axis every device has its mirror image and so have the drops.
+"""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from talbot.models.parameters import ParameterError
+from talbot.pixels.layout.canvas import Canvas
+from talbot.platforms.analog import AnalogMasks
+
+from .device import IMPLANT, RAIL, STRAP, WELL_AROUND, Device, Strap, draw_device
+
+# um
+GAP = 0.40  # of diffusions beside each other
+MIDDLE = 1.5  # between the diffusions of the two rows
+TRACK, TRACK_PITCH, TRACK_IN = 0.38, 0.70, 0.85  # of the tracks; from a rail's middle to the first
+DROP, DROP_PITCH, DROP_STEP, DROP_ENDS = 0.37, 0.52, 0.02, 0.55
+RAIL_HALF, TAP_HALF, TAP_PITCH = 0.245, 0.21, 0.68
+OPEN_ENDS = 0.72  # beyond a single row's gates
+WELL_ENDS = 0.50  # of the well beyond its taps
+RAIL_ENDS, RAIL_AT, RAIL_TRUNK = 1.7, 1.0, 1.0  # of a rail beyond the tracks; what joins rails: from there, its width
+TRUNK = 0.5  # um, of a net from strip to strip
+SECOND, THIRD, FOURTH = 2, 3, 4
+TRIES = 60
+
+
+@dataclass(frozen=True)
+class Placed:
+    """A device whose diffusion begins at ``x`` (um); its straps may be from ``low`` to ``high``."""
+
+    device: Device
+    x: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A strip that is to be drawn.
+
+    n, p: rows. left, right: its ends, um. axis: of its symmetry, or None. pairs: nets that must match. through: nets
+    whose tracks go from end to end: those that meet other strips.
+    """
+
+    n: tuple[Placed, ...]
+    p: tuple[Placed, ...]
+    left: float
+    right: float
+    through: frozenset[str]
+    pairs: tuple[tuple[str, str], ...] = ()
+    axis: float | None = None
+    rails: tuple[str, str] = ("vss", "vdd")
+
+    @property
+    def height_um(self) -> float:
+        """From the middle of the lower rail to that of the upper one."""
+        heights = [max((placed.device.finger_um for placed in row), default=0.0) for row in (self.n, self.p)]
+        between = MIDDLE if self.n and self.p else OPEN_ENDS
+        devices = 2 * RAIL + sum(heights) + between
+        return max(devices, 2 * TRACK_IN + TRACK_PITCH * (len(self._rows()) - 1))
+
+    def placed(self) -> tuple[Placed, ...]:
+        """All devices."""
+        return (*self.n, *self.p)
+
+    def spans(self) -> dict[str, tuple[float, float]]:
+        """(left, right) of every net's track that there may be a drop on, um."""
+        found: dict[str, tuple[float, float]] = {}
+        for placed in self.placed():
+            t = placed.device.transistor
+            for net in {t.drain, t.gate, t.source} - set(self.rails):
+                left, right = found.get(net, (placed.low, placed.high))
+                found[net] = min(left, placed.low), max(right, placed.high)
+        for net in self.through:
+            found[net] = self.left, self.right
+        if self.axis is not None:
+            found = {net: (min(a, 2 * self.axis - b), max(b, 2 * self.axis - a)) for net, (a, b) in found.items()}
+        for pair in self.pairs:
+            both = [found[net] for net in pair if net in found]
+            if both:
+                found |= dict.fromkeys(pair, (min(a for a, _ in both), max(b for _, b in both)))
+        return found
+
+    def _rows(self) -> list[dict[str, tuple[float, float]]]:
+        """Nets that share a track, from the first track on; those of a pair are in consecutive ones."""
+        spans, rows = self.spans(), list[dict[str, tuple[float, float]]]()
+        paired = {net for pair in self.pairs for net in pair}
+        for pair in self.pairs:
+            rows += [{net: spans[net]} for net in pair if net in spans]
+        for net in sorted(spans, key=lambda net: (-(spans[net][1] - spans[net][0]), net)):
+            if net in paired:
+                continue
+            a, b = spans[net]
+            fitting = (
+                row for row in rows[2 * len(self.pairs) :] if all(b + 1 < c or d + 1 < a for c, d in row.values())
+            )
+            row = next(fitting, None)
+            if row is None:
+                row = {}
+                rows.append(row)
+            row[net] = a, b
+        return rows
+
+    def tracks(self) -> dict[str, float]:
+        """Heights of the tracks over the lower rail, um: spread about the middle."""
+        rows = self._rows()
+        first = self.height_um / 2 - TRACK_PITCH * (len(rows) - 1) / 2
+        return {net: first + TRACK_PITCH * k for k, row in enumerate(rows) for net in row}
+
+
+@dataclass
+class Strip:
+    """A drawn strip. y: of its lower rail. tracks: of every net, its height and ends. drops: (net, x, low, high)."""
+
+    plan: Plan
+    y: float
+    tracks: dict[str, Strap] = field(default_factory=dict)
+    drops: list[tuple[str, float, float, float]] = field(default_factory=list)
+
+
+def draw_strip(canvas: Canvas, masks: AnalogMasks, plan: Plan, y: float) -> Strip:
+    """Draw a strip, the middle of its lower rail at ``y``. Raises ParameterError where a drop has no room."""
+    made, top = Strip(plan, y), y + plan.height_um
+    spans, heights = plan.spans(), plan.tracks()
+    made.tracks = {net: Strap(net, *spans[net], y + heights[net]) for net in heights}
+    straps: list[tuple[Strap, Placed]] = []
+    for row, rail_y, upright in ((plan.n, y, True), (plan.p, top, False)):
+        for placed in row:
+            straps += [
+                (s, placed)
+                for s in draw_device(canvas, masks, placed.device, placed.x, rail_y, upright, (placed.low, placed.high))
+            ]
+    _drops(canvas, made, straps)
+    for track in made.tracks.values():
+        canvas.wire(THIRD, track.left, track.y - TRACK / 2, track.right, track.y + TRACK / 2)
+    base = masks.base
+    if plan.n:
+        _rail(canvas, plan, y, base.pplus)
+    if plan.p:
+        low = min(top - RAIL - placed.device.finger_um for placed in plan.p) - WELL_AROUND
+        beyond = RAIL_ENDS + WELL_ENDS
+        canvas.box(base.well, plan.left - beyond, low, plan.right + beyond, top + TAP_HALF + WELL_AROUND)
+        _rail(canvas, plan, top, base.nplus)
+    return made
+
+
+def _rail(canvas: Canvas, plan: Plan, y: float, implant: tuple[int, int]) -> None:
+    """A rail with a tap along it."""
+    base, left, right = canvas.process, plan.left - RAIL_ENDS, plan.right + RAIL_ENDS
+    canvas.wire(1, left, y - RAIL_HALF, right, y + RAIL_HALF)
+    canvas.wire(0, left, y - 0.085, right, y + 0.085)
+    canvas.box(base.active, left, y - TAP_HALF, right, y + TAP_HALF)
+    canvas.box(implant, left - IMPLANT, y - TAP_HALF - IMPLANT, right + IMPLANT, y + TAP_HALF + IMPLANT)
+    count = int((right - left - 0.5) / TAP_PITCH) + 1
+    first = (left + right) / 2 - (count - 1) * TAP_PITCH / 2
+    for k in range(count):
+        canvas.square(base.contact, first + k * TAP_PITCH, y, 0.17)
+        canvas.square(base.vias[0].gds, first + k * TAP_PITCH, y, 0.17)
+
+
+def _drops(canvas: Canvas, made: Strip, straps: Sequence[tuple[Strap, Placed]]) -> None:
+    """A drop from every strap to its track; the least free straps first, and what found no room before those."""
+    groups = _groups(sorted(straps, key=lambda one: (_freedom(*one), one[0].right - one[0].left)), made.plan.axis)
+    for _ in range(TRIES):
+        drops, lacking = _assigned(made, groups)
+        if lacking is None:
+            for strap, x, low, high in drops:
+                made.drops.append((strap.net, x, low, high))
+                _drop(canvas, made, strap, x, (low, high))
+            return
+        groups.insert(0, groups.pop(lacking))
+    strap = groups[0][0][0]
+    raise ParameterError(f"net {strap.net} at x = {strap.left:.2f} um: must have room for a drop")
+
+
+def _groups(straps: Sequence[tuple[Strap, Placed]], axis: float | None) -> list[list[tuple[Strap, Placed]]]:
+    """Straps and their mirror images about ``axis`` together."""
+    groups: list[list[tuple[Strap, Placed]]] = []
+    for strap, placed in straps:
+        for group in groups if axis is not None else ():
+            other, beside = group[0]
+            turned = axis is not None and (abs(beside.low + placed.high - 2 * axis) < 1e-6)
+            turned = turned and axis is not None and abs(other.left + strap.right - 2 * axis) < 1e-6
+            if len(group) == 1 and other.y == strap.y and turned and beside is not placed:
+                group.append((strap, placed))
+                break
+        else:
+            groups.append([(strap, placed)])
+    return groups
+
+
+def _assigned(
+    made: Strip, groups: Sequence[Sequence[tuple[Strap, Placed]]]
+) -> tuple[list[tuple[Strap, float, float, float]], int | None]:
+    """Drops (strap, x, low, high) of groups in this order; the first group without room, or None."""
+    axis, kept = made.plan.axis, list[tuple[Strap, float, float, float]]()
+    reaches = [[_reach(made, strap) for strap, _ in group] for group in groups]
+    for index, (group, ends) in enumerate(zip(groups, reaches, strict=True)):
+        central = axis is not None and len(group) == 1 and abs(group[0][0].left + group[0][0].right - 2 * axis) < 1e-6
+        for x in _places(*group[0]):
+            pairs = [(group[0][0], x, *ends[0])]
+            if central and axis is not None and abs(x - axis) > 1e-6:
+                pairs.append(
+                    (group[0][0], 2 * axis - x, *ends[0])
+                )  # a strap across the axis has two drops, or one on it
+            elif len(group) == 2 and axis is not None:
+                pairs.append((group[1][0], 2 * axis - x, *ends[1]))
+            trial = list(kept)
+            for one in pairs:
+                if not _free(*one[1:], trial):
+                    break
+                trial.append(one)
+            else:
+                kept = trial
+                break
+        else:
+            return kept, index
+    return kept, None
+
+
+def _reach(made: Strip, strap: Strap) -> tuple[float, float]:
+    """Ends of a drop: the strap, its track, and that of the net which must match."""
+    plan, ends = made.plan, [strap.y]
+    if strap.net in plan.rails:
+        ends.append(made.y if strap.net == plan.rails[0] else made.y + plan.height_um)
+    pair = next((pair for pair in plan.pairs if strap.net in pair), (strap.net,))
+    ends += [made.tracks[net].y for net in pair if net in made.tracks]
+    return min(ends), max(ends)
+
+
+def _free(x: float, low: float, high: float, others: Sequence[tuple[Strap, float, float, float]]) -> bool:
+    return all(
+        abs(x - at) >= DROP_PITCH - 1e-9 or high + DROP_ENDS <= bottom or top + DROP_ENDS <= low
+        for _, at, bottom, top in others
+    )
+
+
+def _places(strap: Strap, placed: Placed) -> Iterator[float]:
+    """Where a drop may be: over the strap, from its middle on, then beside it up to the device's room."""
+    middle = (strap.left + strap.right) / 2
+    inner = strap.right - strap.left - STRAP
+    low, high = _ends(strap, placed)
+    low, high = low + STRAP / 2, high - STRAP / 2
+    yield middle
+    found = {_grid(low + DROP_STEP * k) for k in range(int((high - low) / DROP_STEP + 1e-6) + 1)}
+    yield from sorted(found, key=lambda x: (abs(x - middle) > inner / 2 + 1e-9, abs(x - middle)))
+
+
+def _ends(strap: Strap, placed: Placed) -> tuple[float, float]:
+    """How far a strap may go."""
+    return (strap.left, strap.right) if strap.fixed else (placed.low, placed.high)
+
+
+def _freedom(strap: Strap, placed: Placed) -> float:
+    left, right = _ends(strap, placed)
+    return right - left
+
+
+def _drop(canvas: Canvas, made: Strip, strap: Strap, x: float, ends: tuple[float, float]) -> None:
+    half = STRAP / 2
+    canvas.wire(1, min(x - half, strap.left), strap.y - half, max(x + half, strap.right), strap.y + half)
+    canvas.stack(x, strap.y, 1, SECOND)
+    canvas.wire(SECOND, x - DROP / 2, ends[0] - DROP / 2, x + DROP / 2, ends[1] + DROP / 2)
+    if strap.net in made.tracks:
+        canvas.stack(x, made.tracks[strap.net].y, SECOND, THIRD)
+    else:
+        canvas.stack(x, made.y if strap.net == made.plan.rails[0] else made.y + made.plan.height_um, 1, SECOND)
+
+
+def trunk(canvas: Canvas, tracks: Iterable[Mapping[str, Strap]], net: str, x: float, *beyond: float) -> None:
+    """Join the tracks of ``net``, on the fourth metal at ``x``; beyond: y up to which it goes, too."""
+    ys = [own[net].y for own in tracks if net in own]
+    for y in ys:
+        canvas.stack(x, y, THIRD, FOURTH)
+    ends = [*(y - TRACK / 2 for y in ys), *(y + TRACK / 2 for y in ys), *beyond]
+    canvas.wire(FOURTH, x - TRUNK / 2, min(ends), x + TRUNK / 2, max(ends))
+
+
+def join_rails(canvas: Canvas, strips: Sequence[Strip]) -> None:
+    """Join the lower rails of all strips in the west, the upper ones in the east, with their names as labels."""
+    for k, way in enumerate((-1, 1)):
+        ys = [strip.y + (strip.plan.height_um if k else 0.0) for strip in strips]
+        plan = strips[0].plan
+        x = plan.right + RAIL_AT if k else plan.left - RAIL_AT
+        half = RAIL_TRUNK / 2
+        canvas.wire(FOURTH, x - half, min(ys) - half, x + half, max(ys) + half)
+        for y in ys:
+            for level in (SECOND, THIRD):
+                canvas.wire(level, x - half, y - RAIL_HALF, x + half, y + RAIL_HALF)
+            for side in (-0.25, 0.25):
+                canvas.stack(x + way * side, y, 1, FOURTH)
+        canvas.label(FOURTH, plan.rails[k], x, ys[0])
+
+
+def in_columns(
+    columns: Sequence[tuple[Device | None, Device | None]],
+    left: float,
+    room: float = 0.0,
+    drops: Mapping[str, int] = {},
+) -> tuple[tuple[Placed, ...], tuple[Placed, ...], float]:
+    """Rows of (n, p) above each other from ``left`` on; room: more between them. Returns the rows and the east end."""
+    n, p, x = list[Placed](), list[Placed](), left
+    for pair in columns:
+        present = [device for device in pair if device]
+        straps = sum(3 - (d.transistor.source == d.transistor.bulk) for d in present)
+        width = max(*(d.width_um + GAP for d in present), straps * DROP_PITCH + room, 0.0)
+        for device, row in zip(pair, (n, p), strict=True):
+            if device:
+                row.append(Placed(device, _grid(x + (width - device.width_um) / 2), x, x + width))
+        x = _grid(x + width)
+    return tuple(n), tuple(p), x
+
+
+def mirrored(
+    middle: Device | None, outward: Sequence[tuple[Device, Device]], axis: float, room: float = 0.0
+) -> tuple[Placed, ...]:
+    """A row about ``axis``: a device on it, and pairs (west, east) from there outwards."""
+    placed, x = list[Placed](), 0.0
+    if middle:
+        x = _grid(max(middle.width_um + GAP, 3 * DROP_PITCH) / 2)
+        placed.append(Placed(middle, axis - middle.width_um / 2, axis - x, axis + x))
+    for west, east in outward:
+        width = max(west.width_um + GAP, 3 * DROP_PITCH) + room
+        width, inner = _grid(width), _grid((width - west.width_um) / 2)
+        placed.append(Placed(east, axis + x + inner, axis + x, axis + x + width))
+        placed.append(Placed(west, axis - x - inner - west.width_um, axis - x - width, axis - x))
+        x += width
+    return tuple(placed)
+
+
+def _grid(um: float) -> float:
+    return round(um / 0.005) * 0.005

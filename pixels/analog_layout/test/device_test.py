@@ -1,0 +1,61 @@
+"""A drawn transistor has the gates and the junctions that its description says."""
+
+from importlib.util import find_spec
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+if find_spec("klayout") is None:
+    pytest.skip("klayout: not installed", allow_module_level=True)
+
+from talbot.base.gds import db
+from talbot.models.parameters import ParameterError
+from talbot.pixels.analog_layout.cells import new_canvas
+from talbot.pixels.analog_layout.device import Device, draw_device
+from talbot.pixels.circuits.netlist import Transistor
+from talbot.platforms.analog import analog_masks
+
+MASKS = analog_masks("sky130")
+
+
+def transistor(role="n", w=4.0, l=0.25):  # noqa: E741
+    return Transistor("m", "d", "g", "s", "vss", role, w, l)
+
+
+def region(canvas, mask):
+    return db.Region(canvas.cell.shapes(canvas.layout.layer(*mask))).merged()
+
+
+@given(
+    st.sampled_from(["n", "p_lvt"]),
+    st.sampled_from([0.65, 1.3, 3.0]),
+    st.sampled_from([0.15, 0.35, 0.5]),
+    st.sampled_from([1, 2, 4, 6]),
+    st.booleans(),
+    st.booleans(),
+)
+def test_gates_and_junctions_are_drawn(role, finger, length, fingers, dummies, upright):
+    device = Device(transistor(role, finger * fingers, length), fingers, dummies)
+    canvas = new_canvas(MASKS, "device")
+    straps = draw_device(canvas, MASKS, device, 1.0, 0.0, upright)
+    active, poly = region(canvas, MASKS.base.active), region(canvas, MASKS.base.poly)
+    gates = active & poly
+    assert gates.count() == fingers + 2 * dummies
+    assert gates.area() * 1e-6 == pytest.approx((fingers + 2 * dummies) * finger * length)
+    source, drain, *_ = device.junctions_um
+    shared = 2 * (0.14 + 0.265) * finger if dummies else 0.0  # the dummies' halves and outer ends
+    assert (active - poly).area() * 1e-6 == pytest.approx(source + drain + shared)
+    assert {strap.net for strap in straps} == {"d", "g", "s"}
+    assert all(strap.y * (1 if upright else -1) > 0 for strap in straps)
+
+
+def test_a_source_on_the_rail_has_no_strap_and_bad_fingers_are_refused():
+    t = transistor()._replace(source="vss")
+    straps = draw_device(new_canvas(MASKS, "device"), MASKS, Device(t, 2), 0, 0)
+    assert {strap.net for strap in straps} == {"d", "g"}
+    with pytest.raises(ParameterError, match="1 or even"):
+        Device(transistor(w=3.0), 3)
+    with pytest.raises(ParameterError, match="on the grid"):
+        Device(transistor(w=1.01), 4)
+    assert Device.of(transistor(w=75.0)).fingers == 20  # the fewest of at most 5 um on the grid of 0.005 um

@@ -1,0 +1,44 @@
+"""What drawn analog circuits need of a process beyond the pixels: thresholds, capacitors, names."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+
+from .layers import GdsLayer
+from .pixel import PROCESSES, PixelProcess
+from .processes import package
+
+
+@dataclass(frozen=True, kw_only=True)
+class AnalogMasks:
+    """Masks and devices of analog circuits.
+
+    base: what pixels are drawn with. low_threshold: mask over the gates of the roles in ``low``. models: name of the
+    device in LVS by role. mim: mask of the capacitor's upper plate, over metal ``mim_metal`` of ``base.metals``.
+    mim_area, mim_edge: fF/um2, fF/um. deck_mim: its device in LVS. rules, lvs: what the decks of PDKMaster lack.
+    contradicted: rules of its deck that are left out. connections: lines of its deck of LVS and what replaces them.
+    """
+
+    base: PixelProcess
+    low_threshold: GdsLayer
+    low: frozenset[str]
+    models: Mapping[str, str]
+    mim: GdsLayer
+    mim_metal: int
+    mim_area: float
+    mim_edge: float
+    deck_mim: str
+    rules: Path
+    lvs: Path
+    contradicted: tuple[str, ...]
+    connections: Mapping[str, str]
+
+    def mim_farad(self, width_um: float, height_um: float) -> float:
+        """F of a capacitor, typical."""
+        return 1e-15 * (self.mim_area * width_um * height_um + self.mim_edge * 2 * (width_um + height_um))
+
+
+def analog_masks(pdk: str) -> AnalogMasks:
+    """The process ``pdk`` for drawn analog circuits. Raises ParameterError for one whose circuits are not drawn."""
+    return import_module(f"talbot.platforms.{package(pdk, PROCESSES, ' for a drawn circuit')}.analog_masks").MASKS
