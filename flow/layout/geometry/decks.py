@@ -22,10 +22,10 @@ def run_deck(deck: Path, report: Path, variables: Mapping[str, object], **enviro
     return done.returncode, done.stdout + done.stderr
 
 
-def run_exported(deck: Path, gds: Path, report: Path, **files: Path) -> tuple[int, str]:
-    """Run ``deck``, one that PDKMaster exports, on the file ``gds``: see `run_deck`."""
+def run_exported(deck: Path, gds: Path, report: Path, cell: str = "", **files: Path) -> tuple[int, str]:
+    """Run ``deck``, one that PDKMaster exports, on the file ``gds`` or a cell in it: see `run_deck`."""
     paths = {name: path.resolve() for name, path in {"SOURCE_FILE": gds, "REPORT_FILE": report, **files}.items()}
-    return run_deck(deck, report, {}, CELL_NAME="", **paths)
+    return run_deck(deck, report, {}, CELL_NAME=cell, **paths)
 
 
 def violations(report: Path) -> dict[str, int]:
