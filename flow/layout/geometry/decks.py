@@ -10,6 +10,7 @@ from pathlib import Path
 from talbot.base.steps import StepError
 from talbot.base.tools import ToolError, finish
 from talbot.platforms.coriolis import CoriolisPlatform
+from talbot.platforms.layers import GdsLayer
 
 
 def run_deck(deck: Path, report: Path, variables: Mapping[str, object], **environment: object) -> tuple[int, str]:
@@ -54,6 +55,14 @@ def with_flat_spaces(deck: str) -> str:
     layers = dict.fromkeys(rule[1] for rule in rules)
     spaces = (rule[0].replace(".space(", ".edges.space(", 1) for rule in rules)
     return "\n".join([deck, "flat", *(f"{name} = {drawn[name]}" for name in layers), *spaces])
+
+
+def with_taps(deck: str, active: GdsLayer, tap: GdsLayer) -> str:
+    """The deck with taps on their own mask, too: PDKMaster knows diffusion and taps as one. Raises StepError."""
+    (old, new) = (f"input({layer}, {datatype})" for layer, datatype in (active, tap))
+    if deck.count(f" = {old}\n") != 1:
+        raise StepError(f"decks: must have one line with {old}, to which the taps are added")
+    return deck.replace(f" = {old}\n", f" = {old} + {new}\n")
 
 
 def hole_rules(tech: CoriolisPlatform) -> Iterator[str]:

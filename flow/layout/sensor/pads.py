@@ -54,6 +54,7 @@ def layout(made: Any, process: PadProcess, pixel: PixelProcess) -> "db.Layout":
     for cell in pads:
         cell.flatten(True)
         mend(cell, pixel)
+        split(cell, pixel, process.tap)
     others = [cell.cell_index() for cell in found.each_cell() if cell.cell_index() not in wanted]
     found.delete_cells(others)
     return found
@@ -85,6 +86,15 @@ def mend(cell: "db.Cell", process: PixelProcess) -> None:
         left = (implant - (far - kept)).sized(-LEAST // 2).sized(LEAST // 2)
         made = (left + kept).merged()
         _replace(cell, mask, made + (_closed(made, LEAST) - on_poly.sized(IMPLANT) - (far - cut)))
+
+
+def split(cell: "db.Cell", process: PixelProcess, tap: GdsLayer) -> None:
+    """Taps on their own mask; PDKMaster draws them on that of diffusion."""
+    active, well = _region(cell, process.active), _region(cell, process.well)
+    nplus, pplus = (active & _region(cell, mask) for mask in (process.nplus, process.pplus))
+    taps = (nplus & well) + (pplus - well)
+    _replace(cell, tap, taps)
+    _replace(cell, process.active, active - taps)
 
 
 def _thick(cell: "db.Cell", process: PixelProcess) -> "db.Region":

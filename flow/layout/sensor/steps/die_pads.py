@@ -6,7 +6,14 @@ from typing import Any
 
 from talbot.base.gds import write_gds
 from talbot.base.steps import Files, Step, StepError
-from talbot.flow.layout.geometry.decks import hole_rules, run_exported, via_rules, violations, with_flat_spaces
+from talbot.flow.layout.geometry.decks import (
+    hole_rules,
+    run_exported,
+    via_rules,
+    violations,
+    with_flat_spaces,
+    with_taps,
+)
 from talbot.flow.layout.pdkmaster import export_spice
 from talbot.flow.layout.steps.parameters import PdkParameters
 from talbot.platforms.coriolis import coriolis_platform
@@ -50,7 +57,7 @@ class DiePadsDrc(Step[PdkParameters]):
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         tech, process = coriolis_platform(self.parameters.pdk), pad_process(self.parameters.pdk)
-        deck = with_flat_spaces(inputs["deck"].read_text())
+        deck = with_flat_spaces(with_taps(inputs["deck"].read_text(), tech.active, process.tap))
         rules = [deck, *hole_rules(tech), *via_rules(tech), process.masks.read_text()]
         outputs["deck"].write_text("\n".join(rules) + "\n")
         status, output = run_exported(outputs["deck"], inputs["gds"], outputs["report"])
@@ -66,16 +73,18 @@ class DiePadsLvs(Step[PdkParameters]):
 
     name = "die_pads_lvs"
     inputs = {"gds": "die_pads.gds", "spice": "die_pads.spice", "deck": "library.lvs"}
-    outputs = {"verdicts": "lvs.json"}
+    outputs = {"verdicts": "lvs.json", "deck": "taps.lvs"}
     metrics = {"pads_unmatched": ""}
     tools = ("klayout",)
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         process = pad_process(self.parameters.pdk)
+        active = coriolis_platform(self.parameters.pdk).active
+        outputs["deck"].write_text(with_taps(inputs["deck"].read_text(), active, process.tap))
         found = {}
         for cell in (*process.signals.values(), *process.supplies.values()):
             report = outputs["verdicts"].with_name(f"{cell}.lvsdb")
-            _, output = run_exported(inputs["deck"], inputs["gds"], report, cell, SPICE_FILE=inputs["spice"])
+            _, output = run_exported(outputs["deck"], inputs["gds"], report, cell, SPICE_FILE=inputs["spice"])
             if ("LVS OK" in output) == ("LVS Failed" in output):
                 raise StepError(f"{self.name}: KLayout gave no verdict on {cell}: {output.strip().splitlines()[-1:]}")
             found[cell] = "LVS OK" in output

@@ -101,7 +101,6 @@ def as_json(
 ) -> dict[str, Any]:
     """The plan for JSON, nm. metal: all shapes. places: of the ring. top: metal of the bond pads, the die's pins."""
     blocks, routes, frame = made.blocks.items(), made.routes.items(), pads.frame
-    cell = 0, 0, frame.pad, frame.depth
     pins: dict[str, list[Any]] = {}
     for place in (place for place in places if place.nets):
         pin = ring.bond(place, pads.process)
@@ -112,7 +111,7 @@ def as_json(
     return {
         "die": [nm(die.width_um), nm(die.height_um)],
         "blocks": {name: {"cell": b.cell, "orientation": b.orientation, "box": b.box} for name, b in blocks},
-        "ring": [place._asdict() | {"box": frame.box(place.side, place.at, cell)} for place in places],
+        "ring": [place._asdict() | {"box": frame.box(place.side, place.at, pads.outline(place.cell))} for place in places],
         "frame": asdict(frame),
         "corner": pads.process.corner,
         "nets": ring.nets(made.nets, places),
