@@ -4,6 +4,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from .plan import CORE, ORIENTATIONS, Block, DieParameters, Terminal, nets, nm, stack, with_core
+from .ring import Pads
 from .routing import Branch, Tracks, branches, length, raised, side_room, split_nets, trunks
 
 
@@ -30,18 +31,30 @@ class Arranged:
 
 
 def arranged(
-    blocks: dict[str, Block], die: DieParameters, tracks: Tracks, layers: Sequence[str], extra: Iterable[str] = ()
+    blocks: dict[str, Block],
+    die: DieParameters,
+    tracks: Tracks,
+    layers: Sequence[str],
+    pads: Pads,
+    extra: Iterable[str] = (),
 ) -> Arranged:
     """Place and route ``blocks``, given at the origin, with the chip in the orientation of the least wire length.
 
     layers: see `routing.branches`. extra: see `plan.nets`. Raises ParameterError, StepError.
     """
     turned = [blocks | {CORE: blocks[CORE].turned(way)} for way in ORIENTATIONS]
-    return min((arranged_as_is(found, die, tracks, layers, extra) for found in turned), key=lambda made: made.wire)
+    return min(
+        (arranged_as_is(found, die, tracks, layers, pads, extra) for found in turned), key=lambda made: made.wire
+    )
 
 
 def arranged_as_is(
-    blocks: dict[str, Block], die: DieParameters, tracks: Tracks, layers: Sequence[str], extra: Iterable[str] = ()
+    blocks: dict[str, Block],
+    die: DieParameters,
+    tracks: Tracks,
+    layers: Sequence[str],
+    pads: Pads,
+    extra: Iterable[str] = (),
 ) -> Arranged:
     """Place and route with the chip in the orientation given. Arguments: see `arranged`.
 
@@ -52,8 +65,8 @@ def arranged_as_is(
     low = with_core(placed, blocks[CORE], die, room, 0)
     found = nets(low, extra)
     routed, abutted = split_nets(low, found)
-    routes = branches(low, routed, die, tracks, layers)
-    numbers, begin = trunks(routes, tracks), nm(die.edge_um + die.gap_um)
+    routes = branches(low, routed, die, tracks, layers, pads)
+    numbers, begin = trunks(routes, tracks), nm(die.ring_um + die.edge_um + die.gap_um)
     count = max(numbers.values()) + 1
     height = begin + count * tracks.trunk_pitch + nm(die.gap_um)
     y = {net: begin + number * tracks.trunk_pitch for net, number in numbers.items()}

@@ -14,14 +14,18 @@ if TYPE_CHECKING:
 
 
 Nets = dict[str, list[Terminal]]
+Ring = Mapping[tuple[str, int, int], str]
 
 
-def nets(gds: Path, cells: Mapping[str, str], tech: CoriolisPlatform, top_metal: TopMetal) -> list[set[Terminal]]:
+def nets(
+    gds: Path, cells: Mapping[str, str], ring: "Ring", tech: CoriolisPlatform, top_metal: TopMetal
+) -> list[set[Terminal]]:
     """Terminals that each net of the top cell connects.
 
-    cells: cell -> block. A pin of a block is named by its text on the pin layer in the block's own cell, one of the die
-    ('die') by that in the top cell; metal of a block without a name is ('block', '?...'). KLayout extracts the metals
-    and vias of all cells, without transistors.
+    cells: cell -> block. ring: (cell, x, y) -> pad, '' for a filler or a corner, which only continue nets. A pin of a
+    block is named by its text on the pin layer in the block's own cell, one of the die ('die') by that in the top cell;
+    metal of a block without a name is ('block', '?...'). KLayout extracts the metals and vias of all cells, without
+    transistors.
     """
     import klayout.db as db
 
@@ -42,16 +46,20 @@ def nets(gds: Path, cells: Mapping[str, str], tech: CoriolisPlatform, top_metal:
         l2n.connect(between, metals[level + 1])
     l2n.extract_netlist()
     circuit = l2n.netlist().circuit_by_name(top.name)
-    return [found for net in circuit.each_net() if (found := _terminals(net, cells))]
+    return [found for net in circuit.each_net() if (found := _terminals(net, cells, ring))]
 
 
-def _terminals(net: "kdb.Net", cells: Mapping[str, str]) -> set[Terminal]:
+def _terminals(net: "kdb.Net", cells: Mapping[str, str], ring: "Ring") -> set[Terminal]:
     found = {("die", name) for name in net.name.split(",") if name}
     for reference in net.each_subcircuit_pin():
-        circuit = reference.subcircuit().circuit_ref()
+        subcircuit = reference.subcircuit()
+        circuit, at = subcircuit.circuit_ref(), subcircuit.trans.disp
+        block = ring.get((circuit.name, round(1000 * at.x), round(1000 * at.y)), cells.get(circuit.name, circuit.name))
+        if not block:
+            continue
         inner = circuit.net_for_pin(reference.pin_id())
         for pin in (inner.name or f"?{inner.expanded_name()}").split(","):
-            found.add((cells.get(circuit.name, circuit.name), pin))
+            found.add((block, pin))
     return found
 
 

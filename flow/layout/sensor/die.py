@@ -19,14 +19,18 @@ from talbot.flow.layout.steps.parameters import PdkParameters
 from talbot.flow.layout.steps.sta import StaParameters
 from talbot.platforms.coriolis import coriolis_platform
 from talbot.platforms.die import top_metal
+from talbot.platforms.pads import pad_process
+from talbot.platforms.pixel import pixel_process
 from talbot.platforms.wires import CORNERS
 
+from . import package
 from .analog import files
 from .metrics import RULES, summarize
 from .picture import by_block
 from .steps.die_antenna import DieAntenna
 from .steps.die_connectivity import DieConnectivity
 from .steps.die_gds import DieGds, DieGdsParameters
+from .steps.die_pads import DiePads, DiePadsDrc, DiePadsLvs
 from .steps.die_parasitics import DieParasitics, DieParasiticsParameters
 from .steps.die_plan import DiePlan, DiePlanParameters
 from .steps.die_sta import DieSta
@@ -35,9 +39,11 @@ SENSOR, CHIP = "asp_sensor", "asp_chip"
 # Files of the chip's run that the die is given
 PARTS = {"core.lef": "lef.lef", "core.gds": "fill.gds", "core.sdc": "sdc"}
 PARTS |= {f"core.{wires}": f"extraction.{wires}" for wires in CORNERS}
-PARTS |= {"core.verilog": "stream_out.verilog", "library.rules": "library.rules", "library.drc": "library.drc"}
+PARTS |= {"core.verilog": "stream_out.verilog", "library.rules": "library.rules"}
+PARTS |= {f"library.{deck}": f"library.{deck}" for deck in ("drc", "lvs")}
 RESULTS = {"gds": "die_gds.gds", "v": "die_plan.verilog", "sdc": "die_parasitics.sdc", "drc.lyrdb": "drc.report"}
 RESULTS |= {"connectivity.json": "die_connectivity.report", "parasitics.json": "die_parasitics.nets"}
+PACKAGE = f"{SENSOR}.pins.md", f"{SENSOR}.package.png", f"{SENSOR}.package.svg"
 
 
 def die_steps(chip: Design, options: Options, extra: Iterable[str] = (), drawn: Iterable[str] = ()) -> list[Step]:
@@ -48,6 +54,7 @@ def die_steps(chip: Design, options: Options, extra: Iterable[str] = (), drawn: 
     ns = {"input_ns": io.input_delay * clock.period_ns, "output_ns": io.output_delay * clock.period_ns}
     parasitics = DieParasiticsParameters(pdk, clock.port, load_pf=io.load_pf, **ns)
     return [
+        DiePads(PdkParameters(pdk)),
         DiePlan(DiePlanParameters(pdk, extra=tuple(extra))),
         DieGds(DieGdsParameters(pdk, tuple(drawn))),
         DieConnectivity(PdkParameters(pdk)),
@@ -55,6 +62,8 @@ def die_steps(chip: Design, options: Options, extra: Iterable[str] = (), drawn: 
         *(DieSta(StaParameters(chip.top, corner, clock.period_ns)) for corner in options.corners),
         drc,
         DieAntenna(PdkParameters(pdk)),
+        DiePadsDrc(PdkParameters(pdk)),
+        DiePadsLvs(PdkParameters(pdk)),
     ]
 
 
@@ -96,13 +105,28 @@ def lay_out_die(
     lines, tech = broken(summary, RULES), coriolis_platform(options.pdk)
     tech = replace(tech, metals=(*tech.metals, top_metal(options.pdk).metal))
     results = RESULTS | {f"{corner}.sta.txt": f"die_sta_{corner}.report" for corner in options.corners}
-    with staged(folder, [f"{SENSOR}.{suffix}" for suffix in results]) as part:
+    with staged(folder, [*(f"{SENSOR}.{suffix}" for suffix in results), *PACKAGE]) as part:
         for suffix, source in results.items():
             shutil.copyfile(runner.paths[source], part / f"{SENSOR}.{suffix}")
         blocks = part / f"{SENSOR}.blocks.png"
         by_block(blocks, json.loads(runner.paths["die_plan.plan"].read_text()), black_boxes)
+        pin_map(runner, options, part)
         layout = render(runner.paths["die_gds.gds"], tech)
         layout.image.save(part / f"{SENSOR}.png")
         shown = [picture(blocks, "Blocks; hatched: black box, no circuit")]
+        shown.append(picture(part / PACKAGE[1], "Package and bond wires, to scale"))
         write_report(part, folder, summary, lines, layout, shown)
     return folder / "summary.json", lines
+
+
+def pin_map(runner: Runner, options: Options, part: Path) -> None:
+    """Write PACKAGE: the pin map and the drawing of the package. Raises StepError for bond wires that cross."""
+    process, pixel = pad_process(options.pdk), pixel_process(options.pdk)
+    total, found = package.leads(json.loads(runner.paths["die_plan.plan"].read_text()))
+    if crossed := package.crossings(found):
+        raise StepError(f"package: the bond wires of {' and '.join(crossed[0])} cross")
+    volt = {lead.signal: package.volts(lead.signal, process, pixel.supply_v, pixel.gate_v) for lead in found}
+    cells = (*process.signals.values(), *process.supplies.values())
+    clamps = package.protection(runner.paths["die_pads.spice"].read_text(), cells)
+    (part / PACKAGE[0]).write_text(package.table(total, found, volt, clamps))
+    package.draw([part / name for name in PACKAGE[1:]], total, found)

@@ -13,15 +13,16 @@ from .plan import BLOCKS
 from .steps.die_sta import DieSta
 
 RULES = json.loads((Path(__file__).parent / "rules.json").read_text())
-ROUTED = "nets", "routed", "abutted", "tracks", "wire_um"
+ROUTED = "nets", "routed", "abutted", "tracks", "wire_um", "pads"
 CHECKED = "open_nets", "shorts", "drc_violations", "lvs_match", "antenna_violations"
+PADS = "pad_drc_violations", "pads_unmatched"
 LOADS = "wire_pf", "worst_load_pf", "worst_load", "worst_delay_ns", "worst_delay", "loads_over"
 SLACKS = [name for name in DieSta.metrics if name != "f_max_mhz"]  # by corner
 SHOWN = 12  # nets in the summary, those with the largest loads
 NOT_CHECKED = (
     "insides of the black boxes: outlines with pins, no circuit; they have no rule, netlist or current",
     "pixels of the drawn array: rules and LVS of make pixel-layout, of a small array of the same cells",
-    "pads, ESD protection and the seal ring: there are none",
+    "pads: rules and LVS of each cell; no ESD pulse is simulated",
     "density and fill over the black boxes and in the channel: only the chip is filled",
     "antennas on the highest metal of the channel: whether a net's driver has the diffusion for it; in the black boxes",
     "coupling between the die's nets; nets to the abutting rows, columns and lanes have no length here",
@@ -52,7 +53,7 @@ def summarize(name: str, options: Options, runner: Runner, black_boxes: Sequence
         "blocks": {block: placed(found) for block, found in plan["blocks"].items()},
         "black_boxes": list(black_boxes),
         "circuits": [block for block in BLOCKS if block not in black_boxes],
-        **{key: metrics[key] for key in ROUTED + CHECKED + LOADS},
+        **{key: metrics[key] for key in ROUTED + CHECKED + PADS + LOADS},
         **dict.fromkeys(("equivalence", "gate_tests", "power_uw")),
         "timing_rests_on": f"the chip, its ports with the die's nets{extrapolated(sta)}; {timing_basis(options)}",
         **{key: {corner: found[key] for corner, found in sta.items()} or None for key in SLACKS},

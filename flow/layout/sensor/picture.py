@@ -1,9 +1,10 @@
-"""The die as a picture: its blocks, routes and bars."""
+"""The die as a picture: its blocks, routes, bars and pads."""
 
 from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from .package import signal
 from .plan import BLOCKS, CORE
 
 COLORS = dict(zip((*BLOCKS, CORE), ("#7fb3d5", "#f5b041", "#82c99a", "#c39bd3", "#e6837a"), strict=True))
@@ -22,6 +23,15 @@ def by_block(png: Path, plan: dict[str, Any], black_boxes: Collection[str]) -> N
             left, bottom, right, top = (size / 1e3 for size in box)
             color = "0.75" if net in ("vss", "vssa") else "0.55"
             axes.add_patch(Rectangle((left, bottom), right - left, top - bottom, facecolor=color, linewidth=0))
+    for place in plan["ring"]:
+        left, bottom, right, top = (size / 1e3 for size in place["box"])
+        color = "#d5c7a3" if place["nets"] else "#ece6d8"
+        style = {"facecolor": color, "edgecolor": "0.5", "linewidth": 0.3 if place["nets"] else 0}
+        axes.add_patch(Rectangle((left, bottom), right - left, top - bottom, **style))
+        if place["nets"]:
+            flat = place["side"] in ("west", "east")
+            name, style = signal(place["name"]), {"ha": "center", "va": "center", "fontsize": 4}
+            axes.annotate(name, ((left + right) / 2, (bottom + top) / 2), rotation=0 if flat else 90, **style)
     for name, block in plan["blocks"].items():
         left, bottom, right, top = (size / 1e3 for size in block["box"])
         width, height, hatch = right - left, top - bottom, "//" if name in black_boxes else None

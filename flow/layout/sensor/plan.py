@@ -37,14 +37,16 @@ SIGNALS = "clk", "reset", "sclk", "csn", "mosi", "miso", "miso_oe", "busy", "fra
 
 @dataclass(frozen=True)
 class DieParameters:
-    """Sizes of the die, 5 x 5 mm [Jayasuriya2017, Sec. 3.5.1].
+    """Sizes of the die: the blocks of one of 5 x 5 mm [Jayasuriya2017, Sec. 3.5.1], and a ring of pads around them.
 
-    edge: from the die's edge to the first bar. bar: width of the supplies' bars. gap: between bars, and between blocks
-    that do not touch. pad: pitch of the signals' pins at the die's edge. bars: of each supply over the chip.
+    ring: from the die's edge to what is inside of the pads. edge: from there to the first bar. bar: width of the
+    supplies' bars. gap: between bars, and between blocks that do not touch. pad: pitch of the signals' pads. bars: of
+    each supply over the chip.
     """
 
     width_um: float = field(default=5000.0, metadata={"unit": "um", "range": (50, 3e4)})
-    height_um: float = field(default=5000.0, metadata={"unit": "um", "range": (50, 3e4)})
+    height_um: float = field(default=5450.0, metadata={"unit": "um", "range": (50, 3e4)})
+    ring_um: float = field(default=203.0, metadata={"unit": "um", "range": (20, 1000)})
     edge_um: float = field(default=10.0, metadata={"unit": "um", "range": (2, 200)})
     bar_um: float = field(default=20.0, metadata={"unit": "um", "range": (4, 30)})
     gap_um: float = field(default=10.0, metadata={"unit": "um", "range": (4, 200)})
@@ -172,11 +174,11 @@ def with_core(
     bottom = max(core.height + gap, lanes.height) + channel_nm
     shifted = {name: block.moved(0, bottom - columns.y) for name, block in placed.items()}
     made = shifted | {CORE: core.moved((lanes.x - gap - side_nm - core.width) // 10 * 10, channel_nm)}
-    bars = nm(die.edge_um + len(SUPPLIES) * (die.bar_um + die.gap_um))
+    bars = nm(die.ring_um + die.edge_um + len(SUPPLIES) * (die.bar_um + die.gap_um))
     lefts, _, rights, tops = zip(*(block.box for block in made.values()), strict=True)
     for name, least in (("width_um", max(rights) - min(lefts) + 2 * bars), ("height_um", max(tops) + bars)):
         if least > nm(size := getattr(die, name)):
-            why = "for the blocks and the supplies' bars"
+            why = "for the blocks, the supplies' bars and the pads"
             raise ParameterError(f"{name} = {size:g}: must be at least {least / 1000:g}, {why}")
     return made
 

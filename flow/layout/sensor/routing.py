@@ -7,12 +7,14 @@ from talbot.base.steps import StepError
 from talbot.flow.layout.route.ports import LEVELS
 from talbot.flow.layout.route.rules import RoutingRules
 
-from .channel import check_apart, free, left_edge
-from .plan import CORE, SIGNALS, SUPPLIES, Block, Box, DieParameters, Terminal, check_way, nm, touching
+from .channel import check_apart, left_edge
+from .plan import CORE, SIGNALS, SUPPLIES, Block, Box, DieParameters, Terminal, check_way, driver, nm, touching
+from .ring import GAP, UM, Pads, function
 
 # Places in RoutingRules.layers. Branches are the highest: a net is connected only there, with its driver, so that no
 # gate has a trunk or a branch as an antenna before. Stubs are where the chip's ports are
 STUB, TRUNK, BRANCH = LEVELS["west"], 3, 4
+STUB_HALF, ABOVE = 150, 700  # of the metal from a pad's pin, and how far inside of the ring its vias are
 Nets = Mapping[str, list[Terminal]]
 
 
@@ -20,7 +22,7 @@ Nets = Mapping[str, list[Terminal]]
 class Branch:
     """A pin's connection to its trunk.
 
-    x: of the vertical segment; end: y of its end at the pin. box: of the pin, None at the die's edge. A pin in the west
+    x: of the vertical segment; end: y of its end at the pin. box: of the pin. A pin in the west
     or the east has a stub from there to x.
     """
 
@@ -65,7 +67,7 @@ def side_room(core: Block, tracks: Tracks) -> int:
 
 
 def branches(
-    blocks: Mapping[str, Block], routed: Nets, die: DieParameters, tracks: Tracks, layers: Sequence[str]
+    blocks: Mapping[str, Block], routed: Nets, die: DieParameters, tracks: Tracks, layers: Sequence[str], pads: Pads
 ) -> dict[str, list[Branch]]:
     """Branches of the nets. layers: (stub, branch), LEF names of the layers of the pins. Raises StepError."""
     made: dict[str, list[Branch]] = {net: [] for net in routed}
@@ -80,7 +82,7 @@ def branches(
             made[pin].append(Branch(name, pin, (south[pin][0] + south[pin][2]) // 10 * 5, south[pin][1], south[pin]))
     for net, branch in _beside(blocks[CORE], routed, tracks, layers[0]):
         made[net].append(branch)
-    for net, branch in _pads(made, routed, die, tracks):
+    for net, branch in _pads(made, routed, blocks, die, tracks, pads):
         made[net].append(branch)
     check_apart({(b.block, b.pin): b.x for found in made.values() for b in found}, tracks.branch_pitch)
     return made
@@ -117,19 +119,40 @@ def _whole(pieces: Sequence[Box], least: int) -> Box:
 
 
 def _pads(
-    made: Mapping[str, list[Branch]], routed: Mapping[str, list[Terminal]], die: DieParameters, tracks: Tracks
+    made: Mapping[str, list[Branch]],
+    routed: Nets,
+    blocks: Mapping[str, Block],
+    die: DieParameters,
+    tracks: Tracks,
+    pads: Pads,
 ) -> Iterator[tuple[str, Branch]]:
-    """Pairs (net, Branch) of the die's pins in the south, around the middle of the blocks' pins on these nets."""
-    out = [net for net in routed if ("die", net) in routed[net]]
-    out.sort(key=lambda net: (SIGNALS.index(net) if net in SIGNALS else len(SIGNALS), net))
+    """Pairs (net, Branch) of the signals' pads in the south, around the middle of the blocks' pins on these nets.
+
+    Analog signals are behind the host's, across the border of the ring's segments. Raises StepError.
+    """
+    kinds = {
+        net: function(net, driver(blocks, ends)[0] != "die") for net, ends in routed.items() if ("die", net) in ends
+    }
+    ranks = {net: place for place, net in enumerate(SIGNALS)}
+    out = sorted(kinds, key=lambda net: (kinds[net] == "analog", ranks.get(net, len(ranks)), net))
     taken = [branch.x for found in made.values() for branch in found]
     ends = [branch.x for net in out for branch in made[net]]
-    pad, middle = nm(die.pad_um), sum(ends) // max(len(ends), 1)
-    begin = max(pad, min(middle - pad * (len(out) - 1) // 2, nm(die.width_um) - pad * len(out)))
-    for place, net in enumerate(out):
-        x = free((begin + place * pad) // 10 * 10, taken, tracks.branch_pitch)
-        taken.append(x)
-        yield net, Branch("die", net, x, 0)
+    pitch, middle, (low, high) = nm(die.pad_um), sum(ends) // max(len(ends), 1), pads.frame.span("south")
+    at = max(low, min(middle - pitch * len(out) // 2, high - GAP - pitch * len(out))) // UM * UM
+    for before, net in zip(["", *out], out):
+        if before and kinds[net] != kinds[before] and kinds[net] == "analog":
+            at += GAP
+        left, bottom, right, top = pads.core_pin(kinds[net])
+        offset = (left + right) // 10 * 5
+        while any(abs(at + offset - other) < tracks.branch_pitch for other in taken):
+            at += UM
+        if at + pads.frame.pad + GAP > high:
+            raise StepError(f"ring: no room for the pad of {net} in the south")
+        taken.append(at + offset)
+        half = min(right - left, 2 * STUB_HALF) // 2
+        box = at + offset - half, pads.frame.seal + bottom, at + offset + half, pads.frame.seal + top
+        yield net, Branch("die", net, at + offset, pads.frame.inner + ABOVE, box)
+        at = max(at + pitch, at + pads.frame.pad + UM)
 
 
 def trunks(made: Mapping[str, list[Branch]], tracks: Tracks) -> dict[str, int]:

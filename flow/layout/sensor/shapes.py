@@ -6,8 +6,10 @@ from dataclasses import dataclass
 from talbot.flow.layout.route.rules import Layer, RoutingRules, Via
 from talbot.platforms import layers
 
-from .plan import CORE, Box, DieParameters, nm
+from .plan import CORE, Box
 from .routing import BRANCH, STUB, TRUNK, Branch, Tracks
+
+PAD = 1  # place in RoutingRules.layers of the pads' pins
 
 
 @dataclass(frozen=True)
@@ -39,23 +41,21 @@ def signal(net: str, branches: Sequence[Branch], y: int, tracks: Tracks, rules: 
             pad, _ = rules.vias[STUB].below
             yield drawn(rules.layers[STUB], net, (min(left, branch.x - pad), bottom, max(right, branch.x + pad), top))
             yield from stack(net, branch.x, branch.end, rules)
+        elif branch.block == "die" and branch.box:
+            left, bottom, right, _ = branch.box
+            yield drawn(rules.layers[PAD], net, (left, bottom, right, branch.end))
+            yield from stack(net, branch.x, branch.end, rules, PAD)
         yield drawn(rules.layers[BRANCH], net, (branch.x - half, low, branch.x + half, high))
 
 
-def stack(net: str, x: int, y: int, rules: RoutingRules) -> Iterator[Shape]:
-    """Vias from the stub up to the branch; the metals between have their minimum areas."""
-    for level in range(STUB, BRANCH):
+def stack(net: str, x: int, y: int, rules: RoutingRules, low: int = STUB) -> Iterator[Shape]:
+    """Vias from ``low`` up to the branch; the metals between have their minimum areas."""
+    for level in range(low, BRANCH):
         yield from via(net, x, y, level, rules)
-    for level in range(STUB + 1, BRANCH):
+    for level in range(low + 1, BRANCH):
         layer, height = rules.layers[level], 2 * rules.vias[level - 1].above[1]
         half = -(-layer.area // (2 * height) // 5) * 5
         yield drawn(layer, net, (x - half, y - height // 2, x + half, y + height // 2))
-
-
-def pad(branch: Branch, die: DieParameters, tracks: Tracks, rules: RoutingRules) -> Shape:
-    """The Shape of a signal's pin at the die's south edge."""
-    half = tracks.branch // 2
-    return drawn(rules.layers[BRANCH], branch.pin, (branch.x - half, 0, branch.x + half, nm(die.edge_um) // 2))
 
 
 def via(net: str, x: int, y: int, level: int, rules: RoutingRules) -> Iterator[Shape]:

@@ -10,12 +10,13 @@ from talbot.platforms.die import TopMetal
 from . import shapes
 from .arrange import Arranged
 from .plan import ANALOG, CORE, DIGITAL, SUPPLIES, Block, Box, DieParameters, check_way, nm
+from .ring import Pads
 from .routing import Tracks
 from .shapes import Shape
 
 
 class Line(NamedTuple):
-    """A segment of a supply on the top metal, to one side of the die."""
+    """A segment of a supply on the top metal, to one side of the die, and there up to its edge."""
 
     net: str
     side: str
@@ -23,49 +24,51 @@ class Line(NamedTuple):
 
 
 def metal(
-    made: Arranged, die: DieParameters, tracks: Tracks, rules: RoutingRules, top: TopMetal
-) -> tuple[list[Shape], dict[str, list[Shape]]]:
-    """All shapes of the die, and those at its edge that are its pins, by net."""
-    found, ends = supplies(made.blocks, die, rules, top)
-    pins = {net: [shapes.drawn(top.metal, net, box) for box in boxes] for net, boxes in ends.items()}
+    made: Arranged, die: DieParameters, tracks: Tracks, rules: RoutingRules, top: TopMetal, pads: Pads
+) -> list[Shape]:
+    """All shapes of the die but those of the ring's cells."""
+    found = supplies(made.blocks, die, rules, top, pads)
     for net, branches in made.routes.items():
         found += shapes.signal(net, branches, made.y[net], tracks, rules)
-        if pads := [shapes.pad(branch, die, tracks, rules) for branch in branches if branch.block == "die"]:
-            pins[net] = pads
-    return found, pins
+    return found
 
 
 def supplies(
-    blocks: Mapping[str, Block], die: DieParameters, rules: RoutingRules, top: TopMetal
-) -> tuple[list[Shape], dict[str, list[Box]]]:
-    """Shapes of the supplies, and boxes of the die's pins on the top metal, by net.
+    blocks: Mapping[str, Block], die: DieParameters, rules: RoutingRules, top: TopMetal, pads: Pads
+) -> list[Shape]:
+    """Shapes of the supplies.
 
-    Lines on the top metal lead from the straps over the chip and from the analog blocks' pins to the die's west and
-    east edge, across bars of the metal below, one a net; two lines in the north connect the west with the east.
+    Lines on the top metal lead from the straps over the chip and from the analog blocks' pins to the tracks of the ring
+    in the west and the east, across bars of the metal below, one a net; two lines in the north connect the west with
+    the east.
     """
     straps = [(net, (box[0] + box[2]) // 2) for net in DIGITAL for _, box in blocks[CORE].pins[net]]
     lines = [*_over_core(blocks[CORE], straps, die), *_from_blocks(blocks, die, top), *_in_north(die)]
     found: list[Shape] = []
-    pins: dict[str, list[Box]] = {}
-    width, edge = nm(die.width_um), nm(die.edge_um)
     for net in SUPPLIES:
-        for side, left, right in (("west", 0, edge), ("east", width - edge, width)):
-            boxes = [line.box for line in lines if (line.net, line.side) == (net, side)]
+        for side in ("west", "east"):
+            track = pads.track(net, side, len(rules.layers) - 1)
+            boxes = [to_track(line.box, side, track) for line in lines if (line.net, line.side) == (net, side)]
             if boxes:
                 found += _bar(net, side, boxes, die, rules.layers[-1], top)
-                pins.setdefault(net, []).extend((left, box[1], right, box[3]) for box in boxes)
+                found += (shape for box in boxes for shape in vias(net, (track[0], box[1], track[1], box[3]), top))
     half = nm(top.via.size_um + 2 * top.via.enclosure_below_um) // 2
     for net, at in straps:
         for line in lines:
             if line.net == net:
                 found += vias(net, (at - half, line.box[1], at + half, line.box[3]), top)
-    return list(dict.fromkeys(found)), pins
+    return list(dict.fromkeys(found))
+
+
+def to_track(box: Box, side: str, track: tuple[int, int]) -> Box:
+    """The box of a line, up to the far end of a track of the ring."""
+    return (track[0], *box[1:]) if side == "west" else (box[0], box[1], track[1], box[3])
 
 
 def _bar(net: str, side: str, boxes: Sequence[Box], die: DieParameters, below: Layer, top: TopMetal) -> Iterator[Shape]:
     """Shapes of a net's lines ``boxes`` and of the bar that connects them on one side of the die."""
     bar = nm(die.bar_um)
-    begin = nm(die.edge_um) + SUPPLIES.index(net) * (bar + nm(die.gap_um))
+    begin = nm(die.ring_um + die.edge_um) + SUPPLIES.index(net) * (bar + nm(die.gap_um))
     left = begin if side == "west" else nm(die.width_um) - begin - bar
     across = (left, min(box[1] for box in boxes), left + bar, max(box[3] for box in boxes))
     yield shapes.drawn(below, net, across)
@@ -103,11 +106,12 @@ def _from_blocks(blocks: Mapping[str, Block], die: DieParameters, top: TopMetal)
 
 def _in_north(die: DieParameters) -> Iterator[Line]:
     """Lines that connect the analog supplies' bars."""
-    bar, high = nm(die.bar_um), nm(die.height_um) - nm(die.edge_um)
+    bar, high = nm(die.bar_um), nm(die.height_um - die.ring_um - die.edge_um)
     for place, net in enumerate(ANALOG):
         y = high - (place + 1) * bar - place * nm(die.gap_um)
-        for side in ("west", "east"):
-            yield Line(net, side, (0, y, nm(die.width_um), y + bar))
+        middle, width = nm(die.width_um) // 2, nm(die.width_um)
+        yield Line(net, "west", (0, y, middle, y + bar))
+        yield Line(net, "east", (middle, y, width, y + bar))
 
 
 def vias(net: str, box: Box, top: TopMetal) -> list[Shape]:

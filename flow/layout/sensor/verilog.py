@@ -3,6 +3,9 @@
 from collections.abc import Iterable, Mapping, Sequence
 
 from .plan import CORE, SUPPLIES, Block, Terminal
+from .ring import DIGITAL, OUTSIDE, Place
+
+INSIDE = "inside"
 
 
 def buses(names: Iterable[str]) -> dict[str, int | None]:
@@ -14,11 +17,33 @@ def buses(names: Iterable[str]) -> dict[str, int | None]:
     return found
 
 
-def top(name: str, blocks: Mapping[str, Block], nets: Mapping[str, Sequence[Terminal]]) -> str:
-    """Text of the die's module, after those of the analog blocks as black boxes; the chip's is in another file.
+def top(name: str, blocks: Mapping[str, Block], nets: Mapping[str, Sequence[Terminal]], places: Iterable[Place]) -> str:
+    """Text of the die's module, after those of what is inside of the pads, and of black boxes: analog blocks and pads.
 
-    nets: each pin has the net's name; ('die', net) is a port. Supplies are left out, as in the chip's own netlist.
+    The chip's is in another file. nets: each pin has the net's name; ('die', net) is a pin to a pad. places: of the
+    ring. Supplies are left out, as in the chip's own netlist.
     """
+    pads = [place for place in places if "pad" in place.nets]
+    inner = inside(f"{name}_{INSIDE}", blocks, nets)
+    ports = buses(net for net, ends in nets.items() if any(block == "die" for block, _ in ends) and net not in SUPPLIES)
+    lines, kinds = [], {}
+    for place in pads:
+        kinds[place.cell] = [pin for pin in place.nets if pin not in DIGITAL]
+    for cell, pins in kinds.items():
+        lines += ["(* blackbox *)", f"module {cell} ({', '.join(pins)});"]
+        lines += [f"  {'output' if pin == 'p2c' else 'input' if pin == 'c2p' else 'inout'} {pin};" for pin in pins]
+        lines += ["endmodule", ""]
+    lines += _module(name, {OUTSIDE + bus: (bits, "inout") for bus, bits in ports.items()})
+    lines += [f"  wire {_range(bits)}{bus};" for bus, bits in ports.items()]
+    lines += [f"  {name}_{INSIDE} {INSIDE} ({', '.join(f'.{bus}({bus})' for bus in ports)});"]
+    for place in pads:
+        pins = (f".{pin}({net})" for pin, net in place.nets.items() if pin not in DIGITAL)
+        lines.append(f"  {place.cell} \\{place.name}_cell ({', '.join(pins)});")
+    return "\n".join([inner, *lines, "endmodule", ""])
+
+
+def inside(name: str, blocks: Mapping[str, Block], nets: Mapping[str, Sequence[Terminal]]) -> str:
+    """Text of the module inside of the pads, after those of the analog blocks as black boxes."""
     nets = {net: ends for net, ends in nets.items() if net not in SUPPLIES}
     ports = buses(net for net, ends in nets.items() if any(block == "die" for block, _ in ends))
     lines = []

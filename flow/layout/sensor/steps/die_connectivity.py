@@ -9,12 +9,14 @@ from talbot.platforms.coriolis import coriolis_platform
 from talbot.platforms.die import top_metal
 
 from .. import connectivity
+from ..ring import Frame
+from .die_gds import corners, turned
 
 
 class DieConnectivity(Step[PdkParameters]):
     """Every net of the plan, extracted from the metal of the finished GDS and of the blocks in it.
 
-    lvs_match: of the blocks' pins; the insides of the blocks have their own LVS.
+    lvs_match: of the pins of blocks and pads; the insides of the blocks have their own LVS.
     """
 
     name = "die_connectivity"
@@ -26,7 +28,14 @@ class DieConnectivity(Step[PdkParameters]):
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         plan, pdk = json.loads(inputs["plan"].read_text()), self.parameters.pdk
         cells = {block["cell"]: name for name, block in plan["blocks"].items()}
-        found = connectivity.nets(inputs["gds"], cells, coriolis_platform(pdk), top_metal(pdk))
+        frame = Frame(**plan["frame"])
+        at = [
+            (place["cell"], place["nets"] and place["name"], turned(frame, place["side"], place["at"]).disp)
+            for place in plan["ring"]
+        ]
+        at += [(plan["corner"], "", trans.disp) for trans in corners(frame)]
+        ring = {(cell, disp.x, disp.y): name or "" for cell, name, disp in at}
+        found = connectivity.nets(inputs["gds"], cells, ring, coriolis_platform(pdk), top_metal(pdk))
         opens, shorts = connectivity.compare(found, plan["nets"])
         outputs["report"].write_text(json.dumps({"open": opens, "short": shorts}, indent=1) + "\n")
         return {"open_nets": len(opens), "shorts": len(shorts), "lvs_match": not opens and not shorts}

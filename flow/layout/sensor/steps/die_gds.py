@@ -3,13 +3,16 @@
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from talbot.base.gds import write_gds
+from talbot.base.gds import read_gds, write_gds
 from talbot.base.steps import Files, Step, StepError
 from talbot.platforms.coriolis import coriolis_platform
+from talbot.platforms.die import top_metal
 
 from ..plan import BLOCKS, CORE, ORIENTATIONS
+from ..ring import Frame
 from .die_plan import TOP
 
 if TYPE_CHECKING:
@@ -28,14 +31,15 @@ class DieGdsParameters:
 
 
 class DieGds(Step[DieGdsParameters]):
-    """The blocks' GDS at the places of the plan, and the plan's metal.
+    """The blocks' GDS at the places of the plan, the ring of pads, and the plan's metal.
 
     checked: the same without the pixels of drawn arrays, for rules and antennas, which see every shape of each of
-    150,000 pixels; what is around the pixels stays.
+    150,000 pixels, and with the pads' metals alone; what is around the pixels stays.
     """
 
     name = "die_gds"
     inputs = {f"{block}.gds": f"{block}.gds" for block in (*BLOCKS, CORE)} | {"plan": "die_plan.plan"}
+    inputs |= {"pads.gds": "die_pads.gds"}
     outputs = {"gds": f"{TOP}.gds", "checked": "checked.gds"}
     metrics = {"rectangles": ""}
     tools = ("python klayout",)
@@ -57,6 +61,7 @@ class DieGds(Step[DieGdsParameters]):
                 raise StepError(f"die_gds: {has}; its LEF is of {block['cell']}")
             cells[name].copy_tree(source.top_cell())  # renames cells in it whose name is taken
             top.insert(db.CellInstArray(cells[name].cell_index(), placed(block)))
+        pads = self.ring(plan, layout, top, inputs["pads.gds"])
         for _, layer, datatype, *box in plan["shapes"]:
             top.shapes(layout.layer(layer, datatype)).insert(db.Box(*box))
         for net, boxes in plan["pins"].items():
@@ -71,8 +76,49 @@ class DieGds(Step[DieGdsParameters]):
             for cell in inner:
                 if cell.name.startswith(PIXELS):
                     cell.prune_cell()
+        metals = {metal.gds for metal in (*tech.metals[1:], top_metal(self.parameters.pdk).metal)}
+        for cell in pads:
+            for index in layout.layer_indexes():
+                if (layout.get_info(index).layer, layout.get_info(index).datatype) not in metals:
+                    cell.clear(index)
         write_gds(layout, outputs["checked"])
         return {"rectangles": len(plan["shapes"])}
+
+    def ring(self, plan: Mapping[str, Any], layout: "kdb.Layout", top: "kdb.Cell", gds: Path) -> "list[kdb.Cell]":
+        """Put the ring's cells into the die; returns them."""
+        import klayout.db as db
+
+        source, frame = read_gds(gds), Frame(**plan["frame"])
+        cells = {}
+        for name in {place["cell"] for place in plan["ring"]} | {plan["corner"]}:
+            cells[name] = layout.create_cell(name)
+            cells[name].copy_tree(source.cell(name))
+        at = [(place["cell"], turned(frame, place["side"], place["at"])) for place in plan["ring"]]
+        at += [(plan["corner"], trans) for trans in corners(frame)]
+        for name, trans in at:
+            top.insert(db.CellInstArray(cells[name].cell_index(), trans))
+        return list(cells.values())
+
+
+def turned(frame: Frame, side: str, at: int) -> "kdb.Trans":
+    """Transformation of a cell of the ring, drawn as in the south."""
+    import klayout.db as db
+
+    return {
+        "south": db.Trans(db.Trans.R0, at, frame.seal),
+        "north": db.Trans(db.Trans.M0, at, frame.height - frame.seal),
+        "west": db.Trans(db.Trans.M45, frame.seal, at),
+        "east": db.Trans(db.Trans.R90, frame.width - frame.seal, at),
+    }[side]
+
+
+def corners(frame: Frame) -> "list[kdb.Trans]":
+    """Transformations of the corner, drawn as in the south-west with the ring's inside at x = 0."""
+    import klayout.db as db
+
+    west, east, low, high = frame.inner, frame.width - frame.inner, frame.seal, frame.height - frame.seal
+    ways = (db.Trans.R0, west, low), (db.Trans.M90, east, low), (db.Trans.R180, east, high), (db.Trans.M0, west, high)
+    return [db.Trans(*way) for way in ways]
 
 
 def placed(block: Mapping[str, Any]) -> "kdb.Trans":

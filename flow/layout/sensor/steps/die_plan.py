@@ -1,7 +1,7 @@
 """Placement and routing of the die."""
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
@@ -9,14 +9,17 @@ from talbot.base.steps import Files, Step
 from talbot.flow.layout.route.rules import RoutingRules
 from talbot.platforms.coriolis import coriolis_platform
 from talbot.platforms.die import top_metal
+from talbot.platforms.layers import Layer
+from talbot.platforms.pads import pad_process
 
-from .. import arrange, routing, supplies, verilog
+from .. import arrange, ring, routing, supplies, verilog
 from ..arrange import Arranged
 from ..plan import BLOCKS, CORE, Block, DieParameters, driver, nm
-from ..shapes import Shape
+from ..ring import Frame, Pads, Place
+from ..shapes import Shape, drawn
 
 TOP = "asp_sensor"
-COUNTS = "utilization", "nets", "routed", "abutted", "tracks"
+COUNTS = "utilization", "nets", "routed", "abutted", "tracks", "pads"
 Shapes = Sequence[Shape]
 
 
@@ -30,13 +33,17 @@ class DiePlanParameters:
 
 
 class DiePlan(Step[DiePlanParameters]):
-    """Placement from the LEFs alone; signals in one channel below all blocks; supplies on the top metal.
+    """Placement from the LEFs alone; a channel of signals below all blocks; supplies on the top metal; a ring of pads.
 
-    routed: nets in the channel. abutted: nets whose pins touch. tracks: of the channel. wire_um: of the signals.
+    pads: of the ring. routed: nets in the channel. abutted: nets whose pins touch. tracks: of the channel. wire_um: of
+    the signals.
     """
 
     name = "die_plan"
-    inputs = {f"{block}.lef": f"{block}.lef" for block in (*BLOCKS, CORE)} | {"rules": "library.rules"}
+    inputs = {f"{block}.lef": f"{block}.lef" for block in (*BLOCKS, CORE)} | {
+        "rules": "library.rules",
+        "pads": "die_pads.pins",
+    }
     outputs = {"plan": "plan.json", "verilog": f"{TOP}.v"}
     metrics = {"area_um2": "um2", **dict.fromkeys(COUNTS, ""), "wire_um": "um"}
 
@@ -46,10 +53,22 @@ class DiePlan(Step[DiePlanParameters]):
         layers = [tech.metals[level].lef for level in (routing.STUB, routing.BRANCH)]
         blocks = {name: Block.read(name, inputs[f"{name}.lef"].read_text()) for name in (*BLOCKS, CORE)}
         tracks = routing.Tracks.of(rules)
-        made = arrange.arranged(blocks, p.die, tracks, layers, p.extra)
-        metal, pins = supplies.metal(made, p.die, tracks, rules, top_metal(p.pdk))
-        outputs["plan"].write_text(json.dumps(as_json(made, metal, pins, p.die, tracks)) + "\n")
-        outputs["verilog"].write_text(verilog.top(TOP, made.blocks, made.nets))
+        pads = self.pads(json.loads(inputs["pads"].read_text()))
+        made = arrange.arranged(blocks, p.die, tracks, layers, pads, p.extra)
+        metal = supplies.metal(made, p.die, tracks, rules, top_metal(p.pdk), pads)
+        signals = [
+            ring.signal(net, kind, branch.x - offset, pads.process)
+            for net, found in made.routes.items()
+            for branch in found
+            if branch.block == "die"
+            for kind in [ring.function(net, driver(made.blocks, made.nets[net])[0] != "die")]
+            for offset in [ring.middle(pads.core_pin(kind))]
+        ]
+        places, gaps = ring.ring(pads, signals, made.blocks[CORE].box[3])
+        levels = [*tech.metals, top_metal(p.pdk).metal]
+        metal += [drawn(levels[level], net, box) for net, level, box in ring.bridges(pads, gaps)]
+        outputs["plan"].write_text(json.dumps(as_json(made, metal, places, pads, p.die, tracks, levels[-1])) + "\n")
+        outputs["verilog"].write_text(verilog.top(TOP, made.blocks, made.nets, places))
         area = p.die.width_um * p.die.height_um
         covered = sum(block.width * block.height for block in made.blocks.values()) / 1e6
         return {
@@ -59,26 +78,54 @@ class DiePlan(Step[DiePlanParameters]):
             "routed": len(made.routes),
             "abutted": made.abutted,
             "tracks": made.count,
+            "pads": sum(bool(place.nets) for place in places),
             "wire_um": round(made.wire / 1000, 1),
         }
 
+    def pads(self, cells: ring.Pins) -> Pads:
+        """The pads in the frame of the die."""
+        p, process = self.parameters, pad_process(self.parameters.pdk)
+        depth, width = nm(process.height_um), nm(process.width_um)
+        frame = Frame(nm(p.die.width_um), nm(p.die.height_um), nm(p.die.ring_um) - depth, depth, width)
+        return Pads(frame, cells, process)
+
 
 def as_json(
-    made: Arranged, metal: Shapes, pins: Mapping[str, Shapes], die: DieParameters, tracks: routing.Tracks
+    made: Arranged,
+    metal: Shapes,
+    places: Sequence[Place],
+    pads: Pads,
+    die: DieParameters,
+    tracks: routing.Tracks,
+    top: Layer,
 ) -> dict[str, Any]:
-    """The plan for JSON, nm. metal: all shapes. pins: those at the die's edge, by net."""
-    blocks, routes = made.blocks.items(), made.routes.items()
+    """The plan for JSON, nm. metal: all shapes. places: of the ring. top: metal of the bond pads, the die's pins."""
+    blocks, routes, frame = made.blocks.items(), made.routes.items(), pads.frame
+    pins: dict[str, list[Any]] = {}
+    for place in (place for place in places if place.nets):
+        pin = ring.bond(place, pads.process)
+        box = max((box for level, *box in pads.cells[place.cell][pin] if level == ring.TOP), key=_area)
+        pins.setdefault(place.nets[pin], []).append(
+            _plain(drawn(top, place.nets[pin], frame.box(place.side, place.at, box)))
+        )
     return {
         "die": [nm(die.width_um), nm(die.height_um)],
         "blocks": {name: {"cell": b.cell, "orientation": b.orientation, "box": b.box} for name, b in blocks},
-        "nets": made.nets,
+        "ring": [place._asdict() | {"box": frame.box(place.side, place.at, pads.outline(place.cell))} for place in places],
+        "frame": asdict(frame),
+        "corner": pads.process.corner,
+        "nets": ring.nets(made.nets, places),
         "drivers": {net: driver(made.blocks, made.nets[net]) for net in made.routes},
         "channel": made.channel,
         "tracks": asdict(tracks),
-        "pins": {net: [_plain(shape) for shape in found] for net, found in pins.items()},
+        "pins": pins,
         "shapes": [_plain(shape) for shape in metal],
         "routes": {net: {"y": made.y[net], "branches": list(map(asdict, found))} for net, found in routes},
     }
+
+
+def _area(box: Sequence[int]) -> int:
+    return (box[2] - box[0]) * (box[3] - box[1])
 
 
 def _plain(shape: Shape) -> list[Any]:

@@ -12,7 +12,7 @@ from talbot.base.paths import ROOT
 from talbot.base.steps import StepError
 from talbot.flow.layout.geometry.abstract import ports
 from talbot.flow.layout.sensor import arrange
-from talbot.flow.layout.sensor.plan import CORE, ORIENTATIONS, DieParameters
+from talbot.flow.layout.sensor.plan import CORE, ORIENTATIONS, SIGNALS, DieParameters
 from talbot.models.parameters import ParameterError
 from talbot.pixels.blocks import blocks
 
@@ -49,6 +49,7 @@ def test_every_net_is_found_again(made, tmp_path):
     assert made[0]["metrics"]["routed"] == len(small.core_pins())
     assert made[0]["metrics"]["abutted"] == 16 * 6 + 120 * 2 + 2 * 2
     assert made[0]["metrics"]["nets"] == made[0]["metrics"]["routed"] + made[0]["metrics"]["abutted"] + 4
+    assert made[0]["metrics"]["pads"] == len(SIGNALS) + 4 + 3 * 6
 
 
 @pytest.mark.parametrize("way", ORIENTATIONS)
@@ -81,10 +82,48 @@ def test_a_stub_has_the_width_of_its_metal(made):
     assert len(boxes) > small.SPLIT and min(top - bottom for _, bottom, _, top in boxes) >= 300
 
 
-@pytest.mark.parametrize("layer, net", [(70, "dac[3]"), (71, "tap[1]"), (70, "miso"), (71, "vdda"), (72, "vssa")])
+@pytest.mark.parametrize("layer, net", [(70, "dac[3]"), (71, "tap[1]"), (70, "miso")])
 def test_a_missing_wire_is_an_open_net(made, tmp_path, layer, net):
     metrics, report = matched(made, tmp_path, lambda plan: plan["shapes"].pop(index(plan, net, layer)))
     assert not metrics["lvs_match"] and metrics["shorts"] == 0 and list(report["open"]) == [net]
+
+
+@pytest.mark.parametrize("net", ["vdd", "vssa"])
+def test_a_supply_without_its_lines_is_an_open_net(made, tmp_path, net):
+    """One line is not missed: the ring and the bars connect all others."""
+
+    def change(plan):
+        plan["shapes"] = [shape for shape in plan["shapes"] if shape[:2] != [net, 72]]
+
+    metrics, report = matched(made, tmp_path, change)
+    assert metrics["shorts"] == 0 and list(report["open"]) == [net]
+
+
+def test_two_pads_swapped(made, tmp_path):
+    """Pads of one cell: the nets of both are named."""
+
+    def change(plan):
+        one, other = (next(place for place in plan["ring"] if place["name"] == f"pad_{net}") for net in ("csn", "mosi"))
+        one["at"], other["at"] = other["at"], one["at"]
+
+    metrics, report = matched(made, tmp_path, change)
+    assert not metrics["lvs_match"] and {"csn", "mosi"} <= set(", ".join(report["short"]).split(", "))
+
+
+@pytest.mark.parametrize("lost", [0, 30])
+def test_a_gap_in_the_ring(made, tmp_path, lost):
+    """A pad behind a missing filler has its supplies from the other side of the ring, but not behind two."""
+
+    def change(plan):
+        sides = [place for place in plan["ring"] if place["side"] == "south"]
+        sides.sort(key=lambda place: place["at"])
+        pads = [k for k, place in enumerate(sides) if place["nets"]]
+        for k in (pads[3] - 1, pads[4] - 1)[: 1 + bool(lost)]:
+            plan["ring"].remove(sides[k])
+
+    metrics, report = matched(made, tmp_path, change)
+    assert metrics["lvs_match"] is False or not lost
+    assert not lost or {"vddio", "vssio"} <= set(report["open"])
 
 
 def test_a_missing_cut_is_an_open_net(made, tmp_path):
@@ -130,10 +169,10 @@ def test_an_abutting_block_out_of_its_place(made, tmp_path):
 
 
 def test_blocks_that_the_die_has_no_room_for(made, tmp_path):
-    with pytest.raises(ParameterError, match=r"width_um = 1400: must be at least 15\d\d"):
-        small.plan(made[0] | {}, tmp_path, DieParameters(1400.0, 1300.0))
-    with pytest.raises(ParameterError, match="height_um = 600: must be at least"):
-        small.plan(made[0] | {}, tmp_path, DieParameters(1700.0, 600.0))
+    with pytest.raises(ParameterError, match=r"height_um = 900: must be at least \d+"):
+        small.plan(made[0] | {}, tmp_path, DieParameters(2800.0, 900.0))
+    with pytest.raises(StepError, match="ring: no room for the pad of "):
+        small.plan(made[0] | {}, tmp_path, DieParameters(1950.0, 1800.0))
 
 
 @pytest.mark.parametrize(

@@ -27,7 +27,7 @@ def test_a_small_die(tmp_path):
     given = small.files(tmp_path)
     library = Runner(tmp_path / "shared", {})
     library.run(Library())
-    given |= {f"library.{name}": library.paths[f"library.{name}"] for name in ("rules", "drc")}
+    given |= {f"library.{name}": library.paths[f"library.{name}"] for name in ("rules", "drc", "lvs")}
     for name in ("sdc", "verilog", *CORNERS):
         given[f"core.{name}"] = tmp_path / f"core.{name}"
         given[f"core.{name}"].write_text("")

@@ -4,6 +4,7 @@ import itertools
 import json
 
 from talbot.flow.layout.route.ports import LEVELS
+from talbot.flow.layout.sensor.pads import width_um
 from talbot.flow.layout.sensor.plan import BLOCKS, CORE, SIGNALS, DieParameters
 from talbot.flow.layout.sensor.steps.die_connectivity import DieConnectivity
 from talbot.flow.layout.sensor.steps.die_gds import DieGds, DieGdsParameters
@@ -13,8 +14,10 @@ from talbot.models.parameters import ArrayParameters, ChipParameters
 from talbot.pixels.blocks import AnalogSizes, blocks
 from talbot.pixels.footprints import write
 from talbot.platforms.coriolis import coriolis_platform
+from talbot.platforms.pads import pad_process
+from talbot.platforms.pixel import pixel_process
 
-DIE = DieParameters(1700.0, 1300.0, pad_um=20.0)
+DIE = DieParameters(2800.0, 1800.0, pad_um=91.0)
 RULES = {
     "metals": {
         name: {"width": least, "space": least, "area": area}
@@ -86,13 +89,61 @@ def core(folder):
     layout.write(str(folder / "core.gds"))
 
 
+TRACKS = {"iovss": (2, 20), "iovdd": (90, 133), "vdd": (157, 171), "vss": (173, 186)}  # um
+BOND = 4.5, 24.0, 85.5, 86.0
+CORE_PINS = {"IOPadIn": ("p2c", 44.85), "IOPadOut": ("c2p", 44.85), "IOPadAnalog": ("padres", 60.6)}
+
+
+def pads(folder):
+    """Write pads.gds and pins.json: cells of the ring with their tracks, bond pads and pins, and no transistor."""
+    import klayout.db as db
+
+    process, metals, vias = pad_process("sky130"), pixel_process("sky130").metals, pixel_process("sky130").vias
+    layout, found = db.Layout(), {}
+    for name in process.cells:
+        cell, own = layout.create_cell(name), found.setdefault(name, {})
+
+        def draw(level, pin, *box, cell=cell, own=own):
+            shape = db.DBox(*box)
+            cell.shapes(layout.layer(*metals[level].gds)).insert(shape)
+            cell.shapes(layout.layer(*metals[level].pin)).insert(db.DText(pin, db.DTrans(shape.center() - db.DPoint())))
+            own.setdefault(pin, []).append([level, *(round(1000 * size) for size in box)])
+
+        left, right = (-188.0, 0.0) if name == process.corner else (0.0, width_um(name, process))
+        for pin, (low, high) in TRACKS.items():
+            draw(4, pin, left + (low if left else 0), low, right, high)
+            if left:
+                draw(4, pin, left + low, low, left + high, 188.0)
+        if name.startswith("IOPad"):
+            pin = next((pin for pin, supply in process.supplies.items() if supply == name), "pad")
+            draw(5, pin, *BOND)
+            if pin in TRACKS:
+                y = sum(TRACKS[pin]) / 2
+                low, high = sorted((52.0, y))
+                for gds, *box in (
+                    (metals[4].gds, 40, 50, 44, 54),
+                    (vias[4].gds, 41.6, 51.6, 42.4, 52.4),
+                    (metals[3].gds, 41, low - 0.5, 43, high + 0.5),
+                    *((vias[3].gds, 42, at - 0.1, 42.2, at + 0.1) for at in (52.0, y)),
+                ):
+                    cell.shapes(layout.layer(*gds)).insert(db.DBox(*box))
+            if name in CORE_PINS:
+                pin, x = CORE_PINS[name]
+                draw(1, pin, x, 172.0, x + 0.3, 188.0)
+    (folder / "pins.json").write_text(json.dumps(found))
+    layout.write(str(folder / "pads.gds"))
+
+
 def files(folder):
     """Everything that the die's steps are given: dict name -> Path."""
     write(folder, analog(), "sky130", AnalogSizes().supply_um)
     core(folder)
+    pads(folder)
     (folder / "rules.json").write_text(json.dumps(RULES))
     return {f"{block}.{kind}": folder / f"{block}.{kind}" for block in (*BLOCKS, CORE) for kind in ("lef", "gds")} | {
-        "library.rules": folder / "rules.json"
+        "library.rules": folder / "rules.json",
+        "die_pads.gds": folder / "pads.gds",
+        "die_pads.pins": folder / "pins.json",
     }
 
 

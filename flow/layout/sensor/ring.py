@@ -1,0 +1,192 @@
+"""The ring of pads around the blocks: which pads, where on the four sides, what joins them to the die's nets; in nm.
+
+The ring has two segments. In the south up to the last pin of the host, and in the west beside the chip, are the
+host's pins and the supplies of chip and pads; all else is the analog segment. Fillers and corners continue the
+supplies' tracks through a segment; at the two borders the pads' ground alone continues.
+"""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from talbot.base.steps import StepError
+from talbot.platforms.pads import PadProcess
+
+Box = tuple[int, int, int, int]  # left, bottom, right, top
+Terminal = tuple[str, str]  # (block or pad, pin); 'die' for a bond pad
+Pins = Mapping[str, Mapping[str, Sequence[Sequence[int]]]]  # cell -> pin -> [level of metal, left, bottom, right, top]
+
+INPUTS = "clk", "reset", "sclk", "csn", "mosi", "link_rdy"
+# Net of each of the tracks, by segment
+DIGITAL = {"vdd": "vdd", "vss": "vss", "iovdd": "vddio", "iovss": "vssio"}
+ANALOG = {"vdd": "vdda", "vss": "vssa", "iovdd": "vddr", "iovss": "vssio"}
+# Supplies on a side, evenly: in the west beside the chip, and on each side of the analog segment
+BESIDE_CHIP = "vdd", "vss", "vssio", "vddio"
+ON_SIDE = "vdda", "vssa", "vddr", "vssio", "vssa", "vdda"
+SIDES = "south", "east", "north", "west"
+UM, GAP = 1000, 20_000  # the grid of cells in the ring; between the segments
+OUTSIDE = "pad_"  # of the names of pads, and of the nets of their bond pads
+TOP = 5  # level of the bond pads' metal
+CORE_PINS = {"input": "p2c", "output": "c2p", "analog": "padres"}
+
+
+class Place(NamedTuple):
+    """A cell of the ring. at: of its low end along its side. nets: by pin, of a pad; a filler has none."""
+
+    name: str
+    cell: str
+    side: str
+    at: int
+    nets: Mapping[str, str]
+
+
+@dataclass(frozen=True)
+class Frame:
+    """Outline of the die, and the ring in it. seal: from the die's edge to the pads; depth, width: of a pad."""
+
+    width: int
+    height: int
+    seal: int
+    depth: int
+    pad: int
+
+    @property
+    def inner(self) -> int:
+        """From the die's edge to what is inside of the ring."""
+        return self.seal + self.depth
+
+    def span(self, side: str) -> tuple[int, int]:
+        """Ends of a side between its corners."""
+        return self.inner, (self.height if side in ("west", "east") else self.width) - self.inner
+
+    def box(self, side: str, at: int, box: Sequence[int]) -> Box:
+        """Where ``box`` of a cell at ``at`` is on the die; cells are drawn as they are in the south."""
+        left, bottom, right, top = box
+        low, high, near, far = at + left, at + right, self.seal + bottom, self.seal + top
+        return {
+            "south": (low, near, high, far),
+            "north": (low, self.height - far, high, self.height - near),
+            "west": (near, low, far, high),
+            "east": (self.width - far, low, self.width - near, high),
+        }[side]
+
+
+@dataclass(frozen=True)
+class Pads:
+    """Outline, the pins of all cells, and the process."""
+
+    frame: Frame
+    cells: Pins
+    process: PadProcess
+
+    @property
+    def filler(self) -> Mapping[str, Sequence[Sequence[int]]]:
+        """Pins of the widest filler: the tracks."""
+        return self.cells[next(iter(self.process.fillers.values()))]
+
+    def outline(self, cell: str) -> Box:
+        """Of a pad or a filler, drawn as in the south."""
+        widths = {name: round(um * UM) for um, name in self.process.fillers.items()}
+        return 0, 0, widths.get(cell, self.frame.pad), self.frame.depth
+
+    def core_pin(self, kind: str) -> Box:
+        """Of a signal's pad of this function its pin to the core, on the lowest routing metal."""
+        _, *box = next(found for found in self.cells[self.process.signals[kind]][CORE_PINS[kind]] if found[0] == 1)
+        return box[0], box[1], box[2], box[3]
+
+    def track(self, net: str, side: str, level: int) -> tuple[int, int]:
+        """Of the track of a core supply, on a level of metal, its two ends across the side."""
+        pin = next(pin for tracks in (DIGITAL, ANALOG) for pin, own in tracks.items() if own == net)
+        _, _, bottom, _, top = next(found for found in self.filler[pin] if found[0] == level)
+        left, low, right, high = self.frame.box(side, 0, (0, bottom, 0, top))
+        return (left, right) if side in ("west", "east") else (low, high)
+
+
+def function(net: str, driven: bool) -> str:
+    """Of the pad of a signal: 'output' of what a block drives, 'input' of the host's others, else 'analog'."""
+    return "output" if driven else "input" if net in INPUTS else "analog"
+
+
+def signal(net: str, kind: str, at: int, process: PadProcess) -> Place:
+    """The pad of a signal, in the south."""
+    outside = OUTSIDE + net
+    tracks = ANALOG if kind == "analog" else DIGITAL
+    return Place(outside, process.signals[kind], "south", at, tracks | {CORE_PINS[kind]: net, "pad": outside})
+
+
+def supply(net: str, number: int, side: str, at: int, process: PadProcess, tracks: Mapping[str, str]) -> Place:
+    """The pad ``number`` of a supply."""
+    (track,) = [track for track, own in tracks.items() if own == net]
+    return Place(f"{OUTSIDE}{net}_{number}", process.supplies[track], side, at, dict(tracks))
+
+
+def ring(pads: Pads, signals: Sequence[Place], border: int) -> tuple[list[Place], list[Place]]:
+    """All cells of the ring but its corners, and the gaps between the segments, as places without a cell.
+
+    signals: pads in the south, digital ones before analog ones. border: y above which the west is analog.
+    Raises StepError where there is no room.
+    """
+    frame, process = pads.frame, pads.process
+    digital = [place for place in signals if "vddio" in place.nets.values()]
+    low, _ = frame.span("west")
+    end = max(place.at for place in digital) + frame.pad
+    gaps = [Place("south_border", "", "south", end, {}), Place("west_border", "", "west", border // UM * UM, {})]
+    parts = [
+        ("west", low, gaps[1].at, BESIDE_CHIP, DIGITAL),
+        ("east", *frame.span("east"), ON_SIDE, ANALOG),
+        ("north", *frame.span("north"), ON_SIDE, ANALOG),
+        ("west", gaps[1].at + GAP, frame.span("west")[1], ON_SIDE, ANALOG),
+    ]
+    made, count = list(signals), dict[str, int]()
+    for side, begin, to, nets, tracks in parts:
+        room = (to - begin - len(nets) * frame.pad) // (len(nets) + 1) // UM * UM
+        if room < 0:
+            raise StepError(f"ring: no room for {len(nets)} pads in the {side}, from {begin / UM:g} to {to / UM:g} um")
+        for place, net in enumerate(nets):
+            count[net] = count.get(net, 0) + 1
+            at = begin + room + place * (frame.pad + room)
+            made.append(supply(net, count[net], side, at, process, tracks))
+    return made + list(_fillers(frame, [*made, *gaps], process)), gaps
+
+
+def _fillers(frame: Frame, taken: Iterable[Place], process: PadProcess) -> Iterator[Place]:
+    """Fillers of all that is free between the corners."""
+    for side in SIDES:
+        at, end = frame.span(side)
+        here = sorted((place.at, GAP if not place.cell else frame.pad) for place in taken if place.side == side)
+        for begin, width in [*here, (end, 0)]:
+            if begin < at:
+                raise StepError(f"ring: two pads at {begin / UM:g} um in the {side}")
+            for um, cell in process.fillers.items():
+                while begin - at >= um * UM:
+                    yield Place(f"{side}_{at // UM}", cell, side, at, {})
+                    at += round(um * UM)
+            at = begin + width
+
+
+def bridges(pads: Pads, gaps: Iterable[Place]) -> Iterator[tuple[str, int, Box]]:
+    """Triples (net, level of metal, box) that continue the pads' ground between the segments."""
+    for gap in gaps:
+        for level, _, bottom, _, top in pads.filler["iovss"]:
+            yield DIGITAL["iovss"], level, pads.frame.box(gap.side, gap.at, (0, bottom, GAP, top))
+
+
+def middle(box: Box) -> int:
+    """X of the middle of a pin, on the grid."""
+    return (box[0] + box[2]) // 10 * 5
+
+
+def bond(place: Place, process: PadProcess) -> str:
+    """The pin of a pad that is its bond pad."""
+    return next((pin for pin, cell in process.supplies.items() if cell == place.cell), "pad")
+
+
+def nets(inside: Mapping[str, Sequence[Terminal]], places: Iterable[Place]) -> dict[str, list[Terminal]]:
+    """Terminals of the nets with those of the pads in place of the die's, which are then their bond pads."""
+    found = {net: [end for end in ends if end[0] != "die"] for net, ends in inside.items()}
+    for place in places:
+        for pin, net in place.nets.items():
+            found.setdefault(net, []).append((place.name, pin))
+    bonded = {net for place in places for net in place.nets.values() if net.startswith(OUTSIDE)}
+    supplied = {*DIGITAL.values(), *ANALOG.values()}
+    return {net: [("die", net)] * (net in bonded | supplied) + ends for net, ends in sorted(found.items())}

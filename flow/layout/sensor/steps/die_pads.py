@@ -1,0 +1,92 @@
+"""The pads of the die: their cells, the rules that these keep, and their layout against their netlists."""
+
+import importlib
+import json
+from typing import Any
+
+from talbot.base.gds import write_gds
+from talbot.base.steps import Files, Step, StepError
+from talbot.flow.layout.geometry.decks import (
+    hole_rules,
+    run_exported,
+    via_rules,
+    violations,
+    with_flat_spaces,
+    with_taps,
+)
+from talbot.flow.layout.pdkmaster import export_spice
+from talbot.flow.layout.steps.parameters import PdkParameters
+from talbot.platforms.coriolis import coriolis_platform
+from talbot.platforms.pads import pad_process
+from talbot.platforms.pixel import pixel_process
+
+from .. import pads
+
+
+class DiePads(Step[PdkParameters]):
+    """The pads' GDS, netlists, and pins (JSON: see `talbot.flow.layout.sensor.ring`)."""
+
+    name = "die_pads"
+    outputs = {"gds": "pads.gds", "spice": "pads.spi", "pins": "pins.json"}
+    metrics = {"pad_cells": ""}
+    shared = True
+    tools = ("python pdkmaster", "python c4m-flexio", "python klayout")
+
+    def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
+        process, pixel = pad_process(self.parameters.pdk), pixel_process(self.parameters.pdk)
+        library, gates = pads.library(process)
+        layout = pads.layout(library, process, pixel)
+        found = {name: pads.pins(layout.cell(name), pixel) for name in process.cells}
+        outputs["pins"].write_text(json.dumps(found, indent=1) + "\n")
+        pads.row(layout, process)
+        write_gds(layout, outputs["gds"])
+        devices = importlib.import_module(process.package).prims_spiceparams
+        cells = [cell for cell in (*library.cells, *gates.cells) if cell.name != "Gallery"]
+        outputs["spice"].write_text(pads.joined(export_spice(cells, devices), process))
+        return {"pad_cells": len(found)}
+
+
+class DiePadsDrc(Step[PdkParameters]):
+    """Every rule over a row of all pads, fillers and corners: PDKMaster's deck, and the process's rules of pads."""
+
+    name = "die_pads_drc"
+    inputs = {"gds": "die_pads.gds", "deck": "library.drc"}
+    outputs = {"report": "drc.lyrdb", "summary": "drc.json", "deck": "pads.drc"}
+    metrics = {"pad_drc_violations": ""}
+    tools = ("klayout",)
+
+    def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
+        tech, process = coriolis_platform(self.parameters.pdk), pad_process(self.parameters.pdk)
+        deck = with_flat_spaces(with_taps(inputs["deck"].read_text(), tech.active, process.tap))
+        rules = [deck, *hole_rules(tech), *via_rules(tech), process.masks.read_text()]
+        outputs["deck"].write_text("\n".join(rules) + "\n")
+        status, output = run_exported(outputs["deck"], inputs["gds"], outputs["report"])
+        if status:
+            raise StepError(f"{self.name}: KLayout failed with status {status}: {output.strip().splitlines()[-1:]}")
+        found = violations(outputs["report"])
+        outputs["summary"].write_text(json.dumps(found, indent=1) + "\n")
+        return {"pad_drc_violations": sum(found.values())}
+
+
+class DiePadsLvs(Step[PdkParameters]):
+    """Every pad's transistors, diodes and resistors against its netlist; the pads that do not match, by name."""
+
+    name = "die_pads_lvs"
+    inputs = {"gds": "die_pads.gds", "spice": "die_pads.spice", "deck": "library.lvs"}
+    outputs = {"verdicts": "lvs.json", "deck": "taps.lvs"}
+    metrics = {"pads_unmatched": ""}
+    tools = ("klayout",)
+
+    def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
+        process = pad_process(self.parameters.pdk)
+        active = coriolis_platform(self.parameters.pdk).active
+        outputs["deck"].write_text(with_taps(inputs["deck"].read_text(), active, process.tap))
+        found = {}
+        for cell in (*process.signals.values(), *process.supplies.values()):
+            report = outputs["verdicts"].with_name(f"{cell}.lvsdb")
+            _, output = run_exported(outputs["deck"], inputs["gds"], report, cell, SPICE_FILE=inputs["spice"])
+            if ("LVS OK" in output) == ("LVS Failed" in output):
+                raise StepError(f"{self.name}: KLayout gave no verdict on {cell}: {output.strip().splitlines()[-1:]}")
+            found[cell] = "LVS OK" in output
+        outputs["verdicts"].write_text(json.dumps(found, indent=1) + "\n")
+        return {"pads_unmatched": sum(not match for match in found.values())}

