@@ -40,11 +40,12 @@ def common_decks(pdk: str) -> tuple[list[str], str]:
 def decks(pdk: str) -> tuple[str, str]:
     """The decks of design rules and of LVS, text, with what pixels need beyond PDKMaster's."""
     process, mark = pixel_process(pdk), "\nnetlist\n"
-    (exported, *rules), lvs = common_decks(pdk)
+    (exported, *others), lvs = common_decks(pdk)
     exported, lvs = (_with_taps(deck, process) for deck in (exported, lvs))
     if lvs.count(mark) != 1:
         raise StepError("lvs: the deck has no single line 'netlist' before which diodes could be extracted")
-    return "\n".join([exported, *rules, process.masks.read_text(), ""]), lvs.replace(mark, f"\n{process.lvs.read_text()}{mark}")
+    rules = "\n".join([exported, *others, process.masks.read_text(), ""])
+    return rules, lvs.replace(mark, f"\n{process.lvs.read_text()}{mark}")
 
 
 def _with_taps(deck: str, process: PixelProcess) -> str:
