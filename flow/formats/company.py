@@ -1,5 +1,6 @@
 """The stream beside general coders: the same codes of eight scenes at several thresholds, by our own count of bytes."""
 
+import heapq
 import io
 import zlib
 from collections.abc import Callable, Mapping, Sequence
@@ -18,11 +19,12 @@ from talbot.models.parameters import FrameParameters, TileParameters, Window
 from talbot.models.parameters.stream_format import HEADER_BYTES, TRAILER_BYTES
 
 from .codes import Codes, entropy_bytes, thresholded
-from .orders import CHIP, segments_of
+from .orders import CHIP, MARK_BYTES, segments_of
 from .table import Table
 
 SCENES = ("motorcycle", "astronaut", "camera", "chelsea", "coffee", "coins", "rocket", "text")
 LEVELS = (0, 2, 4, 7, 10, 14, 20)  # thresholds; the first two lie under the noise
+LANES = 8  # converters of the default sensor: sample i of a row is of converter i mod 8
 FRAME = HEADER_BYTES + TRAILER_BYTES  # that any stream needs: counted with the other coders' bytes, too
 GOAL, FIXED = 1.1, 150  # bytes of a frame: at most GOAL times the entropy, and FIXED
 
@@ -57,12 +59,56 @@ def _rice(codes: Codes) -> int:
     return -(-min(int((folded >> k).sum()) + codes.size * (1 + k) for k in range(8)) // 8)
 
 
+def _classes(values: npt.NDArray[np.int64]) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
+    """Class 0..24 of each value (-6..6 have one each, larger ones octaves), and the bits that complete it."""
+    size = np.abs(values)
+    octave = np.log2(np.maximum(size - 7, 0) + 4).astype(int)
+    return 12 + np.sign(values) * np.where(size > 6, 5 + octave, size), np.where(size > 6, octave, 0)
+
+
+def _huffman_lengths(counts: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
+    """Bits of each symbol in a prefix code that is best for the counts, 1 at least; 0 for a symbol without a count."""
+    lengths = np.zeros(counts.size, int)
+    heap = [(int(count), [int(symbol)]) for symbol, count in enumerate(counts) if count]
+    if len(heap) == 1:
+        lengths[heap[0][1]] = 1
+    heapq.heapify(heap)
+    while len(heap) > 1:
+        (few, some), (more, others) = heapq.heappop(heap), heapq.heappop(heap)
+        lengths[some + others] += 1
+        heapq.heappush(heap, (few + more, some + others))
+    return lengths
+
+
+def _tables(codes: Codes) -> int:
+    """A prefix code of each sample, from 24 tables that are best for the frame and sent nowhere.
+
+    The table follows from the mean magnitude of the last samples of the row (8 levels) and from the signs of the last
+    two samples of the same converter. Every row is a segment with its mark.
+    """
+    values = codes.astype(int)
+    lowest = np.abs(values[values != 0]).min(initial=128)
+    values -= np.sign(values) * (lowest - 1)
+    mean, level = np.full(len(values), 16), np.zeros(values.shape, int)  # in 1/16
+    for column, size in enumerate(np.minimum(np.abs(values.T), 15)):
+        level[:, column] = np.minimum(np.log2(mean + 1), 7)
+        mean += (16 * size - mean) >> 3
+    signs = np.pad(np.sign(values), ((0, 0), (2 * LANES, 0)))
+    bias = signs[:, LANES:-LANES] + signs[:, : -2 * LANES]
+    kind, rest = _classes(np.where(bias < 0, -values, values))
+    table = 3 * level + np.abs(bias)
+    lengths = np.stack([_huffman_lengths(np.bincount(kind[table == one], minlength=25)) for one in range(24)])
+    bits = (lengths[table, kind] + rest).sum(1)
+    return int((-(-bits // 8) + MARK_BYTES).sum())
+
+
 CODERS: dict[str, Callable[[Codes], int]] = {
     "zlib -9": _zlib,
     "zstd -19": _zstd,
     "JPEG-LS": _jpeg_ls,
     "JPEG XL": _jpeg_xl,
     "Golomb-Rice": _rice,
+    "tables": _tables,
 }
 
 

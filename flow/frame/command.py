@@ -224,7 +224,7 @@ def camera_of(a: Namespace, own: CameraParameters) -> CameraParameters:
 
 def _print_figures(s: dict[str, Any], folder: Path) -> None:
     from .figures import camera_line, depth_line, energy_line, exposure_line, trims_line
-    from .report import against, decibels
+    from .merit import against, decibels, light_field, sent
 
     print(
         f"{s['scene']}, {s['mode']} mode, {s['rows']} x {s['cols']}: "
@@ -232,11 +232,10 @@ def _print_figures(s: dict[str, Any], folder: Path) -> None:
     )
     print(f"  {camera_line(s)}")
     print(f"  {exposure_line(s)}")
-    print(
-        f"  {s['stream_bytes']:,} bytes for {s['raw_bytes']:,} values ({s['compression_ratio']:.2f}:1); "
-        f"SNR {decibels(s['snr_db'])} (nothing sent: {decibels(s['snr_nothing_sent_db'])})"
-    )
+    print(f"  {s['stream_bytes']:,} bytes for {s['raw_bytes']:,} values ({s['compression_ratio']:.2f}:1); {sent(s)}")
     print(f"  2-D image: {against(s)}")
+    if s["light_field_psnr_db"] is not None:
+        print(f"  light field, linear estimate: {light_field(s)}")
     if "light_field_psnr_true_optics_db" in s:
         found, true = (decibels(s[f"light_field_psnr{end}_db"]) for end in ("", "_true_optics"))
         print(f"  light field {found}; with the true optics in place of the calibration {true}")

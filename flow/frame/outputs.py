@@ -15,8 +15,9 @@ from talbot.models.parameters import EnergyParameters, LightParameters, circuit_
 from . import error_plots, pictures
 from .chip_picture import chip_svg
 from .figures import depth_line
+from .merit import against, decibels, light_field
 from .quality import Values, decoding_error, depth_error, depth_map, image_error, part_read
-from .report import Views, against, decibels, render
+from .report import Views, render
 from .result import FrameResult, GoldenResult
 
 # Every name that some mode writes: those that this run does not write are of an earlier run and are removed
@@ -146,9 +147,8 @@ def _fields(result: FrameResult, summary: dict[str, Any]) -> list[tuple[str, Val
     if scene.angular or result.request.frame.mode == "raw":
         out.append(("the scene's light field: what the pixels saw", np.asarray(scene.full_light_field, float)))
     if result.request.frame.mode == "raw":
-        found, copied = (decibels(summary[f"light_field_psnr{name}_db"]) for name in ("", "_copied"))
         field = np.maximum(result.light_field, 0)
-        caption = f"linear estimate from the decoded diodes: PSNR {found}; the 2-D image in every view has {copied}"
+        caption = f"linear estimate from the decoded diodes: {light_field(summary)}"
         out.append((caption, field))
     return out
 

@@ -22,6 +22,7 @@ from .result import GoldenResult
 Codes, Values = npt.NDArray[np.integer], npt.NDArray[np.float64]
 TURN = 256  # codes of a phase
 SSIM_WINDOW = 7  # px
+ROUNDING = 1e-6  # codes RMS: a signal of less is what arithmetic leaves of none
 
 
 def ideal_samples(ideal: Values, frame: FrameParameters) -> Values:
@@ -49,9 +50,9 @@ def decoding_error(samples: Codes, ideal: Values, read: npt.NDArray[np.bool_], f
 
 
 def snr(error: Values, signal: Values) -> float | None:
-    """10 log10 of the signal's energy over the error's, in dB."""
+    """10 log10 of the signal's energy over the error's, in dB; None without a signal or an error. Both in codes."""
     noise, power = float(np.sum(np.square(error))), float(np.sum(np.square(signal)))
-    return 10 * float(np.log10(power / noise)) if noise and power else None
+    return 10 * float(np.log10(power / noise)) if noise and power > signal.size * ROUNDING**2 else None
 
 
 def sent_quality(result: GoldenResult) -> dict[str, float | None]:

@@ -11,6 +11,7 @@ from talbot.base import page
 from talbot.base.page import Picture, Scale, Tile
 
 from .figures import camera_line, energy_line, exposure_line, trims_line
+from .merit import decibels, nothing_sent, table
 from .pictures import sprite
 
 VIEW = 256  # px, width of a view on a page at most
@@ -39,25 +40,10 @@ class Views(NamedTuple):
 FIRST = "differences", "depth", "image"  # names of pictures, one of which is on the card
 
 
-def decibels(value: float | None) -> str:
-    """A figure in dB."""
-    return "-" if value is None else f"{value:.1f} dB"
-
-
 def agreement(differ: int, unit: str = "values", of: str = "") -> Tile:
     """Whether the chip and the golden model agree. differ: how many do not."""
     about = f"chip against golden model{of}"
     return Tile(f"{differ} {unit} differ", about, "bad") if differ else Tile("byte for byte", about, "good")
-
-
-def against(s: dict[str, Any]) -> str:
-    """PSNR of the 2-D image beside that of flat gray, of JPEG and of JPEG XL."""
-    own, gray, jpeg, jpegxl = (decibels(s[f"image_psnr{name}_db"]) for name in ("", "_gray", "_jpeg", "_jpegxl"))
-    found, nothing = s["image_psnr_db"], s["image_psnr_gray_db"]  # None: no error at all
-    note = ", no better than gray" if found is not None and (nothing is None or found <= nothing) else ""
-    if s["image_jpegxl_absent"]:
-        jpegxl = f"not compared ({s['image_jpegxl_absent']})"
-    return f"PSNR {own}{note}; flat gray {gray}; as many bytes of JPEG {jpeg}, of JPEG XL {jpegxl}"
 
 
 def headline(s: dict[str, Any]) -> list[Tile]:
@@ -65,7 +51,7 @@ def headline(s: dict[str, Any]) -> list[Tile]:
     return [
         agreement(s["stream_mismatches"] or s["decoded_mismatches"]),
         Tile(f"{s['compression_ratio']:.1f} : 1", f"{s['stream_bytes']:,} of {s['raw_bytes']:,} bytes"),
-        Tile(decibels(s["snr_db"]), f"SNR of the decoded samples (nothing sent: {decibels(s['snr_nothing_sent_db'])})"),
+        Tile(decibels(s["snr_db"]), f"SNR of the decoded samples ({nothing_sent(s)})"),
         Tile(f"{100 * s['conversions_left_out'] / max(s['samples'], 1):.1f} %", "of the conversions left out"),
         Tile(f"{1e3 * s['frame_s_at_clock']:.1f} ms", f"a frame, {s['cycles']:,} cycles"),
         Tile(f"{s['energy_uj']['total']:.1f} to {s['energy_uj']['total_high']:.1f} uJ", "a frame"),
@@ -99,6 +85,7 @@ def render(
         picture=next((p.image for p in pictures if p.name in FIRST), None),
         s=summary,
         tiles=headline(summary),
+        merit=table(summary),
         chip=Markup(chip),
         assumed=assumed,
         **texts,

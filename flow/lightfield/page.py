@@ -9,8 +9,9 @@ import numpy.typing as npt
 from talbot.base import page
 from talbot.base.page import Picture, Scale, Tile
 from talbot.flow.frame import pictures
+from talbot.flow.frame.merit import decibels
 from talbot.flow.frame.reading import agreement, line, number
-from talbot.flow.frame.report import Views, decibels
+from talbot.flow.frame.report import Views
 from talbot.models.reconstruct.refocus import refocus
 
 from .fields import SURE, Fields, depth_map

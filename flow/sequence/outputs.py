@@ -19,7 +19,8 @@ from talbot.base.progress import Frames
 from talbot.flow.frame import pictures
 from talbot.flow.frame.figures import camera_line, camera_of, exposure_line, exposure_of
 from talbot.flow.frame.job import Clock
-from talbot.flow.frame.report import agreement, decibels
+from talbot.flow.frame.merit import decibels
+from talbot.flow.frame.report import agreement
 from talbot.flow.frame.request import FrameRequest
 from talbot.flow.frame.result import FrameResult
 from talbot.models.parameters import sensor_text

@@ -18,7 +18,7 @@ Values = npt.NDArray[np.float64]
 REFERENCE = 31  # views along the pupil's diameter that the error is measured against
 LADDER = (7, 9, 11, 15, 21, 27)
 BOUND = 0.5  # codes
-SAFETY = 0.9  # of the bound, for the rows that are not measured
+SAFETY = 0.8  # of the bound, for the rows that are not measured and the rounding of the trims
 PROBE = 24  # tile rows that are measured at most
 
 

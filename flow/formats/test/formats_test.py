@@ -148,14 +148,31 @@ def test_golomb_rice_of_a_known_frame():
     assert row["Golomb-Rice"] == company.FRAME + -(-36 * (2 + 2 + 3 + 4) // 8)
 
 
+def test_prefix_tables_of_known_frames():
+    """Two values of one magnitude level, alike often: a bit each. 13 is of octave 3: three bits more."""
+    half = np.tile(np.array([0, 3], np.int16), (4, 8))
+    assert company.CODERS["tables"](half) == 4 * (16 // 8 + 2)
+    assert company.CODERS["tables"](np.full((4, 8), 9, np.int16)) == 4 * (1 + 2)
+    assert company.CODERS["tables"](np.array([[1] * 7 + [13]] * 4, np.int16)) == 4 * (2 + 2)
+
+
+def test_a_bias_of_every_converter_is_known_to_the_tables():
+    """Converters of different bias, and noise of a code: the signs before tell what the magnitudes do not."""
+    rng = np.random.default_rng(6)
+    bias, noise = np.array([2, -2] * 4), rng.integers(-1, 2, (64, 384))
+    codes = (np.tile(bias, 48) + noise).astype(np.int16)
+    mixed = rng.permuted(codes, axis=1)
+    assert company.CODERS["tables"](codes) < entropy_bytes(codes) < company.CODERS["tables"](mixed)
+
+
 def test_the_tables_of_the_coders():
     row = {"scene": "a", "threshold": 10, "samples": 1000, "not_zero": 0.5, "entropy": 100, "stream": 130}
-    rows = [row | {"zlib -9": 200, "zstd -19": 260, "JPEG-LS": 300, "JPEG XL": 350, "Golomb-Rice": 400}]
+    rows = [row | {"zlib -9": 200, "zstd -19": 260, "JPEG-LS": 300, "JPEG XL": 350, "Golomb-Rice": 400, "tables": 90}]
     rows += [rows[0] | {"scene": "b", "stream": 520}, rows[0] | {"threshold": 4}]
     text = lines(company.tables(rows, 10))
-    assert "| a | 50.00 % | 100 | 130 | 200 | 260 | 300 | 350 | 400 |" in text
-    assert "| 10 | 200 | 650 | 400 | 520 | 600 | 700 | 800 | 2.00 (b) | 2.00 (b) | 0.52 (b) |" in text
-    assert "| 4 | 100 | 130 | 200 | 260 | 300 | 350 | 400 | 0.50 (a) | 0.50 (a) | 0.13 (a) |" in text
+    assert "| a | 50.00 % | 100 | 130 | 200 | 260 | 300 | 350 | 400 | 90 |" in text
+    assert "| 10 | 200 | 650 | 400 | 520 | 600 | 700 | 800 | 180 | 2.00 (b) | 2.00 (b) | 0.52 (b) |" in text
+    assert "| 4 | 100 | 130 | 200 | 260 | 300 | 350 | 400 | 90 | 0.50 (a) | 0.50 (a) | 0.13 (a) |" in text
 
 
 @pytest.mark.parametrize("what", ["an array", "nothing", "no samples"])

@@ -6,11 +6,19 @@ import pytest
 
 from talbot.flow.frame.codecs import CODECS, coded
 from talbot.flow.frame.figures import depth_line, energy_line, mismatches, psnr, trims_at_end, trims_line
-from talbot.flow.frame.job import expose, flat_field, see, simulate_frame
-from talbot.flow.frame.quality import decoding_error, depth_quality, ideal_samples, image_quality, snr, ssim
-from talbot.flow.frame.report import against
+from talbot.flow.frame.job import expose, flat_field, golden_result, see, simulate_frame
+from talbot.flow.frame.merit import against
+from talbot.flow.frame.quality import (
+    decoding_error,
+    depth_quality,
+    ideal_samples,
+    image_quality,
+    sent_quality,
+    snr,
+    ssim,
+)
 from talbot.flow.frame.request import request
-from talbot.models.parameters import CameraParameters, FrameParameters, Window
+from talbot.models.parameters import CameraParameters, FrameParameters, OpticsParameters, SensorParameters, Window
 
 ONE = Window(0, 0, 0, 0)
 
@@ -66,13 +74,6 @@ def test_depth_of_a_scene_before_the_lens(phase):
     assert "no better than one depth" in depth_line({"depth_rms_m": 0.2, "depth_rms_constant_m": 0.1})
 
 
-def test_an_image_no_better_than_gray_is_said():
-    row = {"image_psnr_db": 12.0, "image_psnr_gray_db": 14.0, "image_psnr_jpeg_db": None}
-    row |= {"image_psnr_jpegxl_db": 20.0, "image_jpegxl_absent": None}
-    assert "no better than gray" in against(row) and "no better" not in against(row | {"image_psnr_db": 15.0})
-    assert "no better" not in against(row | {"image_psnr_db": None})
-
-
 @pytest.mark.parametrize("seconds,rate", [(0.0225, "30 frames/s"), (0.135, "7.41 frames/s")])
 def test_power_is_that_of_frames_there_is_time_for(seconds, rate):
     line = energy_line({"energy_uj": {"total": 100.0, "total_high": 110.0}, "frame_s_at_clock": seconds})
@@ -104,6 +105,15 @@ def test_ideal_phase_has_both_signs():
     frame = FrameParameters(ONE, mode="tof", phase=True)
     taps = np.array([[[0.0, 50, 100, 50], [50, 100, 50, 0]]])  # half a turn; three quarters
     assert ideal_samples(taps, frame)[0, :, 0] == pytest.approx([128, 192])
+
+
+@pytest.mark.parametrize("scene", ["flat:50", "saturated", "black"])
+@pytest.mark.parametrize("mode", ["image", "raw"])
+def test_a_scene_without_a_picture_has_no_snr(scene, mode):
+    """Samples that are alike but for rounding: their own energy is none."""
+    asked = request(24, 36, scene=scene, mode=mode, sensor=SensorParameters(optics=OpticsParameters(m=0.0)))
+    figures = sent_quality(golden_result(asked))
+    assert figures["snr_db"] is None and figures["snr_nothing_sent_db"] is None
 
 
 def test_snr_of_sending_nothing_is_zero():

@@ -180,6 +180,20 @@ def test_some_tile_rows_have_the_error_of_all(monkeypatch, name):
     assert few != whole and few == pytest.approx(whole, rel=0.05)
 
 
+def test_rows_that_are_not_measured_keep_the_bound(tmp_path):
+    """A zone plate: its detail changes from row to row."""
+    y, x = np.mgrid[:500, :500] - 250
+    Image.fromarray((255 * (0.5 + 0.45 * np.cos((x**2 + y**2) / 700))).astype(np.uint8)).save(tmp_path / "p.png")
+    sensor = sensor_behind(384, 48)
+    scene, timing = load(str(tmp_path / "p.png"), Sampling.of(sensor)), FrameParameters(sensor.full_window).timing
+    gains = optical_gains(sensor.tile, sensor.optics)[sensor.tile.type_map(384, 48)]
+    views = choose_views(scene, sensor, timing)
+    a, b = sum(integrate(scene, sensor, region)[0] for region in views.regions)
+    a -= (every := integrate(scene, sensor, Region(31, np.ones((384, 48), bool)))[0])[0]
+    apart = codes_per_unit(sensor, timing) * (a - gains * (b - every[1]))
+    assert views.error < np.sqrt(np.mean(apart**2)) < 0.5
+
+
 def test_in_focus_little_is_rendered(tmp_path):
     """A picture whose left half is in the focal plane, and whose right half stands behind it."""
     codes = np.random.default_rng(0).integers(0, 256, (96, 96), np.uint8)

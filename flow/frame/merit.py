@@ -1,0 +1,83 @@
+"""The figures of merit of a summary, each beside what costs nothing and what a user would otherwise choose."""
+
+from collections.abc import Callable
+from typing import Any
+
+IMAGES = {"_gray": "flat gray", "_sum": "sum image", "_jpeg": "JPEG", "_avif": "AVIF", "_jpegxl": "JPEG XL"}
+Summary = dict[str, Any]
+
+
+def decibels(value: float | None) -> str:
+    """A figure in dB."""
+    return "-" if value is None else f"{value:.1f} dB"
+
+
+def percent(value: float | None) -> str:
+    """A fraction in %."""
+    return "-" if value is None else f"{100 * value:.3g} %"
+
+
+def ratio(value: float | None) -> str:
+    """A figure without a unit."""
+    return "-" if value is None else f"{value:.2f}"
+
+
+def against(s: Summary) -> str:
+    """PSNR of the 2-D image beside that of flat gray, of JPEG and of JPEG XL."""
+    own, gray, jpeg, jpegxl = (decibels(s[f"image_psnr{name}_db"]) for name in ("", "_gray", "_jpeg", "_jpegxl"))
+    found, nothing = s["image_psnr_db"], s["image_psnr_gray_db"]  # None: no error at all
+    note = ", no better than gray" if found is not None and (nothing is None or found <= nothing) else ""
+    if s["image_jpegxl_absent"]:
+        jpegxl = f"not compared ({s['image_jpegxl_absent']})"
+    return f"PSNR {own}{note}; flat gray {gray}; as many bytes of JPEG {jpeg}, of JPEG XL {jpegxl}"
+
+
+def sent(s: Summary) -> str:
+    """SNR of the decoded samples beside that of nothing sent."""
+    return f"SNR {decibels(s['snr_db'])} ({nothing_sent(s)})"
+
+
+def nothing_sent(s: Summary) -> str:
+    """What stands beside the SNR of the decoded samples."""
+    found, nothing = s["snr_db"], s["snr_nothing_sent_db"]  # None: no error at all, or no signal
+    note = "no better than " if found is not None and found <= (nothing or 0.0) else ""
+    return f"{note}nothing sent: {decibels(nothing)}"
+
+
+def light_field(s: Summary) -> str:
+    """PSNR of the light field's linear estimate beside that of the 2-D image in every view."""
+    found, copied = s["light_field_psnr_db"], s["light_field_psnr_copied_db"]
+    note = ", no better" if found is not None and (copied is None or found <= copied) else ""
+    return f"PSNR {decibels(found)}{note}; the 2-D image in every view has {decibels(copied)}"
+
+
+def table(s: Summary) -> list[tuple[str, str, str]]:
+    """What, its figure, and what stands beside it, in the report's order; what the mode does not have is left out."""
+    rows = [("SNR of the samples", decibels(s["snr_db"]), nothing_sent(s))]
+    if s["mode"] == "edge":
+        share = percent(s["edge_share"])
+        rows += [
+            ("edges among the samples sent (precision)", percent(s["edge_precision"]), f"of all samples: {share}"),
+            ("edges that are sent (recall)", percent(s["edge_recall"]), "nothing sent: 0 %"),
+            ("energy of the differences that is sent", percent(s["edge_energy_kept"]), "nothing sent: 0 %"),
+        ]
+    if "phase_rms_turns" in s:
+        turns = "-" if s["phase_rms_turns"] is None else f"{s['phase_rms_turns']:.3g} turns"
+        rows.append(("phase, RMS error", turns, f"valid: {percent(s['phase_valid'])} of the samples"))
+    if s["capture_error_codes"] is not None:
+        views = f"{s['camera']['views']} views along the pupil, against 31"
+        rows.append(("capture, RMS error", f"{s['capture_error_codes']:.2f} codes", views))
+    for what, key, shown in (("PSNR", "image_psnr{}_db", decibels), ("SSIM", "image_ssim{}", ratio)):
+        rows.append((f"2-D image, {what}", shown(s[key.format("")]), _images(s, key, shown)))
+    if s["light_field_psnr_db"] is not None:
+        beside = f"2-D image in every view: {decibels(s['light_field_psnr_copied_db'])}"
+        rows.append(("light field, PSNR", decibels(s["light_field_psnr_db"]), beside))
+    if s["depth_rms_m"] is not None:
+        beside = f"one depth for all: {100 * s['depth_rms_constant_m']:.3g} cm"
+        rows.append(("depth, RMS error", f"{100 * s['depth_rms_m']:.3g} cm", beside))
+    return rows
+
+
+def _images(s: Summary, key: str, shown: Callable[[float | None], str]) -> str:
+    there = {end: name for end, name in IMAGES.items() if end != "_jpegxl" or not s["image_jpegxl_absent"]}
+    return ", ".join(f"{name} {shown(s[key.format(end)])}" for end, name in there.items())
