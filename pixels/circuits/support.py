@@ -14,6 +14,7 @@ from .gates import inverter, nand, nor
 from .netlist import Capacitor, Circuit, Instance, Resistor, Transistor
 
 SECTIONS = 32  # of the ladder; its delay is within 0.2 % of that of an infinite number
+BIAS_OHM = 11.5e3  # of the bias: 5 uA in each branch at 27 degrees
 DELAYS = 4  # inverters in each loop of the switch drivers
 
 
@@ -91,14 +92,15 @@ def non_overlap() -> Circuit:
     return Circuit("non_overlap", ("clk", "phi1", "phi2", *supplies), instances=tuple(instances))
 
 
-def bias(ohm: float = 9e3) -> Circuit:
-    """A current of 2 (1 - 1/sqrt(4))2 / (k w/l ohm2): a pair of 1 to 4 with ``ohm`` between, and what starts it.
+def bias() -> Circuit:
+    """A current proportional to absolute temperature, n kT/q ln 4 / r: a pair of 1 to 4 in weak inversion.
 
-    While no current flows, `start` is high and draws the mirror's gate down; the current then pulls `start` low.
+    The transconductance of what it drives is constant. ibias has as much as both branches together. While no current
+    flows, `start` is high and draws the mirror's gate down; the current then pulls `start` low.
     """
 
-    def n(name: str, drain: str, gate: str, source: str, w: float, length: float) -> Transistor:
-        return Transistor(name, drain, gate, source, "vss", "n", w, length)
+    def n(name: str, drain: str, gate: str, source: str, w: float, length: float, role: str = "n") -> Transistor:
+        return Transistor(name, drain, gate, source, "vss", role, w, length)
 
     def p(name: str, drain: str, gate: str, w: float, length: float) -> Transistor:
         return Transistor(name, drain, gate, "vdd", "vdd", "p_lvt", w, length)
@@ -107,14 +109,14 @@ def bias(ohm: float = 9e3) -> Circuit:
         "bias",
         ("ibias", "vdd", "vss"),
         (
-            n("one", "vbn", "vbn", "vss", 5, 2.0),
-            n("four", "vbp", "vbn", "source", 20, 2.0),
-            p("mirror_one", "vbn", "vbp", 10, 2.0),
-            p("mirror_four", "vbp", "vbp", 10, 2.0),
-            p("out", "ibias", "vbp", 10, 2.0),
+            n("one", "vbn", "vbn", "vss", 20, 4.0),
+            *(n(f"four_{k}", "vbp", "vbn", "source", 20, 4.0) for k in range(4)),
+            p("mirror_one", "vbn", "vbp", 10, 4.0),
+            p("mirror_four", "vbp", "vbp", 10, 4.0),
+            *(p(f"out_{k}", "ibias", "vbp", 10, 4.0) for k in range(2)),
             p("keep", "start", "vss", 0.42, 8.0),
-            n("stop", "start", "vbn", "vss", 4, 0.5),
+            n("stop", "start", "vbn", "vss", 4, 0.5, "n_lvt"),
             n("start", "vbp", "start", "vss", 1, 0.5),
         ),
-        resistors=(Resistor("r", "source", "vss", ohm),),
+        resistors=(Resistor("r", "source", "vss", BIAS_OHM, True),),
     )
