@@ -16,6 +16,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     add("--gate", type=float, default=5.0, help="V of an active reset line, 1..5.5; 3.3 is a soft reset")
     add("--sink", type=float, default=5e-6, help="A of a column's sink, 1e-7..1e-3")
     add("--workers", type=worker_count, default=-1, help="processes; -1: all cores")
+    add("--table", type=Path, help="also write what `make sim AFE=circuit` takes: models/parameters/pixel.json")
     add("--out", type=Path, help="folder for the results (default: build/pixel-circuit/<pdk>)")
 
 
@@ -29,7 +30,7 @@ def run(options: Namespace) -> int:
     bench = Bench(sink_a=options.sink, gate_v=options.gate)
     out = options.out or RESULTS / "pixel-circuit" / options.pdk
     with Steps(STEPS, lines=True) as steps:
-        summary = make(options.pdk, options.corners, bench, out, options.workers, steps.note)
+        summary = make(options.pdk, options.corners, bench, out, options.table, options.workers, steps.note)
     _print(summary, out)
     return 0 if summary["passed"] else 1
 

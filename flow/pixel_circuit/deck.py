@@ -10,8 +10,8 @@ import numpy.typing as npt
 
 from talbot.base.tools import ToolError, run
 from talbot.cells.corner import Corner
-from talbot.models.parameters import check_real
-from talbot.pixels.layout.pixel import COLUMNS, DIFFUSION, LINE, PixelLayout
+from talbot.models.parameters import check_real, drawn_lines
+from talbot.pixels.layout.pixel import DIFFUSION, PixelLayout
 from talbot.platforms.pixel import pixel_models
 
 Floats = npt.NDArray[np.float64]
@@ -76,12 +76,6 @@ def subcircuit(made: PixelLayout) -> list[str]:
     return [*lines, ".ends pixel"]
 
 
-def column_farads(made: PixelLayout, rows: int) -> float:
-    """F of a column's line over so many pixels, to the substrate, from its length and width."""
-    metal, length = made.process.metals[COLUMNS], rows * made.geometry.pitch_um
-    return (length * LINE * metal.area_af_um2 + 2 * length * metal.fringe_af_um) * 1e-18
-
-
 def pixel_deck(made: PixelLayout, corner: Corner, bench: Bench, mismatch: int | None = None) -> list[str]:
     """Models, supplies, one pixel, and columns with their sinks and the select transistors of all other rows.
 
@@ -100,7 +94,7 @@ def pixel_deck(made: PixelLayout, corner: Corner, bench: Bench, mismatch: int | 
             # a sink ends at the ground
             f"Bsink_{side} column_{side} 0 I={bench.sink_a:g}*tanh(v(column_{side})/{SINK_ENDS:g})",
             f"Rsink_{side} column_{side} 0 {SINK_OHM:g}",
-            f"Cline_{side} column_{side} 0 {column_farads(made, bench.rows):.6g}",
+            f"Cline_{side} column_{side} 0 {bench.rows * drawn_lines().column_farad:.6g}",
             f"Xothers_{side} column_{side} 0 0 vssa {process.transistor} w={one.w_um:g} l={one.l_um:g} {junction} "
             f"sa=0.3 sb=0.3 sd=0 m={bench.rows - 1}",
         ]

@@ -7,7 +7,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-from talbot.base.files import check_folder, staged
+from talbot.base.files import check_file, check_folder, staged, write
 from talbot.base.jobs import Job, run
 from talbot.base.paths import BUILD
 from talbot.base.records import from_json
@@ -51,13 +51,24 @@ def corners(pdk: str, wanted: str) -> list[Corner]:
 
 
 def make(
-    pdk: str, wanted: str, bench: Bench, out: Path, workers: int = -1, note: Callable[[str], None] = lambda text: None
+    pdk: str,
+    wanted: str,
+    bench: Bench,
+    out: Path,
+    table: Path | None = None,
+    workers: int = -1,
+    note: Callable[[str], None] = lambda text: None,
 ) -> dict[str, Any]:
-    """Measure and report into ``out``; returns the summary. Raises ParameterError, ToolError."""
+    """Measure and report into ``out``, into ``table`` what sensors take; returns the summary.
+
+    Raises ParameterError, ToolError.
+    """
     from . import page  # Matplotlib: not before it is needed
 
     start = perf_counter()
     check_folder("out", out)
+    if table:
+        check_file("table", table)
     made, middle = drawn(pdk), typical(pdk)
     asked = corners(pdk, wanted)
     note("corners")
@@ -77,14 +88,14 @@ def make(
     spread_ = from_json(Spread, result)
     note("exposures")
     electrical = electrical_of(usual, spread_)
-    table = emva(replace(electrical, column_fpn=0.0, flicker_noise=0.0))
+    exposures = emva(replace(electrical, column_fpn=0.0, flicker_noise=0.0))
     summary: dict[str, Any] = {
         "process": pdk,
         "bench": asdict(bench),
         "supply_v": middle.supply,
         "corners": {name: asdict(one) | {"dark_noise": one.dark_noise} for name, one in found.items()},
         "spread": asdict(spread_) | {"offset_electrons": 1e6 * spread_.offset / usual.gain_uv},
-        "emva": asdict(table),
+        "emva": asdict(exposures),
         "quantum_efficiency": _efficiency(pdk),
         "sensor": {key: getattr(electrical, key) for key in sources(usual, spread_)},
         "passed": all(one.lag < LAG_MOST and one.frames < FRAMES_MOST for one in found.values()),
@@ -97,6 +108,8 @@ def make(
         (folder / "sensor.toml").write_text(sensor_file(electrical, sources(usual, spread_)))
         page.write(folder, summary)
         (folder / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n")
+    if table:
+        write(table, json.dumps(sensor_table(summary, sources(usual, spread_)), indent=1, allow_nan=False) + "\n")
     return summary
 
 
@@ -121,6 +134,21 @@ def sources(usual: PixelFound, found: Spread) -> dict[str, str]:
         "read_noise": f"{at}: sqrt(2) times reset ({usual.reset_closed:.1f}) and follower ({usual.read_noise:.1f})",
         "dark_current": f"{at}: SkyWater's saturation current of the junction, less the reset transistor's leakage",
         "gain_fpn": f"{at}: {found.diodes} diodes' transistors with the models' mismatch; the wells' is not known",
+    }
+
+
+def sensor_table(summary: Mapping[str, Any], came: Mapping[str, str]) -> dict[str, Any]:
+    """What `models.parameters.drawn_electrical` takes: values, their sources, and how far corners are from them."""
+    corners = summary["corners"]
+    figures = ("full_well", "dark_noise", "gain_uv", "linearity", "lag", "dark_current", "gates_ff")
+    return {
+        "command": f"make pixel-circuit, {summary['process']}",
+        "parameters": summary["sensor"],
+        "sources": came,
+        "corners": [*corners],
+        "over_corners": {
+            name: [float(f"{end(one[name] for one in corners.values()):.4g}") for end in (min, max)] for name in figures
+        },
     }
 
 

@@ -48,7 +48,7 @@ class PixelFound:
     the supply. reset_noise, reset_closed: simulated, and sqrt(kTC). settling_ns: of the column after `read`.
     C is the node's while the reset line is active. SkyWater's transistors (tnoimod 1) have less noise in a channel
     without a current than 4 k T g, hence less than sqrt(kTC), which counts.
-    dark_current: A, at half the full well.
+    dark_current: A, at half the full well. gates_ff: of a pixel on its reset line, or on its select line, while active.
     """
 
     corner: str
@@ -66,6 +66,7 @@ class PixelFound:
     read_noise: float
     settling_ns: float
     dark_current: float
+    gates_ff: float
     curve: list[list[float]]
 
     @property
@@ -116,6 +117,7 @@ def measure(made: PixelLayout, corner: Corner, bench: Bench) -> PixelFound:
         float(_read_noise(deck, made.process.gate_v, middle) / gain),
         1e9 * settling,
         _dark_current(deck, middle),
+        1e15 * _gates(deck, made.process.gate_v, bench.gate_v, reset),
         [[float(a), float(b)] for a, b in zip(electrons[::5], column[::5], strict=True)],
     )
 
@@ -214,6 +216,17 @@ def _dark_current(deck: list[str], node_v: float) -> float:
     """A out of a node at a voltage, reset and select off: the junction's, less what the reset transistor leaks in."""
     lines = ["Vrst pixel_reset 0 0", "Vread read 0 0", f"Vnode photo_a 0 {node_v:g}", "Vb photo_b 0 2"]
     return -float(analyse([*deck, *lines], ["op"], ["i(vnode)"])[0, 0])
+
+
+def _gates(deck: list[str], read_v: float, gate_v: float, node_v: float) -> float:
+    """F of a pixel's gates on its reset or its select line, the greater, each line active."""
+    deck = [LINEAR if line == OPTIONS else line for line in deck]
+    lines = [f"Va photo_a 0 {node_v:g}", f"Vb photo_b 0 {node_v:g}"]
+    farads = []
+    for rst, rd, source in (f"{gate_v:g} ac 1", "0", "vrst"), ("0", f"{read_v:g} ac 1", "vread"):
+        driven = [*deck, *lines, f"Vrst pixel_reset 0 {rst}", f"Vread read 0 {rd}"]
+        farads.append(analyse(driven, ["ac lin 1 1e6 1e6"], [f"-imag(i({source}))/(2*pi*1e6)"])[0, 0])
+    return float(max(farads))
 
 
 @dataclass(frozen=True)

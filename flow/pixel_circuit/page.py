@@ -26,6 +26,7 @@ HEAD = (
     "lag, soft %",
     "dark e/s",
     "settling ns",
+    "gates fF",
 )
 
 
@@ -89,6 +90,7 @@ def _row(name: str, one: dict[str, Any]) -> tuple[str, ...]:
         f"{100 * one['lag_soft']:.1f}",
         f"{one['dark_current'] / ELEMENTARY_CHARGE:,.0f}",
         f"{one['settling_ns']:.0f}",
+        f"{one['gates_ff']:.2f}",
     )
 
 

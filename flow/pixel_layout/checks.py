@@ -11,7 +11,7 @@ from talbot.base.steps import StepError
 from talbot.flow.layout.geometry.decks import hole_rules, run_exported, via_rules, violations
 from talbot.flow.layout.pdkmaster import export_decks
 from talbot.platforms.coriolis import coriolis_platform
-from talbot.platforms.pixel import pixel_process
+from talbot.platforms.pixel import PixelProcess, pixel_process
 
 STORE = BUILD / "pixel" / "decks"
 # Rules that pixels break on purpose: what they ask, and why they are waived
@@ -34,11 +34,19 @@ def decks(pdk: str) -> tuple[str, str]:
 
     kept = cached(STORE / digest(code("talbot.flow.layout.pdkmaster"), pdk), make)
     masks = [tech.masks.read_text()] if tech.masks else []
-    rules = [(kept / "drc").read_text(), *hole_rules(tech), *via_rules(tech), *masks, process.masks.read_text()]
-    lvs, mark = (kept / "lvs").read_text(), "\nnetlist\n"
+    exported, lvs = (_with_taps((kept / name).read_text(), process) for name in ("drc", "lvs"))
+    rules, mark = [exported, *hole_rules(tech), *via_rules(tech), *masks, process.masks.read_text()], "\nnetlist\n"
     if lvs.count(mark) != 1:
         raise StepError("lvs: the deck has no single line 'netlist' before which diodes could be extracted")
     return "\n".join([*rules, ""]), lvs.replace(mark, f"\n{process.lvs.read_text()}{mark}")
+
+
+def _with_taps(deck: str, process: PixelProcess) -> str:
+    """PDKMaster's deck with taps on their own mask, too: it knows diffusion and taps as one. Raises StepError."""
+    active, tap = (f" = input({layer}, {datatype})" for layer, datatype in (process.active, process.tap))
+    if deck.count(f"{active}\n") != 1:
+        raise StepError(f"decks: must have one line with{active}, to which the taps are added")
+    return deck.replace(f"{active}\n", f"{active} +{tap.removeprefix(' =')}\n")
 
 
 def drc(gds: Path, pdk: str, report: Path) -> dict[str, int]:

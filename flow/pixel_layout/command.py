@@ -9,10 +9,11 @@ from talbot.models.parameters import ArrayParameters
 
 
 def add_arguments(parser: ArgumentParser) -> None:
-    """Options of `talbot pixel-layout`."""
+    """Options of `talbot pixel-layout`. The foundry's decks are those of PDK_ROOT."""
     parser.add_argument("--pdk", default="sky130", help="process, sky130")
     parser.add_argument("--rows", type=int, default=ArrayParameters().rows, help="pixels down")
     parser.add_argument("--cols", type=int, default=ArrayParameters().cols, help="pixels across")
+    parser.add_argument("--table", type=Path, help="also write the lines for models: models/parameters/pixel_lines.json")
     parser.add_argument("--out", type=Path, help="folder for the results (default: build/pixel-layout/<pdk>)")
 
 
@@ -24,7 +25,7 @@ def run(options: Namespace) -> int:
 
     out = options.out or RESULTS / "pixel-layout" / options.pdk
     with Steps(STEPS, lines=True) as steps:
-        summary = make(options.pdk, options.rows, options.cols, out, steps.note)
+        summary = make(options.pdk, options.rows, options.cols, out, options.table, steps.note)
     _print(summary, out)
     return 0 if summary["passed"] else 1
 
@@ -34,8 +35,15 @@ def _print(s: dict[str, Any], folder: Path) -> None:
     print(f"  GDS of {s['gds_bytes'] / 1e6:.2f} MB in {s['gds_s']:.1f} s; {s['misplaced']} pixels not of their type")
     waived = ", ".join(f"{w['count']} of {rule} waived" for rule, w in s["waivers"].items())
     print(f"  DRC: {s['drc_violations']} violations{f' ({waived})' if waived else ''}")
+    for deck, files in s["foundry"].items():
+        counts = (f"{sum(rules.values())} in {name}" for name, rules in files.items())
+        print(f"  the foundry's rules, {deck}: {', '.join(counts)}")
+    if not s["foundry"]:
+        print("  the foundry's rules: not run; PDK_ROOT has no installed PDK")
     for name, same in s["lvs_match"].items():
         print(f"  LVS of {name}: {'matches' if same else 'DIFFERS'}")
     dense = max(s["density"], key=lambda name: s["density"][name])
     print(f"  fill factor {s['fill_factor']:.3f}; densest metal {dense}, {100 * s['density'][dense]:.0f} % of the tile")
+    for name, line in s["lines"].items():
+        print(f"  {name}: {line['ohm']:.2f} ohm, {1e15 * line['farad']['typ']:.2f} fF a pixel")
     print(f"  {s['wall_s']:.0f} s; look at {folder / 'pixel_layout.html'}")

@@ -2,13 +2,14 @@
 
 import json
 from collections.abc import Callable
+from dataclasses import asdict
 from pathlib import Path
 from time import perf_counter
 from typing import Any
 
 import numpy as np
 
-from talbot.base.files import check_folder, staged
+from talbot.base.files import check_file, check_folder, staged, write
 from talbot.base.gds import db, write_gds
 from talbot.flow.pixel.job import name_of
 from talbot.pixels.designs import gratings
@@ -16,22 +17,39 @@ from talbot.pixels.layout.array import DUMMIES, SOUTH, WEST, draw_array, draw_pi
 from talbot.pixels.layout.circuit import Diode, spice, spice_array
 from talbot.pixels.layout.pixel import PixelLayout
 from talbot.pixels.layout.write import array_layout, array_lef, fitted
+from talbot.platforms.foundry import installed
 
+from . import foundry
 from .checks import WAIVERS, densities, drc, lvs, placed, unwaived
+from .lines import extracted
+from .lines import table as line_table
 from .made import SMALL, Made
 
-STEPS = "optics", "draw", "count", "drc", "lvs", "report"
+STEPS = "optics", "draw", "count", "drc", "foundry", "lvs", "lines", "report"
 FILES = "pixel_array.gds", "pixel_array.lef", "tile.gds", "pixel.gds", "small_array.gds", "pixel.spice", "summary.json"
-REPORTS = "drc.lyrdb", "pixel.lvsdb", "small_array.lvsdb"
+REPORTS = "drc.lyrdb", "pixel.lvsdb", "small_array.lvsdb", *foundry.REPORTS
 MOST_SECONDS, MOST_BYTES = 30.0, 20e6  # of the array's GDS
 
 
-def make(pdk: str, rows: int, cols: int, out: Path, note: Callable[[str], None] = lambda text: None) -> dict[str, Any]:
-    """Draw, check and report into ``out``; returns the summary. Raises ParameterError, StepError."""
+def make(
+    pdk: str,
+    rows: int,
+    cols: int,
+    out: Path,
+    table: Path | None = None,
+    note: Callable[[str], None] = lambda text: None,
+) -> dict[str, Any]:
+    """Draw, check and report into ``out``, the lines into ``table``; returns the summary.
+
+    Raises ParameterError, StepError.
+    """
     from . import page  # Matplotlib: not before it is needed
 
     start = perf_counter()
     check_folder("out", out)
+    if table:
+        check_file("table", table)
+    decks = installed(pdk)
     array, small = array_layout(pdk, rows, cols), array_layout(pdk, *SMALL)
     types = [_type(pixel, gratings(pdk).wavelength_um) for pixel in array.pixels]
     with staged(out, (*FILES, *REPORTS, *page.NAMES)) as folder:
@@ -42,10 +60,14 @@ def make(pdk: str, rows: int, cols: int, out: Path, note: Callable[[str], None] 
         wrong = _misplaced(made)
         note("drc")
         found = drc(made.path("small_array.gds"), pdk, made.path("drc.lyrdb"))
+        note("foundry")
+        theirs = foundry.check(array, pdk, folder, decks)
         note("lvs")
         same = {
             name: lvs(made.path(f"{name}.gds"), text, pdk, made.path(f"{name}.lvsdb")) for name, text in _spice(made)
         }
+        note("lines")
+        lines = extracted(pdk)
         share, most = densities(made.path("tile.gds"), pdk), array.pixels[0].process.density_most
         block, size = array.block, made.path("pixel_array.gds").stat().st_size
         summary = {
@@ -63,10 +85,12 @@ def make(pdk: str, rows: int, cols: int, out: Path, note: Callable[[str], None] 
             "drc": found,
             "drc_violations": unwaived(found),
             "waivers": {rule: {"count": found[rule], "reason": WAIVERS[rule]} for rule in found if rule in WAIVERS},
+            "foundry": theirs,
+            "lines": {name: asdict(line) for name, line in lines.items()},
             "density": share,
             "density_most": most,
             "lvs_match": same,
-            "passed": not (wrong or unwaived(found) or max(share.values()) > most)
+            "passed": not (wrong or unwaived(found) or foundry.total(theirs) or max(share.values()) > most)
             and all(same.values())
             and seconds < MOST_SECONDS
             and size < MOST_BYTES,
@@ -75,6 +99,8 @@ def make(pdk: str, rows: int, cols: int, out: Path, note: Callable[[str], None] 
         note("report")
         page.write(made, summary)
         (folder / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n")
+    if table:
+        write(table, json.dumps(line_table(pdk, lines), indent=1, allow_nan=False) + "\n")
     return summary
 
 

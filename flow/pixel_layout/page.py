@@ -10,6 +10,7 @@ from talbot.base.charts import save
 from talbot.base.page import TABLES, Picture, Section, Tile
 from talbot.pixels.designs import gratings
 from talbot.pixels.layout.array import DUMMIES
+from talbot.platforms.wires import CORNERS
 
 from . import pictures
 from .made import SMALL, Made
@@ -86,6 +87,21 @@ def _sections(s: dict[str, Any]) -> list[Section]:
             numbers=False,
         ),
         Section(
+            "The foundry's rules",
+            "Violations by the decks of the PDK that PDK_ROOT has; Magic's, where lines are at multiples of 45 degrees."
+            if s["foundry"]
+            else "Not run: PDK_ROOT has no installed PDK.",
+            head=("deck", "file", "rule", "count"),
+            rows=[row for deck, files in s["foundry"].items() for name, f in files.items() for row in _broken(deck, name, f)],
+            numbers=False,
+        ),
+        Section(
+            "Lines",
+            "A pixel's part, from the difference of two arrays; without gates and junctions.",
+            head=("line", "ohm", *(f"fF, {corner}" for corner in CORNERS)),
+            rows=[_line(name, line) for name, line in s["lines"].items()],
+        ),
+        Section(
             "Metal",
             f"Share of the tile, at most {100 * s['density_most']:.0f} %.",
             head=("metal", "share"),
@@ -99,6 +115,14 @@ def _sections(s: dict[str, Any]) -> list[Section]:
             rows=[_row(one) for one in s["types"]],
         ),
     ]
+
+
+def _broken(deck: str, name: str, rules: dict[str, int]) -> list[tuple[str, str, str, str]]:
+    return [(deck, name, rule, str(count)) for rule, count in rules.items()] or [(deck, name, "all", "0")]
+
+
+def _line(name: str, line: dict[str, Any]) -> tuple[str, ...]:
+    return name, f"{line['ohm']:.2f}", *(f"{1e15 * line['farad'][corner]:.2f}" for corner in CORNERS)
 
 
 def _row(one: dict[str, Any]) -> tuple[str, ...]:

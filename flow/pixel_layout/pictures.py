@@ -24,12 +24,17 @@ WELL_DEPTH_UM = 1.1  # of pictures alone
 CORNER_UM = 75.0
 
 
+def _active(process: PixelProcess, colour: str) -> list[tuple[GdsLayer, str]]:
+    """Diffusion, of transistors and of taps."""
+    return [(process.active, colour), (process.tap, colour)]
+
+
 def panels(process: PixelProcess) -> list[tuple[str, list[tuple[GdsLayer, str]]]]:
     """Title and masks with their colours of every panel."""
     metals = [(metal.lef, metal.gds) for metal in process.metals[: UPPER + 1]]
     out = [
-        ("wells, diffusion", [(process.well, WELL), (process.active, ACTIVE)]),
-        ("poly, contacts", [(process.active, "#e3d6d2"), (process.poly, POLY), (process.contact, CONTACT)]),
+        ("wells, diffusion", [(process.well, WELL), *_active(process, ACTIVE)]),
+        ("poly, contacts", [*_active(process, "#e3d6d2"), (process.poly, POLY), (process.contact, CONTACT)]),
     ]
     return out + [(name, [(mask, METALS[k])]) for k, (name, mask) in enumerate(metals)]
 
@@ -49,7 +54,7 @@ def tile(gds: Path, process: PixelProcess) -> Figure:
     first, second = figure.subplots(1, 2)
     upper = process.metals[UPPER]
     _draw(first, gds, [(process.well, WELL), (upper.gds, METALS[UPPER])], f"photodiodes, {upper.lef}")
-    everything = [(process.well, WELL), (process.active, ACTIVE), (process.poly, POLY)]
+    everything = [(process.well, WELL), *_active(process, ACTIVE), (process.poly, POLY)]
     everything += [(metal.gds, METALS[k]) for k, metal in enumerate(process.metals[: UPPER + 1])]
     _draw(second, gds, everything, "all masks")
     return figure
@@ -59,7 +64,7 @@ def corner(gds: Path, process: PixelProcess) -> Figure:
     """The south-west corner of the array: pins, rings, dummies, the first pixels."""
     figure = Figure(figsize=(6, 6), layout="constrained")
     axes = figure.subplots()
-    shown = [(process.well, WELL), (process.active, ACTIVE)]
+    shown = [(process.well, WELL), *_active(process, ACTIVE)]
     shown += [(metal.gds, METALS[k]) for k, metal in enumerate(process.metals[: UPPER + 1])]
     _draw(axes, gds, shown, "", (0, 0, CORNER_UM, CORNER_UM))
     return figure

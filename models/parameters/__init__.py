@@ -6,6 +6,7 @@ from .checks import ParameterError, check_choice, check_int, check_real
 from .chip import ASYNCHRONOUS, LANES, SPI_INPUTS, ChipParameters
 from .circuit import circuit_converter
 from .divider import DIVIDERS
+from .drawn import LineParameters, drawn_electrical, drawn_lines
 from .electrical import ELEMENTARY_CHARGE, TYPICAL_CONVERTER, ConverterParameters, ElectricalParameters
 from .energy import EnergyParameters, LightParameters
 from .frame import ALL_TYPES, EXPOSURE_MAX, MODES, SAMPLES_PER_PIXEL, SHORT_TIMING, AmpTiming, FrameParameters, Window
@@ -26,6 +27,7 @@ __all__ = [
     "FOCUS_MAX",
     "LANES",
     "LightParameters",
+    "LineParameters",
     "MODES",
     "ROWS_MAX",
     "SAMPLES_PER_PIXEL",
@@ -53,6 +55,8 @@ __all__ = [
     "check_int",
     "check_real",
     "circuit_converter",
+    "drawn_electrical",
+    "drawn_lines",
     "read_sensor",
     "sensor_of",
     "sensor_text",

@@ -156,7 +156,7 @@ def _rings(canvas: Canvas, made: ArrayLayout) -> None:
     canvas_of = Canvas(canvas.layout, "ring_contact", process)
     canvas_of.square(process.contact, 0, 0, CONTACT_UM)
     for implant, (near, far) in ((process.pplus, GROUND_RING), (process.nplus, SUPPLY_RING)):
-        _ring(canvas, made, process.active, near, far)
+        _ring(canvas, made, process.tap, near, far)
         _ring(canvas, made, local, near, far)
         _ring(canvas, made, implant, near - IMPLANT, far + IMPLANT)
         middle = (near + far) / 2

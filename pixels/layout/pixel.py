@@ -186,7 +186,7 @@ def _diode(canvas: Canvas, made: PixelLayout) -> None:
 
 def _tap(canvas: Canvas, implant: tuple[int, int], x: float, y: float) -> None:
     left, bottom, right, top = x - TAP / 2, y - TAP_TALL / 2, x + TAP / 2, y + TAP_TALL / 2
-    canvas.box(canvas.process.active, left, bottom, right, top)
+    canvas.box(canvas.process.tap, left, bottom, right, top)
     canvas.box(implant, left - IMPLANT, bottom - IMPLANT, right + IMPLANT, top + IMPLANT)
     canvas.contact(x, y)
 

@@ -17,6 +17,7 @@ HVI, HVNTM, NPC = (75, 20), (125, 20), (95, 20)
 PROCESS = PixelProcess(
     name="sky130",
     active=layers.DIFF,
+    tap=layers.TAP,
     well=layers.NWELL,
     nplus=layers.NSDM,
     pplus=layers.PSDM,

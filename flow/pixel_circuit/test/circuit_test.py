@@ -114,7 +114,7 @@ def test_the_table_finds_what_the_exposures_were_made_with():
 
 def test_the_sensor_file_has_the_circuits_figures_and_their_source(tmp_path):
     usual = PixelFound(
-        "tt_025C_3v30", 3.1, 122778.0, 10.2, 10.9, 12.3, 0.015, 2e-4, 7e-6, 0.23, 36.0, 41.0, 25.0, 60.0, 1.8e-16, []
+        "tt_025C_3v30", 3.1, 122778.0, 10.2, 10.9, 12.3, 0.015, 2e-4, 7e-6, 0.23, 36.0, 41.0, 25.0, 60.0, 1.8e-16, 3.0, []
     )
     found = Spread(100, 0.02, 0.0046)
     electrical = job.electrical_of(usual, found)

@@ -1,0 +1,81 @@
+"""What was measured of the drawn pixel: its lines (`make pixel-layout TABLE=`), its circuit (`make pixel-circuit TABLE=`)."""
+
+import json
+from dataclasses import dataclass, replace
+from functools import cache
+from pathlib import Path
+
+from .checks import check_real
+from .electrical import ElectricalParameters
+
+LINES = Path(__file__).with_name("pixel_lines.json")
+PIXEL = Path(__file__).with_name("pixel.json")
+
+
+@dataclass(frozen=True)
+class LineParameters:
+    """A pixel's part of the array's lines.
+
+    Attributes
+    ----------
+    row_ohm, column_ohm : float
+        Of the metal along the pixel, 1e-3..1e5 ohm.
+    row_farad, column_farad : float
+        Of the metal to all else, without gates and junctions, 1e-18..1e-11 F.
+    """
+
+    row_ohm: float
+    row_farad: float
+    column_ohm: float
+    column_farad: float
+
+    def __post_init__(self) -> None:
+        check_real("row_ohm", self.row_ohm, 1e-3, 1e5)
+        check_real("row_farad", self.row_farad, 1e-18, 1e-11)
+        check_real("column_ohm", self.column_ohm, 1e-3, 1e5)
+        check_real("column_farad", self.column_farad, 1e-18, 1e-11)
+
+
+@cache
+def drawn_lines(table: Path = LINES) -> LineParameters:
+    """Row and column lines as extracted from the drawn array.
+
+    Parameters
+    ----------
+    table : path
+        JSON: "parameters" has the fields of `LineParameters`; "lines" each line at the corners of wires.
+
+    Returns
+    -------
+    LineParameters
+        The larger of the two row lines and of the two column lines, typical.
+
+    Raises
+    ------
+    ParameterError
+        For a value out of range.
+    """
+    return LineParameters(**json.loads(table.read_text())["parameters"])
+
+
+def drawn_electrical(electrical: ElectricalParameters, table: Path = PIXEL) -> ElectricalParameters:
+    """A sensor's electrical parameters with those of the drawn pixel's circuit.
+
+    Parameters
+    ----------
+    electrical : ElectricalParameters
+        Of which amplifiers, light and time of flight stay.
+    table : path
+        JSON: "parameters" has fields of `ElectricalParameters`; "sources" says where each is from.
+
+    Returns
+    -------
+    ElectricalParameters
+        Full well, swing, read noise, dark current and gain FPN are those that ngspice has.
+
+    Raises
+    ------
+    ParameterError
+        For a value out of range.
+    """
+    return replace(electrical, **json.loads(table.read_text())["parameters"])
