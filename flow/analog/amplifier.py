@@ -84,10 +84,10 @@ def measure(
     lsb, load = setup.spec.lsb, load_of(setup, lane, corner)
     most = REACH * 128 * lsb / sizes.gain  # V between the columns
     end = END * spec.hold
-    with _open(setup, spec, circuit or amplifier(sizes), corner) as spice:
+    with opened(setup, spec, circuit or amplifier(sizes), corner) as spice:
 
         def out(a: float, b: float, code: int = UNITS, before: float = 0.0) -> Wave:
-            return _run(spice, spec, corner, load, a, b, code, spec.vref + before)
+            return sample(spice, spec, corner, load, a, b, code, spec.vref + before)
 
         def sampled(wave: Wave) -> float:
             return (wave.at("lane", end) - spec.vref) / lsb
@@ -103,7 +103,7 @@ def measure(
         bright, dim = (sampled(out(level + small, level)) for level in (0.98 * spec.swing, small))
         steps = [sampled(out(0.5 * spec.swing, 0.5 * spec.swing, UNITS + k)) for k in (-2, -1, 0, 1)]
         step = 0.5 * spec.swing * slope / UNITS
-        energy, off = _energy(_run(spice, spec, corner, load, low + most, low, UNITS, spec.vref, True), spec, corner)
+        energy, off = _energy(sample(spice, spec, corner, load, low + most, low, UNITS, spec.vref, True), spec, corner)
         running = waves[-1].charge("vdd", 4 * spec.hold, LATER * spec.hold) / spec.hold
         return AmplifierResult(
             gain=float(slope * lsb / sizes.gain),
@@ -131,10 +131,10 @@ def faults(
 ) -> list[str]:
     """What is wrong with an amplifier, by the name of the part: columns, gain, the weight of every bit of the trim."""
     load, lsb = load_of(setup, lane, corner), setup.spec.lsb
-    with _open(setup, spec, circuit or amplifier(sizes), corner) as spice:
+    with opened(setup, spec, circuit or amplifier(sizes), corner) as spice:
 
         def out(a: float, b: float, code: int) -> float:
-            return _run(spice, spec, corner, load, a, b, code, spec.vref).at("lane", END * spec.hold) - spec.vref
+            return sample(spice, spec, corner, load, a, b, code, spec.vref).at("lane", END * spec.hold) - spec.vref
 
         most = REACH * 128 * lsb / sizes.gain
         zero = out(0.0, 0.0, 0)
@@ -167,7 +167,8 @@ def load_of(setup: Setup, lane: LaneSizes, corner: Corner) -> float:
     return lane.dac.total * setup.scale(corner) * (1 + PARASITIC)
 
 
-def _open(setup: Setup, spec: AmplifierSpec, circuit: Circuit, corner: Corner) -> Simulator:
+def opened(setup: Setup, spec: AmplifierSpec, circuit: Circuit, corner: Corner, seed: int | None = None) -> Simulator:
+    """An ngspice process of an amplifier with its bias and a lane's array. seed: of the models' mismatch."""
     ports = tuple(pin for pin in PINS if pin != "ibias")
     whole = Circuit(
         "biased",
@@ -175,7 +176,7 @@ def _open(setup: Setup, spec: AmplifierSpec, circuit: Circuit, corner: Corner) -
         instances=(Instance("amplifier", circuit, PINS), Instance("bias", bias(), ("ibias", "vdd_bias", "vss"))),
     )
     lines = [
-        *deck(whole, setup, corner),
+        *deck(whole, setup, corner, seed=seed),
         f".model to_lane sw vt={corner.supply / 2:g} vh=0 ron={LANE_OHM:g} roff=1e12",
         "Strack out lane track 0 to_lane",
         "Skeep lane before keep 0 to_lane",
@@ -185,7 +186,7 @@ def _open(setup: Setup, spec: AmplifierSpec, circuit: Circuit, corner: Corner) -
     return simulator(lines, INPUTS, ("out", "lane"), corner, rails, EXACT)
 
 
-def _run(
+def sample(
     spice: Simulator,
     spec: AmplifierSpec,
     corner: Corner,
@@ -196,7 +197,7 @@ def _run(
     before: float,
     ends: bool = False,
 ) -> Wave:
-    """A sample of a and b V below the columns' reset level. ends: off after the hold.
+    """A transient: a sample of a and b V below the columns' reset level. ends: off after the hold.
 
     before: V that the sample before left on the lane, and on the amplifier's output until it is off.
     """

@@ -228,7 +228,7 @@ def ota(sizes: OtaSizes) -> Circuit:
         *_p("bias_p", "vbp vbp vdd", s.tail, TAIL),
         *_p("bias_to_n", "vcn vbp vdd", s.tail / LEG, TAIL),
         *_n("stack_n", "vcn vcn stack", s.cascode / STACK, CASCODE),
-        *_n("stack_low", "stack vcn vss", s.sink / STACK / TRIODE, SINK),
+        *_n("stack_low", "stack vcn vss", max(0.42, s.sink / STACK / TRIODE), SINK),
         *_n("bias_to_pc", "vcp vbn vss", s.leg / 2, LEGS),
         *_p("cascode_p", "vcp vcp vdd", *STACK_P),
         # A part of the tail is on with the amplifier, the others not before the reset's end

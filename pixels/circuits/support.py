@@ -8,13 +8,14 @@ Pins of `row_driver`: row phase line vdd vss; the line is high where both are. `
 from dataclasses import dataclass
 from typing import Self
 
-from talbot.models.parameters import ArrayParameters, SensorParameters, check_int, check_real
+from talbot.models.parameters import ArrayParameters, SensorParameters, check_int, check_real, drawn_lines
 
 from .gates import inverter, nand, nor
 from .netlist import Capacitor, Circuit, Instance, Resistor, Transistor
 
 SECTIONS = 32  # of the ladder; its delay is within 0.2 % of that of an infinite number
 BIAS_OHM = 11.5e3  # of the bias: 5 uA in each branch at 27 degrees
+GATE = 1.1e-15  # F, of a pixel's transistor of 0.42 x 0.25 um
 DELAYS = 4  # inverters in each loop of the switch drivers
 
 
@@ -22,15 +23,15 @@ DELAYS = 4  # inverters in each loop of the switch drivers
 class SupportSpec:
     """Limits and loads.
 
-    cols: pixels at a row line, 1..100000. ohm, farad: of the line for each, 0..1e5 ohm, 1e-17..1e-11 F: 10 um of thin
-    metal and two gates. settle: s, for the line's far end: a guard's cycle. gap: s, least between two phases. lost: s,
-    most. switches: F, 1e-17..1e-9, of the switches on each phase. bias: relative, by which its current may be off
-    BIAS. start: s, most until it is there.
+    cols: pixels at a row line, 1..100000. ohm, farad: of the line for each, 0..1e5 ohm, 1e-17..1e-11 F: metal of the
+    drawn array, as extracted, and two gates. settle: s, for the line's far end: a guard's cycle. gap: s, least between
+    two phases. lost: s, most. switches: F, 1e-17..1e-9, of the switches on each phase. bias: relative, by which its
+    current may be off BIAS. start: s, most until it is there.
     """
 
     cols: int = ArrayParameters().cols
-    ohm: float = 20.0
-    farad: float = 5e-15
+    ohm: float = drawn_lines().row_ohm
+    farad: float = drawn_lines().row_farad + 2 * GATE
     settle: float = 100e-9
     gap: float = 0.1e-9
     lost: float = 5e-9

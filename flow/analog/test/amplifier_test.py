@@ -20,8 +20,8 @@ ngspice = pytest.mark.skipif(not shutil.which("ngspice"), reason="needs ngspice 
 def output(a: float, b: float, code: int = UNITS, circuit: Circuit | None = None) -> float:
     """V above vref that the lane samples, a and b V below the reset level; the sample before was 0.4 V lower."""
     load = measurements.load_of(SETUP, LANE, CORNER)
-    with measurements._open(SETUP, SPEC, circuit or amplifier(SIZES), CORNER) as spice:
-        wave = measurements._run(spice, SPEC, CORNER, load, a, b, code, SPEC.vref - 0.4)
+    with measurements.opened(SETUP, SPEC, circuit or amplifier(SIZES), CORNER) as spice:
+        wave = measurements.sample(spice, SPEC, CORNER, load, a, b, code, SPEC.vref - 0.4)
     return wave.at("lane", measurements.END * SPEC.hold) - SPEC.vref
 
 

@@ -67,7 +67,7 @@ def test_the_amplifier_is_whole_and_its_trim_binary():
 def test_the_current_follows_from_time_and_load():
     """A tail of twice the parts for a little more than twice the load, and for half the time."""
     tails = SIZES.ota.tails
-    assert 1.9 * tails < size(SPEC, 10e-12, process).ota.tails < 2.4 * tails
+    assert 1.9 * tails < size(SPEC, 10e-12, process).ota.tails < 2.6 * tails
     slower = replace(SPEC, hold=183e-9, sample=3e-6)  # twice what is left of a cycle after track and slewing
     assert size(slower, 4.7e-12, process).ota.tails < 0.65 * tails
     # A pair that works at gm / I has gm / 2 of the tail's current on each side
