@@ -49,7 +49,10 @@ def deck(
     circuit.check(process)
     lines = [] if seed is None else [f".option seed={seed}"]
     lines += process.cards(corner.process, circuit.sizes(), seed is not None)
-    lines += [f".param cscale={setup.scale(corner):.6g}", *circuit.lines(process)]
+    scales = (
+        f".param cscale={setup.scale(corner):.6g} rscale={process.resistance(corner.process, corner.temperature):.6g}"
+    )
+    lines += [scales, *circuit.lines(process)]
     if not copies:
         return [*lines, f"Xcell {' '.join(circuit.ports)} {circuit.name}"]
     return [*lines, *(f"Xc{k} {' '.join(nodes)} {circuit.name}" for k, nodes in enumerate(copies))]

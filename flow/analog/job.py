@@ -15,6 +15,7 @@ from talbot.base.paths import BUILD
 from talbot.base.records import from_json
 from talbot.cells.corner import Corner
 from talbot.models.parameters import ParameterError, check_int
+from talbot.pixels.circuits import amplifier as amplifiers
 from talbot.pixels.circuits import lane as lanes
 from talbot.pixels.circuits.amplifier import AmplifierSizes, AmplifierSpec
 from talbot.pixels.circuits.lane import LaneSizes
@@ -63,6 +64,13 @@ def setup_of(pdk: str) -> tuple[Setup, LaneSizes]:
     return Setup(pdk, spec, (cell.low, cell.high)), sizes
 
 
+def amplifier_of(setup: Setup, lane: LaneSizes) -> tuple[AmplifierSpec, AmplifierSizes]:
+    """Specification and sizes of the amplifier that drives ``lane``."""
+    spec = AmplifierSpec.of()
+    load = amplifier.load_of(setup, lane, Corner.parse(TYPICAL))
+    return spec, amplifiers.size(spec, load, process_of(setup.pdk))
+
+
 def make(
     pdk: str,
     corners: Sequence[str],
@@ -84,7 +92,7 @@ def make(
     note("check")
     typical = Corner.parse(TYPICAL)
     deck(lanes.sar_lane(sizes), setup, typical)
-    spec_a, sizes_a = AmplifierSpec.of(), AmplifierSizes()
+    spec_a, sizes_a = amplifier_of(setup, sizes)
     given = repr((setup, sizes))
     checks = [
         Job("faults", lane.faults, (setup, sizes, typical), (given,)),
@@ -106,7 +114,7 @@ def make(
         "corners": list(corners),
         "draws": len(found.offsets),
         "specification": asdict(setup.spec),
-        "sizes": asdict(sizes),
+        "sizes": asdict(sizes) | {"amplifier": asdict(sizes_a.ota)},
         "rows": [asdict(row) | {"passes": row.passes} for row in rows],
         "failed": [f"{row.circuit}: {row.name}" for row in rows if not row.passes],
         "transients": sum(one.runs for one in counts),
@@ -141,7 +149,7 @@ def measured(
     ]
     note("corners")
     results = run(jobs, STORE, "corners", workers)
-    spec_a, sizes_a = AmplifierSpec.of(), AmplifierSizes()
+    spec_a, sizes_a = amplifier_of(setup, sizes)
     amplified = [
         Job(
             f"amplifier-{name}",

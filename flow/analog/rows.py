@@ -89,7 +89,9 @@ def _amplifier(found: Found) -> list[Row]:
         row("change under 100 times ambient light", "LSB", "ambient", spec.ambient),
         row("steps of the trim, off by", "steps", "trim", spec.trim),
         corners("sampled noise, rms", "LSB", found.amplifier_ktc, spec.ktc),
-        row("energy of a sample", "pJ", "energy", 1e12 * spec.energy, 1e12),
+        row("energy of a sample, off between samples", "pJ", "energy", 1e12 * spec.energy, 1e12),
+        row("energy of a sample, never off", "pJ", "always", None, 1e12),
+        row("current while off", "uA", "off", None, 1e6),
     ]
 
 

@@ -14,7 +14,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from talbot.models.parameters import ELEMENTARY_CHARGE, check_real
+from talbot.models.parameters import ELEMENTARY_CHARGE, ArrayParameters, check_real, drawn_lines
 from talbot.pixels.circuits.gates import LENGTH, inverter
 from talbot.pixels.circuits.netlist import Capacitor, Circuit, Instance, Transistor
 
@@ -39,9 +39,9 @@ class PixelSizes:
     gain, bandwidth : float
         Of a column's amplifiers, 100..1e9, and frequency at which it is 1, 1e6..1e11 Hz.
     line_resistance, line_capacitance : float
-        Of the row's lines, for each column: 0.1..1e5 ohm, 1e-17..1e-11 F.
+        Of the row's lines, for each column: 0.1..1e5 ohm, 1e-17..1e-11 F; as extracted, gates are transistors here.
     column_capacitance : float
-        Of a column line, 1e-16..1e-10 F.
+        Of a column line, 1e-16..1e-10 F: metal of 384 rows, as extracted.
     hold : float
         Capacitor of a sample, 1e-15..1e-11 F.
     cut : float
@@ -53,9 +53,9 @@ class PixelSizes:
     level: float = 0.8
     gain: float = 3e4
     bandwidth: float = 500e6
-    line_resistance: float = 20.0
-    line_capacitance: float = 5e-15
-    column_capacitance: float = 200e-15
+    line_resistance: float = drawn_lines().row_ohm
+    line_capacitance: float = drawn_lines().row_farad
+    column_capacitance: float = ArrayParameters().rows * drawn_lines().column_farad
     hold: float = 500e-15
     cut: float = 1e12
 

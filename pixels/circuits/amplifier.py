@@ -1,6 +1,13 @@
 """The difference amplifier of a lane: switched capacitors, with a 10-bit trim of the second diode's.
 
-Pins of `amplifier`: column_a column_b reset g9 g8 g7 g6 g5 g4 g3 g2 g1 g0 out vref ibias vdd vss.
+Pins of `amplifier`: column_a column_b on reset g9 g8 g7 g6 g5 g4 g3 g2 g1 g0 out vref ibias vdd vss.
+
+    clk        |‾|______|‾|______|‾|______|
+    wake       |_/‾‾‾‾‾‾|_________________     on = wake or hold: `wake` is D of the chip's `hold`, while clk is low
+    hold       |________|‾‾‾‾‾‾‾‾|________
+    reset      |‾‾‾‾‾‾‾‾|________|‾‾‾‾‾‾‾‾     not hold
+    columns    | reference | signal |          2 ns after the reset's end
+    sample     |__________|__‾‾‾‾‾‾|           of the lane: its array is at `out` after its last decision
 
 While reset is 1 the columns carry their reference level and the amplifier is a follower at vref: its offset, and the
 columns' level, are stored. After its fall the columns go to their signals, a and b below that level, and
@@ -9,13 +16,15 @@ columns' level, are stored. After its fall the columns go to their signals, a an
 
 The code is the register `balance` with its top bit inverted: g = Cb / Ca = code / 512. Units of Cb that are off stand
 at vref, so that both inputs see the same total; what both columns have in common moves both inputs alike. `ibias`
-takes BIAS amperes from outside.
+takes BIAS amperes while `on` is 1, from the `bias` of support.py; while it is 0 no current flows.
 """
 
 from dataclasses import dataclass
+from math import ceil, log
+from types import ModuleType
 from typing import Self
 
-from talbot.models.parameters import EnergyParameters, SensorParameters, check_real
+from talbot.models.parameters import EnergyParameters, SensorParameters, check_int, check_real
 
 from .gates import inverter
 from .netlist import Capacitor, Circuit, Instance, Transistor
@@ -23,8 +32,25 @@ from .netlist import Capacitor, Circuit, Instance, Transistor
 TRIM_BITS = 10
 UNITS = 512  # of the first diode's capacitor
 BIAS = 10e-6  # A
-PINS = ("column_a", "column_b", "reset", *(f"g{k}" for k in reversed(range(TRIM_BITS))))
+PINS = ("column_a", "column_b", "on", "reset", *(f"g{k}" for k in reversed(range(TRIM_BITS))))
 PINS += ("out", "vref", "ibias", "vdd", "vss")
+PAIR_PARTS = 2  # transistors in each of them
+RANGE = 192.0  # LSB between the ends of three quarters of the range
+SPLIT = 4  # parts of the pair: one steers the sinks, the others are at the folding
+SINKS = 5  # times its diode, each sink
+AWAKE = 0.27  # of the tail while the amplifier is reset: its load is not at the output then
+LEG = 2  # times BIAS: the leg that drives the tail's gate, which has to be fast; the cascodes' have BIAS
+# Roles and lengths (um): the pair, its tail, the sinks and legs, the cascodes, the mirror
+PAIR, TAIL, SINK, LEGS = ("p_lvt", 0.5), ("p", 0.5), ("n_lvt", 0.5), ("n_lvt", 1.0)
+CASCODE, CASCODE_P, TOP = ("n_lvt", 0.5), ("p_lvt", 0.5), ("p", 0.5)
+STACK, TRIODE = 3.0, 8.0  # cascode's gate: parts of the sinks' and cascodes' widths; the lower is in triode
+STACK_P = (3.0, ("p_lvt", 2.0))  # the diode that makes the p cascodes' gate
+UNIT, GAIN = 2.3499e-15, 2.4  # F, three fringe cells; a column's volts to the lane's
+# Transconductance over current, 1/V: high where it is what is wanted, low where matching or a drain's level is
+EFFICIENCY = {"pair": 14.0, "tail": 9.0, "sink": 17.0, "cascode": 18.0, "top": 12.0, "cascode_p": 12.0, "leg": 12.0}
+SLEW = 10e-9  # s of the signal's time in which the output's current is at its limit
+LEFT = 0.09  # of the specification's rest, at the typical corner: others are slower
+STRAY = 0.3e-12  # F at the output beside the lane's array
 
 
 @dataclass(frozen=True)
@@ -32,60 +58,94 @@ class AmplifierSpec:
     """What the amplifier must do.
 
     vref: V, its output's zero, and lane_b, 0.3..1.5. reset_level: V of a column without light, 0.3..1.8. swing: V of a
-    full well, 0.01..1.5. hold: s, one cycle of the chip: the time for its output. settling: LSB that may be left then.
-    gain: relative, by which it may be off: common to all columns of a lane. inl: LSB, peak, over three quarters of the
-    range. ktc: LSB, rms, of what the reset's end leaves. ambient: LSB by which a difference may change where ambient
-    light is 100 times it. trim: steps, peak error of a step of the trim. energy: J a sample, Table 6.1's.
+    full well, 0.01..1.5. hold: s, one cycle of the chip: the time for its output. high: s, the part of a cycle in which
+    clk is high. track: s from the cycle's start until the lane's array is at the output: it decides first. settling:
+    LSB that may be left at the cycle's end. gain: relative, by which it may be off: common to all columns of a lane.
+    inl: LSB, peak, over three quarters of the range. ktc: LSB, rms, of what the reset's end leaves. ambient: LSB by
+    which a difference may change where ambient light is 100 times it. trim: steps, peak error of a step of the trim.
+    offset: LSB, rms over lanes. energy: J a sample, Table 6.1's. sample: s between two samples of a lane at the table's
+    frame rate. lanes: that share a bias, 1..32.
     """
 
     vref: float = 0.8
     reset_level: float = 1.2
     swing: float = 1.0
     hold: float = 100e-9
+    high: float = 12e-9
+    track: float = 17e-9
     settling: float = 0.5
     gain: float = 0.05
     inl: float = 0.5
     ktc: float = 0.15
     ambient: float = 0.5
     trim: float = 1.0
+    offset: float = 1.0
     energy: float = 203e-12
+    sample: float = 1.8e-6
+    lanes: int = 8
 
     def __post_init__(self) -> None:
         check_real("vref", self.vref, 0.3, 1.5)
         check_real("reset_level", self.reset_level, 0.3, 1.8)
         check_real("swing", self.swing, 0.01, 1.5)
         check_real("hold", self.hold, 1e-9, 1e-3)
+        check_real("high", self.high, 0, self.hold)
+        check_real("track", self.track, self.high, self.hold)
         check_real("gain", self.gain, 1e-3, 1)
-        for name in ("settling", "inl", "ktc", "ambient", "trim"):
+        for name in ("settling", "inl", "ktc", "ambient", "trim", "offset"):
             check_real(name, getattr(self, name), 0.01, 16)
         check_real("energy", self.energy, 1e-15, 1e-6)
+        check_real("sample", self.sample, 3 * self.hold, 1.0)
+        check_int("lanes", self.lanes, 1, 32)
 
     @classmethod
     def of(cls, sensor: SensorParameters | None = None, energy: EnergyParameters | None = None) -> Self:
-        """The amplifier of a sensor: its swing, the chip's clock, Table 6.1's power."""
+        """The amplifier of a sensor: its swing, the chip's clock, Table 6.1's power and frame rate."""
         sensor, energy = sensor or SensorParameters(), energy or EnergyParameters()
+        rate = energy.frame_rate * energy.pixels
         return cls(
             swing=sensor.electrical.swing,
             hold=1 / sensor.chip.f_clk,
-            energy=energy.amplifiers / (energy.frame_rate * energy.pixels),
+            energy=energy.amplifiers / rate,
+            sample=sensor.chip.lanes / rate,
+            lanes=sensor.chip.lanes,
         )
 
 
 @dataclass(frozen=True)
-class AmplifierSizes:
-    """Sizes; unit: F, of a capacitor. gain: of a column's volts, 0.1..16. scale: of widths and currents, 0.1..1.
+class OtaSizes:
+    """Currents and widths of one side.
 
-    At scale 1 the input pair has 185 uA a side at the typical corner, each output branch 60 uA.
+    tails: parts of the tail, 1..1000, each of which carries LEG BIAS. In um, 0.42..2000: pair (all parts), tail (one
+    part), sink (all parts), cascode, top, cascode_p, leg (the diode of BIAS).
     """
 
-    unit: float = 0.7833e-15
-    gain: float = 2.4
-    scale: float = 1.0
+    tails: int
+    pair: float
+    tail: float
+    sink: float
+    cascode: float
+    top: float
+    cascode_p: float
+    leg: float
+
+    def __post_init__(self) -> None:
+        check_int("tails", self.tails, 1, 1000)
+        for name in ("pair", "tail", "sink", "cascode", "top", "cascode_p", "leg"):
+            check_real(name, getattr(self, name), 0.42, 2000)
+
+
+@dataclass(frozen=True)
+class AmplifierSizes:
+    """Sizes; unit: F, of a capacitor. gain: of a column's volts, 0.1..16."""
+
+    ota: OtaSizes
+    unit: float = UNIT
+    gain: float = GAIN
 
     def __post_init__(self) -> None:
         check_real("unit", self.unit, 1e-16, 1e-13)
         check_real("gain", self.gain, 0.1, 16)
-        check_real("scale", self.scale, 0.1, 1)
 
     @property
     def feedback(self) -> float:
@@ -93,51 +153,108 @@ class AmplifierSizes:
         return UNITS / self.gain
 
 
-def ota(scale: float) -> Circuit:
-    """A folded cascode with p inputs. Pins: inp inn out ibias vdd vss; the input range begins at vss.
+def size(
+    spec: AmplifierSpec, load: float, process: ModuleType, gain: float = GAIN, unit: float = UNIT
+) -> AmplifierSizes:
+    """Sizes for ``spec`` with ``load`` F, the lane's array, from the process's tables of gm/Id.
 
-    Tail and sinks are long: where they are not, the tail's current grows with the supply until the sinks do not carry
-    it any more (ff, 1.98 V). The mirror's upper transistors are of the regular threshold, so that its cascode stays
-    saturated in the branch where the mirror's gate is its drain (ff, 125 degrees).
+    The output has the signal's time without SLEW to come within LEFT of what may be left: so many time constants
+    C / (beta gm). A recycling folded cascode has 1 + (SPLIT - 1) / SPLIT times the transconductance of one side of its
+    pair [Assaad2009]. Widths are currents over the densities at which each role has its EFFICIENCY.
     """
-    s = scale
+    feedback = UNITS / gain * unit
+    inputs = (2 * UNITS + UNITS / gain) * unit
+    constant = (spec.hold - spec.track - SLEW) / log(RANGE / (LEFT * spec.settling))
+    pair = process.operating(*PAIR, EFFICIENCY["pair"])
+    beta, current = feedback / inputs, 0.0
+    for _ in range(20):
+        gm = (load + STRAY + feedback * (1 - beta)) / (beta * constant)
+        current = gm / (1 + (SPLIT - 1) / SPLIT) / EFFICIENCY["pair"]
+        beta = feedback / (inputs + current / pair.density * pair.gate)
 
-    def n(name: str, drain: str, gate: str, source: str, w: float, length: float = 0.5) -> Transistor:
-        return Transistor(name, drain, gate, source, "vss", "n_lvt", w, length)
+    def width(name: str, kind: tuple[str, float], amperes: float) -> float:
+        return max(0.42, round(amperes / process.operating(*kind, EFFICIENCY[name]).density, 2))
 
-    def p(
-        name: str, drain: str, gate: str, source: str, w: float, length: float = 0.5, role: str = "p_lvt"
-    ) -> Transistor:
-        return Transistor(name, drain, gate, source, "vdd", role, w, length)
-
-    return Circuit(
-        "ota",
-        ("inp", "inn", "out", "ibias", "vdd", "vss"),
-        (
-            # Bias: mirrors of ibias, and a stack's worth of overdrive for each cascode's gate
-            n("bias_n", "ibias", "ibias", "vss", 3.9, 1.0),
-            n("bias_to_p", "vbp", "ibias", "vss", 4.5, 1.0),
-            p("bias_p", "vbp", "vbp", "vdd", 10, 1.0),
-            p("bias_to_n", "vcn", "vbp", "vdd", 5, 1.0),
-            n("cascode_n", "vcn", "vcn", "vss", 1, 2.0),
-            n("bias_to_pc", "vcp", "ibias", "vss", 2.25, 1.0),
-            p("cascode_p", "vcp", "vcp", "vdd", 3.5, 2.0),
-            # Input pair and its tail
-            *(p(f"tail_{k}", "tail", "vbp", "vdd", 97 * s, 1.0) for k in range(3)),
-            *(p(f"inp_{k}", "fold_p", "inp", "tail", 75 * s, 0.35) for k in range(2)),
-            *(p(f"inn_{k}", "fold_n", "inn", "tail", 75 * s, 0.35) for k in range(2)),
-            # Folding: each sink carries the pair's and the branch's current
-            n("sink_p", "fold_p", "ibias", "vss", 100 * s, 1.0),
-            n("sink_n", "fold_n", "ibias", "vss", 100 * s, 1.0),
-            n("up_p", "mirror", "vcn", "fold_p", 60 * s),
-            n("up_n", "out", "vcn", "fold_n", 60 * s),
-            # Cascoded mirror
-            p("top_p", "high_p", "mirror", "vdd", 60 * s, 0.5, "p"),
-            p("top_n", "high_n", "mirror", "vdd", 60 * s, 0.5, "p"),
-            p("down_p", "mirror", "vcp", "high_p", 80 * s),
-            p("down_n", "out", "vcp", "high_n", 80 * s),
-        ),
+    branch = current / SPLIT
+    ota = OtaSizes(
+        ceil(2 * current / (LEG * BIAS)),
+        width("pair", PAIR, current),
+        width("tail", TAIL, LEG * BIAS),
+        width("sink", SINK, current / SPLIT),
+        width("cascode", CASCODE, branch),
+        width("top", TOP, branch),
+        width("cascode_p", CASCODE_P, branch),
+        width("leg", LEGS, BIAS),
     )
+    return AmplifierSizes(ota, unit, gain)
+
+
+def _n(name: str, nodes: str, w: float, kind: tuple[str, float], parts: int = 1) -> list[Transistor]:
+    """So many n transistors of ``w`` um side by side. nodes: drain gate source."""
+    return _parts(name, (*nodes.split(), "vss"), w, kind, parts)
+
+
+def _p(name: str, nodes: str, w: float, kind: tuple[str, float], parts: int = 1) -> list[Transistor]:
+    """So many p transistors of ``w`` um side by side. nodes: drain gate source."""
+    return _parts(name, (*nodes.split(), "vdd"), w, kind, parts)
+
+
+def _parts(name: str, nodes: tuple[str, ...], w: float, kind: tuple[str, float], parts: int) -> list[Transistor]:
+    drain, gate, source, bulk = nodes
+    names = [name] if parts == 1 else [f"{name}_{k}" for k in range(parts)]
+    return [Transistor(one, drain, gate, source, bulk, kind[0], round(w, 3), kind[1]) for one in names]
+
+
+def ota(sizes: OtaSizes) -> Circuit:
+    """A recycling folded cascode with p inputs. Pins: inp inn out ibias on off reset resetn vdd vss.
+
+
+    A part of each side of the pair drives the diodes of the other side's sink: no second current has to fit the
+    tail's, whatever the supply, and all currents end with the tail's. The diodes are cascoded as the sinks are. The
+    mirror's upper transistors are of the regular threshold, so that its cascode stays saturated in the branch where
+    the mirror's gate is its drain.
+    """
+    s, part, awake = sizes, sizes.pair / SPLIT / PAIR_PARTS, max(1, round(AWAKE * sizes.tails))
+    small = ("n_lvt", 0.15)
+    devices = [
+        # Off: the bias is not taken, and the gates of its mirrors are at their rails
+        *_n("take", "ibias on vbn", 4, small),
+        *_n("off_n", "vbn off vss", 1, small),
+        *_n("off_cascode", "vcn off vss", 1, small),
+        *_p("off_p", "vbp on vdd", 2, ("p_lvt", 0.35)),
+        # Mirrors of ibias, and a stack's worth of overdrive for each cascode's gate
+        *_n("bias_n", "vbn vbn vss", s.leg, LEGS),
+        *_n("bias_to_p", "vbp vbn vss", s.leg, LEGS, LEG),
+        *_p("bias_p", "vbp vbp vdd", s.tail, TAIL),
+        *_p("bias_to_n", "vcn vbp vdd", s.tail / LEG, TAIL),
+        *_n("stack_n", "vcn vcn stack", s.cascode / STACK, CASCODE),
+        *_n("stack_low", "stack vcn vss", max(0.42, s.sink / STACK / TRIODE), SINK),
+        *_n("bias_to_pc", "vcp vbn vss", s.leg / 2, LEGS),
+        *_p("cascode_p", "vcp vcp vdd", *STACK_P),
+        # A part of the tail is on with the amplifier, the others not before the reset's end
+        *_p("tail", "tail vbp vdd", s.tail, TAIL, awake),
+        *_p("boost", "boost vbp vdd", s.tail, TAIL, s.tails - awake),
+        *_p("boost_on", "tail reset boost", 20, ("p_lvt", 0.35), 2),
+    ]
+    for side, other in (("p", "n"), ("n", "p")):
+        devices += [
+            *_p(f"in{side}", f"fold_{side} in{side} tail", part, PAIR, PAIR_PARTS * (SPLIT - 1)),
+            *_p(f"in{side}_steer", f"steer_{other} in{side} tail", part, PAIR, PAIR_PARTS),
+            *_n(f"diode_cascode_{side}", f"steer_{side} vcn diode_{side}", s.cascode, CASCODE),
+            *_n(f"diode_{side}", f"diode_{side} steer_{side} vss", s.sink, SINK),
+            *_n(f"sink_{side}", f"fold_{side} steer_{side} vss", s.sink, SINK, SINKS),
+        ]
+    devices += [
+        *_n("up_p", "mirror vcn fold_p", s.cascode, CASCODE),
+        *_n("up_n", "out vcn fold_n", s.cascode, CASCODE),
+        # Cascoded mirror
+        *_p("top_p", "high_p mirror vdd", s.top, TOP),
+        *_p("top_n", "high_n mirror vdd", s.top, TOP),
+        *_p("down_p", "mirror vcp high_p", s.cascode_p, CASCODE_P),
+        *_p("down_n", "out vcp high_n", s.cascode_p, CASCODE_P),
+    ]
+    pins = ("inp", "inn", "out", "ibias", "on", "off", "reset", "resetn", "vdd", "vss")
+    return Circuit("ota", pins, tuple(devices))
 
 
 def _selector(width: float) -> Circuit:
@@ -163,23 +280,27 @@ def amplifier(sizes: AmplifierSizes) -> Circuit:
         Capacitor("b_rest", "xp", "vref", (sizes.feedback + 1) * u, round(sizes.feedback)),
     ]
     instances = [
-        Instance("ota", ota(sizes.scale), ("xp", "xm", "out", "ibias", "vdd", "vss")),
-        Instance("reset_n", inverter(2), ("reset", "resetn", "vdd", "vss")),
+        Instance("ota", ota(sizes.ota), ("xp", "xm", "out", "ibias", "on", "off", "reset", "resetn", "vdd", "vss")),
+        Instance("on_n", inverter(2), ("on", "off", "vdd", "vss")),
+        Instance("reset_n", inverter(4), ("reset", "resetn", "vdd", "vss")),
     ]
     for k in range(TRIM_BITS):
         units = 1 << k
         capacitors.append(Capacitor(f"b{k}", "xp", f"bottom{k}", units * u, units))
         instances.append(Instance(f"not{k}", inverter(), (f"g{k}", f"g{k}n", "vdd", "vss")))
-        chosen = _selector(max(0.5, units / 64))
+        chosen = _selector(max(0.5, units / 32))
         nodes = (f"bottom{k}", "column_b", f"g{k}", f"g{k}n", "vref", "vdd", "vss")
         instances.append(Instance(f"select{k}", chosen, nodes))
     switches = tuple(
         Transistor(name, a, gate, b, bulk, role, w, length)
         for name, a, b, gate, bulk, role, w, length in (
             ("follow_n", "xm", "out", "reset", "vss", "n", 2.0, 0.15),
-            ("follow_p", "xm", "out", "resetn", "vdd", "p_lvt", 2.0, 0.35),
+            ("follow_p", "xm", "out", "resetn", "vdd", "p_lvt", 10.0, 0.5),
+            # While it is off its output stands at vref: it wakes there
+            ("rest_n", "out", "vref", "off", "vss", "n", 2.0, 0.15),
+            ("rest_p", "out", "vref", "on", "vdd", "p_lvt", 10.0, 0.35),
             ("zero_n", "xp", "vref", "reset", "vss", "n", 2.0, 0.15),
-            ("zero_p", "xp", "vref", "resetn", "vdd", "p_lvt", 2.0, 0.35),
+            ("zero_p", "xp", "vref", "resetn", "vdd", "p_lvt", 10.0, 0.5),
         )
     )
     return Circuit("amplifier", PINS, switches, tuple(capacitors), instances=tuple(instances))

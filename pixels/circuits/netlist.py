@@ -43,12 +43,14 @@ class Capacitor(NamedTuple):
 
 
 class Resistor(NamedTuple):
-    """One resistor; value: ohm."""
+    """One resistor; value: ohm. drawn: the process's resistor, with its spread and
+    temperature; else ideal."""
 
     name: str
     a: str
     b: str
     value: float
+    drawn: bool = False
 
 
 class Instance(NamedTuple):
@@ -88,7 +90,7 @@ class Circuit:
         """The .subckt text of all circuits in it, without models.
 
         process: a module like platforms.sky130.analog. A capacitor with units is ``value * cscale``: the deck sets
-        ``.param cscale=1``, or another factor for a corner of the capacitors.
+        ``.param cscale=1 rscale=1``, or other factors for a corner of the capacitors and of drawn resistors.
         """
         text = []
         for one in self.circuits().values():
@@ -96,7 +98,8 @@ class Circuit:
             text += [process.instance(t.name, t.nodes, t.role, t.w, t.l) for t in one.transistors]
             for c in one.capacitors:
                 text.append(f"C{c.name} {c.a} {c.b} {{{c.value:.6g}*{'cscale' if c.units else '1'}}}")
-            text += [f"R{r.name} {r.a} {r.b} {r.value:.6g}" for r in one.resistors]
+            for r in one.resistors:
+                text.append(f"R{r.name} {r.a} {r.b} " + (f"{{{r.value:.6g}*rscale}}" if r.drawn else f"{r.value:.6g}"))
             text += [f"X{i.name} {' '.join(i.nodes)} {i.circuit.name}" for i in one.instances]
             text.append(f".ends {one.name}")
         return text
@@ -128,12 +131,15 @@ class Circuit:
         yield from self._open_nets()
 
     def _open_nets(self) -> Iterator[str]:
-        """Nets that end nowhere: one device on it and no port, or gates alone."""
+        """Nets that end nowhere: one device on it and no port, or gates alone. Transistors side by side are one."""
         ends: Counter[str] = Counter()
         driven = {*self.ports, GROUND}
         first: dict[str, str] = {}
+        alone: dict[Transistor, Transistor] = {}
+        for t in self.transistors:
+            alone.setdefault(t._replace(name="", w=0.0), t)
         parts: list[tuple[str, tuple[str, ...], tuple[str, ...]]] = [
-            (t.name, (t.drain, t.gate, t.source), (t.drain, t.source)) for t in self.transistors
+            (t.name, (t.drain, t.gate, t.source), (t.drain, t.source)) for t in alone.values()
         ]
         parts += [(c.name, (c.a, c.b), (c.a, c.b)) for c in (*self.capacitors, *self.resistors)]
         parts += [(i.name, i.nodes, i.nodes) for i in self.instances]

@@ -8,12 +8,14 @@ Pins of `row_driver`: row phase line vdd vss; the line is high where both are. `
 from dataclasses import dataclass
 from typing import Self
 
-from talbot.models.parameters import ArrayParameters, SensorParameters, check_int, check_real
+from talbot.models.parameters import ArrayParameters, SensorParameters, check_int, check_real, drawn_lines
 
 from .gates import inverter, nand, nor
 from .netlist import Capacitor, Circuit, Instance, Resistor, Transistor
 
 SECTIONS = 32  # of the ladder; its delay is within 0.2 % of that of an infinite number
+BIAS_OHM = 11.5e3  # of the bias: 5 uA in each branch at 27 degrees
+GATE = 1.1e-15  # F, of a pixel's transistor of 0.42 x 0.25 um
 DELAYS = 4  # inverters in each loop of the switch drivers
 
 
@@ -21,15 +23,15 @@ DELAYS = 4  # inverters in each loop of the switch drivers
 class SupportSpec:
     """Limits and loads.
 
-    cols: pixels at a row line, 1..100000. ohm, farad: of the line for each, 0..1e5 ohm, 1e-17..1e-11 F: 10 um of thin
-    metal and two gates. settle: s, for the line's far end: a guard's cycle. gap: s, least between two phases. lost: s,
-    most. switches: F, 1e-17..1e-9, of the switches on each phase. bias: relative, by which its current may be off
-    BIAS. start: s, most until it is there.
+    cols: pixels at a row line, 1..100000. ohm, farad: of the line for each, 0..1e5 ohm, 1e-17..1e-11 F: metal of the
+    drawn array, as extracted, and two gates. settle: s, for the line's far end: a guard's cycle. gap: s, least between
+    two phases. lost: s, most. switches: F, 1e-17..1e-9, of the switches on each phase. bias: relative, by which its
+    current may be off BIAS. start: s, most until it is there.
     """
 
     cols: int = ArrayParameters().cols
-    ohm: float = 20.0
-    farad: float = 5e-15
+    ohm: float = drawn_lines().row_ohm
+    farad: float = drawn_lines().row_farad + 2 * GATE
     settle: float = 100e-9
     gap: float = 0.1e-9
     lost: float = 5e-9
@@ -91,14 +93,15 @@ def non_overlap() -> Circuit:
     return Circuit("non_overlap", ("clk", "phi1", "phi2", *supplies), instances=tuple(instances))
 
 
-def bias(ohm: float = 9e3) -> Circuit:
-    """A current of 2 (1 - 1/sqrt(4))2 / (k w/l ohm2): a pair of 1 to 4 with ``ohm`` between, and what starts it.
+def bias() -> Circuit:
+    """A current proportional to absolute temperature, n kT/q ln 4 / r: a pair of 1 to 4 in weak inversion.
 
-    While no current flows, `start` is high and draws the mirror's gate down; the current then pulls `start` low.
+    The transconductance of what it drives is constant. ibias has as much as both branches together. While no current
+    flows, `start` is high and draws the mirror's gate down; the current then pulls `start` low.
     """
 
-    def n(name: str, drain: str, gate: str, source: str, w: float, length: float) -> Transistor:
-        return Transistor(name, drain, gate, source, "vss", "n", w, length)
+    def n(name: str, drain: str, gate: str, source: str, w: float, length: float, role: str = "n") -> Transistor:
+        return Transistor(name, drain, gate, source, "vss", role, w, length)
 
     def p(name: str, drain: str, gate: str, w: float, length: float) -> Transistor:
         return Transistor(name, drain, gate, "vdd", "vdd", "p_lvt", w, length)
@@ -107,14 +110,14 @@ def bias(ohm: float = 9e3) -> Circuit:
         "bias",
         ("ibias", "vdd", "vss"),
         (
-            n("one", "vbn", "vbn", "vss", 5, 2.0),
-            n("four", "vbp", "vbn", "source", 20, 2.0),
-            p("mirror_one", "vbn", "vbp", 10, 2.0),
-            p("mirror_four", "vbp", "vbp", 10, 2.0),
-            p("out", "ibias", "vbp", 10, 2.0),
+            n("one", "vbn", "vbn", "vss", 20, 4.0),
+            *(n(f"four_{k}", "vbp", "vbn", "source", 20, 4.0) for k in range(4)),
+            p("mirror_one", "vbn", "vbp", 10, 4.0),
+            p("mirror_four", "vbp", "vbp", 10, 4.0),
+            *(p(f"out_{k}", "ibias", "vbp", 10, 4.0) for k in range(2)),
             p("keep", "start", "vss", 0.42, 8.0),
-            n("stop", "start", "vbn", "vss", 4, 0.5),
+            n("stop", "start", "vbn", "vss", 4, 0.5, "n_lvt"),
             n("start", "vbp", "start", "vss", 1, 0.5),
         ),
-        resistors=(Resistor("r", "source", "vss", ohm),),
+        resistors=(Resistor("r", "source", "vss", BIAS_OHM, True),),
     )

@@ -6,9 +6,16 @@ measured once with 60 diode-connected transistors of 20 um at 20 to 200 uA (AREA
 lengths): circuits are sized by it, and the Monte Carlo run uses the models, not this figure.
 """
 
+import json
 import math
 from collections.abc import Collection
 from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+from talbot.models.parameters import check_real
 
 from . import models
 
@@ -24,6 +31,12 @@ WIDEST = 100.0  # um, of the models' last bin
 NARROWEST = 0.42  # um
 AREA = {"n": 8.2, "p": 6.4, "n_lvt": 6.1, "p_lvt": 14.8}  # mV um: rms of Vgs times sqrt(w l)
 SHARED = 0.28  # um of diffusion between two gates
+TABLES = Path(__file__).with_name("gm_id.json")  # written by `make analog GM_ID=`: flow/analog/tables.py
+# (role, length in um) of the transistors in it
+SIZED = (("p_lvt", 0.35), ("p_lvt", 0.5), ("p_lvt", 1.0), ("n_lvt", 0.5), ("n_lvt", 1.0), ("p", 0.5))
+# sky130_fd_pr__res_generic_nd, n+ diffusion: ohm a square at the process's ends and between, 1/K and 1/K2
+RESISTOR_SHEET, RESISTOR_AT, RESISTOR_TEMPERATURE = {"ss": 132.0, "ff": 108.0}, 30.0, (1.422e-3, 0.657e-6)
+RESISTOR_TYPICAL = 120.0
 
 
 @dataclass(frozen=True)
@@ -41,6 +54,48 @@ class UnitCell:
     low: float
     high: float
     source: str
+
+
+@dataclass(frozen=True)
+class Operating:
+    """A transistor at one gm/Id. density: A/um of width; gate: F/um of width; gain: gm/gds."""
+
+    density: float
+    gate: float
+    gain: float
+
+
+@cache
+def _tables() -> dict[str, dict[str, list[float]]]:
+    return json.loads(TABLES.read_text())
+
+
+def operating(role: str, length: float, efficiency: float) -> Operating:
+    """A transistor (role, um) of SIZED at gm/Id = ``efficiency`` (1/V, 5..22), of the tables.
+
+    Raises KeyError for a length without a table, ParameterError for an efficiency out of range.
+    """
+    check_real("efficiency", efficiency, 5, 22)
+    one = _tables()[f"{role} {length:g}"]
+    rising = np.array(one["efficiency"])[::-1]
+
+    def at(name: str) -> float:
+        return float(np.exp(np.interp(efficiency, rising, np.log(one[name])[::-1])))
+
+    return Operating(at("density"), at("gate"), at("gain"))
+
+
+def resistance(process: str, celsius: float) -> float:
+    """Factor of a resistor's typical value at 27 degrees: high where transistors are slow, low where they are fast.
+
+    n+ diffusion grows with temperature more than poly: a current that is proportional to it grows less.
+    """
+
+    def at(degrees: float) -> float:
+        away = degrees - RESISTOR_AT
+        return 1 + RESISTOR_TEMPERATURE[0] * away + RESISTOR_TEMPERATURE[1] * away**2
+
+    return RESISTOR_SHEET.get(process, RESISTOR_TYPICAL) / RESISTOR_TYPICAL * at(celsius) / at(27.0)
 
 
 def unit_cells(mismatch: float) -> tuple[UnitCell, ...]:

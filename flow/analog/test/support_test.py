@@ -9,10 +9,12 @@ import pytest
 
 from talbot.cells.corner import Corner
 from talbot.flow.analog import job, support
+from talbot.flow.analog.deck import deck
 from talbot.pixels.circuits.amplifier import BIAS
 from talbot.pixels.circuits.gates import inverter
 from talbot.pixels.circuits.netlist import Circuit, Instance
-from talbot.pixels.circuits.support import SupportSpec, bias, row_line
+from talbot.pixels.circuits.support import BIAS_OHM, SupportSpec, bias, row_line
+from talbot.platforms.sky130 import analog as process
 
 pytestmark = pytest.mark.skipif(not shutil.which("ngspice"), reason="needs ngspice (make tools)")
 SETUP, _ = job.setup_of("sky130")
@@ -59,12 +61,23 @@ def test_phases_do_not_overlap_and_those_of_two_inverters_do():
 def test_the_bias_starts_and_its_current_is_that_of_its_resistor():
     wave, _ = support.started(SETUP, CORNER)
     current = -float(wave.current["ibias"][-1])
-    assert current == pytest.approx(BIAS, rel=SPEC.bias)
-    # In weak inversion it is n kT/q ln 4 / R, which it is never below; in strong inversion it falls with the square
-    wave, _ = support.started(SETUP, CORNER, bias(ohm=18e3))
-    half = -float(wave.current["ibias"][-1])
+    assert current == pytest.approx(BIAS, rel=0.05)
+    # Twice the resistor: half the current in weak inversion, a quarter in strong; two branches of n kT/q ln 4 / R
+    whole = bias()
+    twice = replace(whole, resistors=tuple(r._replace(value=2 * r.value) for r in whole.resistors))
+    half = -float(support.started(SETUP, CORNER, twice)[0].current["ibias"][-1])
     assert 0.25 * current < half < 0.55 * current
-    assert half > 0.0259 * np.log(4) / 18e3
+    assert half > 2 * 0.0259 * np.log(4) / (2 * BIAS_OHM)
+
+
+def test_its_resistor_has_the_process_at_the_ends():
+    slow, fast = (Corner.parse(f"{name}_027C_1v80") for name in ("ss", "ff"))
+    (line,) = (text for text in deck(bias(), SETUP, slow) if text.startswith("Rr "))
+    assert line.endswith(f"{{{BIAS_OHM:g}*rscale}}")
+    assert process.resistance("ss", 27) == pytest.approx(1.1) and process.resistance("ff", 27) == pytest.approx(0.9)
+    assert process.resistance("tt", 125) > 1.1 > process.resistance("tt", 27) == 1
+    currents = [-float(support.started(SETUP, one)[0].current["ibias"][-1]) for one in (slow, fast)]
+    assert currents[0] < 0.95 * BIAS < BIAS < 1.05 * currents[1]
 
 
 def test_a_cold_bias_without_its_starter_does_not_start():

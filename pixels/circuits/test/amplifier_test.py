@@ -5,10 +5,24 @@ from dataclasses import replace
 import pytest
 
 from talbot.models.parameters import ParameterError
-from talbot.pixels.circuits.amplifier import BIAS, PINS, TRIM_BITS, UNITS, AmplifierSizes, AmplifierSpec, amplifier, ota
+from talbot.pixels.circuits.amplifier import (
+    BIAS,
+    EFFICIENCY,
+    LEG,
+    PINS,
+    SINKS,
+    SPLIT,
+    TRIM_BITS,
+    UNITS,
+    AmplifierSpec,
+    amplifier,
+    ota,
+    size,
+)
 from talbot.platforms.sky130 import analog as process
 
-SIZES = AmplifierSizes()
+SPEC = AmplifierSpec()
+SIZES = size(SPEC, 4.7e-12, process)
 AMPLIFIER = amplifier(SIZES)
 
 
@@ -19,13 +33,15 @@ def test_specification_is_the_sensors():
     assert spec.energy == pytest.approx(900e-6 / (30 * 384 * 384))
 
 
-@pytest.mark.parametrize("changes", [{"vref": 0.2}, {"gain": 0.0}, {"hold": float("nan")}, {"trim": 17}, {"energy": 0}])
+@pytest.mark.parametrize(
+    "changes", [{"vref": 0.2}, {"gain": 0.0}, {"hold": float("nan")}, {"trim": 17}, {"energy": 0}, {"track": 5e-9}]
+)
 def test_a_limit_out_of_range_is_refused_by_name(changes):
     with pytest.raises(ParameterError, match=f"{next(iter(changes))} = "):
         replace(AmplifierSpec(), **changes)
 
 
-@pytest.mark.parametrize("changes", [{"unit": 0.0}, {"gain": 17}, {"scale": 1.5}])
+@pytest.mark.parametrize("changes", [{"unit": 0.0}, {"gain": 17}])
 def test_a_size_out_of_range_is_refused_by_name(changes):
     with pytest.raises(ParameterError, match=f"{next(iter(changes))} = "):
         replace(SIZES, **changes)
@@ -48,20 +64,33 @@ def test_the_amplifier_is_whole_and_its_trim_binary():
     assert trim == {f"b{k}": 1 << k for k in range(TRIM_BITS)}
 
 
-def test_currents_of_tail_and_sinks_fit():
-    """A sink carries half of the tail's current and the branch's; both are mirrors of the bias."""
-    w = {t.name: t.w for t in ota(1.0).transistors}
-    bias_p = BIAS * w["bias_to_p"] / w["bias_n"]
-    tail = bias_p * sum(w[f"tail_{k}"] for k in range(3)) / w["bias_p"]
-    sink = BIAS * w["sink_p"] / w["bias_n"]
-    assert w["sink_p"] == w["sink_n"] and sink - tail / 2 > 0.2 * sink
-    half = {t.name: t.w for t in ota(0.5).transistors}
-    assert half["sink_p"] == w["sink_p"] / 2 and half["bias_n"] == w["bias_n"]
+def test_the_current_follows_from_time_and_load():
+    """A tail of twice the parts for a little more than twice the load, and for half the time."""
+    tails = SIZES.ota.tails
+    assert 1.9 * tails < size(SPEC, 10e-12, process).ota.tails < 2.6 * tails
+    slower = replace(SPEC, hold=183e-9, sample=3e-6)  # twice what is left of a cycle after track and slewing
+    assert size(slower, 4.7e-12, process).ota.tails < 0.65 * tails
+    # A pair that works at gm / I has gm / 2 of the tail's current on each side
+    current = tails * LEG * BIAS / 2
+    assert process.operating("p_lvt", 0.5, EFFICIENCY["pair"]).density == pytest.approx(
+        current / SIZES.ota.pair, rel=0.1
+    )
+
+
+def test_sinks_are_their_diodes_and_carry_the_pair():
+    """A sink is SINKS diodes, the pair's parts are as SPLIT says: what is above one is the branch's."""
+    devices = {}
+    for t in ota(SIZES.ota).transistors:
+        name = t.name.rstrip("0123456789").rstrip("_")
+        devices[name] = devices.get(name, 0) + t.w
+    assert devices["sink_p"] == pytest.approx(SINKS * devices["diode_p"])
+    assert devices["inp"] == pytest.approx((SPLIT - 1) * devices["inp_steer"], rel=1e-3)
+    assert SINKS > SPLIT - 1 and devices["sink_n"] == devices["sink_p"]
 
 
 def test_a_missing_capacitor_or_switch_is_named():
     with pytest.raises(ParameterError, match="circuit amplifier: net bottom5 at device select5: must have two ends"):
         AMPLIFIER.without("b5").check(process)
-    broken = AMPLIFIER.replaced(ota(1.0).without("bias_p").without("bias_to_p"))
-    with pytest.raises(ParameterError, match="circuit ota: net vbp at device bias_to_n: must have a driver"):
+    broken = AMPLIFIER.replaced(ota(SIZES.ota).without("cascode_p").without("bias_to_pc"))
+    with pytest.raises(ParameterError, match="circuit ota: net vcp at device down_p: must have a driver"):
         broken.check(process)

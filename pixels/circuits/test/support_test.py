@@ -36,5 +36,5 @@ def test_a_line_has_the_resistance_and_capacitance_of_its_columns():
 def test_what_is_broken_is_named():
     with pytest.raises(ParameterError, match="circuit row_line: net n8 at device a8: must have two ends"):
         row_line(SPEC).without("b7").check(process)
-    with pytest.raises(ParameterError, match="circuit bias: net source at device four: must have two ends"):
+    with pytest.raises(ParameterError, match="circuit bias: net source at device four_0: must have two ends"):
         bias().without("r").check(process)
