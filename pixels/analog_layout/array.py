@@ -20,7 +20,7 @@ from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.analog import AnalogMasks
 
 from .device import Strap
-from .flat import Plate
+from .flat import Plate, Tap
 from .pattern import SIDE
 from .strip import FOURTH, SECOND, THIRD, TRACK, TRACK_PITCH
 
@@ -81,11 +81,13 @@ class ArrayPlan:
 
 @dataclass
 class Array:
-    """A drawn array. tracks: of the bus. exit: (x, y) at which the common node leaves, on the fourth metal."""
+    """A drawn array. tracks: of the bus. exit: (x, y) at which the common node leaves, on the fourth metal. taps:
+    of each capacitor in each column, on the third metal."""
 
     plan: ArrayPlan
-    tracks: dict[str, Strap] = field(default_factory=dict)
+    tracks: list[Strap] = field(default_factory=list)
     exit: tuple[float, float] = (0.0, 0.0)
+    taps: list[Tap] = field(default_factory=list)
 
 
 def edges(sizes: DacSizes, masks: AnalogMasks) -> tuple[float, float]:
@@ -137,7 +139,7 @@ class _Drawing:
         made = Array(self.plan)
         for k, net in enumerate(self.plan.buses()):
             v = TRACK_PITCH * (k + 0.5)
-            made.tracks[net] = Strap(net, self.plan.left, self.plan.right, self.y(v))
+            made.tracks.append(Strap(net, self.plan.left, self.plan.right, self.y(v)))
             self.metal(THIRD, self.plan.left, v - TRACK / 2, self.plan.right, v + TRACK / 2)
         for column in range(SIDE):
             self._column(column, made)
@@ -159,7 +161,7 @@ class _Drawing:
 
     def _line(self, net: str, x: float, end: float, made: Array) -> None:
         """From the bus to ``end``, a distance from its far side."""
-        track = made.tracks[net].y
+        track = next(one.y for one in made.tracks if one.net == net)
         start = (track - self.origin) * self.way
         self.metal(SECOND, x - LINE / 2, start, x + LINE / 2, end)
         self.canvas.stack(x, track, SECOND, THIRD)
@@ -180,6 +182,10 @@ class _Drawing:
             self._lower(row, column, self.plan.edge_um)
             v = self.middle(row, column)[1] - self.plan.edge_um / 2 - VIA_IN
             self.canvas.stack(places[str(own[row])], self.y(v), SECOND, THIRD)
+        for name, x in places.items():
+            rows = [int(row) for row in (own == name).nonzero()[0]]
+            v = self.middle(rows[len(rows) // 2], column)[1] - self.plan.edge_um / 2 - VIA_IN
+            made.taps.append(Tap(name, len(rows), x, self.y(v)))
 
     def _half(self, made: Array) -> None:
         """Half a unit in the place of a dummy, its line beside those of the column below it."""
@@ -191,6 +197,7 @@ class _Drawing:
         self._line(self.plan.nets[OUT], beside, at + LINE / 2, made)
         self.metal(SECOND, beside - LINE / 2, at - LINE / 2, x, at + LINE / 2)
         self.canvas.stack(x, self.y(at), SECOND, THIRD)
+        made.taps.append(Tap(OUT, 0.5, x, self.y(at)))
 
     def _ring(self, made: Array) -> None:
         """The dummies: lower plates in one piece but for the half's place, upper ones joined, both on the ground."""

@@ -13,20 +13,23 @@ from talbot.platforms.analog import AnalogMasks
 from . import flat
 from .comparator import comparator_plans, devices, draw_comparator, least_half
 from .device import Device
-from .strip import RAIL_ENDS, THIRD, Strip, join_rails
+from .strip import RAIL_ENDS, THIRD, Strip, Terminal, join_rails
 
 MARGIN = 2.0  # of a cell beyond its rails, um
 
 
 @dataclass(frozen=True)
 class Cell:
-    """A drawn cell. ports: in the order of its pins. devices: its transistors in fingers. plates: its capacitors."""
+    """A drawn cell. ports: in the order of its pins. devices: its transistors in fingers. plates: its capacitors.
+    terminals: of its transistors. taps: of its capacitors, as `Array` has them, under the names of ``plates``."""
 
     layout: "db.Layout"
     cell: "db.Cell"
     ports: tuple[str, ...]
     devices: tuple[Device, ...]
     plates: tuple[flat.Plate, ...] = ()
+    terminals: tuple[Terminal, ...] = ()
+    taps: tuple[flat.Tap, ...] = ()
 
     @property
     def transistors(self) -> list[Transistor]:
@@ -56,14 +59,15 @@ def comparator_cell(masks: AnalogMasks, sizes: ComparatorSizes) -> Cell:
     half = least_half(comparator_plans(drawn, axis, (0, 2 * axis))) + 0.6
     strips = draw_comparator(canvas, masks, comparator_plans(drawn, axis, (axis - half, axis + half)), MARGIN)
     finish(canvas, strips, circuit.ports[:4])
-    return Cell(canvas.layout, canvas.cell, circuit.ports, tuple(drawn.values()))
+    ends = tuple(one for strip in strips for one in strip.terminals)
+    return Cell(canvas.layout, canvas.cell, circuit.ports, tuple(drawn.values()), terminals=ends)
 
 
 def finish(canvas: Canvas, strips: Sequence[Strip], pins: Iterable[str]) -> None:
-    """Join the rails, put the pins on the first track of their nets, draw the outline."""
+    """Join the rails, put the pins on the first piece of a track of their nets, draw the outline."""
     join_rails(canvas, strips)
     for net in pins:
-        track = next(strip.tracks[net] for strip in strips if net in strip.tracks)
+        track = next(track for strip in strips for track in strip.tracks if track.net == net)
         canvas.label(THIRD, net, track.left + 0.3, track.y)
     plan = strips[0].plan
     bottom, top = strips[0].y, strips[-1].y + strips[-1].plan.height_um

@@ -68,18 +68,18 @@ def comparator_plans(
         axis,
         ROOM,
     )
-    outputs = latch_p.drain, latch_n.drain
-    pairs = ((inn.gate, inp.gate), outputs, (inp.drain, inn.drain))
+    outputs = latch_n.drain, latch_p.drain
+    split = (inp.gate, inn.gate), (inp.drain, inn.drain)
     through = frozenset({inp.gate, inn.gate, strobe, *outputs, *shared})
-    arm_plan = Plan(n, p, *ends, through, pairs, axis)
+    arm_plan = Plan(n, p, *ends, through, split, (outputs,), axis)
     rows = []
     for kind in ("n", "p"):
         kinds = [f"{side}.{kind}{leg}" for leg in ("a", "b") for side in ("hold_n", "hold")]
         rows.append(mirrored(None, named(f"buffer_n.{kind}", f"buffer_p.{kind}", *kinds), axis, HOLD_ROOM))
     held, inverse = (d[f"{prefix}{side}.na"].transistor.drain for side in ("hold", "hold_n"))
     settled = tuple(d[f"{prefix}{side}.n"].transistor.drain for side in ("buffer_n", "buffer_p"))
-    hold_pairs = (outputs, (settled[0], settled[1]), (held, inverse))
-    return arm_plan, Plan(rows[0], rows[1], *ends, frozenset({*outputs, held}), hold_pairs, axis)
+    split = outputs, (settled[0], settled[1])
+    return arm_plan, Plan(rows[0], rows[1], *ends, frozenset({*outputs, held}), split, ((inverse, held),), axis)
 
 
 def draw_comparator(canvas: Canvas, masks: AnalogMasks, plans: tuple[Plan, Plan], y: float) -> list[Strip]:
@@ -87,8 +87,8 @@ def draw_comparator(canvas: Canvas, masks: AnalogMasks, plans: tuple[Plan, Plan]
     arm, hold = plans
     lower = draw_strip(canvas, masks, arm, y)
     upper = draw_strip(canvas, masks, hold, y + arm.height_um + BETWEEN_STRIPS)
-    for net, way in zip(arm.pairs[1], (-1, 1), strict=True):
-        trunk(canvas, (lower.tracks, upper.tracks), net, (arm.axis or 0.0) + way * CROSSING)
+    for net, way in zip(arm.twisted[0], (-1, 1), strict=True):
+        trunk(canvas, (*lower.tracks, *upper.tracks), net, (arm.axis or 0.0) + way * CROSSING)
     return [lower, upper]
 
 

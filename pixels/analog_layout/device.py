@@ -30,13 +30,16 @@ TALLEST = 5.0  # of a finger that is chosen here
 
 
 class Strap(NamedTuple):
-    """Where a net is on a metal: from ``left`` to ``right`` at ``y``, um. fixed: it must not be longer."""
+    """Where a net is on a metal: from ``left`` to ``right`` at ``y``, um. fixed: it must not be longer. end: of its
+    transistor, g, d or s; railed: it is on the rail."""
 
     net: str
     left: float
     right: float
     y: float
     fixed: bool = False
+    end: str = ""
+    railed: bool = False
 
 
 @dataclass(frozen=True)
@@ -123,7 +126,7 @@ def draw_device(
     upright: bool = True,
     room: tuple[float, float] | None = None,
 ) -> list[Strap]:
-    """Draw ``device``, the west end of its diffusion at ``x``; returns its straps, without those on the rail.
+    """Draw ``device``, the west end of its diffusion at ``x``; returns its straps: gate, drain, source.
 
     room: x of the neighbours' rooms, up to which the implant goes: between two of them there is no slit.
     """
@@ -183,9 +186,8 @@ class _Drawn:
         source = self._strap(t.source, sources, low - SOURCE)
         if t.source == t.bulk:
             self.box(base.metals[1].gds, source.left, 0, source.right, low - SOURCE)
-        else:
-            straps.append(source._replace(fixed=d.dummies))
-        return straps
+        source = source._replace(fixed=d.dummies, railed=t.source == t.bulk)
+        return [one._replace(end=end) for one, end in zip((*straps, source), "gds", strict=True)]
 
     def _stripe(self, x: float, bottom: float) -> None:
         """A column of contacts, under the lowest metal from ``bottom`` to the end of the finger."""

@@ -17,6 +17,15 @@ class Plate(NamedTuple):
     edge: float
 
 
+class Tap(NamedTuple):
+    """Where some units of a capacitor meet their net, um."""
+
+    name: str
+    units: float
+    x: float
+    y: float
+
+
 def transistors(circuit: Circuit, prefix: str = "", nets: Mapping[str, str] | None = None) -> Iterator[Transistor]:
     """All transistors, those of inner circuits with names and nets like ``arm.tail``."""
     known = {} if nets is None else nets

@@ -10,7 +10,7 @@
 Between strips and arrays nets run on the fourth metal: what passes an array beside it, the rest over the strips.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from talbot.pixels.circuits.dac import BITS
@@ -45,6 +45,7 @@ AWAY = 1.6  # of an array from a rail
 WEST, EAST = ("lane_a", "bottoms", "bottoms_n", "refp", "refn"), ("vcm", "fire", "comparator", "sample_1", "sample_2")
 GATES = (("n", "p"),), (("na", "pa"), ("nb", "pb"))  # of an inverter, of a gate of two inputs
 STEP = 3.0  # of the nets over the strips
+JOG = 5.0  # of the common nodes' ways into the comparator from its axis
 Column = tuple[Device | None, Device | None]
 
 
@@ -142,11 +143,10 @@ def lane_cell(masks: AnalogMasks, sizes: LaneSizes) -> Cell:
     top = y + plan.balance_switches.height_um + MARGIN
     strips = [*south, *middle, north]
     join_rails(canvas, strips)
-    for array, net in ((dac, "top"), (balance, "other")):
-        _meet(canvas, array, middle[0], net)
+    for array, net, way in ((dac, "top", 1), (balance, "other", -1)):
+        _meet(canvas, array, middle[0], net, way * JOG)
         _ground(canvas, array, plan.left - RAIL_AT)
-    tracks = [strip.tracks for strip in south] + [dac.tracks, *(strip.tracks for strip in middle), balance.tracks]
-    tracks.append(north.tracks)
+    tracks = [*dac.tracks, *balance.tracks, *(track for strip in strips for track in strip.tracks)]
     _nets(canvas, plan, tracks, top)
     ends = RAIL_ENDS + WELL_ENDS
     canvas.box(masks.base.outline, plan.left - ends, 0, plan.right + ends, top)
@@ -155,26 +155,28 @@ def lane_cell(masks: AnalogMasks, sizes: LaneSizes) -> Cell:
         for side, array in (("dac", plan.dac), ("balance", plan.balance))
         for plate in array.plates()
     ]
-    return Cell(canvas.layout, canvas.cell, PINS, tuple(d.values()), tuple(plates))
+    ends = tuple(one for strip in strips for one in strip.terminals)
+    arrays = ("dac", dac), ("balance", balance)
+    taps = [tap._replace(name=f"{side}_{tap.name}") for side, array in arrays for tap in array.taps]
+    return Cell(canvas.layout, canvas.cell, PINS, tuple(d.values()), tuple(plates), ends, tuple(taps))
 
 
-def _meet(canvas: Canvas, array: Array, arm: Strip, net: str) -> None:
-    """A common node from its array to its track in the comparator."""
+def _meet(canvas: Canvas, array: Array, arm: Strip, net: str, aside: float) -> None:
+    """A common node from its array to its half of a track in the comparator, ``aside`` of the axis."""
     x, y = array.exit
-    end = arm.tracks[net].y
-    half = TRACK / 2
-    canvas.wire(FOURTH, x - TRUNK / 2, min(y, end - half), x + TRUNK / 2, max(y, end + half))
-    canvas.stack(x, end, THIRD, FOURTH)
+    half, to = TRUNK / 2, x + aside
+    canvas.wire(FOURTH, min(x, to) - half, y - half, max(x, to) + half, y + half)
+    trunk(canvas, arm.tracks, net, to, y)
 
 
 def _ground(canvas: Canvas, array: Array, x: float) -> None:
     """The dummies' net to what joins the lower rails."""
-    track = array.tracks[array.plan.ground]
+    track = next(one for one in array.tracks if one.net == array.plan.ground)
     canvas.wire(THIRD, x - TRACK / 2, track.y - TRACK / 2, track.left, track.y + TRACK / 2)
     canvas.stack(x, track.y, THIRD, FOURTH)
 
 
-def _nets(canvas: Canvas, plan: LanePlan, tracks: Sequence[Mapping[str, Strap]], top: float) -> None:
+def _nets(canvas: Canvas, plan: LanePlan, tracks: Sequence[Strap], top: float) -> None:
     """What goes from strip to strip, up to the pins."""
     places: dict[str, float] = {net: plan.left + CHANNEL_FIRST + CHANNEL_PITCH * k for k, net in enumerate(WEST)}
     places |= {net: plan.right - CHANNEL_FIRST - CHANNEL_PITCH * k for k, net in enumerate(EAST)}

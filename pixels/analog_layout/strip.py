@@ -6,12 +6,14 @@
               n transistors
     rail vss  =========================   taps of the substrate under it
 
-Tracks of a pair (``pairs``) are neighbours of one length, and the drops to one of them cross the other, so that both
-have the same metal. In a strip with an axis every device has its mirror image and so have the drops.
+In a strip with an axis every device has its mirror image, and so have drops and tracks: two nets of one side each
+(``split``) have the halves of one track; two nets that are on both sides (``twisted``) have halves of two tracks and
+change places on the axis. What is not symmetric is that crossing alone.
 """
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from talbot.models.parameters import ParameterError
 from talbot.pixels.layout.canvas import Canvas
@@ -29,6 +31,7 @@ OPEN_ENDS = 0.72  # beyond a single row's gates
 WELL_ENDS = 0.50  # of the well beyond its taps
 RAIL_ENDS, RAIL_AT, RAIL_TRUNK = 1.7, 1.0, 1.0  # of a rail beyond the tracks; what joins rails: from there, its width
 TRUNK = 0.5  # um, of a net from strip to strip
+SPLIT, CROSS = 0.2, 0.9  # of the axis from the halves of tracks
 SECOND, THIRD, FOURTH = 2, 3, 4
 TRIES = 60
 
@@ -47,8 +50,8 @@ class Placed:
 class Plan:
     """A strip that is to be drawn.
 
-    n, p: rows. left, right: its ends, um. axis: of its symmetry, or None. pairs: nets that must match. through: nets
-    whose tracks go from end to end: those that meet other strips.
+    n, p: rows. left, right: its ends, um. axis: of its symmetry, or None. split, twisted: pairs of nets that are mirror
+    images, the western one first. through: nets whose tracks go from end to end: those that meet other strips.
     """
 
     n: tuple[Placed, ...]
@@ -56,7 +59,8 @@ class Plan:
     left: float
     right: float
     through: frozenset[str]
-    pairs: tuple[tuple[str, str], ...] = ()
+    split: tuple[tuple[str, str], ...] = ()
+    twisted: tuple[tuple[str, str], ...] = ()
     axis: float | None = None
     rails: tuple[str, str] = ("vss", "vdd")
 
@@ -84,64 +88,69 @@ class Plan:
             found[net] = self.left, self.right
         if self.axis is not None:
             found = {net: (min(a, 2 * self.axis - b), max(b, 2 * self.axis - a)) for net, (a, b) in found.items()}
-        for pair in self.pairs:
-            both = [found[net] for net in pair if net in found]
-            if both:
-                found |= dict.fromkeys(pair, (min(a for a, _ in both), max(b for _, b in both)))
         return found
 
-    def _rows(self) -> list[dict[str, tuple[float, float]]]:
-        """Nets that share a track, from the first track on; those of a pair are in consecutive ones."""
-        spans, rows = self.spans(), list[dict[str, tuple[float, float]]]()
-        paired = {net for pair in self.pairs for net in pair}
-        for pair in self.pairs:
-            rows += [{net: spans[net]} for net in pair if net in spans]
-        for net in sorted(spans, key=lambda net: (-(spans[net][1] - spans[net][0]), net)):
-            if net in paired:
-                continue
+    def _rows(self) -> list[list[tuple[str, float, float]]]:
+        """(net, left, right) of what is on each track, from the first track on."""
+        spans, rows = self.spans(), list[list[tuple[str, float, float]]]()
+        for pair in (*self.split, *self.twisted):
+            left, right = min(spans[net][0] for net in pair), max(spans[net][1] for net in pair)
+            away, axis = SPLIT if pair in self.split else CROSS, self.axis or 0.0
+            ends = (left, axis - away), (axis + away, right)
+            for nets in (pair, pair[::-1])[: 1 if pair in self.split else 2]:
+                rows.append([(net, *end) for net, end in zip(nets, ends, strict=True)])
+        fixed, paired = len(rows), {net for pair in (*self.split, *self.twisted) for net in pair}
+        for net in sorted(spans.keys() - paired, key=lambda net: (spans[net][0] - spans[net][1], net)):
             a, b = spans[net]
-            fitting = (
-                row for row in rows[2 * len(self.pairs) :] if all(b + 1 < c or d + 1 < a for c, d in row.values())
-            )
+            fitting = (row for row in rows[fixed:] if all(b + 1 < c or d + 1 < a for _, c, d in row))
             row = next(fitting, None)
             if row is None:
-                row = {}
+                row = []
                 rows.append(row)
-            row[net] = a, b
+            row.append((net, a, b))
         return rows
 
-    def tracks(self) -> dict[str, float]:
-        """Heights of the tracks over the lower rail, um: spread about the middle."""
+    def tracks(self) -> list[Strap]:
+        """Tracks by their height over the lower rail, um: spread about the middle."""
         rows = self._rows()
         first = self.height_um / 2 - TRACK_PITCH * (len(rows) - 1) / 2
-        return {net: first + TRACK_PITCH * k for k, row in enumerate(rows) for net in row}
+        return [Strap(net, a, b, first + TRACK_PITCH * k) for k, row in enumerate(rows) for net, a, b in row]
+
+
+class Terminal(NamedTuple):
+    """Where a transistor meets the first metal."""
+
+    device: str
+    strap: Strap
 
 
 @dataclass
 class Strip:
-    """A drawn strip. y: of its lower rail. tracks: of every net, its height and ends. drops: (net, x, low, high)."""
+    """A drawn strip. y: of its lower rail. tracks: pieces of nets' tracks. drops: (net, x, low, high).
+    terminals: of its transistors."""
 
     plan: Plan
     y: float
-    tracks: dict[str, Strap] = field(default_factory=dict)
+    tracks: list[Strap] = field(default_factory=list)
     drops: list[tuple[str, float, float, float]] = field(default_factory=list)
+    terminals: list[Terminal] = field(default_factory=list)
 
 
 def draw_strip(canvas: Canvas, masks: AnalogMasks, plan: Plan, y: float) -> Strip:
     """Draw a strip, the middle of its lower rail at ``y``. Raises ParameterError where a drop has no room."""
     made, top = Strip(plan, y), y + plan.height_um
-    spans, heights = plan.spans(), plan.tracks()
-    made.tracks = {net: Strap(net, *spans[net], y + heights[net]) for net in heights}
+    made.tracks = [track._replace(y=y + track.y) for track in plan.tracks()]
     straps: list[tuple[Strap, Placed]] = []
     for row, rail_y, upright in ((plan.n, y, True), (plan.p, top, False)):
         for placed in row:
-            straps += [
-                (s, placed)
-                for s in draw_device(canvas, masks, placed.device, placed.x, rail_y, upright, (placed.low, placed.high))
-            ]
+            drawn = draw_device(canvas, masks, placed.device, placed.x, rail_y, upright, (placed.low, placed.high))
+            made.terminals += [Terminal(placed.device.transistor.name, s) for s in drawn]
+            straps += [(s, placed) for s in drawn if not s.railed]
     _drops(canvas, made, straps)
-    for track in made.tracks.values():
+    for track in made.tracks:
         canvas.wire(THIRD, track.left, track.y - TRACK / 2, track.right, track.y + TRACK / 2)
+    for pair in plan.twisted:
+        _cross(canvas, made, pair, plan.axis or 0.0)
     base = masks.base
     if plan.n:
         _rail(canvas, plan, y, base.pplus)
@@ -206,7 +215,10 @@ def _assigned(
     reaches = [[_reach(made, strap) for strap, _ in group] for group in groups]
     for index, (group, ends) in enumerate(zip(groups, reaches, strict=True)):
         central = axis is not None and len(group) == 1 and abs(group[0][0].left + group[0][0].right - 2 * axis) < 1e-6
+        track = piece(made.tracks, group[0][0].net, (group[0][0].left + group[0][0].right) / 2)
         for x in _places(*group[0]):
+            if track and not track.left + TRACK / 2 <= x + 1e-9 <= track.right - TRACK / 2 + 2e-9:
+                continue
             pairs = [(group[0][0], x, *ends[0])]
             if central and axis is not None and abs(x - axis) > 1e-6:
                 pairs.append(
@@ -227,14 +239,34 @@ def _assigned(
     return kept, None
 
 
+def piece(tracks: Iterable[Strap], net: str, x: float) -> Strap | None:
+    """The piece of a net's track that reaches to ``x``, or the nearest one; None where it has none."""
+    own = [track for track in tracks if track.net == net]
+    return min(own, key=lambda track: max(track.left - x, x - track.right, 0.0), default=None)
+
+
 def _reach(made: Strip, strap: Strap) -> tuple[float, float]:
-    """Ends of a drop: the strap, its track, and that of the net which must match."""
-    plan, ends = made.plan, [strap.y]
-    if strap.net in plan.rails:
-        ends.append(made.y if strap.net == plan.rails[0] else made.y + plan.height_um)
-    pair = next((pair for pair in plan.pairs if strap.net in pair), (strap.net,))
-    ends += [made.tracks[net].y for net in pair if net in made.tracks]
-    return min(ends), max(ends)
+    """Ends of a drop: the strap and its track, or its rail."""
+    track = piece(made.tracks, strap.net, (strap.left + strap.right) / 2)
+    rail = made.y if strap.net == made.plan.rails[0] else made.y + made.plan.height_um
+    end = track.y if track else rail
+    return min(strap.y, end), max(strap.y, end)
+
+
+def _cross(canvas: Canvas, made: Strip, pair: tuple[str, str], axis: float) -> None:
+    """Both nets of ``pair`` change tracks: one on the tracks' metal, the other on the metal above."""
+    low, high = (piece(made.tracks, net, axis - 2 * CROSS) for net in pair)
+    if low is None or high is None:
+        raise ParameterError(f"nets {pair}: must have tracks to cross")
+    half = TRACK / 2
+    canvas.wire(THIRD, axis - CROSS, low.y - half, axis + half, low.y + half)
+    canvas.wire(THIRD, axis - half, low.y - half, axis + half, high.y + half)
+    canvas.wire(THIRD, axis - half, high.y - half, axis + CROSS, high.y + half)
+    out = CROSS + half
+    canvas.stack(axis - out, high.y, THIRD, FOURTH)
+    canvas.stack(axis + out, low.y, THIRD, FOURTH)
+    canvas.wire(FOURTH, axis - out - half, high.y - half, axis + out + half, high.y + half)
+    canvas.wire(FOURTH, axis + out - half, low.y - half, axis + out + half, high.y + half)
 
 
 def _free(x: float, low: float, high: float, others: Sequence[tuple[Strap, float, float, float]]) -> bool:
@@ -270,15 +302,16 @@ def _drop(canvas: Canvas, made: Strip, strap: Strap, x: float, ends: tuple[float
     canvas.wire(1, min(x - half, strap.left), strap.y - half, max(x + half, strap.right), strap.y + half)
     canvas.stack(x, strap.y, 1, SECOND)
     canvas.wire(SECOND, x - DROP / 2, ends[0] - DROP / 2, x + DROP / 2, ends[1] + DROP / 2)
-    if strap.net in made.tracks:
-        canvas.stack(x, made.tracks[strap.net].y, SECOND, THIRD)
+    track = piece(made.tracks, strap.net, x)
+    if track:
+        canvas.stack(x, track.y, SECOND, THIRD)
     else:
         canvas.stack(x, made.y if strap.net == made.plan.rails[0] else made.y + made.plan.height_um, 1, SECOND)
 
 
-def trunk(canvas: Canvas, tracks: Iterable[Mapping[str, Strap]], net: str, x: float, *beyond: float) -> None:
+def trunk(canvas: Canvas, tracks: Iterable[Strap], net: str, x: float, *beyond: float) -> None:
     """Join the tracks of ``net``, on the fourth metal at ``x``; beyond: y up to which it goes, too."""
-    ys = [own[net].y for own in tracks if net in own]
+    ys = [track.y for track in tracks if track.net == net and track.left <= x <= track.right]
     for y in ys:
         canvas.stack(x, y, THIRD, FOURTH)
     ends = [*(y - TRACK / 2 for y in ys), *(y + TRACK / 2 for y in ys), *beyond]
@@ -302,10 +335,7 @@ def join_rails(canvas: Canvas, strips: Sequence[Strip]) -> None:
 
 
 def in_columns(
-    columns: Sequence[tuple[Device | None, Device | None]],
-    left: float,
-    room: float = 0.0,
-    drops: Mapping[str, int] = {},
+    columns: Sequence[tuple[Device | None, Device | None]], left: float, room: float = 0.0
 ) -> tuple[tuple[Placed, ...], tuple[Placed, ...], float]:
     """Rows of (n, p) above each other from ``left`` on; room: more between them. Returns the rows and the east end."""
     n, p, x = list[Placed](), list[Placed](), left

@@ -130,6 +130,20 @@ def instance(name: str, nodes: tuple[str, str, str, str], role: str, w: float, l
     return f"X{name} {' '.join(nodes)} {ROLES[role]} " + " ".join(f"{k}={v:.6g}" for k, v in size.items())
 
 
+def finger(
+    name: str,
+    nodes: tuple[str, str, str, str],
+    role: str,
+    w: float,
+    l: float,  # noqa: E741
+    count: int,
+    junctions: tuple[float, ...],
+) -> str:
+    """A transistor of ``count`` fingers of ``w``. junctions: um2 of source and drain, um around, of a finger."""
+    size = {"w": w, "l": l, "m": count, **dict(zip(("as", "ad", "ps", "pd"), junctions, strict=True)), **models.STRESS}
+    return f"X{name} {' '.join(nodes)} {ROLES[role]} " + " ".join(f"{k}={v:.6g}" for k, v in size.items())
+
+
 def cards(process: str, sizes: Collection[tuple[str, float, float]], mismatch: bool = False) -> list[str]:
     """The models' lines for (role, w, l) at tt, ss, ff, sf or fs; mismatch: every instance is drawn."""
     lines = models.cards("binned", process, {(ROLES[role], w, length) for role, w, length in sizes})

@@ -50,10 +50,10 @@ def test_gates_and_junctions_are_drawn(role, finger, length, fingers, dummies, u
     assert all(strap.y * (1 if upright else -1) > 0 for strap in straps)
 
 
-def test_a_source_on_the_rail_has_no_strap_and_bad_fingers_are_refused():
+def test_a_source_on_the_rail_is_marked_and_bad_fingers_are_refused():
     t = transistor()._replace(source="vss")
     straps = draw_device(new_canvas(MASKS, "device"), MASKS, Device(t, 2), 0, 0)
-    assert {strap.net for strap in straps} == {"d", "g"}
+    assert [strap.railed for strap in straps] == [False, False, True]
     with pytest.raises(ParameterError, match="1 or even"):
         Device(transistor(w=3.0), 3)
     with pytest.raises(ParameterError, match="on the grid"):
