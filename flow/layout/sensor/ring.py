@@ -84,10 +84,11 @@ class Pads:
         """Pins of the widest filler: the tracks."""
         return self.cells[next(iter(self.process.fillers.values()))]
 
-    def outline(self, cell: str) -> Box:
-        """Of a pad or a filler, drawn as in the south."""
+    def box(self, place: Place) -> Box:
+        """Outline of a pad or a filler."""
         widths = {name: round(um * UM) for um, name in self.process.fillers.items()}
-        return 0, 0, widths.get(cell, self.frame.pad), self.frame.depth
+        width = widths.get(place.cell, self.frame.pad)
+        return self.frame.box(place.side, place.at, (0, 0, width, self.frame.depth))
 
     def core_pin(self, kind: str) -> Box:
         """Of a signal's pad of this function its pin to the core, on the lowest routing metal."""

@@ -111,7 +111,7 @@ def as_json(
     return {
         "die": [nm(die.width_um), nm(die.height_um)],
         "blocks": {name: {"cell": b.cell, "orientation": b.orientation, "box": b.box} for name, b in blocks},
-        "ring": [place._asdict() | {"box": frame.box(place.side, place.at, pads.outline(place.cell))} for place in places],
+        "ring": [place._asdict() | {"box": pads.box(place)} for place in places],
         "frame": asdict(frame),
         "corner": pads.process.corner,
         "nets": ring.nets(made.nets, places),

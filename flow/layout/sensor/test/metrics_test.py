@@ -23,6 +23,7 @@ pytestmark = pytest.mark.skipif(
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(3600)
 def test_a_small_die(tmp_path):
     given = small.files(tmp_path)
     library = Runner(tmp_path / "shared", {})
@@ -46,7 +47,19 @@ def test_a_small_die(tmp_path):
         "history.jsonl",
         *(
             f"asp_sensor.{suffix}"
-            for suffix in ("gds", "v", "drc.lyrdb", "connectivity.json", "parasitics.json", "sdc", "png", "blocks.png")
+            for suffix in (
+                "gds",
+                "v",
+                "drc.lyrdb",
+                "connectivity.json",
+                "parasitics.json",
+                "sdc",
+                "png",
+                "blocks.png",
+                "pins.md",
+                "package.png",
+                "package.svg",
+            )
         ),
     }
     assert "insides of the black boxes" in (tmp_path / "out" / "report.html").read_text()
