@@ -60,7 +60,7 @@ def write(made: Made, s: dict[str, Any]) -> None:
         picture=shown[1].image,
         about=f"{s['rows']} x {s['cols']} pixels; make pixel-layout",
         tiles=_tiles(s),
-        sections=[*(Section(pictures=[one]) for one in shown), *_sections(s)],
+        sections=[Section(pictures=shown), *_sections(s)],
     )
     made.path("pixel_layout.html").write_text(text)
 

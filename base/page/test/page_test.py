@@ -5,8 +5,10 @@ import re
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from PIL import Image
 
+from talbot.base.charts import svg
 from talbot.base.command import main
 from talbot.base.page import TABLES, Picture, Scale, Section, Tile, command, index, render, units
 
@@ -28,6 +30,8 @@ def page(**more):
         ("37 x 50 pixels", "37 × 50 pixels"),
         ("use us, sum uml", "use us, sum uml"),
         (0.5, "0.5"),
+        ("-0.00", "0.00"),
+        ("-0.01", "-0.01"),
     ],
 )
 def test_units(text, written):
@@ -73,3 +77,10 @@ def test_a_folder_without_a_page_gets_no_index(tmp_path):
     index.refresh(tmp_path)
     assert not list(tmp_path.iterdir())
     assert main(command, ["--out", str(tmp_path / "missing")]) == 2
+
+
+def test_what_is_broad_has_more_than_a_column():
+    wide = PICTURE._replace(image=Image.new("RGB", (20, 5)))
+    figures = [Figure((width, 3)) for width in (4.6, 12)]
+    text = page(sections=[Section(pictures=[PICTURE, wide], charts=[svg(figure) for figure in figures])])
+    assert text.count('<figure class="broad">') == text.count('class="broad" viewBox') == 1
