@@ -167,16 +167,22 @@ def load_of(setup: Setup, lane: LaneSizes, corner: Corner) -> float:
     return lane.dac.total * setup.scale(corner) * (1 + PARASITIC)
 
 
+def biased(circuit: Circuit) -> Circuit:
+    """An amplifier with a bias of its own. Pins: its own without ibias, then vdd_bias."""
+    return Circuit(
+        "biased",
+        (*(pin for pin in PINS if pin != "ibias"), "vdd_bias"),
+        instances=(
+            Instance("amplifier", circuit, PINS),
+            Instance("bias", bias(), ("ibias", "vdd_bias", "vss")),
+        ),
+    )
+
+
 def opened(setup: Setup, spec: AmplifierSpec, circuit: Circuit, corner: Corner, seed: int | None = None) -> Simulator:
     """An ngspice process of an amplifier with its bias and a lane's array. seed: of the models' mismatch."""
-    ports = tuple(pin for pin in PINS if pin != "ibias")
-    whole = Circuit(
-        "biased",
-        (*ports, "vdd_bias"),
-        instances=(Instance("amplifier", circuit, PINS), Instance("bias", bias(), ("ibias", "vdd_bias", "vss"))),
-    )
     lines = [
-        *deck(whole, setup, corner, seed=seed),
+        *deck(biased(circuit), setup, corner, seed=seed),
         f".model to_lane sw vt={corner.supply / 2:g} vh=0 ron={LANE_OHM:g} roff=1e12",
         "Strack out lane track 0 to_lane",
         "Skeep lane before keep 0 to_lane",
@@ -196,8 +202,9 @@ def sample(
     code: int,
     before: float,
     ends: bool = False,
+    until: int = LATER,
 ) -> Wave:
-    """A transient: a sample of a and b V below the columns' reset level. ends: off after the hold.
+    """A transient: a sample of a and b V below the columns' reset level. ends: off after the hold. until: cycles.
 
     before: V that the sample before left on the lane, and on the amplifier's output until it is off.
     """
@@ -228,7 +235,7 @@ def sample(
         "before": [(0.0, before)],
     }
     stimulus |= {f"g{k}": [(0.0, vdd * (code >> k & 1))] for k in range(TRIM_BITS)}
-    return spice.transient(stimulus, {"lane": load}, LATER * spec.hold, spec.hold / 20)
+    return spice.transient(stimulus, {"lane": load}, until * spec.hold, spec.hold / 20)
 
 
 def _settling(wave: Wave, spec: AmplifierSpec, within: float) -> float:

@@ -45,7 +45,7 @@ PAIR, TAIL, SINK, LEGS = ("p_lvt", 0.5), ("p", 0.5), ("n_lvt", 0.5), ("n_lvt", 1
 CASCODE, CASCODE_P, TOP = ("n_lvt", 0.5), ("p_lvt", 0.5), ("p", 0.5)
 STACK, TRIODE = 3.0, 8.0  # cascode's gate: parts of the sinks' and cascodes' widths; the lower is in triode
 STACK_P = (3.0, ("p_lvt", 2.0))  # the diode that makes the p cascodes' gate
-UNIT, GAIN = 2.3499e-15, 2.4  # F, three fringe cells; a column's volts to the lane's
+UNIT, CELLS, GAIN = 2.3499e-15, 3, 2.4  # F, of so many fringe cells; a column's volts to the lane's
 # Transconductance over current, 1/V: high where it is what is wanted, low where matching or a drain's level is
 EFFICIENCY = {"pair": 14.0, "tail": 9.0, "sink": 17.0, "cascode": 18.0, "top": 12.0, "cascode_p": 12.0, "leg": 12.0}
 SLEW = 10e-9  # s of the signal's time in which the output's current is at its limit
@@ -137,15 +137,17 @@ class OtaSizes:
 
 @dataclass(frozen=True)
 class AmplifierSizes:
-    """Sizes; unit: F, of a capacitor. gain: of a column's volts, 0.1..16."""
+    """Sizes; unit: F, of a capacitor of so many cells. gain: of a column's volts, 0.1..16."""
 
     ota: OtaSizes
     unit: float = UNIT
     gain: float = GAIN
+    cells: int = CELLS
 
     def __post_init__(self) -> None:
         check_real("unit", self.unit, 1e-16, 1e-13)
         check_real("gain", self.gain, 0.1, 16)
+        check_int("cells", self.cells, 1, 100)
 
     @property
     def feedback(self) -> float:
