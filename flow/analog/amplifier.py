@@ -56,6 +56,7 @@ class AmplifierResult:
     settling: s after the hold's begin, to half an LSB. left: at its end. ambient: change of a difference under ambient
     light. trim: peak error of three steps around the middle, in steps. energy: J of a sample, with what flows until
     the next and the bias's share. always: J of a sample of an amplifier that is never off. off: A while it is.
+    points: (ideal, sampled) of differences.
     """
 
     gain: float
@@ -68,6 +69,7 @@ class AmplifierResult:
     energy: float
     always: float
     off: float
+    points: list[tuple[float, float]]
     runs: int
     repeated: int
 
@@ -116,6 +118,7 @@ def measure(
             energy=energy,
             always=running * corner.supply * spec.sample,
             off=off,
+            points=[(float(v * sizes.gain / lsb), float(x)) for v, x in zip(wanted, got, strict=True)],
             runs=spice.runs,
             repeated=spice.repeated,
         )
@@ -172,10 +175,7 @@ def biased(circuit: Circuit) -> Circuit:
     return Circuit(
         "biased",
         (*(pin for pin in PINS if pin != "ibias"), "vdd_bias"),
-        instances=(
-            Instance("amplifier", circuit, PINS),
-            Instance("bias", bias(), ("ibias", "vdd_bias", "vss")),
-        ),
+        instances=(Instance("amplifier", circuit, PINS), Instance("bias", bias(), ("ibias", "vdd_bias", "vss"))),
     )
 
 

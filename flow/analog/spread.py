@@ -16,7 +16,7 @@ from talbot.pixels.circuits.netlist import Circuit
 from .amplifier import END, LANE_OHM, REACH, biased, load_of, opened, sample
 from .deck import SETTINGS, Setup, deck, process_of
 
-BAND = "dec 20 1e5 1e11"  # Hz: what is slower, the reset takes away
+BAND = "dec 5 1e5 1e10"  # Hz: what is slower, the reset takes away
 LOOP = 1e9  # ohm, without noise: an operating point for an input that floats in the signal's phase
 FRAME = 1 / 3  # of REACH: differences that a drawn amplifier gets
 
@@ -77,7 +77,8 @@ def noise(
     """`.noise` of the reset, at the inputs' difference, and of the signal, at the lane. closed: LSB."""
     inner, lsb = "xcell.xamplifier.", setup.spec.lsb
     inputs = (2 * UNITS + sizes.feedback) / sizes.feedback
-    reset = _rms(setup, spec, sizes, corner, [], corner.supply, f"v({inner}xm,{inner}xp)") * inputs
+    inputs_apart = [f"Eapart apart 0 {inner}xm {inner}xp 1"]
+    reset = _rms(setup, spec, sizes, corner, inputs_apart, corner.supply, "v(apart)") * inputs
     array = [
         f"Rlane out lane {LANE_OHM:g} noisy=0",
         f"Clane lane 0 {load_of(setup, lane, corner):g}",

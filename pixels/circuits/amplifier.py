@@ -63,8 +63,8 @@ class AmplifierSpec:
     LSB that may be left at the cycle's end. gain: relative, by which it may be off: common to all columns of a lane.
     inl: LSB, peak, over three quarters of the range. ktc: LSB, rms, of what the reset's end leaves. ambient: LSB by
     which a difference may change where ambient light is 100 times it. trim: steps, peak error of a step of the trim.
-    offset: LSB, rms over lanes. energy: J a sample, Table 6.1's. sample: s between two samples of a lane at the table's
-    frame rate. lanes: that share a bias, 1..32.
+    offset: LSB, rms over lanes. noise: LSB, rms, of both phases, as much as a decision may have. energy: J a sample,
+    Table 6.1's. sample: s between two samples of a lane at the table's frame rate. lanes: that share a bias, 1..32.
     """
 
     vref: float = 0.8
@@ -80,6 +80,7 @@ class AmplifierSpec:
     ambient: float = 0.5
     trim: float = 1.0
     offset: float = 1.0
+    noise: float = 0.25
     energy: float = 203e-12
     sample: float = 1.8e-6
     lanes: int = 8
@@ -92,7 +93,7 @@ class AmplifierSpec:
         check_real("high", self.high, 0, self.hold)
         check_real("track", self.track, self.high, self.hold)
         check_real("gain", self.gain, 1e-3, 1)
-        for name in ("settling", "inl", "ktc", "ambient", "trim", "offset"):
+        for name in ("settling", "inl", "ktc", "ambient", "trim", "offset", "noise"):
             check_real(name, getattr(self, name), 0.01, 16)
         check_real("energy", self.energy, 1e-15, 1e-6)
         check_real("sample", self.sample, 3 * self.hold, 1.0)
