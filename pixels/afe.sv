@@ -31,13 +31,14 @@ module `AFE #(
     output wire        [LANES-1:0]         comparator
 );
   localparam int FRAME = ROWS * COLS * 2;               // words of one tap
-  localparam int HEAD = 4, LEVELS = HEAD + LANES, WORDS = LEVELS + 512 * LANES;
+  localparam int HEAD = 8, LEVELS = HEAD + LANES, WORDS = LEVELS + 512 * LANES;
   localparam bit [3:0] KTC = 15;                        // decision number of the kT/C draw
 
   // ---- files ----
   reg [63:0] samples[0:TAPS*FRAME-1];
   reg [63:0] words[0:WORDS-1];
   real gain, noise_scale, ktc_scale;
+  real bend[0:3];                                       // LSB that the amplifier adds, times 1, x, x^2, x^3
   reg [31:0] key;
   reg noisy;
   reg [31:0] exposures;                                 // before this one: each has noise of its own
@@ -58,6 +59,7 @@ module `AFE #(
     gain = $bitstoreal(words[0]);
     noise_scale = $bitstoreal(words[1]);
     ktc_scale = $bitstoreal(words[2]);
+    for (int i = 0; i < 4; i++) bend[i] = $bitstoreal(words[4+i]);
     exposures = 32'd0;
     key = mix(words[3][31:0]);
     noisy = noise_scale != 0.0 || ktc_scale != 0.0;
@@ -110,7 +112,7 @@ module `AFE #(
   endfunction
 
   function automatic real value(input integer lane);
-    real a, b;
+    real a, b, x;
     integer word;
     begin
       word = 2 * int'(pixel(lane, mode == 2'd3 ? sub : 2'd0));
@@ -121,6 +123,8 @@ module `AFE #(
         2'd2: value = 2.0 * (sub[0] ? b : a);
         default: value = a + b;
       endcase
+      x = (value - (mode == 2'd0 ? 0.0 : 128.0)) / 128.0;
+      value = value + (bend[0] + x * (bend[1] + x * (bend[2] + x * bend[3])));
     end
   endfunction
 

@@ -56,6 +56,7 @@ class AmplifierResult:
     settling: s after the hold's begin, to half an LSB. left: at its end. ambient: change of a difference under ambient
     light. trim: peak error of three steps around the middle, in steps. energy: J of a sample, with what flows until
     the next and the bias's share. always: J of a sample of an amplifier that is never off. off: A while it is.
+    points: (ideal, sampled) of differences.
     """
 
     gain: float
@@ -68,6 +69,7 @@ class AmplifierResult:
     energy: float
     always: float
     off: float
+    points: list[tuple[float, float]]
     runs: int
     repeated: int
 
@@ -116,6 +118,7 @@ def measure(
             energy=energy,
             always=running * corner.supply * spec.sample,
             off=off,
+            points=[(float(v * sizes.gain / lsb), float(x)) for v, x in zip(wanted, got, strict=True)],
             runs=spice.runs,
             repeated=spice.repeated,
         )
@@ -167,16 +170,19 @@ def load_of(setup: Setup, lane: LaneSizes, corner: Corner) -> float:
     return lane.dac.total * setup.scale(corner) * (1 + PARASITIC)
 
 
-def opened(setup: Setup, spec: AmplifierSpec, circuit: Circuit, corner: Corner, seed: int | None = None) -> Simulator:
-    """An ngspice process of an amplifier with its bias and a lane's array. seed: of the models' mismatch."""
-    ports = tuple(pin for pin in PINS if pin != "ibias")
-    whole = Circuit(
+def biased(circuit: Circuit) -> Circuit:
+    """An amplifier with a bias of its own. Pins: its own without ibias, then vdd_bias."""
+    return Circuit(
         "biased",
-        (*ports, "vdd_bias"),
+        (*(pin for pin in PINS if pin != "ibias"), "vdd_bias"),
         instances=(Instance("amplifier", circuit, PINS), Instance("bias", bias(), ("ibias", "vdd_bias", "vss"))),
     )
+
+
+def opened(setup: Setup, spec: AmplifierSpec, circuit: Circuit, corner: Corner, seed: int | None = None) -> Simulator:
+    """An ngspice process of an amplifier with its bias and a lane's array. seed: of the models' mismatch."""
     lines = [
-        *deck(whole, setup, corner, seed=seed),
+        *deck(biased(circuit), setup, corner, seed=seed),
         f".model to_lane sw vt={corner.supply / 2:g} vh=0 ron={LANE_OHM:g} roff=1e12",
         "Strack out lane track 0 to_lane",
         "Skeep lane before keep 0 to_lane",
@@ -196,8 +202,9 @@ def sample(
     code: int,
     before: float,
     ends: bool = False,
+    until: int = LATER,
 ) -> Wave:
-    """A transient: a sample of a and b V below the columns' reset level. ends: off after the hold.
+    """A transient: a sample of a and b V below the columns' reset level. ends: off after the hold. until: cycles.
 
     before: V that the sample before left on the lane, and on the amplifier's output until it is off.
     """
@@ -228,7 +235,7 @@ def sample(
         "before": [(0.0, before)],
     }
     stimulus |= {f"g{k}": [(0.0, vdd * (code >> k & 1))] for k in range(TRIM_BITS)}
-    return spice.transient(stimulus, {"lane": load}, LATER * spec.hold, spec.hold / 20)
+    return spice.transient(stimulus, {"lane": load}, until * spec.hold, spec.hold / 20)
 
 
 def _settling(wave: Wave, spec: AmplifierSpec, within: float) -> float:

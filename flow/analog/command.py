@@ -16,6 +16,11 @@ def add_arguments(parser: ArgumentParser) -> None:
     add("--corners", default="quick", help="all (21), quick (3), typical, or names like ss_n40C_1v62,ff_125C_1v98")
     add("--draws", default="200", help="comparators of the Monte Carlo run, 20..100000")
     add("--table", type=Path, help="also write what `make sim AFE=circuit` takes: models/parameters/circuit.json")
+    add(
+        "--gm-id",
+        type=Path,
+        help="write the tables that sizes come from, and nothing else: platforms/sky130/gm_id.json",
+    )
     add("--workers", type=worker_count, default=-1, help="processes; -1: all cores")
     add("--out", type=Path, help="folder of the datasheet (default: build/analog/<pdk>)")
 
@@ -26,6 +31,8 @@ def run(options: Namespace) -> int:
 
     from .job import STEPS, corners_of, make
 
+    if options.gm_id:
+        return _tables(options.pdk, options.gm_id)
     corners = corners_of(options.corners)
     draws = int(options.draws) if options.draws.isdecimal() else options.draws
     check_int("draws", draws, 20, 100_000)
@@ -34,6 +41,19 @@ def run(options: Namespace) -> int:
         summary = make(options.pdk, corners, int(draws), out, options.table, options.workers, steps.note)
     _print(summary, out)
     return 1 if summary["failed"] else 0
+
+
+def _tables(pdk: str, file: Path) -> int:
+    """Measure transistors and write their tables."""
+    from talbot.base.files import check_file, write
+
+    from .deck import process_of
+    from .tables import tables, text
+
+    check_file("gm-id", file)
+    write(file, text(tables(process_of(pdk))))
+    print(f"look at {file}")
+    return 0
 
 
 def _print(s: dict[str, Any], folder: Path) -> None:

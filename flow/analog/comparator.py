@@ -91,7 +91,7 @@ def offsets(setup: Setup, sizes: LaneSizes, corner: Corner, seed: int, circuit: 
     return [float(x) for x in (low + high) / 2]
 
 
-def spread(values: npt.ArrayLike) -> tuple[float, float, float]:
+def interval(values: npt.ArrayLike) -> tuple[float, float, float]:
     """Rms of offsets about their mean, and its 95 % interval: rms (1 -+ 1.96 / sqrt(2 (n - 1)))."""
     found = np.asarray(values, float)
     rms = float(found.std(ddof=1))

@@ -6,6 +6,7 @@ from .amplifier import AmplifierResult
 from .comparator import Decisions
 from .lane import LaneResult
 from .noise import Noise
+from .spread import AmplifierNoise, Drawn
 from .support import SupportResult
 
 TYPICAL = "tt_027C_1v80"  # the corner of typical values
@@ -25,4 +26,6 @@ class Found:
     ktc: dict[str, float]
     amplifiers: dict[str, AmplifierResult]
     amplifier_ktc: dict[str, float]
+    amplifier_draws: list[Drawn]
+    amplifier_noise: AmplifierNoise
     supports: dict[str, SupportResult]

@@ -15,6 +15,7 @@ from talbot.base.paths import BUILD
 from talbot.base.records import from_json
 from talbot.cells.corner import Corner
 from talbot.models.parameters import ParameterError, check_int
+from talbot.models.parameters.electrical import AMPLIFIER
 from talbot.pixels.circuits import amplifier as amplifiers
 from talbot.pixels.circuits import lane as lanes
 from talbot.pixels.circuits.amplifier import AmplifierSizes, AmplifierSpec
@@ -22,15 +23,16 @@ from talbot.pixels.circuits.lane import LaneSizes
 from talbot.pixels.circuits.specification import LaneSpec
 from talbot.pixels.circuits.support import SupportSpec
 
-from . import amplifier, comparator, lane, linearity, support
+from . import amplifier, comparator, lane, linearity, spread, support
 from . import noise as noises
 from .amplifier import AmplifierResult
-from .comparator import BATCH, Decisions, spread
+from .comparator import BATCH, Decisions, interval
 from .deck import Setup, deck, process_of
 from .found import TYPICAL, Found
 from .lane import LaneResult, inl
 from .noise import Noise
 from .rows import datasheet
+from .spread import AmplifierNoise, Drawn
 from .support import SupportResult
 
 STEPS = "check", "corners", "mismatch", "noise", "linearity", "report"
@@ -121,6 +123,7 @@ def make(
         "retried": sum(one.repeated for one in counts),
         "converter": converter(setup.spec, sizes, found),
         "noise": asdict(found.noise),
+        "amplifier_noise": asdict(found.amplifier_noise),
         "wall_s": perf_counter() - start,
     }
     with staged(out, page.NAMES) as folder:
@@ -171,7 +174,18 @@ def measured(
     batches = range(1, -(-draws // BATCH) + 1)
     drawn = [Job(f"offset-{k}", comparator.offsets, (setup, sizes, typical, k), (given, k)) for k in batches]
     offsets = [value for batch in run(drawn, STORE, "mismatch", workers) for value in batch]
+    given_a = repr((spec_a, sizes_a))
+    more = [
+        Job(f"amplifier-draw-{k}", spread.drawn, (setup, spec_a, sizes_a, sizes, typical, k), (given, given_a, k))
+        for k in range(1, BATCH * len(batches) + 1)
+    ]
+    amplifier_draws = [from_json(Drawn, one) for one in run(more, STORE, "amplifiers", workers)]
     note("noise")
+    closed = amplifier.ktc(setup, sizes_a, typical)
+    quiet = Job(
+        "amplifier-noise", spread.noise, (setup, spec_a, sizes_a, sizes, typical, closed), (given, given_a, closed)
+    )
+    amplifier_noise: AmplifierNoise = from_json(AmplifierNoise, run([quiet], STORE, "noise", workers)[0])
     noise: Noise = from_json(
         Noise, run([Job("noise", noises.noise, (setup, sizes, typical), (given,))], STORE, "noise", workers)[0]
     )
@@ -194,46 +208,62 @@ def measured(
         ktc,
         {name: from_json(AmplifierResult, one) for name, one in zip(places, amplifiers, strict=True)},
         {name: amplifier.ktc(setup, sizes_a, corner) for name, corner in places.items()},
+        amplifier_draws,
+        amplifier_noise,
         {name: from_json(SupportResult, one) for name, one in zip(places, supports, strict=True)},
     )
 
 
 def converter(spec: LaneSpec, sizes: LaneSizes, found: Found) -> dict[str, Any]:
     """What `models/afe` takes of the circuit, each with its source and the fit's error where there is one (LSB)."""
-    rms, low, high = spread(found.offsets)
+    rms, low, high = interval(found.offsets)
+    rms_a, low_a, high_a = interval([one.offset for one in found.amplifier_draws])
     shape = inl(found.lanes[TYPICAL].levels)
-    interval = (found.noise.high - found.noise.low) / 2
-    command = f"make analog, {TYPICAL}"
+    bend, bend_error = polynomial(found.amplifiers[TYPICAL].points)
+    gains = float(np.std([one.gain for one in found.amplifier_draws], ddof=1))
+    counts = f"{len(found.offsets)} comparators and {len(found.amplifier_draws)} amplifiers"
+    fitted = f"cubic through {len(found.amplifiers[TYPICAL].points)} differences that the lane samples in ngspice"
     return {
-        "command": command,
+        "command": f"make analog, {TYPICAL}",
         "parameters": {
             "inl": round(shape[2], 4),
             "dnl": 0.0,
-            "offset": round(rms, 4),
+            "offset": round(float(np.hypot(rms, rms_a)), 4),
             "noise": round(found.noise.rms, 4),
-            "ktc": round(float(np.hypot(found.ktc[TYPICAL], found.amplifier_ktc[TYPICAL])), 4),
+            "ktc": round(float(np.hypot(found.ktc[TYPICAL], found.amplifier_noise.total)), 4),
             "unit_mismatch": round(sizes.dac.unit_mismatch, 6),
+            **{name: round(value, 4) for name, value in zip(AMPLIFIER, bend, strict=True)},
         },
         "sources": {
             "inl": f"peak of {len(lane.CODES)} levels in ngspice off the line through the ends",
             "dnl": "steps come from unit_mismatch",
-            "offset": f"{len(found.offsets)} draws of the models' mismatch in ngspice",
+            "offset": f"{counts} with the models' mismatch in ngspice",
             "noise": f"{2 * found.noise.decisions} decisions with transient noise in ngspice",
-            "ktc": "closed form: both common plates of the lane, both inputs of the amplifier",
+            "ktc": "closed form of the lane's common plates, .noise of the amplifier in reset and signal",
             "unit_mismatch": f"{sizes.dac.source}",
+            **dict.fromkeys(AMPLIFIER, fitted),
         },
         "errors": {
             "inl": round(shape[2], 4),
-            "offset": round((high - low) / 2, 4),
-            "noise": round(interval, 4),
+            "offset": round(float(np.hypot(high - low, high_a - low_a)) / 2, 4),
+            "noise": round((found.noise.high - found.noise.low) / 2, 4),
             "offset_systematic": round(abs(shape[0]), 4),
             "gain": round(abs(shape[1]), 4),
-            "amplifier_inl": round(found.amplifiers[TYPICAL].inl, 4),
+            "amplifier_fit": round(bend_error, 4),
+            "amplifier_gain_spread": round(128 * gains, 4),
             "amplifier_settling": round(found.amplifiers[TYPICAL].left, 4),
             "settling": round(_left(spec, found.lanes[TYPICAL]), 6),
             "droop": round(found.lanes[TYPICAL].droop, 4),
         },
     }
+
+
+def polynomial(points: Sequence[tuple[float, float]]) -> tuple[tuple[float, ...], float]:
+    """What an amplifier adds at (ideal, sampled) values (LSB): of 1, x, x2, x3, x = ideal / 128; the largest rest."""
+    ideal, got = np.array(points).T
+    bend = np.polynomial.polynomial.polyfit(ideal / 128, got - ideal, len(AMPLIFIER) - 1)
+    rest = got - ideal - np.polynomial.polynomial.polyval(ideal / 128, bend)
+    return tuple(float(value) for value in bend), float(np.abs(rest).max())
 
 
 def _left(spec: LaneSpec, result: LaneResult) -> float:

@@ -8,7 +8,7 @@ from talbot.pixels.circuits.amplifier import BIAS, AmplifierSpec
 from talbot.pixels.circuits.specification import LaneSpec
 from talbot.pixels.circuits.support import SupportSpec
 
-from .comparator import spread
+from .comparator import interval
 from .datasheet import Row, over_corners
 from .found import TYPICAL, Found
 from .lane import VALUE, inl
@@ -18,7 +18,7 @@ from .support import SupportResult
 def datasheet(spec: LaneSpec, found: Found, draws: int) -> list[Row]:
     """The rows, with limits from the specification."""
     half, share = 1e9 * spec.half_cycle, 1e12 * spec.decision_energy
-    rms, _, high = spread(found.offsets)
+    rms, _, high = interval(found.offsets)
 
     def corners(circuit: str, name: str, unit: str, values: dict[str, float], most: float | None) -> Row:
         return over_corners(circuit, name, unit, values.items(), TYPICAL, most=most)
@@ -79,16 +79,22 @@ def _amplifier(found: Found) -> list[Row]:
         values = {corner: scale * abs(getattr(one, field)) for corner, one in found.amplifiers.items()}
         return corners(name, unit, values, most)
 
+    over = f"{len(found.amplifier_draws)} draws, max: 95 % interval"
+    offset, _, offset_high = interval([one.offset for one in found.amplifier_draws])
+    gain, _, gain_high = interval([100 * one.gain for one in found.amplifier_draws])
     gains = {corner: 100 * abs(one.gain - 1) for corner, one in found.amplifiers.items()}
     return [
         corners("gain, off by", "%", gains, 100 * spec.gain),
-        row("offset", "LSB", "offset", None),
+        row("offset, systematic", "LSB", "offset", None),
+        Row("amplifier", "offset, rms", "LSB", offset, None, offset_high, most=spec.offset, over=over),
+        Row("amplifier", "gain, spread", "%", gain, None, gain_high, over=over),
         row("INL", "LSB", "inl", spec.inl),
         row("settling to half an LSB", "ns", "settling", 1e9 * spec.hold, 1e9),
         row("left after one cycle", "LSB", "left", spec.settling),
         row("change under 100 times ambient light", "LSB", "ambient", spec.ambient),
         row("steps of the trim, off by", "steps", "trim", spec.trim),
-        corners("sampled noise, rms", "LSB", found.amplifier_ktc, spec.ktc),
+        corners("kT/C, rms", "LSB", found.amplifier_ktc, spec.ktc),
+        Row("amplifier", "noise, rms", "LSB", found.amplifier_noise.total, None, None, most=spec.noise, over=TYPICAL),
         row("energy of a sample, off between samples", "pJ", "energy", 1e12 * spec.energy, 1e12),
         row("energy of a sample, never off", "pJ", "always", None, 1e12),
         row("current while off", "uA", "off", None, 1e6),

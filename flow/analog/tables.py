@@ -4,6 +4,7 @@ Each role and length of the process's SIZED is one transistor of WIDTH at half t
 its gate swept. `platforms/<process>/gm_id.json` keeps them; `make analog GM_ID=` writes it.
 """
 
+import json
 import tempfile
 from pathlib import Path
 from types import ModuleType
@@ -23,6 +24,15 @@ COLUMNS = ("id", "gm", "gds", "cgg")
 def tables(process: ModuleType) -> dict[str, dict[str, list[float]]]:
     """By role and length: "efficiency" gm/Id (1/V, falling), "density" A/um, "gate" F/um, "gain" gm/gds."""
     return {f"{role} {length:g}": _table(process, role, length) for role, length in process.SIZED}
+
+
+def text(found: dict[str, dict[str, list[float]]]) -> str:
+    """JSON with a list a line."""
+    parts = (
+        f' "{name}": {{\n' + ",\n".join(f'  "{key}": {json.dumps(values)}' for key, values in one.items()) + "\n }"
+        for name, one in found.items()
+    )
+    return "{\n" + ",\n".join(parts) + "\n}\n"
 
 
 def _table(process: ModuleType, role: str, length: float) -> dict[str, list[float]]:

@@ -19,7 +19,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     add("--threshold", default="10", help="of edge mode, 0..127 (10)")
     add("--seed", default="1", help="of the pixels' values (1)")
     add("--t-int", default="20000", help="cycles of integration, 1..65535 (20000, 2 ms)")
-    add("--reltol", default="1e-3", help="ngspice's relative tolerance, 1e-8..0.1 (1e-3)")
+    add("--reltol", default="1e-4", help="ngspice's relative tolerance, 1e-8..0.1 (1e-4)")
     add("--method", default="trap", help="ngspice's integration, trap or gear (trap)")
     add("--study", action="store_true", help="error against run time on one sample, beside an off-line reference, too")
     add("--faults", action="store_true", help="faults planted in the circuit, and what the codes say of each, too")

@@ -64,15 +64,21 @@ def code_of(value: float, lane: int, unsigned: bool, threshold: int, fault: Faul
 
 
 def diagnose(row: Row) -> Finding:
-    """The fault whose codes are nearest to those of ``row``."""
+    """The fault whose codes are nearest to those of ``row``; none where all are within an LSB of a sound circuit's.
+
+    A capacitor of one unit that is missing is thus not found: its codes are those of noise.
+    """
     asked = row.request
     unsigned, threshold = asked.mode != "edge", asked.threshold if asked.mode == "edge" else 0
 
-    def error(fault: Fault | None) -> int:
+    def distances(fault: Fault | None) -> list[int]:
         values = [value_of(s.value, s.column, asked.mode == "edge", fault) for s in row.samples]
         expected = [code_of(v, s.lane, unsigned, threshold, fault) for v, s in zip(values, row.samples, strict=True)]
-        return sum(abs(s.code - code) for s, code in zip(row.samples, expected, strict=True))
+        return [abs(s.code - code) for s, code in zip(row.samples, expected, strict=True)]
 
-    errors = {SOUND: error(None)} | {fault.name: error(fault) for fault in dictionary(asked)}
+    sound = distances(None)
+    errors = {fault.name: sum(distances(fault)) for fault in dictionary(asked)}
     (name, best), (_, after), *_ = sorted(errors.items(), key=lambda item: item[1])
-    return Finding(name, best, after, errors[SOUND])
+    if max(sound) <= 1:
+        return Finding(SOUND, sum(sound), best, sum(sound))
+    return Finding(name, best, min(after, sum(sound)), sum(sound))

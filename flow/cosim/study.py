@@ -16,8 +16,8 @@ from .row import Row, RowRequest, decision_times, read_row
 ONE = RowRequest(mode="image", cols=6, lanes=1, types=1, pixels=False)
 SETTINGS = {
     "default": Accuracy(),
-    "reltol 1e-2": Accuracy(reltol=1e-2, chgtol=1e-14),
-    "reltol 1e-4, chgtol 1e-16": Accuracy(reltol=1e-4, chgtol=1e-16),
+    "reltol 1e-2, chgtol 1e-14": Accuracy(reltol=1e-2, chgtol=1e-14),
+    "reltol 1e-3, chgtol 1e-15": Accuracy(reltol=1e-3, chgtol=1e-15),
     "reltol 1e-5, chgtol 1e-17": Accuracy(reltol=1e-5, chgtol=1e-17),
     "gear": Accuracy(method="gear"),
     "step 1 ns": Accuracy(step=1e-9),

@@ -7,6 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from talbot.models.parameters import ConverterParameters, check_int
+from talbot.models.parameters.electrical import AMPLIFIER
 
 from .noise import KTC_DECISION, NOISE_SCALE, noise_counts
 
@@ -35,6 +36,8 @@ class Converter:
         LSB per count of `noise_counts`.
     seed : int
         Seed of the noise, 0..2**32-1.
+    amplifier : tuple of float
+        LSB that the amplifier adds, times 1, x, x**2, x**3.
     """
 
     levels: npt.NDArray[np.float64]
@@ -42,6 +45,7 @@ class Converter:
     noise_scale: float
     ktc_scale: float
     seed: int
+    amplifier: tuple[float, ...] = (0.0,) * len(AMPLIFIER)
 
     @classmethod
     def draw(cls, parameters: ConverterParameters, lanes: int) -> Self:
@@ -85,6 +89,7 @@ class Converter:
             parameters.noise * NOISE_SCALE,
             parameters.ktc * NOISE_SCALE,
             parameters.seed,
+            tuple(getattr(parameters, name) for name in AMPLIFIER),
         )
 
     @classmethod
@@ -107,6 +112,26 @@ class Converter:
     def lanes(self) -> int:
         """Converters of the bank."""
         return self.offset.size
+
+    def amplified(self, v: npt.ArrayLike, unsigned: bool) -> npt.NDArray[np.float64]:
+        """Values as the amplifier gives them.
+
+        Parameters
+        ----------
+        v : float64
+            Values in LSB.
+        unsigned : bool
+            The unipolar range, whose middle is the amplifier's zero.
+
+        Returns
+        -------
+        float64
+            In LSB, shape of ``v``.
+        """
+        v = np.asarray(v, np.float64)
+        offset, gain, square, cube = self.amplifier
+        x = (v - (CODES // 2 if unsigned else 0)) / (CODES // 2)
+        return v + (offset + x * (gain + x * (square + x * cube)))
 
     def held(self, v: npt.ArrayLike, lane: npt.ArrayLike, index: npt.ArrayLike) -> npt.NDArray[np.float64]:
         """Value on the sampling capacitor after the hold, plus the comparator's offset.

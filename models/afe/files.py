@@ -42,8 +42,8 @@ def write_samples(path: str | Path, samples: npt.NDArray[np.float64]) -> None:
 def write_converter(path: str | Path, front_end: FrontEnd) -> None:
     """Write gain and imperfections of a front end.
 
-    Words: gain, noise_scale, ktc_scale (float64), seed (integer), offset of every lane, then for every lane
-    256 bipolar levels, and for every lane 256 unipolar levels (float64).
+    Words: gain, noise_scale, ktc_scale (float64), seed (integer), the amplifier's four, offset of every lane, then for
+    every lane 256 bipolar levels, and for every lane 256 unipolar levels (float64).
 
     Parameters
     ----------
@@ -56,5 +56,6 @@ def write_converter(path: str | Path, front_end: FrontEnd) -> None:
     with open(path, "wb") as file:
         file.write(np.array([front_end.gain, c.noise_scale, c.ktc_scale], ">f8").tobytes())
         file.write(np.array([c.seed], ">u8").tobytes())
+        file.write(np.array(c.amplifier, ">f8").tobytes())
         file.write(c.offset.astype(">f8").tobytes())
         file.write(c.levels.astype(">f8").tobytes())

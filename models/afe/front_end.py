@@ -114,6 +114,8 @@ class FrontEnd:
             As in `values`, and for a threshold out of range.
         """
         v = self.values(samples, mode)
+        if self.converter is not None:
+            v = self.converter.amplified(v, mode != "edge")
         lane = np.arange(v.shape[2]) // self.tile.cols % self.lanes
         index = np.arange(v.size).reshape(v.shape)
         return convert(v, mode != "edge", threshold, self.converter, lane, index)

@@ -92,6 +92,9 @@ class ElectricalParameters:
         return sqrt(BOLTZMANN * TEMPERATURE * self.full_well / (ELEMENTARY_CHARGE * self.swing))
 
 
+AMPLIFIER = ("amplifier_offset", "amplifier_gain", "amplifier_square", "amplifier_cube")
+
+
 @dataclass(frozen=True)
 class ConverterParameters:
     """Imperfections of one successive-approximation lane, in units of its LSB.
@@ -111,6 +114,9 @@ class ConverterParameters:
     unit_mismatch : float
         RMS of a unit capacitor of a binary-weighted DAC, relative, 0..0.2: code k's level is off by what 256 such units
         make of it.
+    amplifier_offset, amplifier_gain, amplifier_square, amplifier_cube : float
+        What the difference amplifier of every lane adds: these times 1, x, x**2 and x**3, x the value over 128 LSB from
+        the amplifier's zero (0 in edge mode, else 128), -16..16 LSB each.
     seed : int
         Seed of every draw above, 0..2**32-1.
     """
@@ -121,10 +127,16 @@ class ConverterParameters:
     noise: float = sourced(0.0, "ideal")
     ktc: float = sourced(0.0, "ideal")
     unit_mismatch: float = sourced(0.0, "ideal")
+    amplifier_offset: float = sourced(0.0, "ideal")
+    amplifier_gain: float = sourced(0.0, "ideal")
+    amplifier_square: float = sourced(0.0, "ideal")
+    amplifier_cube: float = sourced(0.0, "ideal")
     seed: int = sourced(1, "any")
 
     def __post_init__(self) -> None:
         check_real("inl", self.inl, 0, 4)
+        for name in AMPLIFIER:
+            check_real(name, getattr(self, name), -16, 16)
         check_real("dnl", self.dnl, 0, 1)
         check_real("offset", self.offset, 0, 16)
         check_real("noise", self.noise, 0, 16)

@@ -45,7 +45,7 @@ PAIR, TAIL, SINK, LEGS = ("p_lvt", 0.5), ("p", 0.5), ("n_lvt", 0.5), ("n_lvt", 1
 CASCODE, CASCODE_P, TOP = ("n_lvt", 0.5), ("p_lvt", 0.5), ("p", 0.5)
 STACK, TRIODE = 3.0, 8.0  # cascode's gate: parts of the sinks' and cascodes' widths; the lower is in triode
 STACK_P = (3.0, ("p_lvt", 2.0))  # the diode that makes the p cascodes' gate
-UNIT, GAIN = 2.3499e-15, 2.4  # F, three fringe cells; a column's volts to the lane's
+UNIT, CELLS, GAIN = 2.3499e-15, 3, 2.4  # F, of so many fringe cells; a column's volts to the lane's
 # Transconductance over current, 1/V: high where it is what is wanted, low where matching or a drain's level is
 EFFICIENCY = {"pair": 14.0, "tail": 9.0, "sink": 17.0, "cascode": 18.0, "top": 12.0, "cascode_p": 12.0, "leg": 12.0}
 SLEW = 10e-9  # s of the signal's time in which the output's current is at its limit
@@ -63,8 +63,8 @@ class AmplifierSpec:
     LSB that may be left at the cycle's end. gain: relative, by which it may be off: common to all columns of a lane.
     inl: LSB, peak, over three quarters of the range. ktc: LSB, rms, of what the reset's end leaves. ambient: LSB by
     which a difference may change where ambient light is 100 times it. trim: steps, peak error of a step of the trim.
-    offset: LSB, rms over lanes. energy: J a sample, Table 6.1's. sample: s between two samples of a lane at the table's
-    frame rate. lanes: that share a bias, 1..32.
+    offset: LSB, rms over lanes. noise: LSB, rms, of both phases, as much as a decision may have. energy: J a sample,
+    Table 6.1's. sample: s between two samples of a lane at the table's frame rate. lanes: that share a bias, 1..32.
     """
 
     vref: float = 0.8
@@ -80,6 +80,7 @@ class AmplifierSpec:
     ambient: float = 0.5
     trim: float = 1.0
     offset: float = 1.0
+    noise: float = 0.25
     energy: float = 203e-12
     sample: float = 1.8e-6
     lanes: int = 8
@@ -92,7 +93,7 @@ class AmplifierSpec:
         check_real("high", self.high, 0, self.hold)
         check_real("track", self.track, self.high, self.hold)
         check_real("gain", self.gain, 1e-3, 1)
-        for name in ("settling", "inl", "ktc", "ambient", "trim", "offset"):
+        for name in ("settling", "inl", "ktc", "ambient", "trim", "offset", "noise"):
             check_real(name, getattr(self, name), 0.01, 16)
         check_real("energy", self.energy, 1e-15, 1e-6)
         check_real("sample", self.sample, 3 * self.hold, 1.0)
@@ -137,15 +138,17 @@ class OtaSizes:
 
 @dataclass(frozen=True)
 class AmplifierSizes:
-    """Sizes; unit: F, of a capacitor. gain: of a column's volts, 0.1..16."""
+    """Sizes; unit: F, of a capacitor of so many cells. gain: of a column's volts, 0.1..16."""
 
     ota: OtaSizes
     unit: float = UNIT
     gain: float = GAIN
+    cells: int = CELLS
 
     def __post_init__(self) -> None:
         check_real("unit", self.unit, 1e-16, 1e-13)
         check_real("gain", self.gain, 0.1, 16)
+        check_int("cells", self.cells, 1, 100)
 
     @property
     def feedback(self) -> float:

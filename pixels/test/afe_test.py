@@ -18,7 +18,21 @@ TAPS, ROWS, COLS, LANES = 4, 9, 20, 2  # partial tiles at both far edges; lanes.
 
 RNG = np.random.default_rng(11)
 TRIM = tuple(RNG.integers(-512, 512, 24).tolist())
-ROUGH = Converter.draw(ConverterParameters(inl=2, dnl=0.5, offset=3, noise=1.5, ktc=1, seed=2**32 - 5), LANES)
+ROUGH = Converter.draw(
+    ConverterParameters(
+        inl=2,
+        dnl=0.5,
+        offset=3,
+        noise=1.5,
+        ktc=1,
+        amplifier_offset=0.4,
+        amplifier_gain=-3,
+        amplifier_square=0.7,
+        amplifier_cube=-1.3,
+        seed=2**32 - 5,
+    ),
+    LANES,
+)
 SAMPLES = RNG.uniform(0, 127.5, (TAPS, ROWS, COLS, 2))
 SAMPLES[:, :4, :, 1] = SAMPLES[:, :4, :, 0] + RNG.normal(0, 2, (TAPS, 4, COLS))  # some for the zero window
 

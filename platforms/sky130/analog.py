@@ -30,10 +30,11 @@ SHORTEST = {"n": 0.15, "p": 0.15, "n_lvt": 0.15, "p_lvt": 0.35}  # um
 WIDEST = 100.0  # um, of the models' last bin
 NARROWEST = 0.42  # um
 AREA = {"n": 8.2, "p": 6.4, "n_lvt": 6.1, "p_lvt": 14.8}  # mV um: rms of Vgs times sqrt(w l)
+CELL_MISMATCH = 0.0183 * 0.85105 * math.sqrt(0.50527)  # rms, relative, of one fringe cell of `unit_cells`
 SHARED = 0.28  # um of diffusion between two gates
 TABLES = Path(__file__).with_name("gm_id.json")  # written by `make analog GM_ID=`: flow/analog/tables.py
 # (role, length in um) of the transistors in it
-SIZED = (("p_lvt", 0.35), ("p_lvt", 0.5), ("p_lvt", 1.0), ("n_lvt", 0.5), ("n_lvt", 1.0), ("p", 0.5))
+SIZED = (("p_lvt", 0.5), ("p", 0.5), ("n_lvt", 0.5), ("n_lvt", 1.0))
 # sky130_fd_pr__res_generic_nd, n+ diffusion: ohm a square at the process's ends and between, 1/K and 1/K2
 RESISTOR_SHEET, RESISTOR_AT, RESISTOR_TEMPERATURE = {"ss": 132.0, "ff": 108.0}, 30.0, (1.422e-3, 0.657e-6)
 RESISTOR_TYPICAL = 120.0
@@ -105,7 +106,7 @@ def unit_cells(mismatch: float) -> tuple[UnitCell, ...]:
     an even number of them, so that half a unit is cells, too; `cap_mim_m3_1` (2 fF/um2 + 0.19 fF/um; 2.8 % um; 1.778,
     0.03 and 2.231, 0.35), a square of 2 um or more, with 0.84 um between plates of the capm layer.
     """
-    one = 0.0183 * 0.85105 * math.sqrt(0.50527)
+    one = CELL_MISMATCH
     cells = 2 * math.ceil((one / mismatch) ** 2 / 2)
     name = "cap_vpp_01p8x01p8_m1m2_noshield"
     fringe = UnitCell(

@@ -74,7 +74,7 @@ def test_offsets_have_the_spread_of_pelgroms_law_and_the_seed_decides():
     """Two batches: the rms of 20 is within a factor of 1.6 of the limit that the pair was sized for."""
     first = comparators.offsets(SETUP, SIZES, CORNER, 1)
     assert first == comparators.offsets(SETUP, SIZES, CORNER, 1)
-    rms, low, high = comparators.spread([*first, *comparators.offsets(SETUP, SIZES, CORNER, 2)])
+    rms, low, high = comparators.interval([*first, *comparators.offsets(SETUP, SIZES, CORNER, 2)])
     assert SETUP.spec.offset / 1.6 < rms < 1.6 * SETUP.spec.offset and low < rms < high
 
 

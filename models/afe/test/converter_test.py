@@ -59,3 +59,13 @@ def test_a_wider_bank_keeps_the_first_lanes(seed, lanes):
 def test_refuses_lanes_out_of_range(lanes):
     with pytest.raises(ParameterError, match="lanes = "):
         Converter.draw(ConverterParameters(), lanes)
+
+
+def test_the_amplifier_adds_its_polynomial_from_its_zero():
+    c = Converter.draw(
+        ConverterParameters(amplifier_offset=0.5, amplifier_gain=-2, amplifier_square=0.25, amplifier_cube=1), 2
+    )
+    assert c.amplified([0.0, 128.0, -64.0], False).tolist() == [0.5, 127.75, -64.0 + 0.5 + 1 + 0.0625 - 0.125]
+    assert c.amplified([128.0, 255.0], True)[0] == 128.5
+    ideal = np.random.default_rng(1).uniform(-300, 300, 1000)
+    assert (Converter.ideal(2).amplified(ideal, True) == ideal).all()
