@@ -98,6 +98,10 @@ pixel-circuit: $(LAYOUT_READY) have-tools  ## the drawn pixel in ngspice: full w
 analog: $(LAYOUT_READY) have-tools  ## the analog circuits in ngspice and their datasheet: build/analog/<pdk>/datasheet.html [CORNERS=all DRAWS=200 TABLE=file]
 	@$(talbot) analog
 
+.PHONY: analog-layout
+analog-layout: $(LAYOUT_READY) have-tools  ## comparator, capacitor arrays and lane drawn: DRC, LVS, extracted, measured beside the schematic: build/analog-layout/<pdk>/analog_layout.html [CORNERS=quick]
+	@$(talbot) analog-layout
+
 .PHONY: polar
 polar: $(READY)  ## a raw frame's angle and degree of polarization, and its highlights: build/polar/<scene>/ (SCENE=)
 	@$(talbot) polar

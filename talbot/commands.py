@@ -26,6 +26,10 @@ COMMANDS = {
     "pixel-layout": ("talbot.flow.pixel_layout.command", "the pixel drawn: 24 types, tile, array; design rules, LVS"),
     "pixel-circuit": ("talbot.flow.pixel_circuit.command", "the drawn pixel in ngspice: full well, noise, lag, EMVA"),
     "analog": ("talbot.flow.analog.command", "the analog circuits in ngspice: corners, mismatch, noise, datasheet"),
+    "analog-layout": (
+        "talbot.flow.analog_layout.command",
+        "the analog circuits drawn: DRC, LVS, measured with parasitics",
+    ),
     "polar": ("talbot.flow.polar.command", "polarization and highlights from a raw frame, beside free baselines"),
     "depth": ("talbot.flow.depth.command", "depth field by time of flight, unwrapped by the light field"),
     "calibrate": ("talbot.flow.calibrate.command", "pixel types, trims and lens from noisy frames on a bench"),

@@ -44,7 +44,7 @@ def layers(gds: Path, process: PixelProcess) -> Figure:
     wanted = panels(process)
     figure = Figure(figsize=(10, 5.3), layout="constrained")
     for axes, (title, masks) in zip(figure.subplots(2, (len(wanted) + 1) // 2).flat, wanted + [("", [])]):
-        _draw(axes, gds, masks, title)
+        draw_masks(axes, gds, masks, title)
     return figure
 
 
@@ -53,10 +53,10 @@ def tile(gds: Path, process: PixelProcess) -> Figure:
     figure = Figure(figsize=(10, 3.6), layout="constrained")
     first, second = figure.subplots(1, 2)
     upper = process.metals[UPPER]
-    _draw(first, gds, [(process.well, WELL), (upper.gds, METALS[UPPER])], f"photodiodes, {upper.lef}")
+    draw_masks(first, gds, [(process.well, WELL), (upper.gds, METALS[UPPER])], f"photodiodes, {upper.lef}")
     everything = [(process.well, WELL), *_active(process, ACTIVE), (process.poly, POLY)]
     everything += [(metal.gds, METALS[k]) for k, metal in enumerate(process.metals[: UPPER + 1])]
-    _draw(second, gds, everything, "all masks")
+    draw_masks(second, gds, everything, "all masks")
     return figure
 
 
@@ -66,7 +66,7 @@ def corner(gds: Path, process: PixelProcess) -> Figure:
     axes = figure.subplots()
     shown = [(process.well, WELL), *_active(process, ACTIVE)]
     shown += [(metal.gds, METALS[k]) for k, metal in enumerate(process.metals[: UPPER + 1])]
-    _draw(axes, gds, shown, "", (0, 0, CORNER_UM, CORNER_UM))
+    draw_masks(axes, gds, shown, "", (0, 0, CORNER_UM, CORNER_UM))
     return figure
 
 
@@ -126,7 +126,7 @@ def _cut(layout: "db.Layout", mask: GdsLayer, at_um: float) -> list[tuple[float,
     return [(part.bbox().left * layout.dbu, part.bbox().right * layout.dbu) for part in cut.each()]
 
 
-def _draw(
+def draw_masks(
     axes: Axes, gds: Path, masks: Iterable[tuple[GdsLayer, str]], title: str, window: Sequence[float] | None = None
 ) -> None:
     """Draw masks of the top cell over one another."""

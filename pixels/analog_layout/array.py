@@ -1,10 +1,11 @@
 """An array of metal-insulator-metal capacitors: 16 x 16 units and half a one, dummies, a bus to the lower plates.
 
-The upper plates are the common node: over the lower plates, which stand between it and the lines under them, so that
-no line adds to the weight of a bit. Lines on the second metal run along a column below the plates, one for each
-capacitor that has units in it, to the bus beyond the dummies. The common node leaves on the other side, in the middle.
-Lower plates of different nets are 1.2 um apart (capm.2b): a unit takes more room than its plate and the space
-of two upper plates.
+The upper plates are the common node: over the lower plates, which stand between it and the lines under them. Lines on
+the second metal run along a column below the plates, one for each capacitor that has units in it, to the bus beyond
+the dummies. The common node's strips are between the columns, where no line is: a strip over the lines adds as much
+to a bit of 16 units as to one of 128, which is 0.4 LSB at mid-scale. It leaves opposite the bus, in the middle. Lower
+plates of different nets are 1.2 um apart (capm.2b): a unit takes more room than its plate and the space of two upper
+plates.
 """
 
 from collections.abc import Mapping
@@ -27,11 +28,12 @@ from .strip import FOURTH, SECOND, THIRD, TRACK, TRACK_PITCH
 # um
 AROUND, TAB, APART = 0.14, 0.45, 1.2  # lower plate around the upper one, on the side of its via; between lower plates
 VIA_IN = 0.24  # of that via's middle from the upper plate
-LINE, LINE_PITCH, LINES = 0.28, 0.60, 5
-COLUMN = 0.5  # width of the common node's metal
+LINE, LINE_PITCH, LINES = 0.14, 0.52, 6
+COLUMN = 0.4  # width of the common node's metal
 RING_AWAY = 1.0  # of the bus's first track from the dummies
 GRID = 0.005
 OUT = "half"
+HALF_COLUMN = SIDE // 2 - 1
 
 
 @dataclass(frozen=True)
@@ -143,7 +145,6 @@ class _Drawing:
             self.metal(THIRD, self.plan.left, v - TRACK / 2, self.plan.right, v + TRACK / 2)
         for column in range(SIDE):
             self._column(column, made)
-        self._half(made)
         self._ring(made)
         self._common(made)
         return made
@@ -170,11 +171,18 @@ class _Drawing:
         """The units of a column and their lines."""
         own = self.plan.names[:, column]
         kinds = [name for name in self.plan.nets if name in set(own.tolist())]
+        if column == HALF_COLUMN:
+            kinds.append(OUT)
+        units = {name: int((self.plan.names == name).sum()) for name in kinds}
+        kinds.sort(key=lambda name: units[name])
+        kinds = kinds[1::2][::-1] + kinds[::2]  # those with many units outside, beside the common node's strips
         if len(kinds) > LINES:
             raise ParameterError(f"column {column} = {len(kinds)} capacitors: must be {LINES} at most")
         x0, _ = self.middle(0, column)
         places = {name: x0 + (k - (len(kinds) - 1) / 2) * LINE_PITCH for k, name in enumerate(kinds)}
         far = self.middle(SIDE - 1, column)[1] - self.plan.edge_um / 2 - VIA_IN + LINE
+        if column == HALF_COLUMN:
+            self._half(places.pop(OUT), made)
         for name, x in places.items():
             self._line(self.plan.nets[name], x, far, made)
         for row in range(SIDE):
@@ -187,22 +195,19 @@ class _Drawing:
             v = self.middle(rows[len(rows) // 2], column)[1] - self.plan.edge_um / 2 - VIA_IN
             made.taps.append(Tap(name, len(rows), x, self.y(v)))
 
-    def _half(self, made: Array) -> None:
-        """Half a unit in the place of a dummy, its line beside those of the column below it."""
-        column = SIDE // 2 - 1
-        edge, (x, v) = self.plan.half_um, self.middle(SIDE, column)
-        self._plate(SIDE, column, edge)
-        self._lower(SIDE, column, edge)
-        beside, at = x - self.plan.pitch_um[0] / 2 + 0.29, v - edge / 2 - VIA_IN
-        self._line(self.plan.nets[OUT], beside, at + LINE / 2, made)
-        self.metal(SECOND, beside - LINE / 2, at - LINE / 2, x, at + LINE / 2)
-        self.canvas.stack(x, self.y(at), SECOND, THIRD)
-        made.taps.append(Tap(OUT, 0.5, x, self.y(at)))
+    def _half(self, line: float, made: Array) -> None:
+        """Half a unit in the place of a dummy beside the bus, on the lower plate of a whole one; its line's x."""
+        self._plate(-1, HALF_COLUMN, self.plan.half_um)
+        self._lower(-1, HALF_COLUMN, self.plan.edge_um)
+        at = self.middle(-1, HALF_COLUMN)[1] - self.plan.edge_um / 2 - VIA_IN
+        self._line(self.plan.nets[OUT], line, at + LINE / 2, made)
+        self.canvas.stack(line, self.y(at), SECOND, THIRD)
+        made.taps.append(Tap(OUT, 0.5, line, self.y(at)))
 
     def _ring(self, made: Array) -> None:
         """The dummies: lower plates in one piece but for the half's place, upper ones joined, both on the ground."""
         p, half = self.plan, self.plan.edge_um / 2
-        inner, hole = range(SIDE), SIDE // 2 - 1
+        inner, hole = range(SIDE), HALF_COLUMN
         (west, low), (east, high) = self.middle(-1, -1), self.middle(SIDE, SIDE)
         bottom, top = low - half - TAB, high + half + AROUND
         for x in (west, east):
@@ -216,27 +221,35 @@ class _Drawing:
             for row in range(-1, SIDE + 1):
                 self._plate(row, -1 if x == west else SIDE, p.edge_um)
         for column in inner:
-            self._plate(-1, column, p.edge_um)
+            self._plate(SIDE, column, p.edge_um)
             if column != hole:
-                self._plate(SIDE, column, p.edge_um)
-        rows = [(low, west, east)]
-        rows += [(high, west, self.middle(0, hole - 1)[0]), (high, self.middle(0, hole + 1)[0], east)]
+                self._plate(-1, column, p.edge_um)
+        rows = [(low, west, self.middle(0, hole - 1)[0]), (low, self.middle(0, hole + 1)[0], east)]
+        rows += [(high, west, self.middle(0, hole)[0]), (high, self.middle(0, hole + 1)[0], east)]
         for v, left, right in rows:
             self.metal(FOURTH, left - COLUMN / 2, v - COLUMN / 2, right + COLUMN / 2, v + COLUMN / 2)
+            if v == high:
+                left, right = west, east
             self.metal(THIRD, left - half - AROUND, v - half - TAB, right + half + AROUND, v + half + AROUND)
 
     def _common(self, made: Array) -> None:
-        """The upper plates' metal: a strip over each column, a bar at both ends, the way out between two columns."""
-        half, hole = self.plan.edge_um / 2, SIDE // 2 - 1
+        """The upper plates' metal: strips beside the columns, a tongue to each plate, bars at both ends, a way out."""
+        half, across = self.plan.edge_um / 2, self.plan.pitch_um[0]
         first, last = self.middle(0, 0), self.middle(SIDE - 1, SIDE - 1)
         bars = first[1] - half - TAB - APART / 2, last[1] + half + AROUND + APART / 2
-        for column in range(SIDE):
-            x, _ = self.middle(0, column)
-            end = self.middle(SIDE, hole)[1] + COLUMN / 2 if column == hole else bars[1]
-            self.metal(FOURTH, x - COLUMN / 2, bars[0], x + COLUMN / 2, end)
+        strips = [first[0] + (k - 0.5) * across for k in range(SIDE + 1)]
+        for x in strips:
+            self.metal(FOURTH, x - COLUMN / 2, bars[0], x + COLUMN / 2, bars[1])
+        places = [(row, column) for row in range(SIDE) for column in range(SIDE)]
+        for row, column in [*places, (-1, HALF_COLUMN)]:
+            x, v = self.middle(row, column)
+            self.metal(FOURTH, x - across / 2, v - COLUMN / 2, x + COLUMN / 2, v + COLUMN / 2)
+        x, v = self.middle(-1, HALF_COLUMN)
+        beside = x - across / 2
+        self.metal(FOURTH, beside - COLUMN / 2, v - COLUMN / 2, beside + COLUMN / 2, bars[0])
         for v in bars:
-            self.metal(FOURTH, first[0] - COLUMN / 2, v - COLUMN / 2, last[0] + COLUMN / 2, v + COLUMN / 2)
-        x = (self.middle(0, hole)[0] + self.middle(0, hole + 1)[0]) / 2
+            self.metal(FOURTH, strips[0] - COLUMN / 2, v - COLUMN / 2, strips[-1] + COLUMN / 2, v + COLUMN / 2)
+        x = strips[HALF_COLUMN + 1]
         end = self.middle(SIDE, 0)[1] + half + AROUND
         self.metal(FOURTH, x - COLUMN / 2, bars[1], x + COLUMN / 2, end)
         made.exit = (x, self.y(end))

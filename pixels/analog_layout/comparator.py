@@ -14,7 +14,7 @@ from talbot.platforms.analog import AnalogMasks
 
 from . import flat
 from .device import Device, swapped
-from .strip import Plan, Strip, draw_strip, mirrored, trunk
+from .strip import Placed, Plan, Strip, draw_strip, mirrored, trunk
 
 WITH_DUMMIES = "inp", "inn", "latch_np", "latch_nn"
 ROOM, HOLD_ROOM = 0.6, 1.2  # um beside each device, for its drops
@@ -45,11 +45,11 @@ def comparator_plans(
     prefix: str = "",
     outer: Sequence[Pair] = (),
     outer_p: Sequence[Pair] = (),
-    shared: frozenset[str] = frozenset(),
+    reach: Mapping[str, Sequence[float]] | None = None,
 ) -> tuple[Plan, Plan]:
     """Plans of the strips of the comparator whose transistors ``d`` are named from ``prefix`` on.
 
-    ends: of the strips. outer, outer_p: further pairs outside of it; shared: their nets that other strips have.
+    ends: of the strips. outer, outer_p: further pairs outside of it. reach: see `Plan.through`.
     """
 
     def named(*names: str) -> list[Pair]:
@@ -57,7 +57,6 @@ def comparator_plans(
 
     arm = f"{prefix}arm."
     inp, inn, latch_p, latch_n = (d[arm + name].transistor for name in ("inp", "inn", "latch_nn", "latch_np"))
-    strobe = d[f"{arm}tail"].transistor.gate
     n = mirrored(d[f"{arm}tail"], [*named("arm.latch_np", "arm.latch_nn", "arm.inp", "arm.inn"), *outer], axis, ROOM)
     p = mirrored(
         None,
@@ -70,8 +69,14 @@ def comparator_plans(
     )
     outputs = latch_n.drain, latch_p.drain
     split = (inp.gate, inn.gate), (inp.drain, inn.drain)
-    through = frozenset({inp.gate, inn.gate, strobe, *outputs, *shared})
-    arm_plan = Plan(n, p, *ends, through, split, (outputs,), axis)
+    sides = {net: (axis + way * CROSSING,) for net, way in zip(outputs, (-1, 1), strict=True)}
+    reach = reach or {}
+
+    def through(placed: Sequence[Placed]) -> dict[str, Sequence[float]]:
+        present = {net for one in placed for net in one.device.transistor.nodes}
+        return {net: x for net, x in (*reach.items(), *sides.items()) if net in present}
+
+    arm_plan = Plan(n, p, *ends, through((*n, *p)), split, (outputs,), axis)
     rows = []
     for kind in ("n", "p"):
         kinds = [f"{side}.{kind}{leg}" for leg in ("a", "b") for side in ("hold_n", "hold")]
@@ -79,7 +84,8 @@ def comparator_plans(
     held, inverse = (d[f"{prefix}{side}.na"].transistor.drain for side in ("hold", "hold_n"))
     settled = tuple(d[f"{prefix}{side}.n"].transistor.drain for side in ("buffer_n", "buffer_p"))
     split = outputs, (settled[0], settled[1])
-    return arm_plan, Plan(rows[0], rows[1], *ends, frozenset({*outputs, held}), split, ((inverse, held),), axis)
+    hold = through((*rows[0], *rows[1]))
+    return arm_plan, Plan(rows[0], rows[1], *ends, hold, split, ((inverse, held),), axis)
 
 
 def draw_comparator(canvas: Canvas, masks: AnalogMasks, plans: tuple[Plan, Plan], y: float) -> list[Strip]:

@@ -10,7 +10,7 @@
 Between strips and arrays nets run on the fourth metal: what passes an array beside it, the rest over the strips.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from talbot.pixels.circuits.dac import BITS
@@ -51,7 +51,7 @@ Column = tuple[Device | None, Device | None]
 
 @dataclass(frozen=True)
 class LanePlan:
-    """Strips and arrays of a lane, from the south; names of devices by strip."""
+    """Strips and arrays of a lane, from the south. at: x of the nets between them."""
 
     left: float
     right: float
@@ -61,6 +61,7 @@ class LanePlan:
     comparator: tuple[Plan, Plan]
     balance: ArrayPlan
     balance_switches: Plan
+    at: dict[str, float]
 
 
 def _switch(d: dict[str, Device], prefix: str) -> list[Column]:
@@ -90,8 +91,7 @@ def lane_plan(masks: AnalogMasks, sizes: LaneSizes, d: dict[str, Device]) -> Lan
     other = {"refp": "balance.b_refp", "refn": "balance.b_refn", "half": "refn"}
     balance = ArrayPlan(halves(), other, "other", edge, half, left, right)
 
-    shared = {"lane_a", "lane_b", "bottoms", "bottoms_n", "refp", "refn", *nets.values(), *other.values()}
-    shared |= {f"d{k}" for k in range(BITS)}
+    at = _places(left, right, nets, other)
     switches = [_switch(d, f"dac.switch{k}.") for k in reversed(range(BITS))]
     switches += [_switch(d, "dac.switch_t."), _switch(d, "dac.switch_h.")]
     strips: list[list[Column]] = [[]]
@@ -100,10 +100,10 @@ def lane_plan(masks: AnalogMasks, sizes: LaneSizes, d: dict[str, Device]) -> Lan
             strips.append([])
         strips[-1] += one
 
-    def plan(columns: Sequence[Column], through: set[str]) -> Plan:
+    def plan(columns: Sequence[Column]) -> Plan:
         n, p, end = in_columns(columns, left, (right - in_columns(columns, left)[2]) / len(columns) - 1e-3)
         present = {net for pl in (*n, *p) for net in pl.device.transistor.nodes}
-        return Plan(n, p, left, right, frozenset(through & present))
+        return Plan(n, p, left, right, {net: (x,) for net, x in at.items() if net in present})
 
     drivers = _gates(
         d, ("sample_0", "sample_1", "sample_2", "sample_3", "sample_n", "sample_p", "strobe_n", "strobe_p")
@@ -113,14 +113,21 @@ def lane_plan(masks: AnalogMasks, sizes: LaneSizes, d: dict[str, Device]) -> Lan
     return LanePlan(
         left,
         right,
-        plan(drivers, {"sample", "strobe", "fire", "sample_1", "sample_2", "bottoms", "bottoms_n"}),
-        tuple(plan(one, shared) for one in strips),
+        plan(drivers),
+        tuple(plan(one) for one in strips),
         dac,
         comparator_plans(
-            d, axis, (left, right), "comparator.", [plates[0]], [plates[1]], frozenset({"vcm", "sample_1", "sample_2"})
+            d,
+            axis,
+            (left, right),
+            "comparator.",
+            [plates[0]],
+            [plates[1]],
+            {net: (x,) for net, x in at.items()} | {"top": (axis + JOG,), "other": (axis - JOG,)},
         ),
         balance,
-        plan(names, shared),
+        plan(names),
+        at,
     )
 
 
@@ -176,17 +183,23 @@ def _ground(canvas: Canvas, array: Array, x: float) -> None:
     canvas.stack(x, track.y, THIRD, FOURTH)
 
 
+def _places(left: float, right: float, nets: Mapping[str, str], other: Mapping[str, str]) -> dict[str, float]:
+    """X of what goes from strip to strip: beside the arrays, or over the strips on one side of them."""
+    places: dict[str, float] = {net: left + CHANNEL_FIRST + CHANNEL_PITCH * k for k, net in enumerate(WEST)}
+    places |= {net: right - CHANNEL_FIRST - CHANNEL_PITCH * k for k, net in enumerate(EAST)}
+    bits = [f"d{k}" for k in reversed(range(BITS))]
+    over = [*(net for pair in zip(nets.values(), bits, strict=False) for net in pair), "dac.bt", "dac.bh"]
+    over += ["sample", "strobe"]
+    first = (left + right) / 2 - STEP * (len(over) - 1) / 2
+    places |= {net: first + STEP * k for k, net in enumerate(over)}
+    beside = [*other.values(), "lane_b"]
+    return places | {net: first + STEP * (3 * k + 1) for k, net in enumerate(beside) if net not in places}
+
+
 def _nets(canvas: Canvas, plan: LanePlan, tracks: Sequence[Strap], top: float) -> None:
     """What goes from strip to strip, up to the pins."""
-    places: dict[str, float] = {net: plan.left + CHANNEL_FIRST + CHANNEL_PITCH * k for k, net in enumerate(WEST)}
-    places |= {net: plan.right - CHANNEL_FIRST - CHANNEL_PITCH * k for k, net in enumerate(EAST)}
-    over = [*plan.dac.nets.values(), *(f"d{k}" for k in range(BITS)), "sample", "strobe"]
-    first = (plan.left + plan.right) / 2 - STEP * (len(over) - 1) / 2
-    places |= {net: first + STEP * k for k, net in enumerate(dict.fromkeys(over))}
-    beside = [*plan.balance.nets.values(), "lane_b"]
-    places |= {net: first + STEP * (3 * k + 1) for k, net in enumerate(beside) if net not in places}
     north = {"lane_a", "lane_b", "refp", "refn", "vcm"}
-    for net, x in places.items():
+    for net, x in plan.at.items():
         edge = top if net in north else 0.0
         trunk(canvas, tracks, net, x, *([edge] if net in PINS else []))
         if net in PINS:

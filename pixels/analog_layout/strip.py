@@ -11,7 +11,7 @@ In a strip with an axis every device has its mirror image, and so have drops and
 change places on the axis. What is not symmetric is that crossing alone.
 """
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -51,14 +51,15 @@ class Plan:
     """A strip that is to be drawn.
 
     n, p: rows. left, right: its ends, um. axis: of its symmetry, or None. split, twisted: pairs of nets that are mirror
-    images, the western one first. through: nets whose tracks go from end to end: those that meet other strips.
+    images, the western one first. through: x up to which the
+    tracks of nets that meet other strips go, too.
     """
 
     n: tuple[Placed, ...]
     p: tuple[Placed, ...]
     left: float
     right: float
-    through: frozenset[str]
+    through: Mapping[str, Sequence[float]]
     split: tuple[tuple[str, str], ...] = ()
     twisted: tuple[tuple[str, str], ...] = ()
     axis: float | None = None
@@ -84,8 +85,9 @@ class Plan:
             for net in {t.drain, t.gate, t.source} - set(self.rails):
                 left, right = found.get(net, (placed.low, placed.high))
                 found[net] = min(left, placed.low), max(right, placed.high)
-        for net in self.through:
-            found[net] = self.left, self.right
+        for net, reached in self.through.items():
+            ends = [x + side * TRUNK / 2 for x in reached for side in (-1, 1)]
+            found[net] = min([*found[net][:1], *ends]), max([*found[net][1:], *ends])
         if self.axis is not None:
             found = {net: (min(a, 2 * self.axis - b), max(b, 2 * self.axis - a)) for net, (a, b) in found.items()}
         return found

@@ -1,0 +1,47 @@
+"""The analog circuits drawn in a process's masks: checked, extracted, measured again beside their schematics."""
+
+from argparse import ArgumentParser, Namespace
+from pathlib import Path
+from typing import Any
+
+from talbot.base.jobs import worker_count
+from talbot.base.progress import Steps
+
+
+def add_arguments(parser: ArgumentParser) -> None:
+    """Options of `talbot analog-layout`."""
+    add = parser.add_argument
+    add("--pdk", default="sky130", help="process: sky130")
+    add("--corners", default="typical", help="as of talbot analog: all (21), quick (3), typical, or names")
+    add("--workers", type=worker_count, default=-1, help="processes; -1: all cores")
+    add("--out", type=Path, help="folder for the results (default: build/analog-layout/<pdk>)")
+
+
+def run(options: Namespace) -> int:
+    """Draw, check, measure, write the page and print the figures; 1 where a check fails."""
+    from talbot.base.paths import RESULTS
+    from talbot.flow.analog.job import corners_of
+
+    from .job import STEPS, make
+
+    out = options.out or RESULTS / "analog-layout" / options.pdk
+    with Steps(STEPS, lines=True) as steps:
+        summary = make(options.pdk, corners_of(options.corners), out, options.workers, steps.note)
+    _print(summary, out)
+    return 0 if summary["passed"] else 1
+
+
+def _print(s: dict[str, Any], folder: Path) -> None:
+    for name, cell in s["cells"].items():
+        rules = sum(cell["drc"].values())
+        print(
+            f"  {name:12} {cell['width_um']:g} x {cell['height_um']:g} um, {cell['transistors']} transistors, "
+            f"{rules} violations, LVS {'matches' if cell['lvs_match'] else 'DIFFERS'}"
+        )
+    print(f"  {'':46} {'schematic':>9} {'layout':>9} {'limit':>9}")
+    for row in s["rows"]:
+        limit = "" if row["most"] is None else f"{row['most']:9.3g} {'pass' if row['passes'] else 'FAIL'}"
+        print(
+            f"  {row['name']:38} {row['unit']:7} {row['schematic']:9.3g} {row['layout']:9.3g} {limit} {row['corner']}"
+        )
+    print(f"  {s['wall_s']:.0f} s; look at {folder / 'analog_layout.html'}")

@@ -1,0 +1,189 @@
+"""Cells drawn, written, checked, extracted and measured -> GDS, SPICE, pictures, page, summary.json."""
+
+import json
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+from talbot.base.files import check_folder, staged
+from talbot.base.jobs import Job, run
+from talbot.base.paths import BUILD
+from talbot.base.records import from_json
+from talbot.cells.corner import Corner
+from talbot.flow.analog.deck import Setup, process_of
+from talbot.flow.analog.job import setup_of
+from talbot.flow.analog.lane import LaneResult, inl
+from talbot.flow.analog.linearity import inl_dnl, levels
+from talbot.pixels.analog_layout.cells import Cell, comparator_cell
+from talbot.pixels.analog_layout.lane import lane_cell
+from talbot.pixels.circuits.dac import BITS
+from talbot.pixels.circuits.lane import LaneSizes
+from talbot.pixels.circuits.specification import LaneSpec
+from talbot.platforms.analog import AnalogMasks, analog_masks
+from talbot.platforms.coriolis import coriolis_platform
+from talbot.platforms.wires import wire_corner
+
+from .checks import drc, lvs
+from .extract import Extracted, Nets, extract
+from .measure import Measured, measure
+
+STEPS = "draw", "drc", "lvs", "extract", "measure", "report"
+STORE = BUILD / "analog-layout" / "measured"
+KINDS = "gds", "spice", "extracted.spice", "lyrdb", "lvsdb"
+
+
+@dataclass(frozen=True)
+class Row:
+    """A characteristic at a corner, of the schematic and of the layout. most: its limit, or None."""
+
+    name: str
+    unit: str
+    schematic: float
+    layout: float
+    corner: str
+    most: float | None = None
+
+    @property
+    def passes(self) -> bool:
+        """Whether the layout is inside the limit."""
+        return self.most is None or abs(self.layout) <= self.most
+
+
+def cells(masks: AnalogMasks, sizes: LaneSizes) -> dict[str, Cell]:
+    """What is drawn, by name."""
+    return {"comparator": comparator_cell(masks, sizes.comparator), "sar_lane": lane_cell(masks, sizes)}
+
+
+def make(
+    pdk: str, corners: Sequence[str], out: Path, workers: int = -1, note: Callable[[str], None] = lambda text: None
+) -> dict[str, Any]:
+    """Draw, check, measure and report into ``out``; returns the summary. Raises ParameterError, StepError."""
+    from . import page  # Matplotlib: not before it is needed
+
+    start = perf_counter()
+    check_folder("out", out)
+    masks, (setup, sizes) = analog_masks(pdk), setup_of(pdk)
+    made = cells(masks, sizes)
+    names = [f"{name}.{kind}" for name in made for kind in KINDS]
+    with staged(out, (*names, *page.NAMES, "summary.json")) as folder:
+        note("draw")
+        for name, cell in made.items():
+            cell.write(folder / f"{name}.gds")
+        note("drc")
+        rules = {name: drc(folder / f"{name}.gds", pdk, folder / f"{name}.lyrdb") for name in made}
+        note("lvs")
+        same = {
+            name: lvs(folder / f"{name}.gds", cell.spice(masks), pdk, folder / f"{name}.lvsdb")
+            for name, cell in made.items()
+        }
+        note("extract")
+        found = {name: _extracted(made, masks, name) for name in dict.fromkeys(wire_corner(c) for c in corners)}
+        typical = found[wire_corner(corners[0])]
+        for name, (circuit, _) in typical.items():
+            (folder / f"{name}.extracted.spice").write_text("\n".join([*circuit.lines(process_of(pdk)), ""]))
+        note("measure")
+        rows = list(_array(typical["sar_lane"][1], masks, sizes, setup.spec))
+        rows += _measured(setup, sizes, corners, found, workers)
+        summary = {
+            "process": pdk,
+            "corners": list(corners),
+            "cells": {name: _cell(cell, rules[name], same[name], typical[name]) for name, cell in made.items()},
+            "rows": [asdict(row) | {"passes": row.passes} for row in rows],
+            "passed": not any(sum(one.values()) for one in rules.values())
+            and all(same.values())
+            and all(row.passes for row in rows),
+            "wall_s": perf_counter() - start,
+        }
+        note("report")
+        page.write(folder, summary, masks.base)
+        (folder / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n")
+    return summary
+
+
+def _extracted(made: dict[str, Cell], masks: AnalogMasks, corner: str) -> dict[str, tuple[Extracted, Nets]]:
+    """Every cell with its parasitics, wires at ``corner``: typ, min or max."""
+    wires = coriolis_platform(masks.base.name).wires[corner]
+    return {name: extract(cell, masks, wires) for name, cell in made.items()}
+
+
+def _cell(cell: Cell, rules: dict[str, int], same: bool, found: tuple[Extracted, Nets]) -> dict[str, Any]:
+    box = cell.cell.dbbox()
+    circuit, nets = found
+    return {
+        "width_um": round(box.width(), 3),
+        "height_um": round(box.height(), 3),
+        "transistors": len(cell.transistors),
+        "drc": rules,
+        "lvs_match": same,
+        "capacitors": len(circuit.capacitors),
+        "resistors": len(circuit.resistors),
+        "net_fF": {net: round(1e15 * farad, 3) for net, farad in sorted(nets.totals.items())},
+    }
+
+
+def _array(nets: Nets, masks: AnalogMasks, sizes: LaneSizes, spec: LaneSpec) -> Iterator[Row]:
+    """The converter's levels from the capacitances of the drawn array: what couples to the common node counts."""
+    names = [*(f"dac.b{k}" for k in range(BITS)), "dac.bt", "dac.bh"]
+    units = np.array([*(1 << k for k in range(BITS)), 1, 0.5])
+    beside = np.array([nets.couplings.get((name, "top"), 0.0) for name in names])
+    drawn = inl_dnl(levels(units + beside / sizes.dac.unit))
+    for name, value, most in zip(("INL", "DNL"), drawn, (spec.inl, spec.dnl), strict=True):
+        yield Row(f"DAC: {name} of all levels", "LSB", 0.0, value, "capacitances", most)
+    ground = nets.totals["top"] - beside.sum()
+    yield Row("DAC: common node to all else", "fF", 1e14 * sizes.dac.total, 1e15 * ground, "capacitances")
+    yield Row("DAC: bits to the common node beside it", "fF", 0.0, 1e15 * float(beside.sum()), "capacitances")
+
+
+def _measured(
+    setup: Setup,
+    sizes: LaneSizes,
+    corners: Sequence[str],
+    found: dict[str, dict[str, tuple[Extracted, Nets]]],
+    workers: int,
+) -> list[Row]:
+    """Rows of every corner; what an earlier run measured of the same circuits is read."""
+    jobs = []
+    for name in corners:
+        drawn = found[wire_corner(name)]
+        circuits = drawn["comparator"][0], drawn["sar_lane"][0]
+        given = (repr((setup, sizes)), name)
+        jobs.append(Job(f"schematic-{name}", measure, (setup, sizes, Corner.parse(name)), given))
+        text = [repr((one.transistors, one.capacitors, one.resistors, sorted(one.drawn.items()))) for one in circuits]
+        jobs.append(Job(f"layout-{name}", measure, (setup, sizes, Corner.parse(name), *circuits), (*given, *text)))
+    results = [from_json(Measured, one) for one in run(jobs, STORE, "measure", workers)]
+    rows = []
+    for name, schematic, layout in zip(corners, results[::2], results[1::2], strict=True):
+        rows += list(_rows(setup.spec, name, schematic, layout))
+    return rows
+
+
+def _rows(spec: LaneSpec, corner: str, schematic: Measured, layout: Measured) -> Iterator[Row]:
+    half, share = 1e9 * spec.half_cycle, 1e12 * spec.decision_energy
+
+    def row(name: str, unit: str, value: Callable[[Measured], float], most: float | None = None) -> Row:
+        return Row(name, unit, float(value(schematic)), float(value(layout)), corner, most)
+
+    yield row("comparator: decision, half an LSB", "ns", lambda m: 1e9 * m.decisions.delay, half)
+    yield row("comparator: wrong decisions", "", lambda m: not m.decisions.right, 0.0)
+    yield row(
+        "comparator: energy of a decision", "pJ", lambda m: 1e12 * m.decisions.energy, share * spec.comparator_share
+    )
+    yield row("comparator: offset, systematic", "LSB", lambda m: m.offset, spec.offset)
+    if schematic.lane is None or layout.lane is None:
+        return
+    before, after = schematic.lane, layout.lane
+
+    def lane(name: str, unit: str, value: Callable[[LaneResult], float], most: float | None = None) -> Row:
+        return Row(name, unit, float(value(before)), float(value(after)), corner, most)
+
+    yield lane("DAC: settling to half an LSB", "ns", lambda one: 1e9 * one.settling, half)
+    yield lane("DAC: INL of seven levels", "LSB", lambda one: inl(one.levels)[2], spec.inl)
+    yield lane("lane: offset, systematic", "LSB", lambda one: inl(one.levels)[0], spec.offset)
+    yield lane("lane: gain error over the range", "LSB", lambda one: inl(one.levels)[1])
+    yield lane("lane: gain up to the comparator", "", lambda one: one.gain)
+    yield lane("lane: droop in a conversion", "LSB", lambda one: one.droop, spec.droop)
+    yield lane("lane: energy of a decision", "pJ", lambda one: 1e12 * sum(one.energy.values()), share)
