@@ -24,12 +24,13 @@ from talbot.platforms.pixel import pixel_process
 from talbot.platforms.wires import CORNERS
 
 from . import package
-from .analog import files
+from .analog import ARRAY, files
 from .metrics import RULES, summarize
 from .picture import by_block
 from .steps.die_antenna import DieAntenna
 from .steps.die_connectivity import DieConnectivity
 from .steps.die_gds import DieGds, DieGdsParameters
+from .steps.die_ir_drop import DieIrDrop, DieIrDropParameters
 from .steps.die_pads import DiePads, DiePadsDrc, DiePadsLvs
 from .steps.die_parasitics import DieParasitics, DieParasiticsParameters
 from .steps.die_plan import DiePlan, DiePlanParameters
@@ -48,7 +49,7 @@ PACKAGE = f"{SENSOR}.pins.md", f"{SENSOR}.package.png", f"{SENSOR}.package.svg"
 
 def die_steps(chip: Design, options: Options, extra: Iterable[str] = (), drawn: Iterable[str] = ()) -> list[Step]:
     """The die's steps in order. extra: see DiePlanParameters. drawn: see DieGdsParameters."""
-    pdk, clock, io = options.pdk, chip.clock, chip.io
+    pdk, clock, io, drawn = options.pdk, chip.clock, chip.io, tuple(drawn)
     drc = Drc(PdkParameters(pdk))
     drc.inputs = {**drc.inputs, "gds": "die_gds.checked"}
     ns = {"input_ns": io.input_delay * clock.period_ns, "output_ns": io.output_delay * clock.period_ns}
@@ -56,12 +57,13 @@ def die_steps(chip: Design, options: Options, extra: Iterable[str] = (), drawn: 
     return [
         DiePads(PdkParameters(pdk)),
         DiePlan(DiePlanParameters(pdk, extra=tuple(extra))),
-        DieGds(DieGdsParameters(pdk, tuple(drawn))),
+        DieGds(DieGdsParameters(pdk, drawn)),
         DieConnectivity(PdkParameters(pdk)),
         DieParasitics(parasitics),
         *(DieSta(StaParameters(chip.top, corner, clock.period_ns)) for corner in options.corners),
         drc,
         DieAntenna(PdkParameters(pdk)),
+        *([DieIrDrop(DieIrDropParameters(pdk))] if ARRAY in drawn else []),
         DiePadsDrc(PdkParameters(pdk)),
         DiePadsLvs(PdkParameters(pdk)),
     ]

@@ -1,4 +1,4 @@
-"""Capacitance of a net of the die and its Elmore delays [Elmore1948], from the lengths of its segments."""
+"""Resistances of a net of the die from its segments, and its Elmore delays [Elmore1948]."""
 
 from collections.abc import Hashable, Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
@@ -45,17 +45,25 @@ def delays(edges: Iterable[Edge], root: Hashable, loads: Mapping[Hashable, float
 
 
 def net(
-    branches: Branches, y: int, driver: Terminal, tracks: Mapping[str, int], tech: CoriolisPlatform, pin_pf: float
-) -> tuple[float, dict[Terminal, float]]:
-    """Capacitance of all segments (fF), and the delay (ns) to each terminal, without the driver's own resistance.
+    branches: Branches,
+    y: int,
+    driver: Terminal,
+    tracks: Mapping[str, int],
+    tech: CoriolisPlatform,
+    pin_pf: float,
+    femtofarad: float,
+) -> dict[Terminal, float]:
+    """Delay (ns) to each terminal, without the driver's own resistance.
 
     branches: dicts of routing.Branch. y: of the trunk, nm. tracks: dict of routing.Tracks. pin_pf: of every pin but the
-    driver's.
+    driver's. femtofarad: of all segments, shared by them as their capacitances to the substrate are.
     """
     edges, pins = tree(branches, y, tracks, tech)
+    share = femtofarad / sum(edge.femtofarad for edge in edges)
+    edges = [edge._replace(femtofarad=share * edge.femtofarad) for edge in edges]
     loads = {node: pin_pf * 1000 for end, node in pins.items() if end != driver}
     found = delays(edges, pins[driver], loads)
-    return sum(edge.femtofarad for edge in edges), {end: found[node] for end, node in pins.items() if end != driver}
+    return {end: found[node] for end, node in pins.items() if end != driver}
 
 
 def tree(

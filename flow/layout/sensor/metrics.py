@@ -15,6 +15,7 @@ from .steps.die_sta import DieSta
 RULES = json.loads((Path(__file__).parent / "rules.json").read_text())
 ROUTED = "nets", "routed", "abutted", "tracks", "wire_um", "pads"
 CHECKED = "open_nets", "shorts", "drc_violations", "lvs_match", "antenna_violations"
+DROPS = "pixel_drop_mv", "pixel_spread_mv", "pixel_drop_both_mv"  # of a drawn array
 PADS = "pad_drc_violations", "pads_unmatched"
 LOADS = "wire_pf", "worst_load_pf", "worst_load", "worst_delay_ns", "worst_delay", "loads_over"
 SLACKS = [name for name in DieSta.metrics if name != "f_max_mhz"]  # by corner
@@ -25,8 +26,8 @@ NOT_CHECKED = (
     "pads: rules and LVS of each cell; no ESD pulse is simulated",
     "density and fill over the black boxes and in the channel: only the chip is filled",
     "antennas on the highest metal of the channel: whether a net's driver has the diffusion for it; in the black boxes",
-    "coupling between the die's nets; nets to the abutting rows, columns and lanes have no length here",
-    "IR drop on the die's bars",
+    "coupling of the die's nets to blocks and bars; nets to the abutting rows, columns and lanes have no length here",
+    "IR drop of other supplies than the drawn array's",
     "hold at the analog blocks, and their setup: the constraints leave them a share of the period",
 )
 
@@ -58,6 +59,7 @@ def summarize(name: str, options: Options, runner: Runner, black_boxes: Sequence
         "timing_rests_on": f"the chip, its ports with the die's nets{extrapolated(sta)}; {timing_basis(options)}",
         **{key: {corner: found[key] for corner, found in sta.items()} or None for key in SLACKS},
         "f_max_mhz": min((found["f_max_mhz"] for found in sta.values()), default=None),
+        **{key: metrics.get(key) for key in DROPS},
         "largest_loads": dict(sorted(loads.items(), key=lambda item: -item[1])[:SHOWN]),
         "not_checked": list(NOT_CHECKED),
         **{name: {step: record[name] for step, record in records.items()} for name in ("wall_s", "peak_mib")},

@@ -41,7 +41,8 @@ class DieParameters:
 
     ring: from the die's edge to what is inside of the pads. edge: from there to the first bar. bar: width of the
     supplies' bars. gap: between bars, and between blocks that do not touch. pad: pitch of the signals' pads. bars: of
-    each supply over the chip.
+    each supply over the chip. branch_pitch, trunk_pitch: of the routes, in their widths: coupling is most of a net's
+    capacitance where they are as near as rules allow.
     """
 
     width_um: float = field(default=5000.0, metadata={"unit": "um", "range": (50, 3e4)})
@@ -52,6 +53,8 @@ class DieParameters:
     gap_um: float = field(default=10.0, metadata={"unit": "um", "range": (4, 200)})
     pad_um: float = field(default=100.0, metadata={"unit": "um", "range": (2, 500)})
     bars: int = 2
+    branch_pitch: float = field(default=3.0, metadata={"range": (1, 20)})
+    trunk_pitch: float = field(default=4.0, metadata={"range": (1, 20)})
 
     def __post_init__(self) -> None:
         for one in fields(self):

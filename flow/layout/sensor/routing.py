@@ -44,13 +44,17 @@ class Tracks:
     stub: int
 
     @classmethod
-    def of(cls, rules: RoutingRules) -> "Tracks":
-        """As wide as the vias' pads, with as much space between them."""
+    def of(cls, rules: RoutingRules, die: DieParameters) -> "Tracks":
+        """As wide as the vias' pads."""
         via = rules.vias[TRUNK]
         branch = 2 * max(via.above[0], -(-rules.layers[BRANCH].width // 2))
         trunk = 2 * max(via.below[1], -(-rules.layers[TRUNK].width // 2))
         sizes = (branch, rules.layers[BRANCH]), (trunk, rules.layers[TRUNK])
-        branch_pitch, trunk_pitch = (-(-max(2 * width, width + layer.space) // 10) * 10 for width, layer in sizes)
+        pitches = die.branch_pitch, die.trunk_pitch
+        branch_pitch, trunk_pitch = (
+            -(-max(round(pitch * width), width + layer.space) // 10) * 10
+            for pitch, (width, layer) in zip(pitches, sizes, strict=True)
+        )
         return cls(branch_pitch, trunk_pitch, branch, trunk, rules.layers[STUB].width)
 
 

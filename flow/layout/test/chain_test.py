@@ -10,6 +10,7 @@ from talbot.flow.layout.chain import all_steps, signoff_steps
 from talbot.flow.layout.design import DESIGNS, design
 from talbot.flow.layout.options import Options
 from talbot.flow.layout.sensor.die import CHIP, die_steps
+from talbot.flow.layout.sensor.plan import BLOCKS
 
 FOLDER = Path(__file__).parents[1]
 DECKS = (("klayout", Path("deck")), ("magic", Path("deck")))
@@ -23,7 +24,7 @@ def steps():
     found = {}
     for made in DESIGNS.values():
         own = replace(options, utilization=made.utilization)
-        for step in (*all_steps(made, own), *(die_steps(made, own) if made.name == CHIP else ())):
+        for step in (*all_steps(made, own), *(die_steps(made, own, drawn=BLOCKS) if made.name == CHIP else ())):
             corner = next((corner for corner in options.corners if step.name.endswith(corner)), None)
             name = step.name.replace(corner, "<corner>") if corner else step.name
             found[re.sub(r"^gate_tests_.*", "gate_tests_<netlist>_<simulator>", name)] = step

@@ -73,17 +73,18 @@ class DiePadsLvs(Step[PdkParameters]):
 
     name = "die_pads_lvs"
     inputs = {"gds": "die_pads.gds", "spice": "die_pads.spice", "deck": "library.lvs"}
-    outputs = {"verdicts": "lvs.json", "deck": "taps.lvs"}
+    outputs = {"verdicts": "lvs.json", "deck": "taps.lvs", "reports": "reports"}
     metrics = {"pads_unmatched": ""}
     tools = ("klayout",)
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         process = pad_process(self.parameters.pdk)
+        outputs["reports"].mkdir()
         active = coriolis_platform(self.parameters.pdk).active
         outputs["deck"].write_text(with_taps(inputs["deck"].read_text(), active, process.tap))
         found = {}
         for cell in (*process.signals.values(), *process.supplies.values()):
-            report = outputs["verdicts"].with_name(f"{cell}.lvsdb")
+            report = outputs["reports"] / f"{cell}.lvsdb"
             _, output = run_exported(outputs["deck"], inputs["gds"], report, cell, SPICE_FILE=inputs["spice"])
             if ("LVS OK" in output) == ("LVS Failed" in output):
                 raise StepError(f"{self.name}: KLayout gave no verdict on {cell}: {output.strip().splitlines()[-1:]}")

@@ -7,8 +7,9 @@ from typing import Any
 
 from talbot.base.steps import Files, Step
 from talbot.platforms.coriolis import coriolis_platform
+from talbot.platforms.extraction import extraction_platform
 
-from .. import elmore
+from .. import coupling, elmore
 from ..plan import CORE
 
 
@@ -29,7 +30,9 @@ class DieParasiticsParameters:
 
 
 class DieParasitics(Step[DieParasiticsParameters]):
-    """Parasitics of every routed net to the substrate, its Elmore delays, the chip's constraints with both.
+    """Capacitance of every routed net with coupling, its Elmore delays, the chip's constraints with both.
+
+    At the corner of wires with the most capacitance; coupling counts as to the ground.
 
     worst_load_pf: of an output of the chip, net and pins. worst_delay_ns: of a net, without the driver's resistance.
     loads_over: outputs of the chip with more than the load that it was laid out for.
@@ -40,14 +43,17 @@ class DieParasitics(Step[DieParasiticsParameters]):
     outputs = {"nets": "parasitics.json", "sdc": "die.sdc"}
     metrics = {"wire_pf": "pF", "worst_load_pf": "pF", "worst_load": "", "worst_delay_ns": "ns"}
     metrics |= {"worst_delay": "", "loads_over": ""}
+    tools = ("python klayout",)
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         p, plan = self.parameters, json.loads(inputs["plan"].read_text())
         tech = coriolis_platform(p.pdk)
+        femtofarads = coupling.femtofarads(plan, tech, extraction_platform(p.pdk))
         nets: dict[str, dict[str, Any]] = {}
         for net, route in plan["routes"].items():
             block, pin = plan["drivers"][net]
-            femto, found = elmore.net(route["branches"], route["y"], (block, pin), plan["tracks"], tech, p.pin_pf)
+            femto, driver = femtofarads[net], (block, pin)
+            found = elmore.net(route["branches"], route["y"], driver, plan["tracks"], tech, p.pin_pf, femto)
             load_pf = round(femto / 1000 + len(found) * p.pin_pf, 6)
             delays = {".".join(end): round(ns, 6) for end, ns in found.items()}
             nets[net] = {"driver": block, "wire_ff": round(femto, 3), "load_pf": load_pf, "delay_ns": delays}

@@ -52,7 +52,7 @@ class DiePlan(Step[DiePlanParameters]):
         rules = RoutingRules.of(tech, json.loads(inputs["rules"].read_text()))
         layers = [tech.metals[level].lef for level in (routing.STUB, routing.BRANCH)]
         blocks = {name: Block.read(name, inputs[f"{name}.lef"].read_text()) for name in (*BLOCKS, CORE)}
-        tracks = routing.Tracks.of(rules)
+        tracks = routing.Tracks.of(rules, p.die)
         pads = self.pads(json.loads(inputs["pads"].read_text()))
         made = arrange.arranged(blocks, p.die, tracks, layers, pads, p.extra)
         metal = supplies.metal(made, p.die, tracks, rules, top_metal(p.pdk), pads)

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from talbot.base.steps import StepError
 from talbot.flow.layout.route.rules import RoutingRules
 from talbot.flow.layout.sensor.channel import check_apart, free, left_edge
+from talbot.flow.layout.sensor.plan import DieParameters
 from talbot.flow.layout.sensor.routing import Branch, Tracks, trunks
 from talbot.flow.layout.sensor.shapes import signal
 from talbot.platforms.coriolis import coriolis_platform
@@ -15,7 +16,7 @@ from . import small
 
 KNOWN = coriolis_platform("sky130")
 ROUTING_RULES = RoutingRules.of(KNOWN, small.RULES)
-TRACKS = Tracks.of(ROUTING_RULES)
+TRACKS = Tracks.of(ROUTING_RULES, DieParameters())
 SPANS = st.dictionaries(
     st.integers(0, 99),
     st.tuples(st.integers(0, 500), st.integers(0, 80)).map(lambda span: (span[0], span[0] + span[1])),

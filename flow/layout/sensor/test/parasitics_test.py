@@ -5,6 +5,7 @@ import re
 
 import pytest
 
+from talbot.flow.layout.sensor import coupling, elmore
 from talbot.flow.layout.sensor.elmore import delays
 from talbot.flow.layout.sensor.routing import STUB
 from talbot.flow.layout.sensor.steps.die_antenna import DieAntenna
@@ -12,6 +13,7 @@ from talbot.flow.layout.sensor.steps.die_parasitics import DieParasitics, DiePar
 from talbot.flow.layout.sensor.steps.die_sta import over
 from talbot.flow.layout.steps.parameters import PdkParameters
 from talbot.platforms.coriolis import coriolis_platform
+from talbot.platforms.extraction import extraction_platform
 
 from . import small
 
@@ -46,7 +48,7 @@ def parasitics(tmp_path_factory):
 
 
 def test_a_net_by_hand(parasitics):
-    """tap[0]: from the chip to the row driver and the column amplifiers; capacitance by length and width."""
+    """tap[0]: from the chip to the row driver and the column amplifiers; more than its area and edges alone."""
     _, nets, _, plan = parasitics
     tech, tracks, route = coriolis_platform("sky130"), plan["tracks"], plan["routes"]["tap[0]"]
     assert len(route["branches"]) == 3 and nets["tap[0]"]["driver"] == "core"
@@ -58,14 +60,40 @@ def test_a_net_by_hand(parasitics):
         (4, tracks["branch"], sum(abs(branch["end"] - route["y"]) for branch in route["branches"])),
         (STUB, top - bottom, max(left - core["x"], core["x"] - right)),
     )
-    femto = sum(
+    alone = sum(
         length * 1e-6 * (width / 1000 * tech.metals[level].area_af_um2 + 2 * tech.metals[level].fringe_af_um)
         for level, width, length in pieces
     )
-    assert nets["tap[0]"]["wire_ff"] == pytest.approx(femto, abs=1e-3)
-    assert nets["tap[0]"]["load_pf"] == pytest.approx(femto / 1000 + 0.06, abs=1e-5)
+    assert alone < nets["tap[0]"]["wire_ff"] < 3 * alone
+    assert nets["tap[0]"]["load_pf"] == pytest.approx(nets["tap[0]"]["wire_ff"] / 1000 + 0.06, abs=1e-5)
     slow, quick = nets["tap[0]"]["delay_ns"].values()
     assert min(slow, quick) > 0 and set(nets["tap[0]"]["delay_ns"]) == {"row_driver.tap[0]", "column_amplifiers.tap[0]"}
+
+
+def test_delays_follow_the_capacitance(parasitics):
+    """Twice the capacitance of the segments and no pins: twice the delay."""
+    plan, tech = parasitics[3], coriolis_platform("sky130")
+    route = plan["routes"]["tap[0]"]
+    one, two = (
+        elmore.net(route["branches"], route["y"], ("core", "tap[0]"), plan["tracks"], tech, 0.0, femto)
+        for femto in (100.0, 200.0)
+    )
+    assert two == pytest.approx({end: 2 * ns for end, ns in one.items()})
+
+
+@pytest.mark.parametrize("near, far", [(400, 4000)])
+def test_a_neighbour_couples(near, far):
+    """Two long wires of the trunks' metal beside each other; alone one has what Wires give to the substrate."""
+    tech = coriolis_platform("sky130")
+    layer = tech.metals[3].gds
+    found = {}
+    for apart in (near, far, 50_000):
+        shapes = [[net, *layer, 0, y, 500_000, y + 300] for net, y in (("a", 0), ("b", 300 + apart))]
+        plan = {"shapes": shapes, "routes": {"a": None, "b": None}}
+        both = coupling.femtofarads(plan, tech, extraction_platform("sky130"))
+        assert both["a"] == pytest.approx(both["b"], rel=1e-6)
+        found[apart] = both["a"]
+    assert found[near] > 1.2 * found[far] > found[50_000] > 0
 
 
 def test_constraints_have_every_port_once(parasitics):
