@@ -1,6 +1,7 @@
 """Files that are complete or absent: everything is written under a temporary name and renamed."""
 
 import contextlib
+import errno
 import os
 import platform
 import secrets
@@ -18,6 +19,13 @@ PART = f".part-{platform.node()}-"  # then the process, so that a killed one's l
 def check_folder(field: str, path: Path | str) -> None:
     """Raise ParameterError unless ``path`` is, or can become, a folder in which this user may write."""
     path = Path(path)
+    with contextlib.suppress(FileNotFoundError, NotADirectoryError):
+        try:
+            path.lstat()
+        except OSError as error:
+            if error.errno == errno.ENAMETOOLONG:
+                raise ParameterError(f"{field} = {str(path)!r}: must be a shorter name") from None
+            raise
     there = next(p for p in (path.absolute(), *path.absolute().parents) if os.path.lexists(p))
     if not there.is_dir():
         raise ParameterError(f"{field} = {str(path)!r}: must be a folder; {there} is a file")
@@ -124,13 +132,18 @@ def insert(document: Path | str, mark: str, text: str) -> None:
 
     Raises ParameterError when the file does not have both.
     """
-    document = Path(document)
+    before, first, last, after = marked(document, mark)
+    write(document, f"{before}{first}\n{text.strip()}\n\n{last}{after}")
+
+
+def marked(document: Path | str, mark: str) -> tuple[str, str, str, str]:
+    """The text before such a place, both comments, the text after. Raises ParameterError as `insert`, OSError."""
     first, last = f"<!-- {mark} -->\n", f"<!-- end of {mark} -->"
-    before, found, rest = document.read_text().partition(first)
+    before, found, rest = Path(document).read_text().partition(first)
     _, ends, after = rest.partition(last)
     if not (found and ends):
         raise ParameterError(f"document = {document}: must have the comments {mark!r} and 'end of {mark}'")
-    write(document, f"{before}{first}\n{text.strip()}\n\n{last}{after}")
+    return before, first, last, after
 
 
 def _alive(process: int) -> bool:

@@ -36,11 +36,12 @@ def supervised(program: Callable[[], int]) -> int:
     signal.pthread_sigmask(signal.SIG_BLOCK, {*ends, signal.SIGCHLD})
     folder = Path(tempfile.mkdtemp(prefix="talbot-"))
     ctypes.CDLL(None).prctl(SET_CHILD_SUBREAPER, 1)
+    parent = os.getpid()
     child = os.fork()
     if not child:
         signal.signal(signal.SIGINT, signal.SIG_IGN)  # of a terminal, it comes to the whole group
-        for number in ENDS[1:]:
-            signal.signal(number, lambda *_: None)  # and is the default again in what is started
+        for number in ends - {signal.SIGINT}:
+            signal.signal(number, _passed_on(parent))  # and is the default again in what is started
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {*ENDS, signal.SIGCHLD})
         os.environ |= {RUN: str(folder), "TMPDIR": str(folder)}
         tempfile.tempdir = None
@@ -56,6 +57,20 @@ def supervised(program: Callable[[], int]) -> int:
         print(f"{clear}talbot: error: {line}; nothing was left half-written", file=sys.stderr)
     shutil.rmtree(folder, ignore_errors=True)
     return 128 + number if number else status
+
+
+def _passed_on(parent: int) -> Callable[[int, object], None]:
+    """Of a child: the signal goes to its parent, which is about to kill it, and nothing more is said.
+
+    A worker that the signal ended, too, is no error.
+    """
+
+    def handler(number: int, _: object) -> None:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
+        if os.getppid() == parent:
+            os.kill(parent, number)
+
+    return handler
 
 
 @contextlib.contextmanager

@@ -1,6 +1,6 @@
 import pytest
 
-from talbot.base.files import _exchange, check_folder, staged
+from talbot.base.files import _exchange, check_folder, insert, marked, staged
 from talbot.models.parameters import ParameterError
 
 
@@ -28,6 +28,20 @@ def test_an_error_leaves_what_was_there(tmp_path):
         (folder / "a").write_text("half")
         raise OSError("disk full")
     assert [(p.name, p.read_text()) for p in tmp_path.iterdir()] == [("a", "old")]
+
+
+def test_a_name_too_long_for_a_folder_is_refused_before_the_work():
+    with pytest.raises(ParameterError, match="out = 'x+': must be a shorter name"):
+        check_folder("out", "x" * 5000)
+
+
+def test_a_place_in_a_document_is_found_or_refused(tmp_path):
+    path = tmp_path / "a.md"
+    path.write_text("head\n<!-- table -->\nold\n<!-- end of table -->\ntail\n")
+    insert(path, "table", "new")
+    assert path.read_text() == "head\n<!-- table -->\n\nnew\n\n<!-- end of table -->\ntail\n"
+    with pytest.raises(ParameterError, match="must have the comments 'tables' and 'end of tables'"):
+        marked(path, "tables")
 
 
 def test_a_folder_in_the_place_of_a_file_is_refused_before_anything_is_written(tmp_path):

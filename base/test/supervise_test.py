@@ -41,6 +41,11 @@ def publishes():
 def crashes():
     with atomic(out / "file"):
         os.kill(os.getpid(), signal.SIGSEGV)
+def works():
+    worker = subprocess.Popen(["sleep", "20"])
+    print(os.getpid(), flush=True)
+    worker.wait()
+    raise RuntimeError("a worker ended")
 def leaves():
     subprocess.Popen(["sleep", "20"], start_new_session=True)
     return 7
@@ -117,6 +122,24 @@ def test_a_tool_that_a_program_forgets_ends_with_it(tmp_path):
     process, mark = program(tmp_path, "leaves")
     process.communicate(timeout=20)
     assert process.returncode == 7 and not running(mark)
+
+
+@pytest.mark.parametrize("attempt", range(5))
+@pytest.mark.parametrize("sent", [signal.SIGTERM, signal.SIGHUP])
+def test_a_worker_that_the_signal_ends_first_is_no_error(tmp_path, sent, attempt):
+    process, mark = program(tmp_path, "works")
+    process.stdout.readline()
+    os.killpg(process.pid, sent)
+    _, err = process.communicate(timeout=20)
+    assert process.returncode == 128 + sent and err.count("\n") == 1 and "nothing was left" in err
+    assert not running(mark)
+
+
+def test_a_signal_to_the_child_alone_ends_both(tmp_path):
+    process, mark = program(tmp_path, "works")
+    os.kill(int(process.stdout.readline()), signal.SIGTERM)
+    _, err = process.communicate(timeout=20)
+    assert process.returncode == 143 and "nothing was left" in err and not running(mark)
 
 
 def test_an_ignored_signal_stays_ignored(tmp_path):

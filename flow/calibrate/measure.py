@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from talbot.flow.frame.job import golden_result
+from talbot.flow.frame.job import golden_result, see
 from talbot.flow.frame.request import FrameRequest
 from talbot.flow.lightfield.fields import prior_of, read_back
 from talbot.models.calibrate import Calibration, Sweep, TypeFit, calibrated
@@ -33,6 +33,7 @@ class Calibrated:
 
 def calibrate(request: FrameRequest, holes: int, note: Callable[[str], None] = lambda text: None) -> Calibrated:
     """Measure the chip of ``request`` on the bench, then read its scene back with the calibration and the truth."""
+    see(request)  # a scene that cannot be read is refused at once
     note("bench")
     start = perf_counter()
     sweep = Bench(request, holes).sweep(note)

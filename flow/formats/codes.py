@@ -32,8 +32,8 @@ def load_codes(path: Path) -> tuple[Codes, npt.NDArray[np.float64]]:
     try:
         with np.load(path) as file:
             codes, ideal = file["codes"], file["ideal"]
-    except (ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile) as error:
-        raise ParameterError(f"codes = {path}: must be an npz file with codes and ideal ({error})") from None
+    except (ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile):
+        raise ParameterError(f"codes = {path}: must be an npz file with codes and ideal") from None
     right = codes.ndim == 2 and codes.size and codes.shape == ideal.shape and codes.dtype.kind == "i"
     if not right or abs(codes.astype(int)).max() > 128:
         raise ParameterError(f"codes = {path}: must hold codes -128..127 and ideal, both (rows, cols)")

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from talbot.base.charts import save
-from talbot.base.files import insert, staged
+from talbot.base.files import insert, marked, staged
 from talbot.base.paths import RESULTS
 from talbot.base.progress import each
 from talbot.base.table import write_csv
@@ -22,6 +22,7 @@ from .table import chart, lines, markdown, page, tables
 from .tokens import FORMATS
 
 DEFAULT_THRESHOLD = 10
+MARKS = "formats", "company"  # of the document
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -34,6 +35,9 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Measure every format in every order, write and print the tables."""
+    if options.document:
+        for mark in MARKS[:1] if options.codes else MARKS:
+            marked(options.document, mark)
     codes, ideal = load_codes(options.codes) if options.codes else codes_of()
     source = f"`{options.codes.name}`" if options.codes else "the edge codes of the default scene"
     rows = measure(codes, ideal, THRESHOLDS, lambda every: each(every, "threshold", str))
@@ -52,9 +56,9 @@ def run(options: Namespace) -> int:
         save(chart(rows), part / "formats.png")
         (part / "report.html").write_text(page([*found, *in_company], chart(rows), source))
     if options.document:
-        insert(options.document, "formats", text)
+        insert(options.document, MARKS[0], text)
         if beside:
-            insert(options.document, "company", lines(in_company))
+            insert(options.document, MARKS[1], lines(in_company))
     print(text, lines(in_company), sep="\n", end="")
     print(f"look at {options.out / 'report.html'}", file=sys.stderr)
     return 0

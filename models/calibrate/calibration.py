@@ -112,7 +112,7 @@ class Calibration:
             gains = tuple(float(gain) for gain in np.atleast_1d(table["gains"]))
             return cls(types, gains, table["sigma"], table["pupil_power"], middle)
         except (KeyError, TypeError, IndexError) as error:
-            raise ParameterError(f"calibration = a table: must have types, gains, sigma, ... ({error!r})") from None
+            raise ParameterError(f"calibration = a table: must have types, gains, sigma, ...: {error}") from None
 
 
 def read_calibration(path: str | Path) -> Calibration:
@@ -139,5 +139,6 @@ def read_calibration(path: str | Path) -> Calibration:
             raise ParameterError("calibration = a list: must be a table")
         return Calibration.of(table)
     except (OSError, ValueError) as error:
-        said = f"calibration = {str(path)!r}: must be a calibration.json of talbot calibrate ({error})"
+        reason = error.strerror if isinstance(error, OSError) else error
+        said = f"calibration = {str(path)!r}: must be a calibration.json of talbot calibrate ({reason})"
         raise ParameterError(said) from None

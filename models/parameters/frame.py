@@ -123,6 +123,8 @@ class FrameParameters:
         check_int("frame_number", self.frame_number, 0, 65535)
         check_int("resync", self.resync, 0, 3)
         check_int("calibration", self.calibration, 0, 255)
+        for name in ("phase", "overlap", "test_pattern"):
+            check_choice(name, getattr(self, name), (False, True))
         if self.phase and self.mode != "tof":
             raise ParameterError(f"phase = True: needs mode 'tof', not {self.mode!r}")
 

@@ -88,6 +88,8 @@ def open_clip(source: str | Path | Iterable[npt.ArrayLike], sampling: Sampling) 
     ParameterError
         For what is missing, damaged or no sequence, and for a video without the package av.
     """
+    if not isinstance(source, str | Path | Iterable):
+        raise ParameterError(f"frames = {source!r}: must be a folder, an animated picture, a video, or arrays")
     if not isinstance(source, str | Path):
         count = len(source) if isinstance(source, Sized) else None
         if count == 0:

@@ -57,7 +57,12 @@ class LightField:
     specular: npt.NDArray[Any] | None = None
 
     def __post_init__(self) -> None:
-        values = np.asarray(self.values)
+        if np.ma.is_masked(self.values):
+            raise ParameterError("light field = a masked array: must have a value everywhere")
+        try:
+            values = np.asarray(self.values)
+        except ValueError as error:  # a list of lists of other lengths
+            raise ParameterError(f"light field = no array: must be (views, views, height, width) ({error})") from None
         object.__setattr__(self, "values", values)
         shape = values.shape
         if len(shape) not in (4, 5) or 0 in shape or shape[0] != shape[1] or shape[4:] not in ((), (3,)):

@@ -103,13 +103,13 @@ def write_light_field(light_field: LightField, path: str | Path) -> None:
         The light field. Pictures take its codes as they are; linear radiance becomes sRGB codes, gray of 16 bits,
         colours of 8.
     path : path
-        x.npy, x.npz, an image file, or a folder, which is created. Disparity goes into .npz and folders alone,
-        depth, Stokes parameters and highlights into .npz.
+        x.npy, x.npz, an image file (16 bits: .png, .tif), or a folder without a dot in its name, which is created.
+        Disparity goes into .npz and folders alone, depth, Stokes parameters and highlights into .npz.
 
     Raises
     ------
     ParameterError
-        For radiance above 1, or 16-bit colours, in pictures.
+        For radiance above 1, or 16-bit colours, in pictures, and for another kind of file.
     OSError
         If it cannot be written.
     """
@@ -125,7 +125,17 @@ def write_light_field(light_field: LightField, path: str | Path) -> None:
     elif re.fullmatch(rf"\.(?:{PICTURES})", path.suffix, re.I):
         tiles = _codes(values).swapaxes(1, 2)
         side = light_field.views
-        Image.fromarray(tiles.reshape(side * tiles.shape[1], side * tiles.shape[3], *tiles.shape[4:])).save(path)
+        picture = Image.fromarray(tiles.reshape(side * tiles.shape[1], side * tiles.shape[3], *tiles.shape[4:]))
+        try:
+            picture.save(path)
+        except OSError as error:
+            if not str(error).startswith("cannot write mode"):
+                raise
+            raise ParameterError(f"path = {path.name!r}: must be .png or .tif, for 16 bits ({error})") from None
+    elif path.suffix:
+        raise ParameterError(
+            f"path = {path.name!r}: must end in .npy, .npz, .png or .tif, or be a folder without a dot"
+        )
     else:
         codes = _codes(values)
         path.mkdir(exist_ok=True)

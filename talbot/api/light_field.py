@@ -6,7 +6,7 @@ from typing import Self
 
 import numpy as np
 
-from talbot.base.files import atomic, staged
+from talbot.base.files import atomic, check_file, staged
 from talbot.flow.frame import pictures
 from talbot.models import scene
 
@@ -48,6 +48,7 @@ class LightField(scene.LightField):
         path = Path(path)
         with ExitStack() as stack:
             if path.suffix:
+                check_file("path", path)
                 part = stack.enter_context(atomic(path))
             else:
                 old = [entry.name for entry in path.glob("input_Cam*")] if path.is_dir() else []

@@ -28,7 +28,7 @@ class Measured:
     summary: dict[str, Any]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class PolarizationResult(Measured):
     """Linear polarization at every pixel, each (rows, cols).
 
@@ -42,6 +42,9 @@ class PolarizationResult(Measured):
     confidence: Image
     highlights: npt.NDArray[np.bool_]
 
+    def __repr__(self) -> str:
+        return f"<Polarization of {self.psi.shape[0]} x {self.psi.shape[1]} pixels>"
+
     def _repr_png_(self) -> bytes | None:
         return png(pictures.angle(np.where(self.confidence > 0, self.psi, np.nan)))
 
@@ -49,7 +52,7 @@ class PolarizationResult(Measured):
         return _shown(self, "psi_error_deg", "degree_rms", "sure", "f1")
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class DepthResult(Measured):
     """Depth at every pixel, each (rows, cols) in m.
 
@@ -63,6 +66,9 @@ class DepthResult(Measured):
     disparity: Image
     behind: Image | None
     light_field: LightField
+
+    def __repr__(self) -> str:
+        return f"<Depth of {self.depth.shape[0]} x {self.depth.shape[1]} pixels, {100 * self.sure.mean():.1f} % sure>"
 
     def _repr_png_(self) -> bytes | None:
         low, high = float(self.depth.min()), float(self.depth.max())

@@ -6,10 +6,9 @@ from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any, Self, TypedDict, Unpack
 
-import numpy as np
 import numpy.typing as npt
 
-from talbot.base.files import write
+from talbot.base.files import check_file, write
 from talbot.base.progress import Steps, line
 from talbot.flow.frame import job
 from talbot.flow.frame.chip_picture import chip_svg
@@ -120,6 +119,7 @@ class Sensor:
 
     def save(self, path: str | Path) -> None:
         """Write it as a file for `load` and `make sim SENSOR=file`. Raises ParameterError, OSError."""
+        check_file("path", Path(path))
         write(path, self.text)
 
     @property
@@ -212,7 +212,7 @@ class Sensor:
         if isinstance(scene, str | Path):
             scene = str(scene)
         elif not isinstance(scene, LightField):
-            scene = LightField(np.asarray(scene))
+            scene = LightField(scene)
         return request(sensor=self.parameters, scene=scene, mode=mode, **given)
 
     def __repr__(self) -> str:

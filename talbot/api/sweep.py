@@ -14,13 +14,16 @@ from talbot.models.parameters import check_choice
 from .image import embedded, text
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Tradeoff:
     """A table and its plot. text: what was varied and measured. rows: a dict for each point. figure: Matplotlib's."""
 
     text: str
     rows: Sequence[dict[str, Any]]
     figure: Figure
+
+    def __repr__(self) -> str:
+        return f"<Tradeoff of {len(self.rows)} points: {', '.join(self.rows[0])}>"
 
     def _repr_png_(self) -> bytes:
         out = io.BytesIO()
@@ -36,8 +39,8 @@ class Tradeoff:
 def tradeoff(name: str, *, quick: bool = False) -> Tradeoff:
     """Measure one of the trade-offs of `make tradeoff`.
 
-    name: divider, threshold, exposure, views, pupil, precision or noise. quick: fewer points of a smaller array.
-    Raises ParameterError, ToolError.
+    name: divider, threshold, exposure, views, pupil, precision, noise or light_field. quick: fewer points of a
+    smaller array. Raises ParameterError, ToolError.
     """
     check_choice("name", name, list(SWEEPS))
     rows = measured(name, quick)

@@ -13,6 +13,7 @@ import talbot
 from talbot.base.paths import ROOT
 from talbot.commands import main
 from talbot.flow.lightfield.methods import METHODS
+from talbot.flow.tradeoff.sweeps import SWEEPS
 from talbot.models.parameters import AmpTiming
 
 
@@ -106,6 +107,9 @@ def test_sensors():
     assert edge.reconstruct(disparity=np.ones((24, 36))).shape == (24, 36)
 
 
+VIEWS = np.linspace(0, 1, 3 * 3 * 4 * 6).reshape(3, 3, 4, 6)
+
+
 @pytest.mark.parametrize(
     "wrong, said",
     [
@@ -120,7 +124,17 @@ def test_sensors():
         (lambda: talbot.Sensor().golden("coins", exposure=1024), "exposure = 1024: must be an integer in 0..1023"),
         (lambda: talbot.Sensor().golden("coins", window=(1, 2)), "window = .* must be .row0, row1, col0, col1."),
         (lambda: talbot.Sensor().golden("coins", types=[24]), "types = 24: must be an integer in 0..23"),
+        (lambda: talbot.Sensor().golden("coins", overlap="x"), "overlap = 'x': must be one of False, True"),
         (lambda: talbot.Sensor().golden("none.npy"), "no such file"),
+        (lambda: talbot.LightField([[1, 2], [3]]), r"light field = no array: must be \(views, views"),
+        (lambda: talbot.LightField(np.ma.masked_less(VIEWS, 1)), "light field = a masked array: must have a value ev"),
+        (
+            lambda: talbot.LightField(VIEWS).save("views.xyz"),
+            "path = 'views.xyz': must end in .npy, .npz, .png or .tif",
+        ),
+        (lambda: talbot.LightField(VIEWS).save("views.jpg"), "path = 'views.jpg': must be .png or .tif, for 16 bits"),
+        (lambda: talbot.Sensor().save("/tmp"), "path = '/tmp': must be a file, not a folder"),
+        (lambda: talbot.Sensor().sequence(5), "frames = 5: must be a folder, an animated picture, a video, or arrays"),
         (lambda: talbot.Sensor().golden(np.zeros((2, 3))), "must be .views, views, height, width."),
         (lambda: talbot.tradeoff("size"), "name = 'size': must be one of divider, threshold"),
         (lambda: talbot.decode(b""), "0 bytes: the stream is empty"),
@@ -144,6 +158,8 @@ def test_a_tradeoff_is_a_table_and_a_plot():
     found = talbot.tradeoff("views", quick=True)
     assert len(found.rows) == 8 and found.rows[0]["views"] == 3
     assert found._repr_png_().startswith(b"\x89PNG") and "<table>" in found._repr_html_()
+    assert repr(found) == f"<Tradeoff of 8 points: {', '.join(found.rows[0])}>"
+    assert all(re.search(rf"\b{name}\b", talbot.tradeoff.__doc__) for name in SWEEPS)
 
 
 def test_a_light_field_by_every_method():
@@ -169,6 +185,7 @@ def test_polarization_of_a_run_is_that_of_the_command(tmp_path):
     said = json.loads((tmp_path / "summary.json").read_text())
     assert found.summary["psi_error_deg"] == said["psi_error_deg"] and found.summary["f1"] == said["f1"]
     assert found.psi.shape == found.highlights.shape == (48, 54) and found.highlights.any()
+    assert repr(found) == "<Polarization of 48 x 54 pixels>"
     assert np.abs(found.psi).max() <= np.pi / 2 and 0 <= found.degree.min() <= found.degree.max() <= 1
     assert found._repr_png_().startswith(b"\x89PNG") and "<table>" in found._repr_html_()
     for wrong in (lambda: run.depth(), lambda: run.polarization(highlight=-1)):
@@ -191,6 +208,7 @@ def test_depth_of_a_run_is_that_of_the_command(tmp_path):
     assert error == pytest.approx(said["depth_rms_m"]) and found.behind is None
     assert error < 0.05 * np.ptp(truth) < np.nanstd(run.reconstruct("depth") - truth)  # a phase alone wraps
     assert found.light_field.values.shape == (5, 5, 40, 48) and found._repr_png_().startswith(b"\x89PNG")
+    assert repr(found).startswith("<Depth of 40 x 48 pixels, ")
     with pytest.raises(talbot.ParameterError, match="mode = 'tof': must be 'raw'"):
         run.polarization()
     with pytest.raises(talbot.ParameterError, match="near = -3"):

@@ -55,11 +55,17 @@ def test_lightfield_knows_it_in_place_of_the_truth(done, tmp_path):
 
 @pytest.mark.parametrize(
     "word, message",
-    [("--holes=4", "holes = '4': must be an integer in 5..31"), ("--rows=2", "must hold every pixel type")],
+    [
+        ("--holes=4", "holes = '4': must be an integer in 5..31"),
+        ("--rows=2", "must hold every pixel type"),
+        ("--scene=none", "scene = 'none': must be an image file or one of "),
+    ],
 )
 def test_bad_arguments(word, message, capsys, tmp_path):
     assert main(["calibrate", word, f"--out={tmp_path / 'out'}"]) == 2
-    assert message in capsys.readouterr().err and not (tmp_path / "out").exists()
+    err = capsys.readouterr().err
+    assert message in err and not (tmp_path / "out").exists()
+    assert "flat field" not in err  # before any work
 
 
 def test_no_such_calibration(capsys, tmp_path):
