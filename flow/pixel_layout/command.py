@@ -13,7 +13,9 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--pdk", default="sky130", help="process, sky130")
     parser.add_argument("--rows", type=int, default=ArrayParameters().rows, help="pixels down")
     parser.add_argument("--cols", type=int, default=ArrayParameters().cols, help="pixels across")
-    parser.add_argument("--table", type=Path, help="also write the lines for models: models/parameters/pixel_lines.json")
+    parser.add_argument(
+        "--table", type=Path, help="also write the lines for models: models/parameters/pixel_lines.json"
+    )
     parser.add_argument("--out", type=Path, help="folder for the results (default: build/pixel-layout/<pdk>)")
 
 

@@ -92,7 +92,12 @@ def _sections(s: dict[str, Any]) -> list[Section]:
             if s["foundry"]
             else "Not run: PDK_ROOT has no installed PDK.",
             head=("deck", "file", "rule", "count"),
-            rows=[row for deck, files in s["foundry"].items() for name, f in files.items() for row in _broken(deck, name, f)],
+            rows=[
+                row
+                for deck, files in s["foundry"].items()
+                for name, f in files.items()
+                for row in _broken(deck, name, f)
+            ],
             numbers=False,
         ),
         Section(
