@@ -32,6 +32,7 @@ COMMANDS = {
     ),
     "polar": ("talbot.flow.polar.command", "polarization and highlights from a raw frame, beside free baselines"),
     "depth": ("talbot.flow.depth.command", "depth field by time of flight, unwrapped by the light field"),
+    "render": ("talbot.flow.render.command", "the shipped rendered scenes again, by Mitsuba 3"),
     "calibrate": ("talbot.flow.calibrate.command", "pixel types, trims and lens from noisy frames on a bench"),
     "sensor": ("talbot.flow.sensor", "the standard sensor as a file to start from, or a file checked and completed"),
     "decode": ("talbot.flow.decode", "a byte stream of the chip back to samples (.npz)"),

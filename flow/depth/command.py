@@ -10,10 +10,9 @@ from talbot.flow.frame import reading
 from talbot.flow.frame.command import camera_of
 from talbot.flow.frame.sensor import asked_sensor
 from talbot.flow.lightfield.command import add_prior_arguments, prior_asked
-from talbot.models.parameters import STANDARD, CameraParameters
+from talbot.models.parameters import LIFE_SIZE, STANDARD, ElectricalParameters
+from talbot.models.pixel.time_of_flight import SPEED_OF_LIGHT
 
-# Life size: disparities of more than a pixel from 2.2 to 4.6 m, in which the phase turns more than once
-CAMERA = CameraParameters(focal_length=25e-3, focus=3.0, scale=1.0)
 FIXED = {"mode": "tof", "views": "auto"}  # of the capture: as many as `capture` takes
 STEPS = ("setup", "capture", "build", "rtl", "decode", "field", "unwrap", "report")
 F_MOD, CONTRAST, AMBIENT = 100e6, 0.7, 0.2
@@ -21,7 +20,7 @@ F_MOD, CONTRAST, AMBIENT = 100e6, 0.7, 0.2
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot depth`: texts, checked by `run`."""
-    reading.add_arguments(parser, "depth", "cornell", FIXED, CAMERA)
+    reading.add_arguments(parser, "depth", "cornell", FIXED, LIFE_SIZE)
     add = parser.add_argument
     add("--f-mod", help=f"modulation frequency, 1e5..1e9 Hz (default: {F_MOD:g}, or of the sensor file)")
     add("--contrast", help=f"demodulation contrast, 0.01..1 (default: {CONTRAST:g}, or of the sensor file)")
@@ -29,6 +28,10 @@ def add_arguments(parser: ArgumentParser) -> None:
         "--ambient",
         help=f"light of white that is not modulated, of its own, 0..10 (default: {AMBIENT:g}, or of the file)",
     )
+    add("--direct", action="store_true", help="light straight from the surfaces alone, of a scene that has other")
+    add("--code", default="0", help="chips of a code by whose light the scene is seen again, 7, 15 .. 4095 (0: none)")
+    add("--chip-rate", default="250e6", help="of the code, 1e6..1e9 chips a second")
+    add("--gate", default="2.0", help="depth of the code's first tap in m, 0..100: what is a chip before is not seen")
     add_prior_arguments(parser)
 
 
@@ -40,7 +43,7 @@ def run(options: Namespace) -> int:
 
     own = STANDARD.electrical
     ours = replace(own, f_mod=F_MOD, contrast=CONTRAST, ambient_current=AMBIENT * own.white_current)
-    default = replace(STANDARD, optics=replace(STANDARD.optics, camera=CAMERA), electrical=ours)
+    default = replace(STANDARD, optics=replace(STANDARD.optics, camera=LIFE_SIZE), electrical=ours)
     sensor = asked_sensor(options, default)
     e, given = sensor.electrical, {}
     if options.f_mod is not None:
@@ -52,12 +55,20 @@ def run(options: Namespace) -> int:
     camera = camera_of(options, sensor.optics.camera)
     sensor = replace(sensor, optics=replace(sensor.optics, camera=camera), electrical=replace(e, **given))
     asked, typed = reading.asked(options, "depth", add_arguments, sensor)
-    prior = prior_asked(options, asked.noise)
+    prior, code = prior_asked(options, asked.noise), _code(options, asked.sensor.electrical)
 
     def found(note: reading.Note) -> Depth:
-        return read_depth(capture(asked, note, options.golden), prior, note)
+        return read_depth(capture(asked, note, options.golden, code, options.direct), prior, note)
 
     return reading.run(asked, typed, STEPS, found, page, _print)
+
+
+def _code(options: Namespace, own: ElectricalParameters) -> ElectricalParameters | None:
+    """What modulates the light of the coded frames, None without any. Raises ParameterError."""
+    chips = text.integer("code", options.code, 0, 4095)
+    rate, gate = text.real("chip_rate", options.chip_rate, 1e6, 1e9), text.real("gate", options.gate, 0, 100)
+    coded = replace(own, code=chips, chip_rate=rate, code_delay=2 * gate / SPEED_OF_LIGHT)
+    return coded if chips else None
 
 
 def _print(s: dict[str, Any], folder: Path) -> None:
@@ -67,6 +78,10 @@ def _print(s: dict[str, Any], folder: Path) -> None:
     print(f"{s['scene']}: depth of {size} over {span}")
     for name, error, share, known, whole in rows(s):
         print(f"  {name:<50}{error:>9} {share:>8}  in {known:>7} of the pixels; in all {whole:>9}")
+    wrong = s["multipath"]
+    if wrong:
+        error, middle = (f"{1e3 * wrong[key]:.1f} mm" for key in ("rms_m", "median_m"))
+        print(f"  light that comes by other ways moves the phase's depth by {middle} (median), {error} RMS")
     behind = s["behind"]
     if behind:
         error, mixed = (f"{behind[key]:.4f} m" for key in ("rms_m", "rms_all_rays_m"))

@@ -15,7 +15,8 @@ from talbot.models.digital.phase import phase_samples
 from talbot.models.pixel.time_of_flight import SPEED_OF_LIGHT, demodulate
 from talbot.models.reconstruct import white_sum
 from talbot.models.reconstruct.bad_pixels import beside, dead_pixels
-from talbot.models.reconstruct.bayes import FieldPrior
+from talbot.models.reconstruct.bayes import FieldEstimator, FieldPrior
+from talbot.models.reconstruct.coded import Coded, coded_depth
 from talbot.models.reconstruct.depth_field import DepthField, depth_field, foreground, refocused, unwrap
 from talbot.models.scene import Sampling, camera
 
@@ -28,6 +29,7 @@ FAINT = 3.0  # codes: what has a smaller amplitude has no phase
 LOOSE = 0.2  # px per view step: no disparity is surer
 EDGE = 2  # steps of the disparities that are tried from their ends: what is nearer may be beyond
 CODES = 255
+NOISE = 1.0  # codes, of a tap: of the converter and the light, not less
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,6 +71,8 @@ def read_depth(frames: DepthFrames, prior: FieldPrior, note: Callable[[str], Non
     for name, phase in _phases(frames, field, ideal, white).items():
         found = unwrap(np.where(over, np.nan, phase), coarse / ambiguity, doubt / ambiguity)
         depth[name], sure[name] = found.turns * ambiguity, found.sure
+    for name, got in _coded(frames, estimator, white).items():
+        depth[name], sure[name] = got.depth, got.sure & ~over
     methods = {name: figures(depth[name], truth, sure[name], ambiguity) for name in depth}
     once = sure[BEST]
     baselines = {
@@ -84,6 +88,7 @@ def read_depth(frames: DepthFrames, prior: FieldPrior, note: Callable[[str], Non
         "depth_sure": methods[BEST]["sure"],
         "methods": methods,
         "baselines": baselines,
+        "multipath": _multipath(frames),
         "behind": past,
         "seconds": seconds,
     }
@@ -109,6 +114,26 @@ def _phases(frames: DepthFrames, field: DepthField, ideal: DepthField, white: fl
         "field_float": demodulate(ideal.centre * white),
     }
     return {name: np.where(amplitude < FAINT, np.nan, phase) for name, (phase, amplitude) in out.items()}
+
+
+def _coded(frames: DepthFrames, estimator: FieldEstimator, white: float) -> dict[str, Coded]:
+    """Depth of what the code's taps see: by their sums, and by the middle view of their depth field."""
+    if not frames.coded:
+        return {}
+    electrical = frames.coded[0].sensor.electrical
+    sums = np.moveaxis(frames.coded[0].decoded.samples.astype(float), 2, 0)
+    centre = depth_field(estimator, frames.diodes(coded=True) / white).centre * white
+    return {name: coded_depth(taps, electrical, NOISE) for name, taps in (("code", sums), ("code_field", centre))}
+
+
+def _multipath(frames: DepthFrames) -> dict[str, float] | None:
+    """What light by other ways does to the depth by the sums' phase, in m, without noise; of a scene that has some."""
+    if frames.straight is None:
+        return None
+    phase, straight = (demodulate(taps)[0] for taps in (np.moveaxis(frames.sums.exposed.ideal, 2, 0), frames.straight))
+    turn = SPEED_OF_LIGHT / (2 * frames.sums.sensor.electrical.f_mod)
+    moved = ((phase - straight) / (2 * np.pi) + 0.5) % 1 - 0.5
+    return {"median_m": float(np.median(moved)) * turn, "rms_m": float(np.sqrt(np.mean(moved**2))) * turn}
 
 
 def _by_disparity(result: GoldenResult, field: DepthField, prior: FieldPrior) -> tuple[Values, Values]:

@@ -3,6 +3,7 @@
 import json
 from argparse import ArgumentParser, Namespace
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
 from typing import Any, Protocol
@@ -16,13 +17,15 @@ from talbot.base.progress import Steps
 from talbot.flow.simulate.frame import WAVES
 from talbot.models.parameters import CameraParameters, SensorParameters
 from talbot.models.reconstruct import FULL
+from talbot.models.scene.rendered import RENDERED
 
 from . import report
-from .command import add_frame_arguments, arguments_of, name_of, request_of, tell_replaced, typed_of
+from .command import Own, add_frame_arguments, arguments_of, name_of, request_of, tell_replaced, typed_of
 from .figures import mismatches
 from .job import golden_result, simulate_frame
 from .request import FrameRequest
 from .result import FrameResult, GoldenResult
+from .sensor import asked_sensor
 
 HEADROOM = 5.0  # LSB below a full code, for noise and bow of the converters: what is above counts as full
 # All of a frame is read
@@ -65,9 +68,17 @@ def asked(
     add_arguments: Callable[[ArgumentParser], None],
     sensor: SensorParameters | None = None,
 ) -> tuple[FrameRequest, dict[str, Any]]:
-    """The request, and the arguments that its folder tells. sensor: see `request_of`. Raises ParameterError."""
+    """The request, and the arguments that its folder tells. sensor: see `request_of`. Raises ParameterError.
+
+    A rendered scene has its own size where no other is given.
+    """
     typed = typed_of(options, add_arguments)
     options.out = options.out or Path("build") / command / name_of(typed)
+    own = isinstance(options.rows, Own) and isinstance(options.cols, Own) and options.sensor is None
+    if options.scene in RENDERED and own:
+        size = RENDERED[options.scene].size
+        sensor = sensor or asked_sensor(options)
+        sensor = replace(sensor, array=replace(sensor.array, rows=size, cols=size))
     return request_of(options, sensor), typed
 
 

@@ -7,13 +7,14 @@ import numpy.typing as npt
 
 from talbot.models.parameters import ParameterError, SensorParameters
 from talbot.models.pixel.polarization import transmission
-from talbot.models.pixel.time_of_flight import phase_of, tap_gains
+from talbot.models.pixel.time_of_flight import phase_of, tap_functions
 from talbot.models.plan import Plan
 from talbot.models.scene import Scene
 from talbot.models.scene.depth_field import depth_of_surface
+from talbot.models.scene.echo import Correlation
 
 from .expose import Exposure, expose
-from .pupil import Region, integrate
+from .pupil import Region, Wave, integrate
 
 Floats = npt.NDArray[np.floating]
 
@@ -161,19 +162,25 @@ def _taps(scene: Scene, sensor: SensorParameters, plan: Plan, region: Region, dt
     if scene.depth is None:
         raise ParameterError("depth = None: time of flight needs a scene with depth")
     e = sensor.electrical
+    taps = tap_functions(e)
     if plan.captures == 1:
         pair = integrate(scene, sensor, region, dtype=dtype)[0]
-        gains = tap_gains(phase_of(scene.depth.flat[0], e.f_mod), e.contrast, e.ambient)
-        return np.stack([pair * pair.dtype.type(gain) for gain in gains])
-    depth = depth_of_surface(scene.depth, scene.disparity)
+        return np.stack([pair * pair.dtype.type(tap(scene.depth.flat[0])) for tap in taps])
     if plan.captures == 3:
-        waves = [None, *(lambda s, dv, du, w=wave: w(phase_of(depth(s), e.f_mod)) for wave in (np.cos, np.sin))]
-        mean, *parts = integrate(scene, sensor, region, waves, dtype)
+        parts = [_returned(scene, lambda z, w=wave: w(phase_of(z, e.f_mod))) for wave in (np.cos, np.sin)]
+        mean, *parts = integrate(scene, sensor, region, [None, *parts], dtype)
         cosine, sine = (part * mean.dtype.type(e.contrast) for part in parts)
         mean *= mean.dtype.type(1 + 2 * e.ambient)
         # A tap's current is never negative; mean and wave are rounded separately.
         return np.stack([np.maximum((mean + part) / 2, 0) for part in (cosine, -sine, -cosine, sine)])
-    waves = [
-        lambda s, dv, du, t=tap: tap_gains(phase_of(depth(s), e.f_mod), e.contrast, e.ambient)[t] for tap in range(4)
-    ]
-    return integrate(scene, sensor, region, waves, dtype)
+    return integrate(scene, sensor, region, [_returned(scene, tap) for tap in taps], dtype)
+
+
+def _returned(scene: Scene, correlation: Correlation) -> Wave:
+    """What a correlation makes of the light of a view, straight or not."""
+    assert scene.depth is not None
+    depth = depth_of_surface(scene.depth, scene.disparity)
+    if scene.echo is None:
+        return lambda surface, dv, du: correlation(depth(surface))
+    returned = scene.echo.returned(correlation)
+    return lambda surface, dv, du: returned(depth(surface), surface, dv, du)

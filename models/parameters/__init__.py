@@ -1,7 +1,7 @@
 """Every parameter once: frozen, validated, with unit, range and source."""
 
 from .array import COLS_MAX, ROWS_MAX, ArrayParameters
-from .camera import FOCUS_MAX, CameraParameters
+from .camera import FOCUS_MAX, LIFE_SIZE, CameraParameters
 from .checks import ParameterError, check_choice, check_int, check_real
 from .chip import ASYNCHRONOUS, LANES, SPI_INPUTS, ChipParameters
 from .circuit import circuit_converter
@@ -26,6 +26,7 @@ __all__ = [
     "EXPOSURE_MAX",
     "FOCUS_MAX",
     "LANES",
+    "LIFE_SIZE",
     "LightParameters",
     "LineParameters",
     "MODES",

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from math import sqrt
 
-from .checks import check_int, check_real
+from .checks import ParameterError, check_int, check_real
 from .sources import sourced
 
 ELEMENTARY_CHARGE = 1.602176634e-19  # C
@@ -35,6 +35,12 @@ class ElectricalParameters:
         RMS of the offset fixed-pattern noise, 0..1e5 electrons.
     f_mod : float
         Time-of-flight modulation frequency, 1e5..1e9 Hz.
+    code : int
+        Chips of the m-sequence that modulates the light, 2**n - 1 of 7..4095; 0 is a sine of f_mod.
+    chip_rate : float
+        Of the code, 1e6..1e9 chips a second.
+    code_delay : float
+        Of the first tap behind the light, 0..1e-6 s; each next is a chip later.
     contrast : float
         Demodulation contrast of time of flight, 0.01..1.
     ambient_current : float
@@ -55,6 +61,9 @@ class ElectricalParameters:
     gain_fpn: float = sourced(0.002, "assumed")
     offset_fpn: float = sourced(20.0, "assumed")
     f_mod: float = sourced(20e6, "our choice")
+    code: int = sourced(0, "a sine")
+    chip_rate: float = sourced(250e6, "our choice: a tap sees 0.6 m")
+    code_delay: float = sourced(0.0, "none")
     contrast: float = sourced(1.0, "ideal")
     ambient_current: float = sourced(0.0, "none")
     swing: float = sourced(1.0, "assumed")
@@ -70,6 +79,11 @@ class ElectricalParameters:
         check_real("gain_fpn", self.gain_fpn, 0, 0.5)
         check_real("offset_fpn", self.offset_fpn, 0, 1e5)
         check_real("f_mod", self.f_mod, 1e5, 1e9)
+        check_int("code", self.code, 0, 4095)
+        if self.code and (self.code < 7 or self.code & (self.code + 1)):
+            raise ParameterError(f"code = {self.code}: must be 0, or 2**n - 1 in 7..4095")
+        check_real("chip_rate", self.chip_rate, 1e6, 1e9)
+        check_real("code_delay", self.code_delay, 0, 1e-6)
         check_real("contrast", self.contrast, 0.01, 1)
         check_real("ambient_current", self.ambient_current, 0, 1e-3)
         check_real("swing", self.swing, 0.01, 10)

@@ -78,7 +78,7 @@ def plan(scene: Scene, sensor: SensorParameters, frame: FrameParameters) -> Plan
     rows, cols = scene.shape
     read = Scan(sensor.array.rows, sensor.array.cols, sensor.chip.lanes, frame, sensor.tile).read
     taps = 4 if frame.mode == "tof" else 1
-    captures, tap_note = _captures(scene, taps)
+    captures, tap_note = _captures(scene, taps, bool(sensor.electrical.code))
     angular, polarized = scene.angular, scene.polarization is not None
     views = scene.views**2
     notes = [tap_note] if tap_note else []
@@ -103,17 +103,17 @@ def plan(scene: Scene, sensor: SensorParameters, frame: FrameParameters) -> Plan
     return Plan(angular, polarized, taps, captures, read, tuple(notes))
 
 
-def _captures(scene: Scene, taps: int) -> tuple[int, LeftOut | None]:
+def _captures(scene: Scene, taps: int, coded: bool) -> tuple[int, LeftOut | None]:
     """Capture passes of a frame, and those that it leaves out."""
     if taps == 1:
         return 1, LeftOut("time-of-flight taps", "the mode reads none", "3 of 4 sub-frames")
-    if scene.static and (scene.depth is None or not np.ptp(scene.depth)):
+    if scene.static and scene.echo is None and (scene.depth is None or not np.ptp(scene.depth)):
         return 1, LeftOut(
             "capture passes of the taps",
             "static scene at one depth: each tap is the same frame, scaled",
             "3 of 4 capture passes",
         )
-    if scene.static:
+    if scene.static and not coded:
         return 3, LeftOut(
             "capture passes of the taps",
             "static scene: mean, cosine and sine give all four taps",

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+from numpy.lib.stride_tricks import sliding_window_view
 from scipy.ndimage import shift
 from scipy.sparse import csr_array, diags_array
 from scipy.sparse.linalg import splu
@@ -22,8 +23,11 @@ Floats = npt.NDArray[np.floating]
 Complexes = npt.NDArray[np.complexfloating]
 Bools = npt.NDArray[np.bool_]
 SMOOTH = 0.01  # turns: by this much neighbours may differ from what their phases say
-BEND = 0.03  # turns between two steps along a line beyond which a depth edge is there
+FLAT = 0.015  # turns: a larger step is a depth edge, if it is not one of a slope's
+BEND = 0.03  # turns by which the steps of a slope differ at most
+RUN = 4  # steps of a slope: an edge that defocus smears has fewer
 FOLLOWED = 1.0  # weight of neighbours over an edge, 1 / turns**2: what hangs on nothing else follows them
+HELD = 0.05  # of the firmest link: a pixel without one as firm is a mixture of two surfaces
 ROUNDS = 2  # of weighing again what the solution contradicts
 APART = 0.2  # turns by which a solution departs from a step that counts half in power: an edge of whole turns
 AWAY = 0.3  # the same from a coarse depth, or its doubt where that is more
@@ -155,9 +159,19 @@ def unwrap(phase: Floats, coarse: Floats, doubt: Floats) -> Unwrapped:
     around = _followed([(step, LOCAL * link) for step, link in steps], trust)
     agreed = around(_counts((smooth - coarse) / np.maximum(doubt, AWAY)), False)
     whole = np.abs(smooth - fine - np.rint(smooth - fine)) < SURE
-    sure = known & whole & (told > TOLD) & (agreed > AGREED)
+    sure = known & whole & (told > TOLD) & (agreed > AGREED) & _held(steps)
     turns = fine + np.maximum(np.rint(smooth - fine), 0)
     return Unwrapped(np.where(known, turns, np.maximum(smooth, 0) * known.any()), sure)
+
+
+def _held(steps: Sequence[tuple[Floats, Floats]]) -> Bools:
+    """Where a pixel goes on, along both axes, in one of its neighbours: a mixture of two surfaces does in neither."""
+    parts = []
+    for axis, (_, link) in enumerate(steps):
+        firm = np.moveaxis(link > HELD / SMOOTH**2, axis, 0)
+        ends = np.full((1, *firm.shape[1:]), not len(firm))  # one pixel alone has no neighbour to differ from
+        parts.append(np.moveaxis(np.concatenate([ends, firm]) | np.concatenate([firm, ends]), 0, axis))
+    return np.logical_and(*parts)
 
 
 def _counts(residual: Floats) -> Floats:
@@ -170,13 +184,16 @@ def _steps(fine: Floats, known: Bools, axis: int) -> tuple[Floats, Floats]:
     both = np.logical_and(*_pairs(known, axis))
     step = np.where(both, _short(np.diff(fine, axis=axis)), 0)
     run = np.moveaxis(both, axis, 0)
-    turn = np.moveaxis(np.abs(_short(np.diff(step, axis=axis))), axis, 0)
-    turn = np.where(run[1:] & run[:-1], turn, np.inf)
-    bend = np.moveaxis(np.abs(step), axis, 0).copy()  # of a flat surface there is none
-    if len(turn):
-        bend[1:] = np.minimum(bend[1:], turn)
-        bend[:-1] = np.minimum(bend[:-1], turn)
-    firm = np.moveaxis(run * np.exp(-((bend / BEND) ** 2)), 0, axis)
+    bend = np.moveaxis(np.abs(step), axis, 0) / FLAT
+    lines = np.where(run, np.moveaxis(step, axis, 0), np.inf)
+    if len(lines) >= RUN:
+        straight = sliding_window_view(lines, RUN, 0)
+        with np.errstate(invalid="ignore"):
+            spread = np.where(np.isfinite(straight).all(-1), np.ptp(straight, axis=-1), np.inf)
+        for start in range(RUN):  # of the straightest run that a step is in
+            part = bend[start : start + len(spread)]
+            np.minimum(part, spread / BEND, out=part)
+    firm = np.moveaxis(run * np.exp(-(bend**2)), 0, axis)
     return step, firm / SMOOTH**2 + FOLLOWED
 
 

@@ -21,7 +21,7 @@ from .demosaic import demosaic
 
 Floats = npt.NDArray[np.floating]
 REACH = 5  # px from a pixel to the farthest that count
-SPREAD = 2.4  # px, sigma of their weights
+SPREAD = 2.0  # px, sigma of their weights
 STEP = 0.12  # of the light: pixels that differ by this much count 1/e**0.5
 CERTAIN = 4.0  # standard deviations of the degree below which there is no polarization
 TAGGED = 2.0  # the same for a highlight, which must be bright, too

@@ -13,6 +13,7 @@ import numpy.typing as npt
 from talbot.models.parameters import FOCUS_MAX, ParameterError, check_int
 
 from . import camera, resample
+from .echo import Echo
 from .picture_file import decode16
 from .sampling import Sampling
 from .scene import RADIANCE_MAX, Scene, check_values
@@ -31,9 +32,10 @@ class LightField:
     values : array (views, views, height, width) or (views, views, height, width, 3)
         l[v, u, y, x], gray or RGB, 1..31 views each way. uint8 and uint16 are sRGB codes; float16 to float64 is linear
         radiance, 0..16, 1 = diffuse white.
-    disparity : array (height, width) or None
-        Of the middle view in its pixels per view step, -1e4..1e4, positive towards the camera: view (v, u) shows at
-        (y, x) what the middle one shows at (y + dv d, x + du d). Without it no image is rebuilt from edges.
+    disparity : array (height, width) or (views, views, height, width), or None
+        Of the middle view, or of what every view shows, in pixels per view step, -1e4..1e4, positive towards the
+        camera: view (v, u) shows at (y, x) what the middle one shows at (y + dv d, x + du d). Without it no image is
+        rebuilt from edges.
     name : str
         Name in reports.
     stokes : array (2, views, views, height, width) or (2, height, width), or None
@@ -42,6 +44,10 @@ class LightField:
         Of the middle view in m of the scene, 0.001..1000; for time of flight.
     specular : bool (height, width) or None
         Where the middle view shows a specular reflection, if that is known.
+    behind : array (height, width) or None
+        Depth of what stands behind an occluder, in m of the scene, 0.001..1000.
+    echo : Echo or None
+        Where the light of time of flight has been; of an array of the light field's size alone.
 
     Raises
     ------
@@ -55,6 +61,8 @@ class LightField:
     stokes: npt.NDArray[Any] | None = None
     depth: npt.NDArray[Any] | None = None
     specular: npt.NDArray[Any] | None = None
+    behind: npt.NDArray[Any] | None = None
+    echo: Echo | None = None
 
     def __post_init__(self) -> None:
         if np.ma.is_masked(self.values):
@@ -74,21 +82,23 @@ class LightField:
             raise ParameterError(f"light field = {values.dtype} array: must be of {', '.join(CODES + FLOATS)}")
         if values.dtype.name in FLOATS:
             check_values("light field", values, 0, RADIANCE_MAX)
-        views = (2, *shape[:4]), (2, *shape[2:4])
+        one, every = shape[2:4], shape[:4]
         for name, low, high, shapes in (
-            ("disparity", -1e4, 1e4, views[1:]),
-            ("depth", 1e-3, FOCUS_MAX, views[1:]),
-            ("specular", 0, 1, views[1:]),
-            ("stokes", -RADIANCE_MAX, RADIANCE_MAX, views),
+            ("disparity", -1e4, 1e4, (one, every)),
+            ("depth", 1e-3, FOCUS_MAX, (one,)),
+            ("specular", 0, 1, (one,)),
+            ("behind", 1e-3, FOCUS_MAX, (one,)),
+            ("stokes", -RADIANCE_MAX, RADIANCE_MAX, ((2, *every), (2, *one))),
         ):
             if getattr(self, name) is not None:
                 own = np.asarray(getattr(self, name))
                 object.__setattr__(self, name, own)
-                allowed = shapes if name == "stokes" else (shape[2:4],)
-                if own.shape not in allowed or own.dtype.kind not in "biuf":
-                    must = " or ".join(map(str, allowed))
+                if own.shape not in shapes or own.dtype.kind not in "biuf":
+                    must = " or ".join(map(str, shapes))
                     raise ParameterError(f"{name} = {own.dtype} array of shape {own.shape}: must be numbers, {must}")
                 check_values(name, own, low, high)
+        if self.echo is not None and self.echo.share.shape != every:
+            raise ParameterError(f"echo = shares of shape {self.echo.share.shape}: must be {every}")
 
     @property
     def views(self) -> int:
@@ -140,13 +150,18 @@ class LightField:
             light = self.view(v, u)
             # Means may round past the ends
             field[v, u] = light if same else np.clip(resample.resize(light, *size, box), 0, RADIANCE_MAX)
-        disparity = None
+        disparity = surfaces = None
         if self.disparity is not None:
             zoom = sampling.cols / (box[2] - box[0])
-            disparity = np.clip(resample.pick(self.disparity, *size, box) * zoom, -1e4, 1e4)
+            parts = np.reshape(self.disparity, (-1, *self.shape))
+            found = np.array([np.clip(resample.pick(part, *size, box) * zoom, -1e4, 1e4) for part in parts])
+            disparity = found[len(found) // 2]
+            surfaces = found.reshape(self.views, self.views, *size) if len(found) > 1 else None
         image = field[middle, middle].copy()
         polarization = None if self.stokes is None else self._polarization(field, box)
-        depth, specular = (None if p is None else resample.pick(p, *size, box) for p in (self.depth, self.specular))
+        depth, specular, behind = (
+            None if p is None else resample.pick(p, *size, box) for p in (self.depth, self.specular, self.behind)
+        )
         if (field == image).all() and (polarization is None or polarization.ndim == 3):
             field = field[:1, :1]
         return Scene(
@@ -158,6 +173,32 @@ class LightField:
             None if depth is None else camera.scaled(depth, sampling.camera),
             polarization,
             None if specular is None else specular > 0.5,
+            None if behind is None else camera.scaled(behind, sampling.camera),
+            surfaces if len(field) > 1 else None,
+            self.echo if same else None,
+        )
+
+    def cropped(self, rows: int, cols: int) -> "LightField":
+        """The middle of the picture.
+
+        Parameters
+        ----------
+        rows, cols : int
+            At most height and width.
+
+        Returns
+        -------
+        LightField
+            Of this size, pixel for pixel.
+        """
+        top, left = (2 * ((own - n) // 4) for own, n in zip(self.shape, (rows, cols), strict=True))
+        part = np.s_[..., top : top + rows, left : left + cols]
+        maps = {name: getattr(self, name) for name in ("disparity", "stokes", "depth", "specular", "behind")}
+        return LightField(
+            self.values[:, :, top : top + rows, left : left + cols],
+            name=self.name,
+            echo=None if self.echo is None else self.echo.cropped(top, left, rows, cols),
+            **{name: None if own is None else own[part] for name, own in maps.items()},
         )
 
     def _polarization(

@@ -1,7 +1,8 @@
 """Light fields in files, as the data sets and NumPy have them.
 
 x.npy               the array
-x.npz               `light_field` (or the only array), and perhaps `disparity`, `depth`, `s1` with `s2`, `specular`
+x.npz               `light_field` (or the only array), and perhaps `disparity`, `depth`, `s1` with `s2`, `specular`,
+                    `behind`, and `direct` with `late` and `bins` (an `Echo`'s)
 folder              input_Cam000.png ... row by row, as HCI's 4D data set [Honauer2016], and gt_disp_lowres.pfm if it is
                     there; or out_RR_CC_*.png, as the Stanford archive [Vaish2008]
 image, with views   one picture of views x views tiles of one size
@@ -22,6 +23,7 @@ from PIL import Image
 
 from talbot.models.parameters import ParameterError, check_int
 
+from .echo import Echo
 from .light_field import LightField
 from .picture_file import FLOAT_MAX, encode16, read_picture
 
@@ -30,8 +32,9 @@ PICTURES = "png|jpe?g|tiff?|webp|bmp|ppm|pgm"
 HCI = re.compile(rf"input_Cam(\d{{3}})\.(?:{PICTURES})", re.I)
 STANFORD = re.compile(rf"out_(\d+)_(\d+)(?:_.*)?\.(?:{PICTURES})", re.I)
 DISPARITY = "gt_disp_lowres.pfm"
-MAPS = "disparity", "depth", "specular"  # in an .npz, of the middle view
+MAPS = "disparity", "depth", "specular", "behind"  # in an .npz, of the middle view; disparity of all views, too
 STOKES = "s1", "s2"
+ECHO = "direct", "late", "bins"  # shares, histograms, middle of the first bin and distance of the bins
 BYTES_MAX = 1 << 32  # of a light field in memory
 TILED = re.compile(rf"(.+\.(?:{PICTURES})):(.*)", re.I | re.S)  # on the command line: tiles.png:9
 
@@ -120,6 +123,9 @@ def write_light_field(light_field: LightField, path: str | Path) -> None:
         arrays = {name: getattr(light_field, name) for name in MAPS}
         if light_field.stokes is not None:
             arrays |= dict(zip(STOKES, light_field.stokes, strict=True))
+        if light_field.echo is not None:
+            echo = light_field.echo
+            arrays |= dict(zip(ECHO, (echo.share, echo.late, np.array([echo.start, echo.width])), strict=True))
         given = {name: array for name, array in arrays.items() if array is not None}
         np.savez_compressed(path, allow_pickle=False, light_field=values, **given)
     elif re.fullmatch(rf"\.(?:{PICTURES})", path.suffix, re.I):
@@ -197,7 +203,7 @@ def _folder(path: Path) -> LightField:
 def _numpy(path: Path) -> LightField:
     if not path.is_file():
         raise ParameterError(f"scene = {str(path)!r}: no such file; must be a readable file")
-    more: dict[str, npt.NDArray[Any]] = {}
+    more: dict[str, Any] = {}
     try:
         if path.suffix.lower() == ".npy":
             values = np.load(path, mmap_mode="r", allow_pickle=False)
@@ -217,8 +223,18 @@ def _numpy(path: Path) -> LightField:
                             f"scene = {str(path)!r}: must hold s1 and s2 of one shape, or none of them"
                         )
                     more |= {"stokes": np.stack(stokes)} if stokes else {}
+                    more |= _echo({name: archive[name] for name in ECHO if name in archive}, path)
     except (OSError, ValueError, EOFError, KeyError, zipfile.BadZipFile, SyntaxError) as error:
         if isinstance(error, ParameterError):
             raise
         raise ParameterError(f"scene = {str(path)!r}: must be a NumPy array file ({type(error).__name__})") from None
     return LightField(values, name=path.stem, **more)
+
+
+def _echo(arrays: dict[str, npt.NDArray[Any]], path: Path) -> dict[str, Echo]:
+    if not arrays:
+        return {}
+    if len(arrays) < len(ECHO) or arrays["bins"].shape != (2,):
+        raise ParameterError(f"scene = {str(path)!r}: must hold {', '.join(ECHO)} together, bins of two numbers")
+    share, late, bins = (arrays[name].astype(np.float32) for name in ECHO)
+    return {"echo": Echo(share, late, float(bins[0]), float(bins[1]))}

@@ -67,21 +67,41 @@ def stress(sampling: Sampling, degrees: float = 30.0) -> Scene:
     [Jayasuriya2017], Sec. 4.2; [Kirsch1898].
     """
     y, x = places(sampling)
-    radius = HOLE * min(sampling.shape)
-    around = np.arctan2(y, x) + 0 * x
-    rho = radius / np.maximum(np.hypot(y, x), radius)
-    # Half the difference of the principal stresses and the shear, in polar coordinates, of a pull of 1
-    normal = (1 - rho**2) / 2 + (1 - 4 * rho**2 + 3 * rho**4) / 2 * np.cos(2 * around)
-    normal -= (1 + rho**2) / 2 - (1 + 3 * rho**4) / 2 * np.cos(2 * around)
-    shear = -(1 + 2 * rho**2 - 3 * rho**4) * np.sin(2 * around)
-    delay = RETARDANCE * np.hypot(normal, shear) * (rho < 1)
-    axis = around + 0.5 * np.arctan2(shear, normal)
+    delay, axis = kirsch(y, x, HOLE * min(sampling.shape))
     psi = np.deg2rad(degrees)
     # Along the axis' own direction light keeps its plane; across it the cosine of the retardance is left.
     along, across = np.cos(2 * (psi - axis)), np.sin(2 * (psi - axis)) * np.cos(delay)
     cosine, sine = np.cos(2 * axis), np.sin(2 * axis)
     stokes = np.stack([along * cosine - across * sine, along * sine + across * cosine])
     return uniform("stress", sampling, 0.6, stokes)
+
+
+def kirsch(y: Floats, x: Floats, radius: float) -> tuple[Floats, Floats]:
+    """Retardance and fast axis of a sheet with a hole that is pulled along x.
+
+    Parameters
+    ----------
+    y, x : array
+        From the middle of the hole, broadcastable.
+    radius : float
+        Of the hole, in the same unit.
+
+    Returns
+    -------
+    tuple of array
+        Retardance in rad, 0 in the hole, and the axis in rad from x towards y.
+
+    References
+    ----------
+    [Kirsch1898].
+    """
+    around = np.arctan2(y, x) + 0 * x
+    rho = radius / np.maximum(np.hypot(y, x), radius)
+    # Half the difference of the principal stresses and the shear, in polar coordinates, of a pull of 1
+    normal = (1 - rho**2) / 2 + (1 - 4 * rho**2 + 3 * rho**4) / 2 * np.cos(2 * around)
+    normal -= (1 + rho**2) / 2 - (1 + 3 * rho**4) / 2 * np.cos(2 * around)
+    shear = -(1 + 2 * rho**2 - 3 * rho**4) * np.sin(2 * around)
+    return RETARDANCE * np.hypot(normal, shear) * (rho < 1), around + 0.5 * np.arctan2(shear, normal)
 
 
 def specular(sampling: Sampling) -> Scene:

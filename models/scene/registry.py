@@ -13,6 +13,7 @@ from .light_field import LightField
 from .light_field_file import named
 from .motorcycle import motorcycle
 from .photograph import PHOTOGRAPHS, photograph, picture
+from .rendered import RENDERED, rendered
 from .sampling import Sampling
 from .scene import Scene
 
@@ -32,6 +33,7 @@ scenes: dict[str, Callable[..., Scene]] = {
     "cornell": solids.cornell,
     "fence": solids.fence,
     "leaves": leaves,
+    **{name: partial(rendered, name) for name in RENDERED},
     **{name: partial(photograph, name) for name in PHOTOGRAPHS},
 }
 NUMBERS = {

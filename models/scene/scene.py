@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from talbot.models.parameters import FOCUS_MAX, ParameterError, check_choice, check_int, check_real
 
+from .echo import Echo
 from .sampling import DTYPES
 
 Bools = npt.NDArray[np.bool_]
@@ -50,6 +51,10 @@ class Scene:
         Where the centre view shows a reflection brighter than half of the lamp that it is of; None if not known.
     behind : array (rows, cols) or None
         Distance from the camera of what stands behind an occluder, 0.001..1000 m.
+    surfaces : array (views, views, rows, cols) or None
+        Disparity of what every view of the light field shows; None: as the centre view's.
+    echo : Echo or None
+        Where the light of time of flight has been; None: straight to the surface and back.
     render : callable or None
         From the wanted pixels, bool (rows, cols), to a `View` of these, those of the light field and all between; None:
         there are no others.
@@ -75,6 +80,8 @@ class Scene:
     polarization: npt.NDArray[np.floating] | None = None
     specular: npt.NDArray[np.bool_] | None = None
     behind: npt.NDArray[np.floating] | None = None
+    surfaces: npt.NDArray[np.floating] | None = None
+    echo: Echo | None = None
     render: Callable[[Bools], View] | None = None
     static: bool = True
     moved: Callable[[float], "Scene"] | None = None
@@ -94,6 +101,7 @@ class Scene:
             ("specular", 0, 1, self.shape),
             ("behind", 1e-3, FOCUS_MAX, self.shape),
             ("polarization", -1, 1, (2, *self.shape)),
+            ("surfaces", -1e4, 1e4, (self.views, self.views, *self.shape)),
         ):
             value = getattr(self, name)
             if value is None:
@@ -104,6 +112,8 @@ class Scene:
             ):
                 raise ParameterError(f"{name} shape = {value.shape}: must be {shape}")
             check_values(name, value, low, high)
+        if self.echo is not None and self.echo.share.shape != (self.views, self.views, *self.shape):
+            raise ParameterError(f"echo shape = {self.echo.share.shape}: must be that of the light field")
         check_real("speed", self.speed, 0, SPEED_MAX)
         if self.polarization is not None:
             check_values("degree of polarization", np.hypot(*self.polarization), 0, 1 + 1e-6)
@@ -163,7 +173,12 @@ class Scene:
             return self.render(wanted)
         middle = (len(self.light_field) - 1) / 2
         disparity = np.zeros(self.shape) if self.disparity is None else self.disparity
-        return lambda dv, du: (self.light_field[round(dv + middle), round(du + middle)], disparity)
+
+        def _nearest(dv: float, du: float) -> tuple[npt.NDArray[np.floating], npt.NDArray[np.floating]]:
+            place = round(dv + middle), round(du + middle)
+            return self.light_field[place], disparity if self.surfaces is None else self.surfaces[place]
+
+        return _nearest
 
     @property
     def full_light_field(self) -> npt.NDArray[np.floating]:

@@ -1,0 +1,78 @@
+"""Scenes that Mitsuba 3 has rendered (flow/render), as files: no formula of this project made their light.
+
+Each is made for one lens. Through another, or enlarged to more pixels than it has, it is a picture with disparity
+alone: its depth and its echoes are another lens's.
+"""
+
+import json
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from talbot.models.parameters import LIFE_SIZE, CameraParameters
+
+from ..light_field import LightField
+from ..light_field_file import read_light_field
+from ..sampling import Sampling
+from ..scene import Scene
+
+FOLDER = Path(__file__).parent
+MANIFEST = "rendered.json"
+
+
+class Rendered(NamedTuple):
+    """What a scene is rendered for.
+
+    Attributes
+    ----------
+    size : int
+        Rows and columns in px.
+    camera : CameraParameters
+        The lens.
+    """
+
+    size: int
+    camera: CameraParameters
+
+
+RENDERED = {
+    "room": Rendered(96, LIFE_SIZE),
+    "plant": Rendered(96, LIFE_SIZE),
+    "fog": Rendered(96, LIFE_SIZE),
+    "spheres": Rendered(128, CameraParameters()),
+    "sheet": Rendered(96, CameraParameters()),
+}
+
+
+def manifest() -> dict[str, Any]:
+    """How each file was made, and its SHA-256, by name.
+
+    Returns
+    -------
+    dict
+        Of dicts.
+    """
+    return json.loads((FOLDER / MANIFEST).read_text())
+
+
+def rendered(name: str, sampling: Sampling) -> Scene:
+    """A rendered scene.
+
+    Parameters
+    ----------
+    name : str
+        Of `RENDERED`.
+    sampling : Sampling
+        Array and camera; the views are the file's.
+
+    Returns
+    -------
+    Scene
+        Its middle, pixel for pixel, or enlarged.
+    """
+    own, (size, lens) = read_light_field(FOLDER / f"{name}.npz"), RENDERED[name]
+    larger = max(sampling.shape) > size
+    if not larger:
+        own = own.cropped(*sampling.shape)
+    if larger or sampling.camera != lens:
+        own = LightField(own.values, own.disparity, own.name, own.stokes, specular=own.specular)
+    return own.scene(sampling)
