@@ -10,10 +10,13 @@ from matplotlib.figure import Figure
 from talbot.base.charts import curves, svg
 from talbot.base.page import TABLES, Section, Tile, render
 from talbot.flow.frame.reading import number
+from talbot.models.parameters import OpticsParameters
+from talbot.models.pixel.weights import density
 
 from .measure import Calibrated
 
 NAMES = ("calibrate.html", "calibration.json", "summary.json", "sweep.npz")
+NEAR = 0.12  # of the pupil's radius
 HEAD = ("type", "beta", "true", "gamma", "true", "alpha", "true", "m", "true", "residual", "condition")
 
 
@@ -38,7 +41,7 @@ def write(folder: Path, done: Calibrated) -> None:
             Section("Lens", head=("", "measured", "true"), rows=lens_rows(s)),
             Section(
                 "Difference over sum, of rays across the pupil",
-                "Measured: mean of a type's pixels in a block, nu_y as near to 0 as the holes are. Fitted: Eq. 3.1.",
+                "Measured: mean of a type's pixels in a block, nu_y near 0. Fitted: Eq. 3.1, or a table around it.",
                 charts=[svg(figure) for figure in _figures(done)],
             ),
             Section("Pixel types", head=HEAD, rows=[_row(i, kind) for i, kind in enumerate(s["types"])]),
@@ -89,7 +92,7 @@ def _row(number_: int, kind: dict[str, Any]) -> tuple[str, ...]:
 def _figures(done: Calibrated) -> list[Figure]:
     """Measured and fitted ratios of a type of each angular frequency."""
     sweep, types = done.sweep, done.calibration.types
-    row = sweep.holes[:, 0] == sweep.holes[np.abs(sweep.holes[:, 0]).argmin(), 0]
+    row = np.abs(sweep.holes[:, 0]) < NEAR * np.abs(sweep.holes).max()
     block = np.argmin(np.abs(np.nanmean(sweep.places, 1)).sum(1))
     out = []
     for beta in sorted({round(kind.beta / 6) * 6 for kind in types}):
@@ -97,7 +100,8 @@ def _figures(done: Calibrated) -> list[Figure]:
         kind, (a, b) = types[chosen], sweep.diodes[row, block, chosen].T
         nu = sweep.holes[row, 1]
         fine = np.linspace(nu.min(), nu.max(), 121)
-        wave = (kind.m or 0) * np.cos(kind.beta * np.arctan(fine) * np.cos(kind.gamma) + kind.alpha)
+        one, two = density((kind,), OpticsParameters(m=kind.m or 0), fine, 0 * fine)[0]
+        wave = (one - two) / np.maximum(one + two, 1e-12)
         points = {
             "fitted": [(x, y, "") for x, y in zip(fine, wave, strict=True)],
             "measured": [(x, y, "") for x, y in zip(nu, (a - b) / (a + b), strict=True)],

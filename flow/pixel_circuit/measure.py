@@ -5,6 +5,7 @@ from math import sqrt
 
 import numpy as np
 
+from talbot.base.tools import ToolError
 from talbot.cells.corner import Corner
 from talbot.models.parameters import ELEMENTARY_CHARGE, AmpTiming, ParameterError
 from talbot.models.parameters.electrical import BOLTZMANN
@@ -17,6 +18,7 @@ LEVELS = 0.25, 0.5, 0.75, 0.95  # of the full well, a frame each; a dark one fol
 RAMP = 1e3  # V/s: slow for all capacitances
 NOISE_FROM, NOISE_TO = 30.0, 1e9  # Hz, of the follower's: a frame's rate, beyond the column's band
 MIDDLE = 0.05, 0.95  # of the full well, between which linearity counts
+DIED = 1e-3  # of the greatest power in an e-fold of the frequency
 SETTLED = 1 / 512  # of the full well's swing: half an LSB
 
 
@@ -194,7 +196,7 @@ def _reset_noise(deck: list[str], corner: Corner, gate_v: float) -> tuple[float,
     """V rms on the node while it is reset, and its capacitance (F) then, with the reset transistor's channel."""
     lines = [f"Vrst pixel_reset 0 {gate_v:g} ac 1", "Vread read 0 0", "Vb photo_b 0 2"]
     deck = [LINEAR if line == OPTIONS else line for line in deck]
-    volts = _total(lines, deck, "noise v(photo_a) Vrst dec 20 1 1e14")
+    volts = total_noise([*deck, *lines], "noise v(photo_a) Vrst dec 20 1 1e14")
     lines[0] = f"Vrst pixel_reset 0 {gate_v:g}"
     driven = [*deck, *lines, f"Vnode photo_a 0 {corner.supply:g} ac 1"]
     farads = analyse(driven, ["ac lin 1 1e6 1e6"], ["-imag(i(vnode))/(2*pi*1e6)"])
@@ -205,11 +207,26 @@ def _read_noise(deck: list[str], gate_v: float, node_v: float) -> float:
     """V rms on the column with the node at a voltage: thermal and 1/f noise of follower and select."""
     lines = ["Vrst pixel_reset 0 0", f"Vread read 0 {gate_v:g}", f"Vnode photo_a 0 {node_v:g} ac 1", "Vb photo_b 0 2"]
     deck = [LINEAR if line == OPTIONS else line for line in deck]
-    return _total(lines, deck, f"noise v(column_a) Vnode dec 20 {NOISE_FROM:g} {NOISE_TO:g}")
+    return total_noise([*deck, *lines], f"noise v(column_a) Vnode dec 20 {NOISE_FROM:g} {NOISE_TO:g}")
 
 
-def _total(lines: list[str], deck: list[str], command: str) -> float:
-    return float(analyse([*deck, *lines], [command, "setplot noise2"], ["onoise_total"])[0, 0])
+def total_noise(deck: list[str], command: str) -> float:
+    """V rms of an analysis of noise over its frequencies. Raises ToolError where ngspice has no numbers.
+
+    ngspice's own sum is not a number for some spectra that are; one is not where it has died away, at the highest
+    frequencies, which are left out.
+    """
+    hertz, volts = analyse(deck, [command, "setplot noise1"], ["frequency", "onoise_spectrum"])
+    return summed(hertz, volts)
+
+
+def summed(hertz: Floats, volts: Floats) -> float:
+    """V rms of a spectrum in V a root hertz; see `total_noise`."""
+    known = int(np.argmin(np.isfinite(volts))) if not np.isfinite(volts).all() else len(volts)
+    power = volts[:known] ** 2 * hertz[:known]  # in each e-fold of the frequency
+    if known < 2 or (known < len(volts) and power[-1] > DIED * power.max()):
+        raise ToolError(f"ngspice: its noise is not a number from {hertz[known]:g} Hz on")
+    return float(np.sqrt(np.trapezoid(power, np.log(hertz[:known]))))
 
 
 def _dark_current(deck: list[str], node_v: float) -> float:

@@ -13,7 +13,9 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--pdk", default="sky130", help="process, sky130")
     parser.add_argument("--rows", type=int, default=ArrayParameters().rows, help="pixels down")
     parser.add_argument("--cols", type=int, default=ArrayParameters().cols, help="pixels across")
-    parser.add_argument("--table", type=Path, help="also write the lines for models: models/parameters/pixel_lines.json")
+    parser.add_argument(
+        "--table", type=Path, help="also write the lines for models: models/parameters/pixel_lines.json"
+    )
     parser.add_argument("--out", type=Path, help="folder for the results (default: build/pixel-layout/<pdk>)")
 
 
@@ -44,6 +46,8 @@ def _print(s: dict[str, Any], folder: Path) -> None:
         print(f"  LVS of {name}: {'matches' if same else 'DIFFERS'}")
     dense = max(s["density"], key=lambda name: s["density"][name])
     print(f"  fill factor {s['fill_factor']:.3f}; densest metal {dense}, {100 * s['density'][dense]:.0f} % of the tile")
+    for name, one in s["finite"].items():
+        print(f"  {name}: m {one['m']:.2f} and light {one['light']:.2f} of endless gratings', by scalar waves")
     for name, line in s["lines"].items():
         print(f"  {name}: {line['ohm']:.2f} ohm, {1e15 * line['farad']['typ']:.2f} fF a pixel")
     print(f"  {s['wall_s']:.0f} s; look at {folder / 'pixel_layout.html'}")

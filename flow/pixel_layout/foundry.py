@@ -65,4 +65,3 @@ def _top(gds: Path) -> str:
 def total(found: Mapping[str, Mapping[str, Mapping[str, int]]]) -> int:
     """Violations of all decks and files."""
     return sum(count for files in found.values() for rules in files.values() for count in rules.values())
-

@@ -11,8 +11,7 @@ from typing import Any
 
 import numpy as np
 
-import klayout.pex as pex
-from talbot.base.gds import db
+from talbot.base.gds import db, pex
 from talbot.base.steps import StepError
 from talbot.flow.layout.parasitics.capacitance import capacitances
 from talbot.flow.layout.parasitics.extract import floating, with_fill_floating

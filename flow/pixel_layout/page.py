@@ -92,8 +92,20 @@ def _sections(s: dict[str, Any]) -> list[Section]:
             if s["foundry"]
             else "Not run: PDK_ROOT has no installed PDK.",
             head=("deck", "file", "rule", "count"),
-            rows=[row for deck, files in s["foundry"].items() for name, f in files.items() for row in _broken(deck, name, f)],
+            rows=[
+                row
+                for deck, files in s["foundry"].items()
+                for name, f in files.items()
+                for row in _broken(deck, name, f)
+            ],
             numbers=False,
+        ),
+        Section(
+            "What a pixel's edges do",
+            "The drawn cross-section over endless gratings, both by scalar waves: windows, bars, wells, and light that "
+            "walks from one half to the other on its way down.",
+            head=("type", "m, times", "light, times"),
+            rows=[(name, f"{one['m']:.2f}", f"{one['light']:.2f}") for name, one in s["finite"].items()],
         ),
         Section(
             "Lines",

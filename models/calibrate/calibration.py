@@ -1,15 +1,18 @@
 """What a calibration knows, and the sensor that it describes; a JSON file."""
 
 import json
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Self
 
 import numpy as np
 
 from talbot.models.parameters import ParameterError, PixelType, SensorParameters, check_real
+from talbot.models.pixel.table import TableResponse
 
 VIGNETTING = 4.0  # power of the natural law; the aperture's sigma holds what else there is
+LABELS = "beta", "gamma_deg", "alpha", "m"
+TABLE = "along", "across", "values", "gamma", "source"
 PUPIL_MAX = 1000.0  # m, of CameraParameters
 
 
@@ -20,7 +23,8 @@ class Calibration:
     Attributes
     ----------
     types : tuple of PixelType
-        beta, gamma, alpha, m of every type, in the tile's order.
+        beta, gamma, alpha, m of every type, in the tile's order; with a table of what was measured where Eq. 3.1 is not
+        its response.
     gains : tuple of float
         Capacitor ratio of every type, 0..64.
     sigma : float
@@ -77,7 +81,7 @@ class Calibration:
     @property
     def table(self) -> dict[str, Any]:
         """Plain values, for a JSON file."""
-        kinds = [{name: value for name, value in asdict(kind).items() if name != "response"} for kind in self.types]
+        kinds = [{name: getattr(kind, name) for name in LABELS} | _table(kind) for kind in self.types]
         return {
             "types": kinds,
             "gains": [*self.gains],
@@ -106,13 +110,33 @@ class Calibration:
             For a key that is missing, or a value out of range.
         """
         try:
-            types = tuple(PixelType(**kind) for kind in table["types"])
+            types = tuple(_type(kind) for kind in table["types"])
             centre = table["centre"]
             middle = None if centre is None else (float(centre[0]), float(centre[1]))
             gains = tuple(float(gain) for gain in np.atleast_1d(table["gains"]))
             return cls(types, gains, table["sigma"], table["pupil_power"], middle)
         except (KeyError, TypeError, IndexError) as error:
             raise ParameterError(f"calibration = a table: must have types, gains, sigma, ... ({error!r})") from None
+
+
+def _table(kind: PixelType) -> dict[str, Any]:
+    """A type's own response, for a JSON file; {} where it has none."""
+    found = kind.response
+    if not isinstance(found, TableResponse):
+        return {}
+    plain = {name: getattr(found, name) for name in TABLE}
+    digits = {"along": 6, "across": 6, "values": 4}
+    return {"response": {k: v.round(digits[k]).tolist() if k in digits else v for k, v in plain.items()}}
+
+
+def _type(kind: dict[str, Any]) -> PixelType:
+    plain = {name: value for name, value in kind.items() if name != "response"}
+    given = kind.get("response")
+    if given is None:
+        return PixelType(**plain)
+    along, across, values = (np.array(given[name], np.float64) for name in TABLE[:3])
+    response = TableResponse(along, across, values, float(given["gamma"]), str(given["source"]))
+    return PixelType(**plain, response=response)
 
 
 def read_calibration(path: str | Path) -> Calibration:

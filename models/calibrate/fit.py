@@ -13,10 +13,12 @@ from talbot.models.parameters import ParameterError, PixelType
 
 from .calibration import VIGNETTING, Calibration
 from .sweep import Floats, Sweep
+from .table import ROUGH, Samples, tables
 
 BETA_MAX = 50.0
 STEP = 2.0  # rad of response per rad of angle, of the first search for a grating
 DARK = 0.02  # of the brightest sum: what is below does not count
+INTERPOLATED = 400  # samples of a table, at most
 SEARCHED = 600  # samples, at most about twice
 CERTAIN = 4.0  # standard deviations below which a modulation is none
 TILTED = 3.0  # the same of the exit pupil's power
@@ -152,11 +154,14 @@ def calibrated(sweep: Sweep, pitch: float) -> tuple[Calibration, Pupil, list[Typ
         y, x = (float(-tangent / pupil.slope) for tangent in pupil.axis)
         centre = y, x
     kinds = tuple(fit.kind for fit in fits)
+    if np.median([fit.residual for fit in fits]) > ROUGH:
+        kinds = tables(kinds, [_plain(sweep, pupil, number) for number in range(len(kinds))], pupil.sigma)
     gains = tuple(float(gain) for gain in sweep.gains)
     return Calibration(kinds, gains, pupil.sigma, pupil.slope / pitch, centre), pupil, fits
 
 
-def _fit_type(sweep: Sweep, pupil: Pupil, number: int) -> TypeFit:
+def _seen(sweep: Sweep, pupil: Pupil, number: int) -> tuple[Floats, Floats]:
+    """Angles (y, x) of the rays that a type was lit by, (n, 2), and its diodes' signals, (n, 2)."""
     diodes, places = sweep.diodes[:, :, number], sweep.places[:, number]
     there = np.isfinite(places).all(1)
     diodes, places = diodes[:, there], places[there]
@@ -165,10 +170,25 @@ def _fit_type(sweep: Sweep, pupil: Pupil, number: int) -> TypeFit:
     sums = diodes.sum(-1)
     theta = np.arctan(sweep.holes[:, None] + pupil.axis + pupil.slope * places)
     seen = sums > DARK * sums.max(initial=0)
-    if seen.sum() < 5:
+    return theta[seen], diodes[seen]
+
+
+def _plain(sweep: Sweep, pupil: Pupil, number: int) -> Samples:
+    """A type's signals without aperture and vignetting."""
+    theta, diodes = _seen(sweep, pupil, number)
+    some = slice(None, None, -(-len(theta) // INTERPOLATED) or 1)
+    theta, diodes = theta[some], diodes[some]
+    dimmed = (1 + (np.tan(theta) ** 2).sum(1)) ** (-VIGNETTING / 2)
+    light = dimmed * np.exp(-(theta**2).sum(1) / (2 * pupil.sigma**2))
+    return Samples(theta, diodes / light[:, None], np.sqrt(light))
+
+
+def _fit_type(sweep: Sweep, pupil: Pupil, number: int) -> TypeFit:
+    theta, diodes = _seen(sweep, pupil, number)
+    if len(theta) < 5:
         return TypeFit(PixelType(0, 0, 0, 0.0), 1.0, np.pi, 1.0, 1.0)
-    q = (diodes[seen, 0] - diodes[seen, 1]) / sums[seen]
-    theta, weight = theta[seen], np.sqrt(sums[seen])
+    sums = diodes.sum(-1)
+    q, weight = (diodes[:, 0] - diodes[:, 1]) / sums, np.sqrt(sums)
     weight = weight / weight.mean()
     first = _nearest_wave(q, theta, weight)
 

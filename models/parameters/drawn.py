@@ -1,4 +1,4 @@
-"""What was measured of the drawn pixel: its lines (`make pixel-layout TABLE=`), its circuit (`make pixel-circuit TABLE=`)."""
+"""The drawn pixel as measured: its lines by `make pixel-layout TABLE=`, its circuit by `make pixel-circuit TABLE=`."""
 
 import json
 from dataclasses import dataclass, replace

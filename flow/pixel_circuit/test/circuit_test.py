@@ -7,12 +7,13 @@ from math import sqrt
 import numpy as np
 import pytest
 
+from talbot.base.tools import ToolError
 from talbot.cells.corner import Corner
 from talbot.flow.pixel_circuit import job
 from talbot.flow.pixel_circuit.deck import OPTIONS, Bench, analyse, pixel_deck
 from talbot.flow.pixel_circuit.drawn import drawn
 from talbot.flow.pixel_circuit.emva import emva
-from talbot.flow.pixel_circuit.measure import PixelFound, Spread, characteristic, measure, spread
+from talbot.flow.pixel_circuit.measure import PixelFound, Spread, characteristic, measure, spread, summed, total_noise
 from talbot.models.parameters import (
     ELEMENTARY_CHARGE,
     ArrayParameters,
@@ -88,8 +89,23 @@ def test_more_metal_on_the_node_is_a_greater_capacitance(made):
 def test_noise_of_a_capacitor_that_a_resistor_resets():
     """The analysis of reset noise gives sqrt(kT/C) where that is known."""
     deck = ["Vin in 0 0 ac 1", "Rin in node 10k", "Cnode node 0 10f", ".temp 25"]
-    volts = analyse(deck, ["noise v(node) Vin dec 20 1 1e14", "setplot noise2"], ["onoise_total"])[0, 0]
+    volts = total_noise(deck, "noise v(node) Vin dec 20 1 1e14")
     assert volts == pytest.approx(sqrt(BOLTZMANN * 298.15 / 10e-15), rel=2e-3)
+
+
+def test_a_spectrum_that_ends_before_its_frequencies_do():
+    """Where ngspice has no number: left out of a spectrum that has died away, an error in one that has not."""
+    hertz = np.logspace(0, 9, 181)
+    volts = 1e-6 / np.sqrt(1 + (hertz / 1e4) ** 2)
+    whole = summed(hertz, volts)
+    assert whole == pytest.approx(1e-6 * sqrt(np.pi / 2 * 1e4), rel=1e-3)
+    for frequency, died in ((3e7, True), (1e5, False)):
+        cut = np.where(hertz < frequency, volts, np.nan)
+        if died:
+            assert summed(hertz, cut) == pytest.approx(whole, rel=1e-3)
+        else:
+            with pytest.raises(ToolError, match="not a number from"):
+                summed(hertz, cut)
 
 
 @ngspice
@@ -114,7 +130,23 @@ def test_the_table_finds_what_the_exposures_were_made_with():
 
 def test_the_sensor_file_has_the_circuits_figures_and_their_source(tmp_path):
     usual = PixelFound(
-        "tt_025C_3v30", 3.1, 122778.0, 10.2, 10.9, 12.3, 0.015, 2e-4, 7e-6, 0.23, 36.0, 41.0, 25.0, 60.0, 1.8e-16, 3.0, []
+        "tt_025C_3v30",
+        3.1,
+        122778.0,
+        10.2,
+        10.9,
+        12.3,
+        0.015,
+        2e-4,
+        7e-6,
+        0.23,
+        36.0,
+        41.0,
+        25.0,
+        60.0,
+        1.8e-16,
+        3.0,
+        [],
     )
     found = Spread(100, 0.02, 0.0046)
     electrical = job.electrical_of(usual, found)

@@ -1,11 +1,13 @@
 """Types, aperture and chief ray from synthetic sweeps, and what cannot be told."""
 
+import json
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from talbot.models.calibrate import Calibration, Sweep, block_means, calibrated, fit_pupil, fit_types, read_calibration
+from talbot.models.calibrate.table import Samples, tables
 from talbot.models.parameters import OpticsParameters, ParameterError, SensorParameters, TileParameters
 from talbot.models.pixel.weights import density
 
@@ -95,3 +97,60 @@ def test_files(tmp_path):
         found.applied(SensorParameters(tile=TileParameters.small(2, 2)))
     with pytest.raises(ParameterError, match="sigma = 0: must be"):
         replace(found, sigma=0)
+
+
+def own(kind):
+    """A response that is none of Eq. 3.1: a sharp resonance beside the wave, a level of its own."""
+    level = 1.3 if kind.beta < 15 else 0.8
+
+    def rho(theta_x, theta_y):
+        turned = theta_x * np.cos(kind.gamma) + theta_y * np.sin(kind.gamma)
+        across = theta_y * np.cos(kind.gamma) - theta_x * np.sin(kind.gamma)
+        q = 0.5 * np.cos(kind.beta * turned + kind.alpha) + 0.3 / (1 + ((turned - 0.1 - across**2) / 0.03) ** 2)
+        return level * np.stack([1 + q, 1 - q]) * np.exp(-12.5 * (theta_x**2 + theta_y**2))
+
+    return rho
+
+
+def test_responses_that_are_not_of_the_formula(tmp_path):
+    """Tables leave a quarter of what Eq. 3.1 leaves, at angles between the samples, and survive their file."""
+    tile = replace(TILE, types=tuple(replace(kind, response=own(kind)) for kind in TILE.types))
+    count = np.arange(133) + 0.5
+    holes = 0.38 * np.sqrt(count / 133)[:, None] * np.stack([np.sin(2.4 * count), np.cos(2.4 * count)], 1)
+    light = density(tile.types, OPTICS, holes[:, 1], holes[:, 0])  # (types, 2, n)
+    noise = np.random.default_rng(5).normal(0, 2e-3, light.shape)
+    sweep = Sweep(holes, (light + noise).transpose(2, 0, 1)[:, None], np.zeros((1, TILE.n_types, 2)), np.ones(24))
+    found, pupil, fits = calibrated(sweep, PITCH)
+    path = tmp_path / "calibration.json"
+    path.write_text(json.dumps(found.table))
+    read = read_calibration(path)
+
+    random = np.random.default_rng(6).uniform(-0.26, 0.26, (2, 500))
+    true = density(tile.types, OPTICS, *random)
+    levels = true.mean((1, 2)) / true.mean()
+
+    def error(calibration, types=None):
+        sensor = calibration.applied(SensorParameters(tile=TILE))
+        got = density(types or sensor.tile.types, sensor.optics, *random)
+        q = [(of[:, 0] - of[:, 1]) / of.sum(1) for of in (got, true)]
+        return np.sqrt(np.mean((q[0] - q[1]) ** 2)), got.mean((1, 2)) / got.mean()
+
+    formula = error(found, tuple(replace(kind, response=None) for kind in found.types))[0]
+    for calibration in (found, read):
+        rms, level = error(calibration)
+        assert rms < formula / 4 and formula > 0.05
+        np.testing.assert_allclose(level, levels, rtol=0.01)
+    assert all(kind.response is None for kind in calibrated(swept(), PITCH)[0].types)
+
+
+def test_a_residual_that_is_all_noise_leaves_the_formula():
+    kind = replace(TILE.types[0], m=0.7)
+    random = np.random.default_rng(7)
+    theta = random.uniform(-0.3, 0.3, (133, 2))
+    q = 0.7 * np.cos(kind.beta * np.arctan(np.tan(theta[:, 1])) + kind.alpha)
+    diodes = np.stack([1 + q, 1 - q], 1) + random.normal(0, 0.2, (133, 2))
+    (found,) = tables([kind], [Samples(theta, diodes, np.ones(133))], 0.2)
+    x = np.linspace(-0.25, 0.25, 101)
+    a, b = found.response(x, 0 * x)
+    rest = (a - b) / (a + b) - 0.7 * np.cos(kind.beta * x + kind.alpha)
+    assert np.sqrt(np.mean(rest**2)) < 0.06
