@@ -46,6 +46,8 @@ def _print(s: dict[str, Any], folder: Path) -> None:
         print(f"  LVS of {name}: {'matches' if same else 'DIFFERS'}")
     dense = max(s["density"], key=lambda name: s["density"][name])
     print(f"  fill factor {s['fill_factor']:.3f}; densest metal {dense}, {100 * s['density'][dense]:.0f} % of the tile")
+    for name, one in s["finite"].items():
+        print(f"  {name}: m {one['m']:.2f} and light {one['light']:.2f} of endless gratings', by scalar waves")
     for name, line in s["lines"].items():
         print(f"  {name}: {line['ohm']:.2f} ohm, {1e15 * line['farad']['typ']:.2f} fF a pixel")
     print(f"  {s['wall_s']:.0f} s; look at {folder / 'pixel_layout.html'}")

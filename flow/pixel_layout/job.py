@@ -1,7 +1,7 @@
 """Pixels, tile and array: drawn, written, checked -> GDS, LEF, SPICE, pictures, page, summary.json."""
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import asdict
 from pathlib import Path
 from time import perf_counter
@@ -13,8 +13,9 @@ from talbot.base.files import check_file, check_folder, staged, write
 from talbot.base.gds import db, write_gds
 from talbot.flow.pixel.job import name_of
 from talbot.pixels.designs import gratings
-from talbot.pixels.layout.array import DUMMIES, SOUTH, WEST, draw_array, draw_pixels, draw_tile
+from talbot.pixels.layout.array import DUMMIES, SOUTH, WEST, ArrayLayout, draw_array, draw_pixels, draw_tile
 from talbot.pixels.layout.circuit import Diode, spice, spice_array
+from talbot.pixels.layout.finite import Finite, finite
 from talbot.pixels.layout.pixel import PixelLayout
 from talbot.pixels.layout.write import array_layout, array_lef, fitted
 from talbot.platforms.foundry import installed
@@ -87,6 +88,7 @@ def make(
             "waivers": {rule: {"count": found[rule], "reason": WAIVERS[rule]} for rule in found if rule in WAIVERS},
             "foundry": theirs,
             "lines": {name: asdict(line) for name, line in lines.items()},
+            "finite": {name: asdict(one) for name, one in edges(array, gratings(pdk).wavelength_um)},
             "density": share,
             "density_most": most,
             "lvs_match": same,
@@ -102,6 +104,13 @@ def make(
     if table:
         write(table, json.dumps(line_table(pdk, lines), indent=1, allow_nan=False) + "\n")
     return summary
+
+
+def edges(array: ArrayLayout, wavelength_um: float) -> Iterator[tuple[str, Finite]]:
+    """What its edges do to every type whose lines are upright in the section."""
+    for pixel in array.pixels:
+        if pixel.kind.gamma_deg == 0:
+            yield name_of(pixel.kind), finite(pixel, wavelength_um)
 
 
 def _draw(made: Made) -> float:

@@ -101,6 +101,13 @@ def _sections(s: dict[str, Any]) -> list[Section]:
             numbers=False,
         ),
         Section(
+            "What a pixel's edges do",
+            "The drawn cross-section over endless gratings, both by scalar waves: windows, bars, wells, and light that "
+            "walks from one half to the other on its way down.",
+            head=("type", "m, times", "light, times"),
+            rows=[(name, f"{one['m']:.2f}", f"{one['light']:.2f}") for name, one in s["finite"].items()],
+        ),
+        Section(
             "Lines",
             "A pixel's part, from the difference of two arrays; without gates and junctions.",
             head=("line", "ohm", *(f"fF, {corner}" for corner in CORNERS)),

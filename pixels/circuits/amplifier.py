@@ -211,7 +211,6 @@ def _parts(name: str, nodes: tuple[str, ...], w: float, kind: tuple[str, float],
 def ota(sizes: OtaSizes) -> Circuit:
     """A recycling folded cascode with p inputs. Pins: inp inn out ibias on off reset resetn vdd vss.
 
-
     A part of each side of the pair drives the diodes of the other side's sink: no second current has to fit the
     tail's, whatever the supply, and all currents end with the tail's. The diodes are cascoded as the sinks are. The
     mirror's upper transistors are of the regular threshold, so that its cascode stays saturated in the branch where

@@ -32,7 +32,7 @@ def scalar_shares(
     n = np.arange(ORDERS) - ORDERS // 2
     kx = wave * np.sin(np.atleast_1d(angles))[:, None] + 2 * np.pi * n / geometry.period_um
     kz = normal_wave((wave * index) ** 2 - kx**2)
-    field = _line(n, geometry.fill) * np.exp(1j * kz * _between(geometry))
+    field = _line(n, geometry.fill) * np.exp(1j * kz * between(geometry))
     steps = np.subtract.outer(n, n)
     out = []
     for shift in np.add(geometry.shift, shifts):
@@ -58,7 +58,7 @@ def crosstalk(geometry: PixelGeometry, angles: npt.ArrayLike, wavelength_um: flo
         tilt = wave * np.sin(angle)
         kz = normal_wave((wave * index) ** 2 - (k + tilt) ** 2)
         field = np.where(inside, _spaces(x, geometry.period_um, geometry.fill, 0.0), 0) + 0j
-        field = np.fft.ifft(np.fft.fft(field) * np.exp(1j * kz * _between(geometry)))
+        field = np.fft.ifft(np.fft.fft(field) * np.exp(1j * kz * between(geometry)))
         if geometry.analyzer:
             field = field * _spaces(x, geometry.period_um, geometry.analyzer_fill, geometry.shift)
         power = np.abs(np.fft.ifft(np.fft.fft(field) * np.exp(1j * kz * rest))) ** 2
@@ -66,7 +66,7 @@ def crosstalk(geometry: PixelGeometry, angles: npt.ArrayLike, wavelength_um: flo
     return np.array(out)
 
 
-def _between(geometry: PixelGeometry) -> float:
+def between(geometry: PixelGeometry) -> float:
     """Distance of the gratings' middles, or of the upper one's from the silicon."""
     upper = geometry.stack.metal("diffraction", geometry.diffraction).thickness_um
     lower = geometry.stack.metal("analyzer", geometry.analyzer).thickness_um if geometry.analyzer else 0.0
