@@ -124,7 +124,8 @@ def lane_plan(masks: AnalogMasks, sizes: LaneSizes, d: dict[str, Device]) -> Lan
     def plan(columns: Sequence[Column]) -> Plan:
         n, p, end = in_columns(columns, left, (right - in_columns(columns, left)[2]) / len(columns) - 1e-3)
         present = {net for pl in (*n, *p) for net in pl.device.transistor.nodes}
-        return Plan(n, p, left, right, {net: (x,) for net, x in at.items() if net in present})
+        reach = {net: (x,) for net, x in at.items() if net in present}
+        return Plan(n, p, left, right, reach, quiet=frozenset({*nets.values(), *other.values(), "lane_a", "lane_b"}))
 
     drivers = [_gates(d, ("held", "sampled", "fired"))] if "fired.n" in d else []
     drivers.append(
@@ -216,7 +217,7 @@ def _places(left: float, right: float, nets: Mapping[str, str], other: Mapping[s
     places: dict[str, float] = {net: left + CHANNEL_FIRST + CHANNEL_PITCH * k for k, net in enumerate(WEST)}
     places |= {net: right - CHANNEL_FIRST - CHANNEL_PITCH * k for k, net in enumerate(EAST)}
     bits = [f"d{k}" for k in reversed(range(BITS))]
-    over = [*(net for pair in zip(nets.values(), bits, strict=False) for net in pair), "dac.bt", "dac.bh"]
+    over = [*nets.values(), *bits]
     over += ["sample", "strobe", *CHIP]
     first = (left + right) / 2 - STEP * (len(over) - 1) / 2
     places |= {net: first + STEP * k for k, net in enumerate(over)}
