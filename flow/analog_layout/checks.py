@@ -22,9 +22,9 @@ def decks(pdk: str) -> tuple[str, str]:
         if lvs.count(f"\n{line}\n") != 1:
             raise StepError(f"lvs: the deck has no single line {line!r}")
         lvs = lvs.replace(line, other)
-    first, last = "extract_devices(", "\nnetlist\n"
+    first, last = "extract_devices(", "\nalign\n"
     if first not in lvs or lvs.count(last) != 1:
-        raise StepError("lvs: the deck has no extract_devices, or no single line 'netlist'")
+        raise StepError("lvs: the deck has no extract_devices, or no single line 'align'")
     lvs = lvs.replace(first, masks.lvs.read_text() + first, 1)
     return text, lvs.replace(last, f"{last}netlist.simplify\nschematic.simplify\n")
 

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from talbot.base.files import check_folder, staged
+from talbot.base.gds import write_gds
 from talbot.base.jobs import Job, run
 from talbot.base.paths import BUILD
 from talbot.base.records import from_json
@@ -18,8 +19,12 @@ from talbot.flow.analog.deck import Setup, process_of
 from talbot.flow.analog.job import setup_of
 from talbot.flow.analog.lane import LaneResult, inl
 from talbot.flow.analog.linearity import inl_dnl, levels
+from talbot.models.parameters import ChipParameters
 from talbot.pixels.analog_layout.cells import Cell, comparator_cell
+from talbot.pixels.analog_layout.converters import NAME as BLOCK
+from talbot.pixels.analog_layout.converters import Converters, draw_converters
 from talbot.pixels.analog_layout.lane import lane_cell
+from talbot.pixels.blocks import AnalogSizes
 from talbot.pixels.circuits.dac import BITS
 from talbot.pixels.circuits.lane import LaneSizes
 from talbot.pixels.circuits.specification import LaneSpec
@@ -68,17 +73,21 @@ def make(
     check_folder("out", out)
     masks, (setup, sizes) = analog_masks(pdk), setup_of(pdk)
     made = cells(masks, sizes)
-    names = [f"{name}.{kind}" for name in made for kind in KINDS]
-    with staged(out, (*names, *page.NAMES, "summary.json")) as folder:
+    chip, room = ChipParameters(), AnalogSizes()
+    block = draw_converters(masks, sizes, chip, room)
+    drawn: dict[str, Cell | Converters] = {**made, BLOCK: block}
+    names = [f"{name}.{kind}" for name in drawn for kind in KINDS if (name, kind) != (BLOCK, "extracted.spice")]
+    with staged(out, (*names, f"{BLOCK}.lef", *page.NAMES, "summary.json")) as folder:
         note("draw")
-        for name, cell in made.items():
-            cell.write(folder / f"{name}.gds")
+        for name, cell in drawn.items():
+            write_gds(cell.layout, folder / f"{name}.gds", cell.cell)
+        (folder / f"{BLOCK}.lef").write_text(block.lef(masks))
         note("drc")
-        rules = {name: drc(folder / f"{name}.gds", pdk, folder / f"{name}.lyrdb") for name in made}
+        rules = {name: drc(folder / f"{name}.gds", pdk, folder / f"{name}.lyrdb") for name in drawn}
         note("lvs")
         same = {
             name: lvs(folder / f"{name}.gds", cell.spice(masks), pdk, folder / f"{name}.lvsdb")
-            for name, cell in made.items()
+            for name, cell in drawn.items()
         }
         note("extract")
         found = {name: _extracted(made, masks, name) for name in dict.fromkeys(wire_corner(c) for c in corners)}
@@ -91,7 +100,7 @@ def make(
         summary = {
             "process": pdk,
             "corners": list(corners),
-            "cells": {name: _cell(cell, rules[name], same[name], typical[name]) for name, cell in made.items()},
+            "cells": {name: _cell(cell, rules[name], same[name], typical.get(name)) for name, cell in drawn.items()},
             "rows": [asdict(row) | {"passes": row.passes} for row in rows],
             "passed": not any(sum(one.values()) for one in rules.values())
             and all(same.values())
@@ -110,15 +119,23 @@ def _extracted(made: dict[str, Cell], masks: AnalogMasks, corner: str) -> dict[s
     return {name: extract(cell, masks, wires) for name, cell in made.items()}
 
 
-def _cell(cell: Cell, rules: dict[str, int], same: bool, found: tuple[Extracted, Nets]) -> dict[str, Any]:
+def _cell(
+    cell: Cell | Converters, rules: dict[str, int], same: bool, found: tuple[Extracted, Nets] | None
+) -> dict[str, Any]:
     box = cell.cell.dbbox()
-    circuit, nets = found
-    return {
+    lanes = len(cell.nets) if isinstance(cell, Converters) else 1
+    one = cell.lane if isinstance(cell, Converters) else cell
+    out = {
         "width_um": round(box.width(), 3),
         "height_um": round(box.height(), 3),
-        "transistors": len(cell.transistors),
+        "transistors": lanes * len(one.transistors),
         "drc": rules,
         "lvs_match": same,
+    }
+    if found is None:
+        return out
+    circuit, nets = found
+    return out | {
         "capacitors": len(circuit.capacitors),
         "resistors": len(circuit.resistors),
         "net_fF": {net: round(1e15 * farad, 3) for net, farad in sorted(nets.totals.items())},

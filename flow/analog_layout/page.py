@@ -25,6 +25,7 @@ PICTURES = {
         "From the south drivers, switches, the DAC's capacitors, the comparator, the other side's "
         "capacitors, their switches.",
     ),
+    "adc_lanes": ("All lanes in the die's frame", "Below them the channel to the chip's pins, above the references."),
 }
 NAMES = ("analog_layout.html", *(f"{name}.png" for name in PICTURES))
 
@@ -77,7 +78,8 @@ def write(folder: Path, s: dict[str, Any], process: PixelProcess) -> None:
 
 def picture(gds: Path, process: PixelProcess) -> Figure:
     """All masks of a cell over one another."""
-    box = read_gds(gds).top_cell().dbbox()
+    layout = read_gds(gds)
+    box = layout.top_cell().dbbox()
     wide = box.width() > box.height()
     figure = Figure(figsize=(11, 11 * box.height() / box.width()) if wide else (5, 5 * box.height() / box.width()))
     shown = [(process.well, WELL), (process.active, ACTIVE), (process.poly, POLY)]
@@ -95,5 +97,5 @@ def _row(row: dict[str, Any]) -> tuple[str, ...]:
 def _cell(name: str, one: dict[str, Any]) -> tuple[str, ...]:
     size = f"{one['width_um']:.2f} x {one['height_um']:.2f}"
     verdict = "matches" if one["lvs_match"] else "DIFFERS"
-    counts = (str(one[key]) for key in ("capacitors", "resistors"))
+    counts = (str(one.get(key, "")) for key in ("capacitors", "resistors"))
     return name, size, str(one["transistors"]), str(sum(one["drc"].values())), verdict, *counts

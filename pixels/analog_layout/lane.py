@@ -14,7 +14,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from talbot.pixels.circuits.dac import BITS
+from talbot.pixels.circuits.gates import inverter, nand
 from talbot.pixels.circuits.lane import PINS, LaneSizes, sar_lane
+from talbot.pixels.circuits.netlist import Circuit, Instance
 from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.analog import AnalogMasks
 
@@ -44,9 +46,28 @@ CHANNEL, CHANNEL_FIRST, CHANNEL_PITCH = 9.0, 0.9, 1.6  # beside the arrays, for 
 AWAY = 1.6  # of an array from a rail
 WEST, EAST = ("lane_a", "bottoms", "bottoms_n", "refp", "refn"), ("vcm", "fire", "comparator", "sample_1", "sample_2")
 GATES = (("n", "p"),), (("na", "pa"), ("nb", "pb"))  # of an inverter, of a gate of two inputs
-STEP = 3.0  # of the nets over the strips
+NORTH = "lane_a", "lane_b", "refp", "refn", "vcm"  # pins there
+STEP = 2.8  # of the nets over the strips
 JOG = 5.0  # of the common nodes' ways into the comparator from its axis
 Column = tuple[Device | None, Device | None]
+
+
+CHIP = "hold", "en", "clk"  # what the chip gives a lane of several in place of sample and strobe
+CHIP_PINS = tuple(pin for pin in PINS if pin not in ("sample", "strobe")) + CHIP
+
+
+def interface() -> Circuit:
+    """A lane samples where it is enabled and the chip holds; it decides in the second half of the clock's cycle."""
+    supplies = ("vdd", "vss")
+    return Circuit(
+        "interface",
+        (*CHIP, "sample", "strobe", *supplies),
+        instances=(
+            Instance("held", nand(), ("hold", "en", "samplen", *supplies)),
+            Instance("sampled", inverter(2), ("samplen", "sample", *supplies)),
+            Instance("fired", inverter(2), ("clk", "strobe", *supplies)),
+        ),
+    )
 
 
 @dataclass(frozen=True)
@@ -55,7 +76,7 @@ class LanePlan:
 
     left: float
     right: float
-    drivers: Plan
+    drivers: tuple[Plan, ...]
     dac_switches: tuple[Plan, ...]
     dac: ArrayPlan
     comparator: tuple[Plan, Plan]
@@ -103,17 +124,19 @@ def lane_plan(masks: AnalogMasks, sizes: LaneSizes, d: dict[str, Device]) -> Lan
     def plan(columns: Sequence[Column]) -> Plan:
         n, p, end = in_columns(columns, left, (right - in_columns(columns, left)[2]) / len(columns) - 1e-3)
         present = {net for pl in (*n, *p) for net in pl.device.transistor.nodes}
-        return Plan(n, p, left, right, {net: (x,) for net, x in at.items() if net in present})
+        reach = {net: (x,) for net, x in at.items() if net in present}
+        return Plan(n, p, left, right, reach, quiet=frozenset({*nets.values(), *other.values(), "lane_a", "lane_b"}))
 
-    drivers = _gates(
-        d, ("sample_0", "sample_1", "sample_2", "sample_3", "sample_n", "sample_p", "strobe_n", "strobe_p")
+    drivers = [_gates(d, ("held", "sampled", "fired"))] if "fired.n" in d else []
+    drivers.append(
+        _gates(d, ("sample_0", "sample_1", "sample_2", "sample_3", "sample_n", "sample_p", "strobe_n", "strobe_p"))
     )
     plates = [pair(d, f"plate_other_{kind}", f"plate_top_{kind}") for kind in ("n", "p")]
     names = _switch(d, "balance.switch_refp.") + _switch(d, "balance.switch_refn.")
     return LanePlan(
         left,
         right,
-        plan(drivers),
+        tuple(plan(one) for one in drivers),
         tuple(plan(one) for one in strips),
         dac,
         comparator_plans(
@@ -131,12 +154,18 @@ def lane_plan(masks: AnalogMasks, sizes: LaneSizes, d: dict[str, Device]) -> Lan
     )
 
 
-def lane_cell(masks: AnalogMasks, sizes: LaneSizes) -> Cell:
-    """Draw the lane; its south-west corner is at the origin, its pins are in the south and in the north."""
-    canvas, d = new_canvas(masks, "sar_lane"), devices(sar_lane(sizes))
+def lane_cell(masks: AnalogMasks, sizes: LaneSizes, chip: bool = False) -> Cell:
+    """Draw the lane; its south-west corner is at the origin, its pins are in the south and in the north.
+
+    chip: with the `interface` to the chip, in place of pins sample and strobe.
+    """
+    ports, d = CHIP_PINS if chip else PINS, devices(sar_lane(sizes))
+    canvas = new_canvas(masks, "adc_lane" if chip else "sar_lane")
+    if chip:
+        d |= devices(interface())
     plan = lane_plan(masks, sizes, d)
     y, south = MARGIN, list[Strip]()
-    for one in (plan.drivers, *plan.dac_switches):
+    for one in (*plan.drivers, *plan.dac_switches):
         south.append(draw_strip(canvas, masks, one, y))
         y += one.height_um + BETWEEN_STRIPS
     y += AWAY - BETWEEN_STRIPS
@@ -154,7 +183,7 @@ def lane_cell(masks: AnalogMasks, sizes: LaneSizes) -> Cell:
         _meet(canvas, array, middle[0], net, way * JOG)
         _ground(canvas, array, plan.left - RAIL_AT)
     tracks = [*dac.tracks, *balance.tracks, *(track for strip in strips for track in strip.tracks)]
-    _nets(canvas, plan, tracks, top)
+    _nets(canvas, plan, tracks, top, ports)
     ends = RAIL_ENDS + WELL_ENDS
     canvas.box(masks.base.outline, plan.left - ends, 0, plan.right + ends, top)
     plates = [
@@ -165,7 +194,7 @@ def lane_cell(masks: AnalogMasks, sizes: LaneSizes) -> Cell:
     ends = tuple(one for strip in strips for one in strip.terminals)
     arrays = ("dac", dac), ("balance", balance)
     taps = [tap._replace(name=f"{side}_{tap.name}") for side, array in arrays for tap in array.taps]
-    return Cell(canvas.layout, canvas.cell, PINS, tuple(d.values()), tuple(plates), ends, tuple(taps))
+    return Cell(canvas.layout, canvas.cell, ports, tuple(d.values()), tuple(plates), ends, tuple(taps))
 
 
 def _meet(canvas: Canvas, array: Array, arm: Strip, net: str, aside: float) -> None:
@@ -188,19 +217,20 @@ def _places(left: float, right: float, nets: Mapping[str, str], other: Mapping[s
     places: dict[str, float] = {net: left + CHANNEL_FIRST + CHANNEL_PITCH * k for k, net in enumerate(WEST)}
     places |= {net: right - CHANNEL_FIRST - CHANNEL_PITCH * k for k, net in enumerate(EAST)}
     bits = [f"d{k}" for k in reversed(range(BITS))]
-    over = [*(net for pair in zip(nets.values(), bits, strict=False) for net in pair), "dac.bt", "dac.bh"]
-    over += ["sample", "strobe"]
+    over = [*nets.values(), *bits]
+    over += ["sample", "strobe", *CHIP]
     first = (left + right) / 2 - STEP * (len(over) - 1) / 2
     places |= {net: first + STEP * k for k, net in enumerate(over)}
     beside = [*other.values(), "lane_b"]
     return places | {net: first + STEP * (3 * k + 1) for k, net in enumerate(beside) if net not in places}
 
 
-def _nets(canvas: Canvas, plan: LanePlan, tracks: Sequence[Strap], top: float) -> None:
+def _nets(canvas: Canvas, plan: LanePlan, tracks: Sequence[Strap], top: float, ports: Sequence[str]) -> None:
     """What goes from strip to strip, up to the pins."""
-    north = {"lane_a", "lane_b", "refp", "refn", "vcm"}
+    present = {track.net for track in tracks}
     for net, x in plan.at.items():
-        edge = top if net in north else 0.0
-        trunk(canvas, tracks, net, x, *([edge] if net in PINS else []))
-        if net in PINS:
+        edge = top if net in NORTH else 0.0
+        if net in present:
+            trunk(canvas, tracks, net, x, *([edge] if net in ports else []))
+        if net in ports:
             canvas.label(FOURTH, net, x, edge - 0.3 if edge else 0.3)

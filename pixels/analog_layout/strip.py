@@ -52,7 +52,7 @@ class Plan:
 
     n, p: rows. left, right: its ends, um. axis: of its symmetry, or None. split, twisted: pairs of nets that are mirror
     images, the western one first. through: x up to which the
-    tracks of nets that meet other strips go, too.
+    tracks of nets that meet other strips go, too. quiet: nets whose tracks are together, away from the others.
     """
 
     n: tuple[Placed, ...]
@@ -64,6 +64,7 @@ class Plan:
     twisted: tuple[tuple[str, str], ...] = ()
     axis: float | None = None
     rails: tuple[str, str] = ("vss", "vdd")
+    quiet: frozenset[str] = frozenset()
 
     @property
     def height_um(self) -> float:
@@ -101,15 +102,17 @@ class Plan:
             ends = (left, axis - away), (axis + away, right)
             for nets in (pair, pair[::-1])[: 1 if pair in self.split else 2]:
                 rows.append([(net, *end) for net, end in zip(nets, ends, strict=True)])
-        fixed, paired = len(rows), {net for pair in (*self.split, *self.twisted) for net in pair}
-        for net in sorted(spans.keys() - paired, key=lambda net: (spans[net][0] - spans[net][1], net)):
-            a, b = spans[net]
-            fitting = (row for row in rows[fixed:] if all(b + 1 < c or d + 1 < a for _, c, d in row))
-            row = next(fitting, None)
-            if row is None:
-                row = []
-                rows.append(row)
-            row.append((net, a, b))
+        paired = {net for pair in (*self.split, *self.twisted) for net in pair}
+        for kind in (spans.keys() & self.quiet - paired, spans.keys() - self.quiet - paired):
+            fixed = len(rows)
+            for net in sorted(kind, key=lambda net: (spans[net][0] - spans[net][1], net)):
+                a, b = spans[net]
+                fitting = (row for row in rows[fixed:] if all(b + 1 < c or d + 1 < a for _, c, d in row))
+                row = next(fitting, None)
+                if row is None:
+                    row = []
+                    rows.append(row)
+                row.append((net, a, b))
         return rows
 
     def tracks(self) -> list[Strap]:

