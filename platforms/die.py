@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from importlib import import_module
 
-from .layers import GdsLayer, Layer, Via
+from .layers import Layer, Via
 from .processes import package
 
 PROCESSES = ("sky130",)
@@ -15,23 +15,6 @@ class TopMetal:
 
     metal: Layer
     via: Via
-
-
-@dataclass(frozen=True)
-class Capacitor:
-    """A capacitor below the highest via of CoriolisPlatform.vias: its top plate over the metal below that.
-
-    plate: GDS layer and datatype of the top plate, which that via contacts. area_ff_um2, edge_ff_um: typical.
-    """
-
-    plate: GdsLayer
-    area_ff_um2: float
-    edge_ff_um: float
-
-
-def capacitor(pdk: str) -> Capacitor:
-    """The capacitor of ``pdk`` for decoupling. Raises ParameterError for a process without one."""
-    return import_module(f"talbot.platforms.{package(pdk, PROCESSES, ' for a whole die')}.layers").CAPACITOR
 
 
 def top_metal(pdk: str) -> TopMetal:

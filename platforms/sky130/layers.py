@@ -11,7 +11,7 @@ SkyWater's periphery rules m1.7, m2.7.
 
 from functools import partial
 
-from talbot.platforms.die import Capacitor, TopMetal
+from talbot.platforms.die import TopMetal
 from talbot.platforms.layers import DIFFUSION, Crossing, Layer, Via
 
 LABEL, PIN = 5, 16  # GDS datatypes
@@ -146,7 +146,6 @@ VIA4 = _via(
 )
 VIAS = MCON, VIA, VIA2, VIA3, VIA4  # VIAS[k] connects METALS[k] and METALS[k + 1]
 TOP = TopMetal(MET5, VIA4)  # above what Coriolis routes on
-CAPACITOR = Capacitor((89, 44), 2.0, 0.19)  # sky130_fd_pr's cap_mim_m3_1: capm over met3, via3 to met4
 
 CROSSINGS = (
     Crossing("li1", DIFFUSION, 55.30, 44.27, 0.0),

@@ -9,7 +9,8 @@ from typing import Any, NamedTuple
 
 from talbot.base.gds import db
 from talbot.flow.layout.route.rules import RoutingRules
-from talbot.platforms.die import Capacitor, TopMetal
+from talbot.platforms.die import TopMetal
+from talbot.platforms.pads import Capacitor
 
 from . import shapes
 from .plan import ANALOG, SUPPLIES, Block, Box, DieParameters, nm

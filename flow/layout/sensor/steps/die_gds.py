@@ -10,7 +10,8 @@ from talbot.base.gds import read_gds, write_gds
 from talbot.base.steps import Files, Step, StepError
 from talbot.flow.layout.route.rules import RoutingRules
 from talbot.platforms.coriolis import coriolis_platform
-from talbot.platforms.die import capacitor, top_metal
+from talbot.platforms.die import top_metal
+from talbot.platforms.pads import pad_process
 
 from .. import decoupling
 from ..plan import BLOCKS, CORE, ORIENTATIONS
@@ -73,7 +74,7 @@ class DieGds(Step[DieGdsParameters]):
                     top.shapes(layout.layer(layer, datatype)).insert(db.Text(net, middle))
         top.shapes(layout.layer(*tech.outline)).insert(db.Box(0, 0, *plan["die"]))
         rules = RoutingRules.of(tech, json.loads(inputs["rules"].read_text()))
-        decoupling.draw(layout, plan, rules, capacitor(self.parameters.pdk))
+        decoupling.draw(layout, plan, rules, pad_process(self.parameters.pdk).capacitor)
         write_gds(layout, outputs["gds"])
         for name in self.parameters.drawn:
             inner = [layout.cell(index) for index in cells[name].each_child_cell()]

@@ -8,7 +8,7 @@ from typing import Any
 from talbot.base.steps import Files, Step
 from talbot.flow.layout.route.rules import RoutingRules
 from talbot.platforms.coriolis import coriolis_platform
-from talbot.platforms.die import capacitor, top_metal
+from talbot.platforms.die import top_metal
 from talbot.platforms.layers import Layer
 from talbot.platforms.pads import pad_process
 
@@ -83,7 +83,7 @@ class DiePlan(Step[DiePlanParameters]):
             "routed": len(made.routes),
             "abutted": made.abutted,
             "tracks": made.count,
-            "decoupling_pf": round(decoupling.picofarad(field, capacitor(p.pdk)), 1),
+            "decoupling_pf": round(decoupling.picofarad(field, pad_process(p.pdk).capacitor), 1),
             "pads": sum(bool(place.nets) for place in places),
             "wire_um": round(made.wire / 1000, 1),
         }

@@ -7,7 +7,7 @@ import pytest
 from talbot.base.gds import db, read_gds
 from talbot.flow.layout.sensor import decoupling
 from talbot.flow.layout.sensor.plan import Block, DieParameters
-from talbot.platforms.die import capacitor
+from talbot.platforms.pads import pad_process
 
 from . import small
 
@@ -32,7 +32,9 @@ def test_columns_leave_room_for_branches():
 
 def test_capacitance_by_hand():
     found = decoupling.Field([0, 72_000], 0, 3)
-    assert decoupling.picofarad(found, capacitor("sky130")) == pytest.approx(6 * (2.0 * 900 + 0.19 * 120) / 1000)
+    assert decoupling.picofarad(found, pad_process("sky130").capacitor) == pytest.approx(
+        6 * (2.0 * 900 + 0.19 * 120) / 1000
+    )
 
 
 def test_plates_are_drawn_and_no_net_is_shorted(tmp_path):
@@ -43,14 +45,14 @@ def test_plates_are_drawn_and_no_net_is_shorted(tmp_path):
     assert count > 40 and metrics["decoupling_pf"] == pytest.approx(1.8228 * count, abs=0.1)
     assert small.connectivity(given, tmp_path)["lvs_match"]
     layout = read_gds(given["die_gds.gds"])
-    plates = db.Region(layout.top_cell().begin_shapes_rec(layout.layer(*capacitor("sky130").plate)))
+    plates = db.Region(layout.top_cell().begin_shapes_rec(layout.layer(*pad_process("sky130").capacitor.plate)))
     assert plates.count() == count
     metal = {level: db.Region(layout.top_cell().begin_shapes_rec(layout.layer(level, 20))) for level in (70, 71)}
     assert (plates - metal[70].sized(-140)).is_empty()
     vias = db.Region(layout.top_cell().begin_shapes_rec(layout.layer(70, 44))) & plates
     assert vias.count() > 40 * count and (vias - metal[71]).is_empty()
     for cell in layout.each_cell():  # without their plates the vias reach the ground's metal
-        cell.clear(layout.layer(*capacitor("sky130").plate))
+        cell.clear(layout.layer(*pad_process("sky130").capacitor.plate))
     layout.write(str(tmp_path / "bare.gds"))
     given["die_gds.gds"] = tmp_path / "bare.gds"
     assert small.run(small.DieConnectivity(small.PdkParameters()), given, tmp_path)["shorts"] == 1
