@@ -11,14 +11,26 @@ from .processes import package
 PROCESSES = ("sky130",)
 
 
+@dataclass(frozen=True)
+class Capacitor:
+    """A capacitor for decoupling: a top plate over the metal below the highest via of CoriolisPlatform.vias.
+
+    plate: GDS layer and datatype of the top plate, which that via contacts. area_ff_um2, edge_ff_um: typical.
+    """
+
+    plate: GdsLayer
+    area_ff_um2: float
+    edge_ff_um: float
+
+
 @dataclass(frozen=True, kw_only=True)
 class PadProcess:
     """Pads of a process, drawn by c4m-flexio.
 
     package: of PDKMaster. module, factory: of it, what draws pads. cells: what a die uses, by c4m-flexio's names.
     signals: function -> its cell. fillers: their cells by width in um, the widest first. width_um, height_um: of
-    a pad, its bond pad in the south. tap: mask of taps. bond: of the opening
-    over a bond pad. masks: rules of KLayout for the masks that are added. pad_v, core_v: supplies.
+    a pad, its bond pad in the south. tap: mask of taps. bond: of the opening over a bond pad. masks: rules of KLayout
+    for the masks that are added. capacitor: for decoupling. pad_v, core_v: supplies.
     """
 
     package: str
@@ -33,6 +45,7 @@ class PadProcess:
     tap: GdsLayer
     bond: GdsLayer
     masks: Path
+    capacitor: Capacitor
     pad_v: float
     core_v: float
 

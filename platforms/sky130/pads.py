@@ -6,7 +6,7 @@ poly: see `talbot.flow.layout.sensor.pads`.
 
 from pathlib import Path
 
-from talbot.platforms.pads import PadProcess
+from talbot.platforms.pads import Capacitor, PadProcess
 
 from . import layers
 
@@ -23,6 +23,7 @@ PROCESS = PadProcess(
     tap=layers.TAP,
     bond=(76, 20),
     masks=Path(__file__).with_name("pads.drc"),
+    capacitor=Capacitor((89, 44), 2.0, 0.19),  # sky130_fd_pr's cap_mim_m3_1: capm over met3, via3 to met4
     pad_v=3.3,
     core_v=1.8,
 )

@@ -10,7 +10,6 @@ from pathlib import Path
 from talbot.base.steps import StepError
 from talbot.base.tools import ToolError, finish
 from talbot.platforms.coriolis import CoriolisPlatform
-from talbot.platforms.layers import GdsLayer
 
 
 def run_deck(deck: Path, report: Path, variables: Mapping[str, object], **environment: object) -> tuple[int, str]:
@@ -23,10 +22,10 @@ def run_deck(deck: Path, report: Path, variables: Mapping[str, object], **enviro
     return done.returncode, done.stdout + done.stderr
 
 
-def run_exported(deck: Path, gds: Path, report: Path, cell: str = "", **files: Path) -> tuple[int, str]:
-    """Run ``deck``, one that PDKMaster exports, on the file ``gds`` or a cell in it: see `run_deck`."""
+def run_exported(deck: Path, gds: Path, report: Path, **files: Path) -> tuple[int, str]:
+    """Run ``deck``, one that PDKMaster exports, on the file ``gds``: see `run_deck`."""
     paths = {name: path.resolve() for name, path in {"SOURCE_FILE": gds, "REPORT_FILE": report, **files}.items()}
-    return run_deck(deck, report, {}, CELL_NAME=cell, **paths)
+    return run_deck(deck, report, {}, CELL_NAME="", **paths)
 
 
 def violations(report: Path) -> dict[str, int]:
@@ -55,14 +54,6 @@ def with_flat_spaces(deck: str) -> str:
     layers = dict.fromkeys(rule[1] for rule in rules)
     spaces = (rule[0].replace(".space(", ".edges.space(", 1) for rule in rules)
     return "\n".join([deck, "flat", *(f"{name} = {drawn[name]}" for name in layers), *spaces])
-
-
-def with_taps(deck: str, active: GdsLayer, tap: GdsLayer) -> str:
-    """The deck with taps on their own mask, too: PDKMaster knows diffusion and taps as one. Raises StepError."""
-    (old, new) = (f"input({layer}, {datatype})" for layer, datatype in (active, tap))
-    if deck.count(f" = {old}\n") != 1:
-        raise StepError(f"decks: must have one line with {old}, to which the taps are added")
-    return deck.replace(f" = {old}\n", f" = {old} + {new}\n")
 
 
 def hole_rules(tech: CoriolisPlatform) -> Iterator[str]:

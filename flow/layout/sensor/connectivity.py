@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from talbot.platforms.coriolis import CoriolisPlatform
 from talbot.platforms.die import TopMetal
+from talbot.platforms.layers import GdsLayer
 
 from .plan import Terminal
 
@@ -18,14 +19,14 @@ Ring = Mapping[tuple[str, int, int], str]
 
 
 def nets(
-    gds: Path, cells: Mapping[str, str], ring: "Ring", tech: CoriolisPlatform, top_metal: TopMetal
+    gds: Path, cells: Mapping[str, str], ring: "Ring", tech: CoriolisPlatform, top_metal: TopMetal, plate: GdsLayer
 ) -> list[set[Terminal]]:
     """Terminals that each net of the top cell connects.
 
-    cells: cell -> block. ring: (cell, x, y) -> pad, '' for a filler or a corner, which only continue nets. A pin of a
-    block is named by its text on the pin layer in the block's own cell, one of the die ('die') by that in the top cell;
-    metal of a block without a name is ('block', '?...'). KLayout extracts the metals and vias of all cells, without
-    transistors.
+    cells: cell -> block. ring: (cell, x, y) -> pad. In both, '' is a cell that only continues nets, as fillers do. A
+    pin of a block is named by its text on the pin layer in the block's own cell, one of the die ('die') by that in the
+    top cell; metal of a block without a name is ('block', '?...'). plate: of capacitors, which the highest via of
+    ``tech`` meets in place of the metal below. KLayout extracts the metals and vias of all cells, without transistors.
     """
     import klayout.db as db
 
@@ -41,6 +42,13 @@ def nets(
         l2n.connect(metals[-1], names)
     for level, via in enumerate((*tech.vias, top_metal.via)):
         between = l2n.make_polygon_layer(layout.layer(via.layer, via.datatype), via.name)
+        if via is tech.vias[-1]:
+            plates = l2n.make_polygon_layer(layout.layer(*plate), "plate")
+            on_plates, between = between & plates, between - plates
+            for joined in (plates, on_plates):
+                l2n.connect(joined)
+            l2n.connect(plates, on_plates)
+            l2n.connect(on_plates, metals[level + 1])
         l2n.connect(between)
         l2n.connect(metals[level], between)
         l2n.connect(between, metals[level + 1])

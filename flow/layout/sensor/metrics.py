@@ -13,7 +13,7 @@ from .plan import BLOCKS
 from .steps.die_sta import DieSta
 
 RULES = json.loads((Path(__file__).parent / "rules.json").read_text())
-ROUTED = "nets", "routed", "abutted", "tracks", "wire_um", "pads"
+ROUTED = "nets", "routed", "abutted", "tracks", "wire_um", "pads", "decoupling_pf"
 CHECKED = "open_nets", "shorts", "drc_violations", "lvs_match", "antenna_violations"
 DROPS = "pixel_drop_mv", "pixel_spread_mv", "pixel_drop_both_mv"  # of a drawn array
 PADS = "pad_drc_violations", "pads_unmatched"

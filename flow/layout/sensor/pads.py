@@ -6,6 +6,7 @@ from importlib import import_module
 from typing import Any
 
 from talbot.base.gds import db
+from talbot.base.steps import StepError
 from talbot.platforms.layers import GdsLayer
 from talbot.platforms.pads import PadProcess
 from talbot.platforms.pixel import PixelProcess
@@ -19,7 +20,7 @@ IMPLANT, ENCLOSURE, APART = (
     130,
 )  # psdm from contacts to poly, around its diffusion, from n+: licon.9, psd.5, 7
 CLEAR, LEAST = IMPLANT + ENCLOSURE, 380  # contacts to poly from p+ diffusion; width and space of implants (psd.1, 2)
-NOTCH = 220  # notches that are filled
+SPACES = 210, 170  # of poly and of local interconnect: what is nearer around a moved contact is filled (poly.2, li.3)
 SHORT = 10  # what the level shifter to the core has too little room for hvntm between its two n transistors
 GRID = 5
 ROW = "pads"
@@ -120,24 +121,22 @@ def _clear_poly_contacts(cell: "db.Cell", process: PixelProcess) -> None:
         (one.bbox(), _way(lambda box: (db.Region(box.enlarged(CLEAR, CLEAR)) & diffusion).is_empty(), one.bbox()))
         for one in near.each()
     ]
-    _move(cell, ways, process, (process.poly, process.metals[0].gds))
+    _move(cell, ways, process)
 
 
-def _move(
-    cell: "db.Cell", ways: "Sequence[tuple[db.Box, db.Vector]]", process: PixelProcess, around: Sequence[GdsLayer]
-) -> None:
-    """Move contacts, and as much of the layers ``around`` as is around each."""
+def _move(cell: "db.Cell", ways: "Sequence[tuple[db.Box, db.Vector]]", process: PixelProcess) -> None:
+    """Move contacts to poly, and as much of poly and local interconnect as is around each."""
     if not ways:
         return
     old, new = _boxes(box for box, _ in ways), _boxes(box.moved(way) for box, way in ways)
     _replace(cell, process.contact, (_region(cell, process.contact) - old) + new)
-    for mask in around:
+    for mask, space in zip((process.poly, process.metals[0].gds), SPACES, strict=True):
         layer, more = _region(cell, mask), db.Region()
         for box, way in ways:
             sides = (box.enlarged(*by) for by in AROUND)
             more.insert(next((room for room in sides if (db.Region(room) - layer).is_empty()), box).moved(way))
-        made = (layer + more).merged()
-        notches = made.sized(NOTCH // 2).sized(-(NOTCH // 2)) & more.sized(NOTCH)
+        made, half = (layer + more).merged(), space // 2 - 1  # a gap of the least space stays
+        notches = made.sized(half).sized(-half) & more.sized(space)
         _replace(cell, mask, made + notches)
 
 
@@ -195,6 +194,14 @@ def row(found: "db.Layout", process: PadProcess) -> "db.Cell":
         x += round(1000 * width_um(name, process))
     top.insert(db.CellInstArray(corner, db.Trans(db.Trans.M90, x, 0)))
     return top
+
+
+def with_taps(deck: str, active: GdsLayer, tap: GdsLayer) -> str:
+    """A deck with taps on their own mask, too: PDKMaster knows diffusion and taps as one. Raises StepError."""
+    old, new = (f"input({layer}, {datatype})" for layer, datatype in (active, tap))
+    if deck.count(f" = {old}\n") != 1:
+        raise StepError(f"pads: the deck must have one line with {old}, to which the taps are added")
+    return deck.replace(f" = {old}\n", f" = {old} + {new}\n")
 
 
 def joined(spice: str, process: PadProcess) -> str:

@@ -53,8 +53,8 @@ class DieParameters:
     gap_um: float = field(default=10.0, metadata={"unit": "um", "range": (4, 200)})
     pad_um: float = field(default=100.0, metadata={"unit": "um", "range": (2, 500)})
     bars: int = 2
-    branch_pitch: float = field(default=3.0, metadata={"range": (1, 20)})
-    trunk_pitch: float = field(default=4.0, metadata={"range": (1, 20)})
+    branch_pitch: float = field(default=3.0, metadata={"range": (1, 25)})
+    trunk_pitch: float = field(default=4.0, metadata={"range": (1, 25)})
 
     def __post_init__(self) -> None:
         for one in fields(self):

@@ -65,6 +65,12 @@ def to_track(box: Box, side: str, track: tuple[int, int]) -> Box:
     return (track[0], *box[1:]) if side == "west" else (box[0], box[1], track[1], box[3])
 
 
+def crossing(blocks: Mapping[str, Block], die: DieParameters, top: TopMetal, name: str) -> list[tuple[str, Box]]:
+    """Pairs (net, box) of the lines from a block to the east."""
+    east = _from_blocks({name: blocks[name]}, die, top)
+    return [(line.net, line.box) for line in east if line.side == "east"]
+
+
 def _bar(net: str, side: str, boxes: Sequence[Box], die: DieParameters, below: Layer, top: TopMetal) -> Iterator[Shape]:
     """Shapes of a net's lines ``boxes`` and of the bar that connects them on one side of the die."""
     bar = nm(die.bar_um)

@@ -7,8 +7,10 @@ from talbot.base.steps import Files, Step
 from talbot.flow.layout.steps.parameters import PdkParameters
 from talbot.platforms.coriolis import coriolis_platform
 from talbot.platforms.die import top_metal
+from talbot.platforms.pads import pad_process
 
 from .. import connectivity
+from ..decoupling import CELL
 from ..ring import Frame
 from .die_gds import corners, turned
 
@@ -27,7 +29,7 @@ class DieConnectivity(Step[PdkParameters]):
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         plan, pdk = json.loads(inputs["plan"].read_text()), self.parameters.pdk
-        cells = {block["cell"]: name for name, block in plan["blocks"].items()}
+        cells = {block["cell"]: name for name, block in plan["blocks"].items()} | {CELL: ""}
         frame = Frame(**plan["frame"])
         at = [
             (place["cell"], place["nets"] and place["name"], turned(frame, place["side"], place["at"]).disp)
@@ -35,7 +37,8 @@ class DieConnectivity(Step[PdkParameters]):
         ]
         at += [(plan["corner"], "", trans.disp) for trans in corners(frame)]
         ring = {(cell, disp.x, disp.y): name or "" for cell, name, disp in at}
-        found = connectivity.nets(inputs["gds"], cells, ring, coriolis_platform(pdk), top_metal(pdk))
+        tech, plate = coriolis_platform(pdk), pad_process(pdk).capacitor.plate
+        found = connectivity.nets(inputs["gds"], cells, ring, tech, top_metal(pdk), plate)
         opens, shorts = connectivity.compare(found, plan["nets"])
         outputs["report"].write_text(json.dumps({"open": opens, "short": shorts}, indent=1) + "\n")
         return {"open_nets": len(opens), "shorts": len(shorts), "lvs_match": not opens and not shorts}

@@ -8,9 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 from talbot.base.gds import read_gds, write_gds
 from talbot.base.steps import Files, Step, StepError
+from talbot.flow.layout.route.rules import RoutingRules
 from talbot.platforms.coriolis import coriolis_platform
 from talbot.platforms.die import top_metal
+from talbot.platforms.pads import pad_process
 
+from .. import decoupling
 from ..plan import BLOCKS, CORE, ORIENTATIONS
 from ..ring import Frame
 from .die_plan import TOP
@@ -39,7 +42,7 @@ class DieGds(Step[DieGdsParameters]):
 
     name = "die_gds"
     inputs = {f"{block}.gds": f"{block}.gds" for block in (*BLOCKS, CORE)} | {"plan": "die_plan.plan"}
-    inputs |= {"pads.gds": "die_pads.gds"}
+    inputs |= {"pads.gds": "die_pads.gds", "rules": "library.rules"}
     outputs = {"gds": f"{TOP}.gds", "checked": "checked.gds"}
     metrics = {"rectangles": ""}
     tools = ("python klayout",)
@@ -70,6 +73,8 @@ class DieGds(Step[DieGdsParameters]):
                 for datatype in (tech.pin_datatype, tech.label_datatype):
                     top.shapes(layout.layer(layer, datatype)).insert(db.Text(net, middle))
         top.shapes(layout.layer(*tech.outline)).insert(db.Box(0, 0, *plan["die"]))
+        rules = RoutingRules.of(tech, json.loads(inputs["rules"].read_text()))
+        decoupling.draw(layout, plan, rules, pad_process(self.parameters.pdk).capacitor)
         write_gds(layout, outputs["gds"])
         for name in self.parameters.drawn:
             inner = [layout.cell(index) for index in cells[name].each_child_cell()]

@@ -8,11 +8,11 @@ from talbot.base.gds import write_gds
 from talbot.base.steps import Files, Step, StepError
 from talbot.flow.layout.geometry.decks import (
     hole_rules,
+    run_deck,
     run_exported,
     via_rules,
     violations,
     with_flat_spaces,
-    with_taps,
 )
 from talbot.flow.layout.pdkmaster import export_spice
 from talbot.flow.layout.steps.parameters import PdkParameters
@@ -57,7 +57,7 @@ class DiePadsDrc(Step[PdkParameters]):
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         tech, process = coriolis_platform(self.parameters.pdk), pad_process(self.parameters.pdk)
-        deck = with_flat_spaces(with_taps(inputs["deck"].read_text(), tech.active, process.tap))
+        deck = with_flat_spaces(pads.with_taps(inputs["deck"].read_text(), tech.active, process.tap))
         rules = [deck, *hole_rules(tech), *via_rules(tech), process.masks.read_text()]
         outputs["deck"].write_text("\n".join(rules) + "\n")
         status, output = run_exported(outputs["deck"], inputs["gds"], outputs["report"])
@@ -81,11 +81,13 @@ class DiePadsLvs(Step[PdkParameters]):
         process = pad_process(self.parameters.pdk)
         outputs["reports"].mkdir()
         active = coriolis_platform(self.parameters.pdk).active
-        outputs["deck"].write_text(with_taps(inputs["deck"].read_text(), active, process.tap))
+        outputs["deck"].write_text(pads.with_taps(inputs["deck"].read_text(), active, process.tap))
         found = {}
         for cell in (*process.signals.values(), *process.supplies.values()):
             report = outputs["reports"] / f"{cell}.lvsdb"
-            _, output = run_exported(outputs["deck"], inputs["gds"], report, cell, SPICE_FILE=inputs["spice"])
+            paths = {"SOURCE_FILE": inputs["gds"], "REPORT_FILE": report, "SPICE_FILE": inputs["spice"]}
+            files = {name: path.resolve() for name, path in paths.items()}
+            _, output = run_deck(outputs["deck"], report, {}, CELL_NAME=cell, **files)
             if ("LVS OK" in output) == ("LVS Failed" in output):
                 raise StepError(f"{self.name}: KLayout gave no verdict on {cell}: {output.strip().splitlines()[-1:]}")
             found[cell] = "LVS OK" in output

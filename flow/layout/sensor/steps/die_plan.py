@@ -12,7 +12,7 @@ from talbot.platforms.die import top_metal
 from talbot.platforms.layers import Layer
 from talbot.platforms.pads import pad_process
 
-from .. import arrange, ring, routing, supplies, verilog
+from .. import arrange, decoupling, ring, routing, supplies, verilog
 from ..arrange import Arranged
 from ..plan import BLOCKS, CORE, Block, DieParameters, driver, nm
 from ..ring import Frame, Pads, Place
@@ -45,7 +45,7 @@ class DiePlan(Step[DiePlanParameters]):
         "pads": "die_pads.pins",
     }
     outputs = {"plan": "plan.json", "verilog": f"{TOP}.v"}
-    metrics = {"area_um2": "um2", **dict.fromkeys(COUNTS, ""), "wire_um": "um"}
+    metrics = {"area_um2": "um2", **dict.fromkeys(COUNTS, ""), "wire_um": "um", "decoupling_pf": "pF"}
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         p, tech = self.parameters, coriolis_platform(self.parameters.pdk)
@@ -64,10 +64,15 @@ class DiePlan(Step[DiePlanParameters]):
             for kind in [ring.function(net, driver(made.blocks, made.nets[net])[0] != "die")]
             for offset in [ring.middle(pads.core_pin(kind))]
         ]
+        lines = supplies.crossing(made.blocks, p.die, top_metal(p.pdk), "adc_lanes")
+        taken = [branch.x for found in made.routes.values() for branch in found]
+        field = decoupling.field(made.blocks, taken, p.die)
+        metal += decoupling.metal(field, lines, rules, top_metal(p.pdk))
         places, gaps = ring.ring(pads, signals, made.blocks[CORE].box[3])
         levels = [*tech.metals, top_metal(p.pdk).metal]
         metal += [drawn(levels[level], net, box) for net, level, box in ring.bridges(pads, gaps)]
-        outputs["plan"].write_text(json.dumps(as_json(made, metal, places, pads, p.die, tracks, levels[-1])) + "\n")
+        plan = as_json(made, metal, places, pads, p.die, tracks, levels[-1]) | {"decoupling": field._asdict()}
+        outputs["plan"].write_text(json.dumps(plan) + "\n")
         outputs["verilog"].write_text(verilog.top(TOP, made.blocks, made.nets, places))
         area = p.die.width_um * p.die.height_um
         covered = sum(block.width * block.height for block in made.blocks.values()) / 1e6
@@ -78,6 +83,7 @@ class DiePlan(Step[DiePlanParameters]):
             "routed": len(made.routes),
             "abutted": made.abutted,
             "tracks": made.count,
+            "decoupling_pf": round(decoupling.picofarad(field, pad_process(p.pdk).capacitor), 1),
             "pads": sum(bool(place.nets) for place in places),
             "wire_um": round(made.wire / 1000, 1),
         }

@@ -8,6 +8,7 @@ import sys
 
 import pytest
 
+from talbot.base.gds import read_gds
 from talbot.base.paths import ROOT
 from talbot.base.steps import StepError
 from talbot.flow.layout.geometry.abstract import ports
@@ -166,6 +167,27 @@ def test_an_abutting_block_out_of_its_place(made, tmp_path):
 
     metrics, report = matched(made, tmp_path, change)
     assert metrics["open_nets"] > 16 * 6 and "read_row[3]" in report["open"]
+
+
+def test_a_row_line_cut(made, tmp_path):
+    """The line's metal at the row driver's edge is gone; its name is left."""
+    layout = read_gds(made[0]["row_driver.gds"])
+    cell = layout.top_cell()
+    for index in layout.layer_indexes():
+        shapes = cell.shapes(index)
+        names = [
+            shape.text_trans.disp for shape in shapes.each() if shape.is_text() and shape.text_string == "read_row[3]"
+        ]
+        metal = layout.find_layer(layout.get_info(index).layer, 20)
+        for at in names:
+            for shape in [one for one in cell.shapes(metal).each() if one.is_box()]:
+                if shape.bbox().contains(at.to_p()):
+                    shape.delete()
+    layout.write(str(tmp_path / "driver.gds"))
+    given = made[0] | {"row_driver.gds": tmp_path / "driver.gds"}
+    small.connectivity(given, tmp_path)
+    report = json.loads((tmp_path / "connectivity.json").read_text())
+    assert list(report["open"]) == ["read_row[3]"] and not report["short"]
 
 
 def test_blocks_that_the_die_has_no_room_for(made, tmp_path):
