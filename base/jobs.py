@@ -6,10 +6,11 @@ joblib schedules: all cores by default, a Dask cluster where SCHEDULER=tcp://hos
 import argparse
 import contextlib
 import json
+import math
 import os
 import warnings
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, is_dataclass
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +22,7 @@ from .cache import digest
 from .files import write
 from .progress import each
 from .sources import code
+from .tools import ToolError
 
 
 @dataclass(frozen=True)
@@ -98,6 +100,22 @@ def _backend(workers: int) -> Iterator[None]:
 
 def _keep(job: Job, file: Path) -> str:
     """Run a job and keep its result; returns its name."""
-    result = json.dumps(job.call(*job.arguments), indent=1, allow_nan=False, default=asdict)
+    found = job.call(*job.arguments)
+    try:
+        result = json.dumps(found, indent=1, allow_nan=False, default=asdict)
+    except ValueError as error:
+        bad = ", ".join(_not_finite(found))
+        raise ToolError(f"{job.name} = {bad or error}: must be finite") from None
     write(file, result + "\n")
     return job.name
+
+
+def _not_finite(value: Any, name: str = "") -> Iterator[str]:
+    """The names of the numbers in JSON that are NaN or infinite, each with its value."""
+    if is_dataclass(value) and not isinstance(value, type):
+        value = asdict(value)
+    if isinstance(value, dict | list | tuple):
+        for key, item in value.items() if isinstance(value, dict) else enumerate(value):
+            yield from _not_finite(item, f"{name}.{key}".lstrip("."))
+    elif isinstance(value, float) and not math.isfinite(value):
+        yield f"{name} {value}"

@@ -7,6 +7,7 @@ Exit status: 0 right, 1 a check fails (the chip and its golden model differ, a b
 import argparse
 import importlib
 from collections.abc import Sequence
+from importlib.metadata import version
 from types import ModuleType
 
 from talbot.base.command import Parser, add_command, execute
@@ -78,6 +79,7 @@ COMMANDS = {
 def parser(chosen: str = "") -> Parser:
     """The parser of all commands, with the arguments of ``chosen`` alone."""
     top = Parser(prog="talbot", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    top.add_argument("--version", action="version", version=f"%(prog)s {version('talbot')}")
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
     for name, (_, text) in COMMANDS.items():
         sub = commands.add_parser(name, help=text)

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from talbot.base.jobs import Job, run
+from talbot.base.tools import ToolError
 from talbot.models.parameters import ParameterError
 
 
@@ -37,6 +38,17 @@ def test_a_failed_run_keeps_what_was_done(tmp_path):
     assert done == {1, 4}
     run(jobs_of([1, 2, 3], log), store, "squares", workers=1)
     assert sorted(map(int, log.read_text().split())) == [1, 2, 3]
+
+
+def result_of(number):
+    return {"gain": [1.0, number], "offset": 0.0}
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_a_number_that_is_none_is_named(tmp_path, workers):
+    with pytest.raises(ToolError, match=r"^hot = gain\.1 nan: must be finite$"):
+        run([Job("hot", result_of, (float("nan"),))], tmp_path / "store", "corners", workers)
+    assert not list((tmp_path / "store").iterdir())
 
 
 def test_other_inputs_are_another_job(tmp_path):

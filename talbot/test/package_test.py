@@ -6,6 +6,7 @@ import subprocess
 import sys
 import zipfile
 from collections import Counter
+from importlib.metadata import version
 from pathlib import Path
 
 import pytest
@@ -86,6 +87,7 @@ def test_an_installation_works_from_any_folder(built, tmp_path):
     there = {"cwd": tmp_path / "away", "PYTHONPATH": str(tmp_path / "site"), "XDG_CACHE_HOME": str(tmp_path / "cache")}
     found = run("-c", INSTALLED, **there).split()
     assert found == [f"{tmp_path}/site/talbot/__init__.py", f"{tmp_path}/cache/talbot", "build", "talbot"]
+    assert run("-m", "talbot", "--version", **there) == f"talbot {version('talbot')}\n"
     run("-m", "talbot", "verilog", "--top", "EdgeAdc", "--out", "verilog", **there)
     (verilog,) = (tmp_path / "away" / "verilog").iterdir()
     assert verilog.read_text() == translate("EdgeAdc", SensorParameters())
