@@ -14,7 +14,7 @@ from talbot.base.progress import each
 from talbot.base.table import read_csv, write_csv
 from talbot.models.parameters import check_choice
 
-from . import divider, exposure, light_field, noise, precision, pupil, threshold, views
+from . import divider, exposure, lens, light, light_field, noise, precision, pupil, threshold, views
 
 
 class Sweep(Protocol):
@@ -39,6 +39,8 @@ SWEEPS: dict[str, Sweep] = {
     "divider": divider,
     "threshold": threshold,
     "exposure": exposure,
+    "light": light,
+    "lens": lens,
     "views": views,
     "pupil": pupil,
     "precision": precision,

@@ -23,7 +23,7 @@ def test_every_sweep_writes_its_table_and_plot(tables):
 
 
 def test_the_verilog_agreed_everywhere(tables):
-    for name in ("divider", "threshold", "exposure", "noise"):
+    for name in ("divider", "threshold", "exposure", "light", "lens", "noise"):
         assert all(row["mismatches"] == 0 for row in tables[1][name])
 
 
@@ -46,6 +46,24 @@ def test_a_longer_lead_lights_more_and_takes_longer(tables):
         values = [r[name] or 0.0 for r in rows]  # nothing of an edge at all: None
         assert values == sorted(values) and len(set(values)) == len(values)
     assert not any(row["deviating_rows"] for row in rows)
+
+
+def test_less_light_takes_longer(tables):
+    """The pointer leads by as many rows as the light asks for: white is as bright, until its lead ends."""
+    rows = tables[1]["light"]
+    times = [r["integration_ms"] for r in rows]
+    assert times == sorted(times, reverse=True) and len(set(times)) == len(times)
+    assert rows[1]["white_of_full_well"] == pytest.approx(0.8, rel=0.05)
+    assert rows[0]["white_of_full_well"] <= 0.81
+
+
+def test_a_slower_lens_takes_longer_and_fewer_views(tables):
+    rows = tables[1]["lens"]
+    lenses = [r for r in rows if r["focus_m"] == rows[0]["focus_m"]]
+    times, views = ([r[name] for r in lenses] for name in ("frame_ms", "views"))
+    assert times == sorted(times) and len(set(times)) == len(times) == 2
+    assert views == sorted(views, reverse=True) and views[0] > views[-1]
+    assert len({r["focus_m"] for r in rows}) == 2 and all(r["capture_error_codes"] < 0.5 for r in rows)
 
 
 def test_more_nodes_err_less_for_uniform_light(tables):
