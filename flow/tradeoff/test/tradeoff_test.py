@@ -65,7 +65,7 @@ def test_denser_patches_and_more_atoms_err_less(tables):
     assert rows["direct", ""] + 2 < rows["linear", ""] < rows["sparse", ""]
 
 
-def test_a_sweep_goes_on_from_what_is_kept(tables, tmp_path, monkeypatch):
+def test_a_sweep_goes_on_from_what_is_kept(tmp_path, monkeypatch):
     monkeypatch.setattr(views, "points", lambda quick: [("uniform", 3, 1)])
     first = measured("views", store=tmp_path)
     monkeypatch.setattr(views, "sampling_error", None)  # not called again
