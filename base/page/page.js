@@ -84,13 +84,13 @@ for (const group of document.querySelectorAll(".linked, .stage")) {
 
 // A slider through views, row by row and back, so that the next view is a neighbour
 for (const slider of document.querySelectorAll(".views input")) {
-  const views = slider.closest(".views"), columns = +views.dataset.columns;
+  const views = slider.closest(".views"), columns = +views.dataset.columns, labels = views.dataset.labels?.split("|");
   slider.oninput = () => {
     const v = Math.floor(slider.value / columns), along = slider.value % columns, u = v % 2 ? columns - 1 - along : along;
     views.style.setProperty("--u", u);
     views.style.setProperty("--v", v);
     const signed = n => (n > 0 ? "+" : n < 0 ? "−" : "") + Math.abs(n), middle = Math.floor(columns / 2);
-    views.querySelector("b").textContent = `v ${signed(v - middle)}, u ${signed(u - middle)}`;
+    views.querySelector("b").textContent = labels ? labels[slider.value] : `v ${signed(v - middle)}, u ${signed(u - middle)}`;
   };
   slider.oninput();
 }

@@ -1,7 +1,7 @@
 """Methods that give a light field back from the diodes, by name, and their figures beside what costs nothing."""
 
 from collections.abc import Callable, Mapping
-from functools import lru_cache
+from functools import lru_cache, partial
 from time import perf_counter
 from typing import NamedTuple
 
@@ -13,6 +13,7 @@ from talbot.models.capture import CaptureOperator
 from talbot.models.parameters import SensorParameters
 from talbot.models.reconstruct import light_field_estimate, psnr_db
 from talbot.models.reconstruct.bayes import FieldEstimator
+from talbot.models.reconstruct.branches import KINDS, Branches
 from talbot.models.reconstruct.network import VIEWS, Network
 from talbot.models.reconstruct.sparse import Coding, Dictionary, SparseEstimator
 
@@ -54,6 +55,10 @@ def _network(estimator: FieldEstimator, operator: CaptureOperator, pair: Values)
     return Found(*mixture._replace(light_field=field))
 
 
+def _branches(kind: str, estimator: FieldEstimator, operator: CaptureOperator, pair: Values) -> Found:
+    return Found(Branches.shipped().estimate(pair, operator.sensor, estimator.prior.noise, kind))
+
+
 def _sparse(estimator: FieldEstimator, operator: CaptureOperator, pair: Values) -> Found:
     return Found(_coder(estimator, operator).estimate(pair))
 
@@ -69,15 +74,23 @@ def _prepared(sensor: SensorParameters, coding: Coding) -> SparseEstimator:
     return coder
 
 
-# direct: Sigma^-1 Phi' i [Jayasuriya2017, Sec. 3.3.2]. linear, mixture: models/reconstruct/bayes
-METHODS: Mapping[str, Method] = {"direct": _direct, "linear": _linear, "sparse": _sparse, "mixture": _mixture} | {
-    "network": _network
+# direct: Sigma^-1 Phi' i [Jayasuriya2017, Sec. 3.3.2]. linear, mixture: models/reconstruct/bayes. autoencoder and
+# convolutions: the branches of two_branch, each alone [Jayasuriya2017, Sec. 3.7]
+BRANCHES = dict(zip(("autoencoder", "convolutions", "two_branch"), KINDS, strict=True))
+METHODS: Mapping[str, Method] = {
+    "direct": _direct,
+    "linear": _linear,
+    "sparse": _sparse,
+    **{name: partial(_branches, kind) for name, kind in BRANCHES.items()},
+    "mixture": _mixture,
+    "network": _network,
 }
 PREPARE: Mapping[str, Callable[[FieldEstimator, CaptureOperator], object]] = {
-    "linear": lambda estimator, operator: estimator.filters,
+    "linear": lambda estimator, operator: estimator.prepare(),
     "sparse": _coder,
-    "mixture": lambda estimator, operator: (estimator.filters, estimator.components),
-    "network": lambda estimator, operator: (estimator.filters, estimator.components, Network.shipped()),
+    "mixture": lambda estimator, operator: (estimator.prepare(), estimator.components),
+    "network": lambda estimator, operator: (estimator.prepare(), estimator.components, Network.shipped()),
+    **dict.fromkeys(BRANCHES, lambda estimator, operator: Branches.shipped()),
 }
 
 
@@ -86,6 +99,7 @@ def applicable(operator: CaptureOperator) -> list[str]:
     views, _, *shape = operator.shape
     _, own, _, *patch = Dictionary.shipped().atoms.shape
     fits = {"network": views == VIEWS, "sparse": views == own and min(np.subtract(shape, patch)) >= 0}
+    fits |= dict.fromkeys(BRANCHES, Branches.shipped().knows(operator.sensor))
     return [name for name in METHODS if fits.get(name, True)]
 
 

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from PIL.Image import Image
 
 from talbot.base import page
 from talbot.base.page import Picture, Scale, Tile
@@ -19,6 +20,7 @@ from .fields import SURE, Fields, depth_map
 Values = npt.NDArray[np.floating]
 MOVING = "views.webp"
 NAMES = ("lightfield.html", "summary.json", "lightfield.npz", MOVING)
+FOCUSED = 4  # a side of the sheet of refocused pictures
 FRAME_MS = 90  # of the moving picture
 
 
@@ -30,7 +32,8 @@ def write(folder: Path, fields: Fields) -> None:
     _moving(folder / MOVING, best.light_field, top)
     shown = [("the scene", fields.truth)] + [(name, found.light_field) for name, found in fields.found.items()]
     groups = [("Depth", _depth(fields)), (f"Refocused, by the {fields.summary['best']}", _refocused(fields, top))]
-    s = fields.summary
+    s, focus = fields.summary, _focus(fields)
+    stack = [("the scene", fields.truth), (s["best"], fields.best.light_field)]
     text = page.render(
         Path(__file__).with_name("page.html"),
         f"{s['scene']}: the light field of a raw frame",
@@ -40,6 +43,8 @@ def write(folder: Path, fields: Fields) -> None:
         head=("", "PSNR", "gain", "SSIM", "slope", "correlation", "PSNR, float", "seconds", "once"),
         rows=table(s),
         views=[Views.of(caption, pictures.grays(field, top)) for caption, field in shown],
+        stack=[Views.of(caption, _stack(field, focus, top)) for caption, field in stack],
+        labels=[f"{d:+.2f}" for row in focus for d in row],
         groups=[group for group in groups if group[1]],
     )
     (folder / "lightfield.html").write_text(text)
@@ -110,6 +115,18 @@ def _refocused(fields: Fields, top: float) -> list[Picture]:
         caption = f"focused {name}: what has {disparity:+.2f} px a view step is sharp"
         out.append(Picture(name, "", caption, pictures.gray(image, high=top)))
     return out
+
+
+def _focus(fields: Fields) -> list[list[float]]:
+    """Disparities of the slider, from far to near, row by row and back as it takes them."""
+    low, high = np.quantile(fields.best.disparity, (0.02, 0.98))
+    return np.linspace(low, high, FOCUSED**2).reshape(FOCUSED, FOCUSED).tolist()
+
+
+def _stack(field: Values, focus: list[list[float]], top: float) -> list[list[Image]]:
+    """A light field focused on each disparity, every second row from right to left."""
+    rows = [[pictures.gray(refocus(field, d), high=top) for d in row] for row in focus]
+    return [row[::-1] if number % 2 else row for number, row in enumerate(rows)]
 
 
 def _moving(path: Path, field: Values, top: float) -> None:

@@ -9,12 +9,16 @@ from PIL import Image
 
 from talbot.base.charts import save, svg
 from talbot.base.files import staged
+from talbot.base.jobs import Job, run
 from talbot.base.page import TABLES, Section, render
-from talbot.base.progress import each
+from talbot.base.paths import BUILD
 from talbot.base.table import read_csv, write_csv
 from talbot.models.parameters import check_choice
+from talbot.models.reconstruct import branches, network, sparse
 
-from . import divider, exposure, lens, light, light_field, noise, precision, pupil, threshold, views
+from . import divider, exposure, lens, light, light_field, light_field_sensor, noise, precision, pupil, threshold, views
+
+STORE = BUILD / "tradeoff" / "measured"
 
 
 class Sweep(Protocol):
@@ -46,25 +50,31 @@ SWEEPS: dict[str, Sweep] = {
     "precision": precision,
     "noise": noise,
     "light_field": light_field,
+    "light_field_sensor": light_field_sensor,
 }
 
 
-def measured(name: str, quick: bool = False) -> list[dict[str, Any]]:
-    """The rows of a sweep."""
-    return [SWEEPS[name].measure(point) for point in each(SWEEPS[name].points(quick), name)]
+def measured(name: str, quick: bool = False, workers: int = 1, store: Path = STORE) -> list[dict[str, Any]]:
+    """The rows of a sweep, each kept in ``store``: a run that was killed goes on from there."""
+    call, learned = SWEEPS[name].measure, (branches.WEIGHTS, network.WEIGHTS, sparse.DICTIONARY)
+    points = enumerate(SWEEPS[name].points(quick))
+    return run([Job(f"{name}_{n}", call, (p,), (repr(p), *learned)) for n, p in points], store, name, workers)
 
 
-def run_sweeps(out: Path, only: Sequence[str] | None = None, quick: bool = False) -> dict[str, list[dict[str, Any]]]:
+def run_sweeps(
+    out: Path, only: Sequence[str] | None = None, quick: bool = False, workers: int = 1, store: Path = STORE
+) -> dict[str, list[dict[str, Any]]]:
     """Run the sweeps named in ``only`` (default: all) and write their files into ``out``; returns rows by sweep.
 
-    The page shows every sweep whose table is there. Raises ParameterError for an unknown sweep.
+    workers: processes; with one, nothing of the run itself is in the seconds that are measured. The page shows every
+    sweep whose table is there. Raises ParameterError for an unknown sweep.
     """
     names = list(SWEEPS) if only is None else only
     for name in names:
         check_choice("only", name, list(SWEEPS))
     tables = {}
     for name in names:
-        rows = tables[name] = measured(name, quick)
+        rows = tables[name] = measured(name, quick, workers, store)
         with staged(out) as folder:
             write_csv(folder / f"{name}.csv", rows)
             save(SWEEPS[name].plot(rows), folder / f"{name}.png")

@@ -1,4 +1,4 @@
-"""Learn the dictionary of sparse coding, or the network, again: from scenes of dead leaves, which no figure is from."""
+"""Learn the dictionary of sparse coding, or a network, again: from scenes of dead leaves, which no figure is from."""
 
 import json
 from argparse import ArgumentParser, Namespace
@@ -7,17 +7,19 @@ from pathlib import Path
 from talbot.flow.frame import arguments as text
 from talbot.models.parameters import ParameterError
 
-WHAT = "dictionary", "network"
+STEPS = {"dictionary": 40, "network": 2500, "branches": 4000}
 FIRST = 1000  # seed of the first scene; those of the tests and figures are below
 
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot learn`: texts, checked by `run`."""
     add = parser.add_argument
-    add("what", choices=WHAT, help="dictionary (NumPy alone), or network (PyTorch: pip install 'talbot[nn]')")
+    what = "dictionary (NumPy alone), network, or branches (PyTorch: pip install 'talbot[nn]')"
+    add("what", choices=STEPS, help=what)
     add("--seed", default="1", help="of everything random, 0..1000000")
     add("--scenes", default="24", help="to learn from, 1..10000")
-    add("--steps", default="", help="of the learning, 1..1000000 (default: 40 batches, 2500 of the network)")
+    default = ", ".join(f"{steps} of the {what}" for what, steps in STEPS.items())
+    add("--steps", default="", help=f"of the learning, 1..1000000 (default: {default})")
     add("--atoms", default="384", help="of the dictionary, 2..4096")
     add("--start", help="weights of the network to go on from (default: none)")
     add("--out", default="build/learn", help="folder for <what>.npz, which models/reconstruct ships, and <what>.json")
@@ -29,7 +31,7 @@ def run(options: Namespace) -> int:
 
     seed = text.integer("seed", options.seed, 0, 10**6)
     scenes = text.integer("scenes", options.scenes, 1, 10**4)
-    steps = text.integer("steps", options.steps or {"dictionary": "40", "network": "2500"}[options.what], 1, 10**6)
+    steps = text.integer("steps", options.steps or str(STEPS[options.what]), 1, 10**6)
     atoms = text.integer("atoms", options.atoms, 2, 4096)
     out, start = Path(options.out), Path(options.start) if options.start else None
     if start is not None and not start.is_file():
@@ -40,6 +42,10 @@ def run(options: Namespace) -> int:
         from .dictionary import learned
 
         made = learned(seeds, atoms, steps, seed)
+    elif options.what == "branches":
+        from .branches import learned
+
+        made = learned(seeds, steps, seed)
     else:
         from .training import learned
 

@@ -1,4 +1,4 @@
-"""Scenes to learn from, dead leaves and planes of them before the sensor, and what the Bayes estimators make of each."""
+"""Scenes to learn from, dead leaves and planes of them, and what the Bayes estimators make of their samples."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace

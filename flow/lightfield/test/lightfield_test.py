@@ -48,6 +48,9 @@ def test_files(done):
     with Image.open(folder / "views.webp") as moving:
         assert moving.n_frames == 16
     text = (folder / "lightfield.html").read_text()
+    labels = re.search('data-labels="([^"]*)"', text)
+    assert labels and [float(word) for word in labels[1].split("|")] == sorted(map(float, labels[1].split("|")))
+    assert len(labels[1].split("|")) == page.FOCUSED**2 and 'aria-label="disparity in focus"' in text
     assert f"{s['methods']['mixture']['psnr_db']:.1f} dB" in text and "direct: no better than the sum image" in text
 
 

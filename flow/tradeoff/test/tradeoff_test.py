@@ -1,15 +1,19 @@
 import csv
 
+import numpy as np
 import pytest
 
-from talbot.flow.tradeoff.sweeps import SWEEPS, run_sweeps
+from talbot.flow.frame.request import STANDARD
+from talbot.flow.tradeoff import light_field_sensor, views
+from talbot.flow.tradeoff.sweeps import SWEEPS, measured, run_sweeps
 from talbot.models.parameters import ParameterError
+from talbot.models.pixel.weights import view_weights
 
 
 @pytest.fixture(scope="module")
 def tables(tmp_path_factory):
     out = tmp_path_factory.mktemp("tradeoff")
-    return out, run_sweeps(out, quick=True)
+    return out, run_sweeps(out, quick=True, store=tmp_path_factory.mktemp("kept"))
 
 
 def test_every_sweep_writes_its_table_and_plot(tables):
@@ -77,6 +81,29 @@ def test_denser_patches_and_more_atoms_err_less(tables):
     assert by_stride == sorted(by_stride)
     assert rows["sparse", "atoms 64"] < rows["sparse", "atoms 192"] < rows["sparse", ""]
     assert rows["direct", ""] + 2 < rows["linear", ""] < rows["sparse", ""]
+
+
+def test_a_sweep_goes_on_from_what_is_kept(tmp_path, monkeypatch):
+    monkeypatch.setattr(views, "points", lambda quick: [("uniform", 3, 1)])
+    first = measured("views", store=tmp_path)
+    monkeypatch.setattr(views, "sampling_error", None)  # not called again
+    assert measured("views", store=tmp_path) == first
+    with pytest.raises(TypeError):
+        measured("views", store=tmp_path / "empty")
+
+
+def test_fewer_bits_and_gated_differences_cost_light_field(tables):
+    rows = {(r["what"], r["value"]): r for r in tables[1]["light_field_sensor"]}
+    assert rows["bits", 3]["mixture_psnr_db"] + 1 < rows["bits", 8]["mixture_psnr_db"]
+    assert rows["threshold", 32]["sent"] < 0.5
+    assert rows["threshold", 32]["mixture_psnr_db"] < rows["bits", 8]["mixture_psnr_db"]
+
+
+@pytest.mark.parametrize("layout", light_field_sensor.LAYOUTS)
+def test_every_layout_shares_the_light(layout):
+    weights = view_weights(light_field_sensor.tile(layout), STANDARD.optics)
+    assert weights.min() >= 0 and weights.shape == (24, 2, 5, 5)
+    np.testing.assert_allclose(weights.sum((1, 2, 3)), 2, rtol=0.02)
 
 
 def test_unknown_sweep_is_named(tmp_path):

@@ -27,8 +27,10 @@ from .windows import Axis, Group, even
 
 Floats = npt.NDArray[np.floating]
 Ints = npt.NDArray[np.int64]
+Windows = Sequence[tuple[Group, Group, Floats]]  # (samples, windows) of every group
 # What differs between the views, times its mean over what is not known, which shrinks it: by leaves and a tilted plane
-LINEAR, MIXTURE = 1.15, 1.04
+LINEAR, MIXTURE = 1.15, 1.06
+LOST = 0.5  # probability of no one disparity, from which on it is not known
 UNLIKELY = 1e-3  # probability below which a disparity is left out of a mixture
 
 
@@ -125,15 +127,23 @@ class FieldEstimator:
         ParameterError
             For a wrong shape.
         """
-        turned = self._turned(pair)
+        groups = self._windows(pair)
+        return self._linear(groups, groups)
+
+    def _linear(self, groups: Windows, told: Windows) -> Floats:
+        """The estimate of `linear` from the windows of ``groups``, with the disparities that those of ``told`` show."""
         out = np.zeros((self.views, self.views, *self.shape), np.float32)
         number, inner = self._inner
-        for index, ((down, across), filters) in enumerate(zip(self._groups(), self.filters, strict=True)):
-            samples = self._samples(turned, down, across)
+        for index, ((down, across, samples), filters) in enumerate(zip(groups, self._mean.filters, strict=True)):
             if index == number:
-                filters = inner.filters(samples, self._count(down, across))
+                filters = inner.filters(told[index][2], self._count(down, across))
             self._place(out, filters @ samples, down, across)
         return out
+
+    def _windows(self, pair: Floats) -> Windows:
+        """Samples of every group."""
+        turned = self._turned(pair)
+        return [(down, across, self._samples(turned, down, across)) for down, across in self._groups()]
 
     @cached_property
     def _inner(self) -> tuple[int, "Scene"]:
@@ -146,20 +156,19 @@ class FieldEstimator:
             ways.append((self._shared(tables, *groups[number]), self._field(tables, *groups[number], LINEAR)))
         return number, Scene(ways, *self._own(*groups[number]), self.prior)
 
-    @cached_property
-    def filters(self) -> list[Floats]:
-        """Of each group of windows, from its samples to the views of its block, made once a sensor."""
-        return [f for f, _ in self._solved(self.covariances.mean(), LINEAR)]
+    def prepare(self) -> None:
+        """Make what `linear` needs once a sensor; it does so itself where it has not been done."""
+        _ = self._mean, self._inner
 
     @cached_property
     def components(self) -> list[Component]:
         """For each disparity, made once a sensor."""
-        out = []
-        for d in self.prior.grid:
-            filters, residuals = zip(*self._solved(self.covariances.of(float(d)), MIXTURE), strict=True)
-            certain = pooled(self._map(residual.certain for residual in residuals), self.prior.pool) / self._read
-            out.append(Component(list(filters), list(residuals), certain))
-        return out
+        return [self._component(self.covariances.of(float(d)), MIXTURE) for d in self.prior.grid]
+
+    @cached_property
+    def _mean(self) -> Component:
+        """For a scene of any disparity, made once a sensor."""
+        return self._component(self.covariances.mean(), LINEAR)
 
     @cached_property
     def _read(self) -> Floats:
@@ -181,8 +190,8 @@ class FieldEstimator:
             True where one of them is in a window.
         """
         windows = sliding_window_view(pixels, (self.y.window, self.x.window))[np.ix_(self.y.firsts, self.x.firsts)]
-        told = self.y.spread() @ windows.any((2, 3)) @ self.x.spread().T > 0
-        return np.asarray(maximum_filter(told, 2 * math.ceil(REACH * self.prior.pool) + 1))
+        told = np.asarray(self.y.spread() @ windows.any((2, 3)) @ self.x.spread().T > 0)
+        return np.asarray(maximum_filter(told, 2 * math.ceil(REACH * self.prior.pool) + 1), bool)
 
     def condition(self, disparity: float | None = None) -> float:
         """Condition of the covariance of the samples in a window, noise included.
@@ -221,25 +230,25 @@ class FieldEstimator:
         ParameterError
             For a wrong shape.
         """
-        turned = self._turned(pair)
-        groups = [(d, a, self._samples(turned, d, a)) for d, a in self._groups()]
-        told = groups
-        if evidence is not None:
-            seen = self._turned(evidence)
-            told = [(d, a, self._samples(seen, d, a)) for d, a in self._groups()]
-        grid = self.prior.grid
-        chance = self._chance(told)
-        blank = self.y.spread() @ self._plain(told) @ self.x.spread().T
-        weights = [blank, *(chance * (1 - blank))]
-        chance = np.stack(weights[1:]) + blank / len(grid)
-        mean = np.tensordot(grid, chance, 1)
-        spread = np.sqrt(np.maximum(np.tensordot(grid**2, chance, 1) - mean**2, 0))
-        out = np.zeros((self.views, self.views, *self.shape), np.float32)
-        # What shows no disparity takes the linear estimate
-        for weight, filters in zip(weights, (self.filters, *(c.filters for c in self.components)), strict=True):
+        groups = self._windows(pair)
+        told = groups if evidence is None else self._windows(evidence)
+        grid, plain = self.prior.grid, self._plain(told)
+        blank = self.y.spread() @ plain @ self.x.spread().T
+        scores = self._scores(told)
+        chance = probability(scores, UNLIKELY)
+        # What shows no disparity, or more than one, takes the linear estimate
+        any_of = chance[-1] * (1 - blank) + blank
+        out = self._linear(groups, told) * any_of.astype(np.float32)
+        for weight, component in zip(chance * (1 - blank), self.components, strict=False):
             if weight.any():
-                out += self._estimate(filters, groups, weight > 0) * weight.astype(np.float32)
-        return Estimate(out, mean.astype(np.float32), spread.astype(np.float32), float(self._plain(told).mean()))
+                out += self._estimate(component.filters, groups, weight > 0) * weight.astype(np.float32)
+        planes = probability(scores[:-1], UNLIKELY) * (1 - blank) + blank / len(grid)
+        mean = np.tensordot(grid, planes, 1)
+        lost = np.where(any_of > LOST, any_of, 0)  # no disparity is likelier than any
+        doubt = planes * (1 - lost) + lost / len(grid)
+        spread = np.tensordot(grid**2, doubt, 1) - 2 * mean * np.tensordot(grid, doubt, 1) + mean**2
+        spread = np.sqrt(np.maximum(spread, 0))
+        return Estimate(out, mean.astype(np.float32), spread.astype(np.float32), float(plain.mean()))
 
     def _map(self, values: Iterable[Floats]) -> Floats:
         """A value of each pixel from those of every group's blocks, each (pixels, windows) or (pixels,)."""
@@ -249,7 +258,7 @@ class FieldEstimator:
             self._place(out, np.broadcast_to(part.reshape(len(part), -1), shape), down, across)
         return out[0, 0]
 
-    def _plain(self, groups: Sequence[tuple[Group, Group, Floats]]) -> npt.NDArray[np.bool_]:
+    def _plain(self, groups: Windows) -> npt.NDArray[np.bool_]:
         """Whether noise explains what each window has beside the nearest uniform scene, (block rows, block cols)."""
         plain = np.zeros((len(self.y.blocks), len(self.x.blocks)), bool)
         totals = self.covariances.weights.sum((1, 2))
@@ -261,22 +270,20 @@ class FieldEstimator:
             part[:] = (rest < self.prior.plain * self.prior.noise**2).reshape(part.shape)
         return plain
 
-    def _chance(self, groups: Sequence[tuple[Group, Group, Floats]]) -> Floats:
-        """Probability of every disparity at every pixel, (disparities, rows, cols): of sum 1, 0 below `UNLIKELY`."""
+    def _scores(self, groups: Windows) -> Floats:
+        """What trust leaves of -2 log p of every disparity, and of any, (disparities + 1, rows, cols)."""
         pool, scores = self.prior.pool, []
-        for component in self.components:
+        for component in (*self.components, self._mean):
             errors = [
                 residual.matrix @ samples for (*_, samples), residual in zip(groups, component.residuals, strict=True)
             ]
             squares = pooled(self._map(np.square(e) for e in errors), pool) / self._read
             scores.append(badness(squares, component.certain, 4 * np.pi * pool**2))
-        return probability(self.prior.trust * np.stack(scores), UNLIKELY)
+        return self.prior.trust * np.stack(scores)
 
-    def _estimate(
-        self, filters: list[Floats], groups: Sequence[tuple[Group, Group, Floats]], wanted: npt.NDArray[np.bool_]
-    ) -> Floats:
+    def _estimate(self, filters: list[Floats], groups: Windows, wanted: npt.NDArray[np.bool_]) -> Floats:
         """The light field by filters of every group in the blocks that have a wanted pixel; 0 in the others."""
-        blocks = sliding_window_view(wanted, (self.y.block, self.x.block)).any((2, 3))
+        blocks = np.asarray(sliding_window_view(wanted, (self.y.block, self.x.block)).any((2, 3)))
         out = np.zeros((self.views, self.views, *self.shape), np.float32)
         for (down, across, samples), matrix in zip(groups, filters, strict=True):
             first, count = self.y.blocks[down.blocks], self.x.blocks[across.blocks]
@@ -293,20 +300,20 @@ class FieldEstimator:
             raise ParameterError(f"pair shape = {pair.shape}: must be {(2, *self.shape)}")
         return np.stack([pair[0] + pair[1], pair[0] - pair[1]]).astype(np.float32) / np.float32(np.sqrt(2))
 
-    def _solved(self, tables: Tables, parallax: float) -> list[tuple[Floats, Residuals]]:
+    def _component(self, tables: Tables, parallax: float) -> Component:
         """Filters and residuals of every group."""
-        inverses, made, out = {}, {}, []
+        inverses, made = {}, {}
         for down, across in self._groups():
             phase = down.phase, across.phase
-            key = *phase, down.offset, across.offset
             if phase not in inverses:
                 inverses[phase] = whitener(self._shared(tables, down, across))
+            inverse, key = inverses[phase], (*phase, down.offset, across.offset)
             if key not in made:
-                inverse = inverses[phase]
                 filters = (self._field(tables, down, across, parallax) @ inverse.T @ inverse).astype(np.float32)
                 made[key] = filters, Residuals.of(inverse, *self._own(down, across))
-            out.append(made[key])
-        return out
+        every = [made[d.phase, a.phase, d.offset, a.offset] for d, a in self._groups()]
+        certain = pooled(self._map(residual.certain for _, residual in every), self.prior.pool) / self._read
+        return Component([f for f, _ in every], [residual for _, residual in every], certain)
 
     def _groups(self) -> Iterator[tuple[Group, Group]]:
         return ((down, across) for down in self.y.groups() for across in self.x.groups())
