@@ -63,12 +63,12 @@ def test_transmission_is_that_of_another_code(metals, degrees):
         assert found[field] == pytest.approx(theirs(geometry, WAVELENGTH, degrees, field, SHIFT), abs=2e-5)
 
 
-@pytest.mark.slow  # 5,000 solutions of meent: a minute
+@pytest.mark.slow  # 168 solutions of meent, 10 s alone
 @pytest.mark.parametrize("beta", gratings("sky130").geometries)
 def test_beta_is_the_phase_slope_of_another_codes_curves(beta):
     """Of the gratings that `make pixel` found: Eq. 3.1 as fitted here, the slope of the phase of meent's curves."""
     chosen = gratings("sky130")
-    geometry, wavelength, degrees = chosen.geometries[beta], chosen.wavelength_um, np.arange(-20, 20.1, 1.0)
+    geometry, wavelength, degrees = chosen.geometries[beta], chosen.wavelength_um, np.arange(-20, 20.1, 2.0)
     shares = [
         [[theirs(geometry, wavelength, d, field, geometry.shift + more) / 2 for d in degrees] for more in QUADRATURE]
         for field in (0, 1)
