@@ -87,11 +87,11 @@ cosim: $(TESTS_READY) $(LAYOUT_READY)  ## a row with transistors in the loop: th
 	@$(talbot) cosim
 
 .PHONY: pixel-layout
-pixel-layout: $(TESTS_READY) $(LAYOUT_READY)  ## the pixel drawn: 24 types, tile, array with dummies and rings; DRC, LVS: build/pixel-layout/<pdk>/pixel_layout.html (ROWS= COLS=)
+pixel-layout: $(TESTS_READY) $(LAYOUT_READY)  ## the pixel drawn: 24 types, tile, array with dummies and rings; DRC, LVS: build/pixel-layout/<pdk>/pixel_layout.html (ROWS= COLS= TABLE=)
 	@$(talbot) pixel-layout
 
 .PHONY: pixel-circuit
-pixel-circuit: $(LAYOUT_READY) have-tools  ## the drawn pixel in ngspice: full well, gain, noise, lag over corners, an EMVA 1288 style table: build/pixel-circuit/<pdk>/pixel_circuit.html (CORNERS= GATE= SINK=)
+pixel-circuit: $(LAYOUT_READY) have-tools  ## the drawn pixel in ngspice: full well, gain, noise, lag over corners, an EMVA 1288 style table: build/pixel-circuit/<pdk>/pixel_circuit.html (CORNERS= GATE= SINK= TABLE=)
 	@$(talbot) pixel-circuit
 
 .PHONY: analog

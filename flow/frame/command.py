@@ -20,6 +20,7 @@ from talbot.models.parameters import (
     ParameterError,
     SensorParameters,
     check_choice,
+    drawn_electrical,
 )
 
 from . import arguments as text
@@ -100,7 +101,11 @@ def add_frame_arguments(
     add("--lanes", default=Own("8"), help="converters, one of " + ", ".join(map(str, LANES)))
     add("--phase", action="store_true", help="tof mode: phase and amplitude from the chip's divider")
     add("--converter", default=Own("typical"), help="typical (INL, DNL, offset, noise as in the report) or ideal")
-    add("--afe", default="ideal", help="ideal: arithmetic, and --converter; circuit: converters as ngspice has them")
+    add(
+        "--afe",
+        default="ideal",
+        help="ideal: arithmetic, and --converter; circuit: converters and pixels as ngspice has them",
+    )
     add("--noise", default="1.0", help="times the physical noise, 0..100")
     add("--seed", default="1", help="of every random draw, 0..4294967295")
 
@@ -194,6 +199,7 @@ def request_of(a: Namespace, sensor: SensorParameters | None = None) -> "FrameRe
         if "converter" in typed:
             raise ParameterError(f"converter = {a.converter!r}: must be left out with afe = circuit, which has its own")
         plain["converter"] = "circuit"
+        sensor = replace(sensor, electrical=drawn_electrical(sensor.electrical))
     exposure = None if a.exposure == "auto" else text.integer("exposure", a.exposure, 0, EXPOSURE_MAX, also=" or auto")
     lux = text.real("lux", a.lux, 1e-3, 1e6)
     mask, noise = text.pixel_types(a.types), text.real("noise", a.noise, 0, 100)

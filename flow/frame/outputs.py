@@ -11,6 +11,7 @@ from talbot.base.charts import bars, svg
 from talbot.base.page import Picture, Scale
 from talbot.flow.simulate.frame import WAVES
 from talbot.models.parameters import EnergyParameters, LightParameters, circuit_converter, sensor_text, sources
+from talbot.models.parameters.drawn import drawn_sources
 
 from . import error_plots, pictures
 from .chip_picture import chip_svg
@@ -199,4 +200,6 @@ def assumptions(result: FrameResult) -> list[tuple[str, object, str]]:
         EnergyParameters(),
         LightParameters(),
     )
-    return [*(row for parameters in known for row in sources(parameters)), *converter]
+    rows = (row for parameters in known for row in sources(parameters))
+    drawn = drawn_sources(sensor.electrical)
+    return [*((name, value, drawn.get(name, came)) for name, value, came in rows), *converter]

@@ -79,3 +79,21 @@ def drawn_electrical(electrical: ElectricalParameters, table: Path = PIXEL) -> E
         For a value out of range.
     """
     return replace(electrical, **json.loads(table.read_text())["parameters"])
+
+
+def drawn_sources(electrical: ElectricalParameters, table: Path = PIXEL) -> dict[str, str]:
+    """Where the parameters of a sensor come from that has the drawn pixel's.
+
+    Parameters
+    ----------
+    electrical : ElectricalParameters
+        Of any sensor.
+    table : path
+        As of `drawn_electrical`.
+
+    Returns
+    -------
+    dict of str to str
+        Source by name; none for other pixels.
+    """
+    return json.loads(table.read_text())["sources"] if electrical == drawn_electrical(electrical, table) else {}

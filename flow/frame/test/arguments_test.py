@@ -7,10 +7,12 @@ from talbot.flow.frame.command import add_arguments, request_of, typed_of
 from talbot.models.parameters import (
     ALL_TYPES,
     TYPICAL_CONVERTER,
+    ElectricalParameters,
     ParameterError,
     SensorParameters,
     Window,
     circuit_converter,
+    drawn_electrical,
     sensor_text,
 )
 
@@ -66,6 +68,8 @@ def test_the_circuits_converters_are_asked_for():
     assert request_of(parsed("--afe", "ideal")).sensor.converter == TYPICAL_CONVERTER
     found = request_of(parsed("--afe", "circuit")).sensor.converter
     assert found == circuit_converter() and found.unit_mismatch > 0
+    electrical = request_of(parsed("--afe", "circuit")).sensor.electrical
+    assert electrical == drawn_electrical(ElectricalParameters()) and electrical.full_well > 1.1e5
     assert typed_of(parsed("--afe", "circuit"), add_arguments)["afe"] == "circuit"
 
 
