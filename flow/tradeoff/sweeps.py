@@ -14,7 +14,7 @@ from talbot.base.progress import each
 from talbot.base.table import read_csv, write_csv
 from talbot.models.parameters import check_choice
 
-from . import divider, exposure, light_field, noise, precision, pupil, threshold, views
+from . import depth, divider, exposure, light_field, noise, polarization, precision, pupil, threshold, views
 
 
 class Sweep(Protocol):
@@ -44,6 +44,8 @@ SWEEPS: dict[str, Sweep] = {
     "precision": precision,
     "noise": noise,
     "light_field": light_field,
+    "depth": depth,
+    "polarization": polarization,
 }
 
 

@@ -1,4 +1,4 @@
-"""Views of a lens as Mitsuba's frusta, what the command writes and refuses, and small scenes rendered by Mitsuba itself."""
+"""Views of a lens as Mitsuba's frusta, what the command writes and refuses, small scenes by Mitsuba itself."""
 
 import json
 
