@@ -7,6 +7,7 @@ PY := $(VENV)/bin/python
 READY := $(VENV)/.ready
 VIDEO_READY := $(VENV)/.video-ready
 TESTS_READY := $(VENV)/.tests-ready
+RENDER_READY := $(VENV)/.render-ready
 LAYOUT_READY := $(VENV)/.layout-ready
 LINT_READY := $(VENV)/.lint-ready
 
@@ -36,6 +37,10 @@ $(READY): requirements/run.lock pyproject.toml requirements/venv.sh
 
 $(VIDEO_READY): $(READY) requirements/video.lock
 	@bash requirements/venv.sh '$(PYTHON)' '$(VENV)' requirements/video.lock
+	@touch $@
+
+$(RENDER_READY): $(READY) requirements/render.lock
+	@bash requirements/venv.sh '$(PYTHON)' '$(VENV)' requirements/render.lock
 	@touch $@
 
 $(TESTS_READY): $(READY) requirements/test.lock
@@ -109,6 +114,10 @@ polar: $(READY)  ## a raw frame's angle and degree of polarization, and its high
 .PHONY: depth
 depth: $(READY)  ## depth by time of flight, unwrapped by the light field of its taps, and past an occluder: build/depth/<scene>/ (SCENE=)
 	@$(talbot) depth
+
+.PHONY: render
+render: $(RENDER_READY)  ## the rendered scenes again, or larger, by Mitsuba 3: build/render/<scene>.npz (SCENE= VIEWS= SAMPLES=; needs LLVM 17 or later: Debian's libllvm19)
+	@$(talbot) render
 
 .PHONY: calibrate
 calibrate: $(READY)  ## pixel types, trims and lens from noisy frames on a bench: build/calibrate/calibration.json, for CALIBRATION= of sim and lightfield

@@ -26,7 +26,7 @@ NETLISTS = pytest.StashKey()  # rtl.harness.netlists.Netlists of --netlist
 SLOW = "slow: make verify, or pytest --all"
 # What neither Debian nor PyPI has, a machine cannot do, or is too large to ask for: skipped with --complete, too
 ELSEWHERE = re.compile(
-    r"slow|benchmark|PDK_ROOT|TT_TOOLS|openroad|PyTorch|a small file system cannot be mounted|needs /proc"
+    r"slow|benchmark|PDK_ROOT|TT_TOOLS|openroad|PyTorch|Mitsuba|a small file system cannot be mounted|needs /proc"
     r"|no coriolis for"
 )
 # Command that brings what a test was skipped for, by a word of its reason
@@ -35,6 +35,7 @@ BRINGS = {
     "benchmark": "make bench",
     "LibreLane": "make librelane",
     "PyTorch": "pip install 'talbot[nn]'",
+    "Mitsuba": "make render",
     "TT_TOOLS": "TT_TOOLS=<tt-support-tools> PDK_ROOT=<an installed PDK>",
     "PDK_ROOT": "PDK_ROOT=<an installed PDK>",
 } | dict.fromkeys(

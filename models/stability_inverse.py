@@ -10,14 +10,24 @@ import numpy.typing as npt
 
 from talbot.models.calibrate import Sweep, block_means, calibrated
 from talbot.models.capture import CaptureOperator
-from talbot.models.parameters import ArrayParameters, OpticsParameters, ParameterError, SensorParameters, TileParameters
+from talbot.models.parameters import (
+    ArrayParameters,
+    ElectricalParameters,
+    OpticsParameters,
+    ParameterError,
+    SensorParameters,
+    TileParameters,
+)
 from talbot.models.pixel import demodulate
 from talbot.models.pixel.polarization import transmission
+from talbot.models.pixel.time_of_flight import phase_of, tap_depths, tap_functions
 from talbot.models.pixel.weights import density
 from talbot.models.reconstruct import polarization
 from talbot.models.reconstruct.bad_pixels import dead_pixels, repaired
 from talbot.models.reconstruct.bayes import Estimate, FieldEstimator, FieldPrior
+from talbot.models.reconstruct.coded import coded_depth
 from talbot.models.reconstruct.depth_field import DepthField, depth_field, foreground, refocused, unwrap
+from talbot.models.scene.echo import Echo
 from talbot.models.stability import Case
 
 Floats = npt.NDArray[np.floating]
@@ -151,8 +161,33 @@ def _depths() -> list[Case]:
     out.append(_at_most("edge of exactly a turn: share wrong and sure", wrong, 0.02))
     found = unwrap(np.random.default_rng(8).uniform(0, 6, SHAPE), coarse, np.full(SHAPE, np.inf))
     out.append(_at_most("phase of noise, no disparity: share sure", float(found.sure.mean()), 0))
+    out += _coded()
     far = unwrap(np.full(SHAPE, 1.0), np.full(SHAPE, 1e4), np.full(SHAPE, 1e3))
     out.append(_at_most("disparity at infinity: turns", float(np.abs(far.turns).max()), 2e4))
+    return out
+
+
+def _coded() -> list[Case]:
+    """Coded light from nothing, from outside its gate, under noise, in one pixel, and from a scatterer alone."""
+    electrical, draw = ElectricalParameters(code=31, code_delay=1.4e-8), np.random.default_rng(10)
+    ends, taps = tap_depths(electrical), tap_functions(electrical)
+
+    def _sure(name: str, light: Floats, limit: float = 0.0) -> Case:
+        found = coded_depth(light, electrical, 1.0)
+        within = np.isfinite(found.amplitude) & (found.depth >= ends[0] - 1e-9) & (found.depth <= ends[-1] + 1e-9)
+        return _at_most(f"coded light {name}: share sure", float(found.sure.mean()) + float(not within.all()), limit)
+
+    def _from(depth: float) -> Floats:
+        return np.stack([np.full(SHAPE, 100 * tap(depth)) for tap in taps])
+
+    out = [_sure("without light", np.zeros((4, *SHAPE))), _sure("of no code, full", np.full((4, *SHAPE), 255.0))]
+    out += [_sure(f"from {where} of its gate", _from(z)) for where, z in (("before", 0.9), ("behind", ends[-1] + 1))]
+    out.append(_sure("that is noise", 100 + draw.normal(0, 1, (4, *SHAPE)), 0.02))
+    found = coded_depth(_from(3.0)[:, :1, :1] + 0.01, electrical, 1.0)
+    out.append(_at_most("coded light of one pixel: error in m", float(np.abs(found.depth - 3.0).max()), 1e-3))
+    beyond = Echo(np.zeros((1, 1, *SHAPE)), np.ones((1, 1, 3)), 0.9, 0.1).returned(lambda z: phase_of(z, 1e8))
+    mean = beyond(np.full(SHAPE, 5.0), np.full(SHAPE, 1e4), 0.0, 0.0) / phase_of(1.0, 1e8)
+    out.append(_at_most("echoes alone, at a disparity of 10,000 px: error of their mean in m", np.ptp(mean), 1e-9))
     return out
 
 

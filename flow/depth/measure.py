@@ -15,9 +15,9 @@ from talbot.models.digital.phase import phase_samples
 from talbot.models.pixel.time_of_flight import SPEED_OF_LIGHT, demodulate
 from talbot.models.reconstruct import white_sum
 from talbot.models.reconstruct.bad_pixels import beside, dead_pixels
-from talbot.models.reconstruct.bayes import FieldEstimator, FieldPrior
+from talbot.models.reconstruct.bayes import Estimate, FieldEstimator, FieldPrior
 from talbot.models.reconstruct.coded import Coded, coded_depth
-from talbot.models.reconstruct.depth_field import DepthField, depth_field, foreground, refocused, unwrap
+from talbot.models.reconstruct.depth_field import DepthField, depth_field, foreground, refocused, still, unwrap
 from talbot.models.scene import Sampling, camera
 
 from .capture import DepthFrames
@@ -29,6 +29,8 @@ FAINT = 3.0  # codes: what has a smaller amplitude has no phase
 LOOSE = 0.2  # px per view step: no disparity is surer
 EDGE = 2  # steps of the disparities that are tried from their ends: what is nearer may be beyond
 CODES = 255
+PLANES = 9  # of focus behind an occluder
+CLEAR = (2, 1)  # px from the occluder's rays
 NOISE = 1.0  # codes, of a tap: of the converter and the light, not less
 
 
@@ -60,19 +62,26 @@ def read_depth(frames: DepthFrames, prior: FieldPrior, note: Callable[[str], Non
     diodes = frames.diodes()
     dead = dead_pixels(diodes.sum(0) / (2 * white))
     over = beside(full(diodes, (0, 1)) | dead, prior.margin)
-    start = perf_counter()
     estimator = estimator_of(result, prior)
+    _ = estimator.filters, estimator.components  # what takes its time once a sensor
+    start = perf_counter()
     field = depth_field(estimator, diodes / white)
     seconds = perf_counter() - start
     ideal = depth_field(estimator, frames.diodes(noisy=False) / white)
     note("unwrap")
-    coarse, doubt = _by_disparity(result, field, prior)
+    coarse, doubt = by_disparity(result, field, prior)
     depth, sure = {}, {}
     for name, phase in _phases(frames, field, ideal, white).items():
         found = unwrap(np.where(over, np.nan, phase), coarse / ambiguity, doubt / ambiguity)
         depth[name], sure[name] = found.turns * ambiguity, found.sure
     for name, got in _coded(frames, estimator, white).items():
         depth[name], sure[name] = got.depth, got.sure & ~over
+    left_out = _three(estimator, diodes, white) if still(diodes, NOISE) else None
+    if left_out is not None:
+        phase, amplitude = demodulate(left_out[0].centre * white)
+        phase = np.where(over | (amplitude < FAINT), np.nan, phase)
+        found = unwrap(phase, coarse / ambiguity, doubt / ambiguity)
+        depth["three"], sure["three"] = found.turns * ambiguity, found.sure
     methods = {name: figures(depth[name], truth, sure[name], ambiguity) for name in depth}
     once = sure[BEST]
     baselines = {
@@ -91,6 +100,7 @@ def read_depth(frames: DepthFrames, prior: FieldPrior, note: Callable[[str], Non
         "multipath": _multipath(frames),
         "behind": past,
         "seconds": seconds,
+        "left_out": {"taps": 1, "seconds": left_out[1]} if left_out else None,
     }
     return Depth(frames, field, coarse, depth, sure, behind, summary)
 
@@ -116,6 +126,12 @@ def _phases(frames: DepthFrames, field: DepthField, ideal: DepthField, white: fl
     return {name: np.where(amplitude < FAINT, np.nan, phase) for name, (phase, amplitude) in out.items()}
 
 
+def _three(estimator: FieldEstimator, diodes: Values, white: float) -> tuple[DepthField, float]:
+    """The depth field without the last tap, and the seconds that it takes."""
+    start = perf_counter()
+    return depth_field(estimator, diodes[:3] / white), perf_counter() - start
+
+
 def _coded(frames: DepthFrames, estimator: FieldEstimator, white: float) -> dict[str, Coded]:
     """Depth of what the code's taps see: by their sums, and by the middle view of their depth field."""
     if not frames.coded:
@@ -136,7 +152,7 @@ def _multipath(frames: DepthFrames) -> dict[str, float] | None:
     return {"median_m": float(np.median(moved)) * turn, "rms_m": float(np.sqrt(np.mean(moved**2))) * turn}
 
 
-def _by_disparity(result: GoldenResult, field: DepthField, prior: FieldPrior) -> tuple[Values, Values]:
+def by_disparity(result: GoldenResult, field: DepthField | Estimate, prior: FieldPrior) -> tuple[Values, Values]:
     """Depth of the light field in m, and its standard deviation; infinite at the ends of what was tried.
 
     What the prior knew is taken out of both, so that a disparity that no sample tells has no weight.
@@ -182,14 +198,27 @@ def _behind(
         return None, None
     middle = scene.views // 2
     limit = float(np.median(coarse[near[middle, middle]]))
-    phasors = field.phasors
+    phasors, sampling = field.phasors, Sampling.of(result.sensor)
     rough = _beyond(np.angle(phasors[middle, middle]), limit, ambiguity)[~near[middle, middle]]
-    disparity = float(np.median(camera.disparity(rough, Sampling.of(result.sensor))))
-    clear = ~beside(near, 1)  # rays beside the occluder's are mixtures: only where no other
-    passed, edge, everything = (refocused(phasors, disparity, rays) for rays in (clear, ~near, None))
-    passed = np.where(np.abs(passed) > 0, passed, edge)
-    seen = np.abs(passed) > 0
-    depth, mixed = (_beyond(np.angle(p), limit, ambiguity) for p in (passed, everything))
+    ends = camera.disparity(np.quantile(rough, (0.98, 0.02)), sampling)
+    # Rays beside the occluder's are mixtures: those farther from it go first
+    clear = [~beside(near, width) for width in CLEAR]
+    depth, mixed, off = np.zeros(scene.shape), np.zeros(scene.shape), np.full(scene.shape, np.inf)
+    seen = np.zeros(scene.shape, bool)
+    for disparity in np.linspace(
+        float(ends[0]), float(ends[1]), PLANES
+    ):  # each pixel from where its own depth is in focus
+        passed = refocused(phasors, disparity, clear[0])
+        for rays in clear[1:]:
+            passed = np.where(np.abs(passed) > 0, passed, refocused(phasors, disparity, rays))
+        found, all_rays = (
+            _beyond(np.angle(p), limit, ambiguity) for p in (passed, refocused(phasors, disparity, None))
+        )
+        here = np.abs(passed) > 0
+        away = np.where(here, np.abs(camera.disparity(found, sampling) - disparity), np.inf)
+        better = (away < off) | ~seen
+        depth, mixed, off = (np.where(better, *pair) for pair in ((found, depth), (all_rays, mixed), (away, off)))
+        seen |= here
     past = {
         "rms_m": rms((depth - scene.behind)[seen]),
         "rms_all_rays_m": rms(mixed - scene.behind),

@@ -23,6 +23,7 @@ TEXTS = {
     "field_divider": "depth field, the chip's divider (bit-true model)",
     "field": "depth field, float quadrature",
     "field_float": "depth field, samples without noise and converter",
+    "three": "depth field of three taps: nothing moves",
     "code": "coded light, sums",
     "code_field": "coded light, depth field",
 }

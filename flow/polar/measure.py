@@ -60,10 +60,10 @@ def read_polarization(
         | {
             "highlight": highlight,
             "sure": float(sure.mean()),
-            "psi_error_deg": _angle_error(found.psi, psi, shown),
-            "psi_error_sure_deg": _angle_error(found.psi, psi, shown & (found.confidence > 0.5)),
-            "psi_error_float_deg": _angle_error(ideal.psi, psi, shown),
-            "psi_error_demosaiced_deg": _angle_error(angle(*plain), psi, shown),
+            "psi_error_deg": angle_error(found.psi, psi, shown),
+            "psi_error_sure_deg": angle_error(found.psi, psi, shown & (found.confidence > 0.5)),
+            "psi_error_float_deg": angle_error(ideal.psi, psi, shown),
+            "psi_error_demosaiced_deg": angle_error(angle(*plain), psi, shown),
             "degree_rms": rms((found.degree - degree)[shown]),
             "degree_rms_float": rms((ideal.degree - degree)[shown]),
             "degree_rms_demosaiced": rms((np.hypot(*plain) - degree)[shown]),
@@ -73,7 +73,7 @@ def read_polarization(
             "seconds": seconds,
             "f1": None if shine is None else _f1(tags, shine),
             "baselines": {
-                "psi_error_constant_deg": _angle_error(constant, psi, shown),
+                "psi_error_constant_deg": angle_error(constant, psi, shown),
                 "degree_rms_none": rms((degree)[shown]),
                 "f1_bright": None if bright is None or shine is None else _f1(bright, shine),
             },
@@ -82,19 +82,24 @@ def read_polarization(
     return frame
 
 
-def _estimate(result: GoldenResult, pairs: Values) -> tuple[Polarization, Values, Bools]:
-    """Polarization from diodes (rows, cols, 2) in LSB, the sums that it is from (1 = white), and the full pixels."""
+def prepared(result: GoldenResult, pairs: Values) -> tuple[Values, Values, Bools, Bools]:
+    """From diodes (rows, cols, 2) in LSB the sums, 1 = white, their noise, the pixels that count, and the full ones."""
     request = result.request
     lit, timing = request.lit, request.frame.exposing
     sums = np.asarray(sum_image(pairs.sum(2) / 2, lit, timing=timing), float)
     over = full(pairs, (2,))
-    noise = max(request.noise, QUIET) * sum_noise(sums, lit, timing)
+    noise = max(request.noise, QUIET) * np.asarray(sum_noise(sums, lit, timing))
+    return sums, noise, result.decoded.read & ~over, over
+
+
+def _estimate(result: GoldenResult, pairs: Values) -> tuple[Polarization, Values, Bools]:
+    """Polarization from diodes (rows, cols, 2) in LSB, the sums that it is from (1 = white), and the full pixels."""
+    sums, noise, used, over = prepared(result, pairs)
     optics = result.sensor.optics
-    used = result.decoded.read & ~over
     return polarization(sums, result.sensor.tile, optics.diattenuation, noise, used), sums, over
 
 
-def _angle_error(found: Values, truth: Values, where: Bools) -> float | None:
+def angle_error(found: Values, truth: Values, where: Bools) -> float | None:
     """Mean distance of two angles modulo pi, in degrees; None where there are none."""
     turned = np.abs((found - truth + np.pi / 2) % np.pi - np.pi / 2)[where]
     return float(np.rad2deg(turned.mean())) if turned.size else None

@@ -1,1 +1,1 @@
-"""Scenes rendered by Mitsuba 3: light fields, depth, Stokes parameters, time of flight; no formula of ours made them."""
+"""Scenes by Mitsuba 3: light fields, depth, Stokes parameters, time of flight; no formula of ours made them."""

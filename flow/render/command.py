@@ -55,7 +55,7 @@ def run(options: Namespace) -> int:
     with Steps(names, lines=True) as progress:
         for name in names:
             side, lens = size or RENDERED[name].size, RENDERED[name].camera
-            made = {"size": side, "views": views, "samples": samples, "seed": seed}
+            made: dict[str, Any] = {"size": side, "views": views, "samples": samples, "seed": seed}
             made["sources"] = digest(code("talbot.flow.render.trace"))
             progress.note(name)
             if _done(out, name, known, made):

@@ -12,6 +12,8 @@ import numpy.typing as npt
 
 from talbot.models.scene import Sampling
 
+from .variant import mitsuba
+
 Floats = npt.NDArray[np.float64]
 
 
@@ -27,7 +29,7 @@ def focal(sampling: Sampling) -> float:
 
 def perspective(sampling: Sampling, dv: float, du: float, film: dict[str, Any]) -> dict[str, Any]:
     """Mitsuba's camera of the view (dv, du), in steps from the middle one. film: its type and what that needs."""
-    import mitsuba as mi
+    mi = mitsuba()
 
     rows, cols = sampling.shape
     focus = sampling.camera.focus * sampling.camera.scale

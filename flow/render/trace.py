@@ -11,6 +11,7 @@ from talbot.models.scene import Sampling, camera
 
 from . import variant
 from .frustum import perspective, rays
+from .variant import mitsuba
 from .worlds import GLOSSY, Objects, World, flash, mirror
 
 Floats = npt.NDArray[np.float64]
@@ -66,27 +67,22 @@ class Tracer:
             yield v, u
 
     def _scene(self, objects: Objects) -> Any:
-        import mitsuba
-
-        return mitsuba.load_dict({"type": "scene"} | objects)
+        return mitsuba().load_dict({"type": "scene"} | objects)
 
     def _seen(self, scene: Any, integrator: Objects, v: int, u: int, film: Objects = LUMINANCE, more: int = 1) -> Any:
         """The picture of a view, (rows, cols, channels). more: times the samples."""
-        import mitsuba
-
         dv, du = self.sampling.steps[v], self.sampling.steps[u]
-        sensor = mitsuba.load_dict(perspective(self.sampling, float(dv), float(du), film))
+        sensor = mitsuba().load_dict(perspective(self.sampling, float(dv), float(du), film))
         seed = self.seed + v * self.sampling.views + u
-        by = mitsuba.load_dict(integrator)
-        return mitsuba.render(scene, sensor=sensor, integrator=by, spp=more * self.samples, seed=seed)
+        by = mitsuba().load_dict(integrator)
+        asked: dict[str, Any] = {"sensor": sensor, "integrator": by, "spp": more * self.samples, "seed": seed}
+        return mitsuba().render(scene, **asked)
 
     def _depth(self, objects: Objects, dv: float = 0.0, du: float = 0.0) -> Floats:
         """Planar depth of what the middle of every pixel of a view shows, in m of the scene, (rows, cols)."""
-        import mitsuba
-
         origin, aim = rays(self.sampling, dv, du)
         length = np.linalg.norm(aim, axis=0)
-        ray = mitsuba.Ray3f(mitsuba.Point3f(*origin), mitsuba.Vector3f(*(aim / length)))
+        ray = mitsuba().Ray3f(mitsuba().Point3f(*origin), mitsuba().Vector3f(*(aim / length)))
         scene = self._scene(objects)  # kept: rays are traced when their values are asked for
         return (np.array(scene.ray_intersect(ray).t, float) / length).reshape(self.sampling.shape)
 

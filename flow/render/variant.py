@@ -1,8 +1,10 @@
 """Mitsuba 3 in one of its variants: gray light, with or without polarization, on LLVM."""
 
+import importlib
 import os
 import re
 from pathlib import Path
+from typing import Any
 
 from talbot.base.tools import ToolError
 
@@ -12,28 +14,32 @@ LLVM_MIN = 17  # with 15 and 16 the process aborts
 LIBRARIES = "/usr/lib", "/usr/lib64", "/usr/local/lib", "/opt/homebrew/opt/llvm/lib"
 
 
+def mitsuba() -> Any:
+    """Mitsuba in its variant. Raises ToolError where it is not installed."""
+    return _module("mitsuba")
+
+
+def _module(name: str) -> Any:
+    try:
+        return importlib.import_module(name)
+    except ImportError as error:
+        raise ToolError(f"{name} = not installed: must be, to render (pip install 'talbot[render]')") from error
+
+
 def use(variant: str, threads: int = 1) -> None:
     """Switch Mitsuba to a variant, with so many threads. Raises ToolError where it, or LLVM, is missing."""
     if LLVM not in os.environ:
         os.environ[LLVM] = str(_llvm())
-    try:
-        import drjit
-        import mitsuba
-    except ImportError:
-        raise ToolError("mitsuba: not installed; pip install 'talbot[render]'") from None
-    mitsuba.set_log_level(mitsuba.LogLevel.Error)
-    mitsuba.set_variant(variant)
-    drjit.set_thread_count(threads)
+    mi = mitsuba()
+    mi.set_log_level(mi.LogLevel.Error)
+    mi.set_variant(variant)
+    _module("drjit").set_thread_count(threads)
 
 
 def use_transients(threads: int = 1) -> None:
     """The same for transients, by mitransient."""
     use(PLAIN, threads)
-    try:
-        import mitransient
-    except ImportError:
-        raise ToolError("mitransient: not installed; pip install 'talbot[render]'") from None
-    del mitransient  # what it is for is in Mitsuba now
+    _module("mitransient")  # what it is for is in Mitsuba then
 
 
 def _llvm() -> Path:
@@ -45,5 +51,5 @@ def _llvm() -> Path:
             if version and int(version[1]) >= LLVM_MIN:
                 found[int(version[1])] = path
     if not found:
-        raise ToolError(f"LLVM {LLVM_MIN} or later: not found; apt-get install libllvm19, or set {LLVM}")
+        raise ToolError(f"LLVM = not found: must be {LLVM_MIN} or later (Debian: libllvm19), or {LLVM} set to it")
     return found[max(found)]

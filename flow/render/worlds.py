@@ -10,12 +10,13 @@ from talbot.models.scene import Sampling, polarized
 from talbot.models.scene.camera import PLANE
 
 from .frustum import focal
+from .variant import mitsuba
 
 Objects = dict[str, Any]
 SEED = 18  # of the textures and the leaves
-LAMP = 6.0  # radiance of the lamps of `spheres`, white = 1
+LAMP = 7.5  # radiance of the lamps of `spheres`, white = 1
 PANEL = 1.5  # radiance of the lit panel: fills its pixels
-GLOSSY = "pplastic", "roughconductor"
+GLOSSY = ("pplastic",)  # of whose highlights polarization tells: a metal's have little
 FOG = 0.9, 1.4  # m, of the scatterer
 DENSITY, ALBEDO = 0.7, 0.95  # 1/m, extinction and what is scattered of it
 LEAVES = 40  # of `plant`
@@ -43,26 +44,26 @@ class World:
 
 def _at(x: float, y: float, z: float) -> Any:
     """A move to x to the right, y down, z m from the camera."""
-    import mitsuba as mi
+    mi = mitsuba()
 
     return mi.ScalarTransform4f().translate([x, -y, -z])
 
 
 def _turned(axis: tuple[float, float, float], degrees: float) -> Any:
-    import mitsuba as mi
+    mi = mitsuba()
 
     return mi.ScalarTransform4f().rotate(list(axis), degrees)
 
 
 def _scaled(*sizes: float) -> Any:
-    import mitsuba as mi
+    mi = mitsuba()
 
     return mi.ScalarTransform4f().scale(list(sizes))
 
 
 def _diffuse(level: float | np.ndarray[Any, Any], scale: float = 1.0) -> Objects:
     """A matt surface, of a reflectance or a texture (rows, cols), which repeats ``scale`` times."""
-    import mitsuba as mi
+    mi = mitsuba()
 
     if isinstance(level, float):
         return {"type": "twosided", "bsdf": {"type": "diffuse", "reflectance": {"type": "uniform", "value": level}}}
@@ -235,7 +236,7 @@ def _emitter(radiance: float) -> Objects:
 
 def _lamps() -> Objects:
     """Two lamps across the line of sight, so that their mirror images are near Brewster's angle."""
-    import mitsuba as mi
+    mi = mitsuba()
 
     out: Objects = {}
     for name, place in (("left", (-1.6, 0.5, -2.4)), ("above", (0.7, 1.5, -2.3))):
@@ -249,7 +250,7 @@ def sheet(sampling: Sampling) -> Objects:
 
     The retarder's axis and delay at every point are Kirsch's; Mueller matrices and geometry are Mitsuba's.
     """
-    import mitsuba as mi
+    mi = mitsuba()
 
     half = sampling.cols / 2 / focal(sampling) * PLANE
     side = 1.25  # the sheet is wider than the picture

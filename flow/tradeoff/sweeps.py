@@ -16,7 +16,21 @@ from talbot.base.table import read_csv, write_csv
 from talbot.models.parameters import check_choice
 from talbot.models.reconstruct import branches, network, sparse
 
-from . import divider, exposure, lens, light, light_field, light_field_sensor, noise, precision, pupil, threshold, views
+from . import (
+    depth,
+    divider,
+    exposure,
+    lens,
+    light,
+    light_field,
+    light_field_sensor,
+    noise,
+    polarization,
+    precision,
+    pupil,
+    threshold,
+    views,
+)
 
 STORE = BUILD / "tradeoff" / "measured"
 
@@ -51,6 +65,8 @@ SWEEPS: dict[str, Sweep] = {
     "noise": noise,
     "light_field": light_field,
     "light_field_sensor": light_field_sensor,
+    "depth": depth,
+    "polarization": polarization,
 }
 
 

@@ -37,6 +37,7 @@ TOLD = 0.9  # of a number of turns must be from the coarse depth
 AGREED = 0.3  # mean weight of the coarse depths around a pixel below which they contradict its turns
 LOCAL = 0.05  # of the links: the same is a mean over a few pixels
 DOUBT_MIN = 0.02  # turns: no disparity is surer
+MOVED = 1.5  # standard deviations of four taps' noise: what differs more has moved
 BINS = 128  # of the histogram of phases
 
 
@@ -75,8 +76,9 @@ def depth_field(estimator: FieldEstimator, pairs: Floats) -> DepthField:
     ----------
     estimator : FieldEstimator
         Of the sensor.
-    pairs : array (4, 2, rows, cols)
-        Both diodes of every pixel in every tap, 1 = the average diode in a flat white scene.
+    pairs : array (4, 2, rows, cols) or (3, 2, rows, cols)
+        Both diodes of every pixel in every tap, 1 = the average diode in a flat white scene. Of three, the tap at 270
+        degrees is what two opposite taps have in common less the one at 90: right where nothing moves (`still`).
 
     Returns
     -------
@@ -92,12 +94,35 @@ def depth_field(estimator: FieldEstimator, pairs: Floats) -> DepthField:
     ----------
     [Jayasuriya2017], Sec. 5.3.3.
     """
-    if len(pairs) != 4:
-        raise ParameterError(f"pairs = {len(pairs)} taps: must be 4")
-    evidence = pairs.sum(0) / 2  # both halves of the wave: its mean light, twice what is ambient
+    if len(pairs) not in (3, 4):
+        raise ParameterError(f"pairs = {len(pairs)} taps: must be 3 or 4")
+    # Both halves of the wave: its mean light, twice what is ambient
+    evidence = pairs.sum(0) / 2 if len(pairs) == 4 else pairs[0] + pairs[2]
     found = [estimator.mixture(pair, evidence) for pair in pairs]
     first: Estimate = found[0]
-    return DepthField(np.stack([tap.light_field for tap in found]), first.disparity, first.spread)
+    taps = [tap.light_field for tap in found]
+    if len(taps) == 3:
+        taps.append(taps[0] + taps[2] - taps[1])
+    return DepthField(np.stack(taps), first.disparity, first.spread)
+
+
+def still(pairs: Floats, noise: float) -> bool:
+    """Whether nothing moves between four taps, as far as they tell: opposite ones have the same sum.
+
+    Parameters
+    ----------
+    pairs : array (4, ...)
+        In order of the taps.
+    noise : float
+        Standard deviation of a sample, greater than 0.
+
+    Returns
+    -------
+    bool
+        Whether the sums differ by no more than noise makes them, over all and in the worst hundredth.
+    """
+    off = np.abs(pairs[0] + pairs[2] - pairs[1] - pairs[3]) / (2 * noise)
+    return bool(np.sqrt(np.mean(off**2)) < MOVED and np.quantile(off, 0.99) < 3 * MOVED)
 
 
 class Unwrapped(NamedTuple):

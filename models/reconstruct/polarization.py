@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from talbot.models.parameters import ParameterError, TileParameters, check_real
+from talbot.models.parameters import ParameterError, TileParameters, check_int, check_real
 from talbot.models.pixel.polarization import angle, stokes
 
 from .demosaic import demosaic
@@ -106,6 +106,8 @@ def polarization(
     diattenuation: float,
     noise: Floats | float,
     used: npt.NDArray[np.bool_] | None = None,
+    sigma: float = SPREAD,
+    passes: int = 2,
 ) -> Polarization:
     """Polarization at every pixel, corrected for edges.
 
@@ -121,6 +123,10 @@ def polarization(
         Standard deviation of a sum that is known before, greater than 0.
     used : bool (rows, cols), optional
         Pixels that were read and are not full; None is all. The spread of the others is infinite.
+    sigma : float
+        Of the weights around a pixel, 0.5..10 px.
+    passes : int
+        1..5; each but the first knows the polarization of the one before, and so tells an edge from it.
 
     Returns
     -------
@@ -137,6 +143,8 @@ def polarization(
     [Jayasuriya2017], Sec. 4.1 and 4.2: correction for the gradient in a tile.
     """
     check_real("diattenuation", diattenuation, 1e-3, 1)
+    check_real("sigma", sigma, 0.5, 10)
+    check_int("passes", passes, 1, 5)
     noise = np.broadcast_to(np.asarray(noise, float), sums.shape)
     if not noise.min() > 0:
         raise ParameterError(f"noise = {noise.min():g}: must be greater than 0")
@@ -145,9 +153,9 @@ def polarization(
     turn = 2 * np.array([t.gamma for t in tile.types])[tile.type_map(*sums.shape)]
     cosine, sine = np.cos(turn), np.sin(turn)
     light = s1 = s2 = spread = guide = np.zeros(sums.shape)
-    for first in (True, False):  # the first fit tells an edge from what the gratings do
-        step = np.full(sums.shape, np.inf) if first else STEP * np.maximum(guide, 0) + 4 * noise
-        light, p, q, spread = _fits(sums, cosine, sine, used, guide, step, noise**2)
+    for number in range(passes):
+        step = STEP * np.maximum(guide, 0) + 4 * noise if number else np.full(sums.shape, np.inf)
+        light, p, q, spread = _fits(sums, cosine, sine, used, guide, step, noise**2, sigma)
         lit = light > noise
         scale = np.where(lit, -1 / (diattenuation * np.where(lit, light, 1)), 0)
         s1, s2 = p * scale, q * scale
@@ -189,10 +197,11 @@ def _fits(
     guide: Floats,
     step: Floats,
     variance: Floats,
+    sigma: float,
 ) -> tuple[Floats, Floats, Floats, Floats]:
     """Light, p, q and the standard deviation of p and q of the fit around every pixel."""
     samples = np.stack([np.where(used, sums, 0), cosine, sine, np.where(used, variance, 0), used.astype(float)])
-    totals = np.moveaxis(_moments(samples, guide, 1 / step), 0, 2)
+    totals = np.moveaxis(_moments(samples, guide, 1 / step, sigma), 0, 2)
     normal = np.empty((*sums.shape, 5, 5))
     for number, (i, j) in enumerate(PAIRS):
         normal[..., i, j] = normal[..., j, i] = totals[..., number]
@@ -212,7 +221,7 @@ def _fits(
 
 
 @njit(cache=True, nogil=True)
-def _moments(samples: Floats, guide: Floats, sharp: Floats) -> Floats:
+def _moments(samples: Floats, guide: Floats, sharp: Floats, sigma: float) -> Floats:
     """Weighted sums around every pixel: of `PAIRS` of the fit's columns, of each with the sample, squares, variance.
 
     samples: sum, cosine, sine, variance, whether used, (5, rows, cols). Result (22, rows, cols).
@@ -222,12 +231,12 @@ def _moments(samples: Floats, guide: Floats, sharp: Floats) -> Floats:
     for y in range(rows):
         for v in range(max(y - REACH, 0), min(y + REACH + 1, rows)):
             for dx in range(-REACH, REACH + 1):
-                near, b, a = (v - y) ** 2 + dx**2, (v - y) / SPREAD, dx / SPREAD
+                near, b, a = (v - y) ** 2 + dx**2, (v - y) / sigma, dx / sigma
                 for x in range(max(-dx, 0), min(cols - dx, cols)):
                     u = x + dx
                     value, c, s, known = samples[0, v, u], samples[1, v, u], samples[2, v, u], samples[3, v, u]
                     away = (guide[v, u] - guide[y, x]) * sharp[y, x]
-                    w = samples[4, v, u] * np.exp(-0.5 * (near / SPREAD**2 + away * away))
+                    w = samples[4, v, u] * np.exp(-0.5 * (near / sigma**2 + away * away))
                     wc, ws, wi = w * c, w * s, w * value
                     out[0, y, x] += w
                     out[1, y, x] += w * b

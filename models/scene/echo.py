@@ -94,14 +94,16 @@ class Echo:
             From depth (rows, cols), disparity (rows, cols) and offset (dv, du) of a view to the mean of the correlation
             over its light, (rows, cols).
         """
-        other, some = self.late @ np.asarray(correlation(self.bins)), self.late.any(-1)
+        other, some = self.late @ np.asarray(correlation(self.bins)), self.late.sum(-1) > 0
         (rows, cols), (high, wide) = self.share.shape[2:], self._fine
         middle = (len(self.share) - 1) / 2
 
         def _seen(depth: Floats, disparity: Floats, dv: float, du: float) -> Floats:
             straight = correlation(depth)
-            y = np.clip(np.rint((np.arange(rows)[:, None] + dv * disparity - (high - 1) / 2) / high), 0, len(some) - 1)
-            x = np.clip(np.rint((np.arange(cols) + du * disparity - (wide - 1) / 2) / wide), 0, some.shape[1] - 1)
+            y = np.clip(
+                np.rint((np.arange(rows)[:, None] + dv * disparity - (high - 1) / 2) / high), 0, self.late.shape[0] - 1
+            )
+            x = np.clip(np.rint((np.arange(cols) + du * disparity - (wide - 1) / 2) / wide), 0, self.late.shape[1] - 1)
             at = y.astype(int), x.astype(int)
             share = np.where(some[at], self.share[round(dv + middle), round(du + middle)], 1)
             return share * straight + (1 - share) * other[at]

@@ -111,3 +111,29 @@ def test_what_the_capture_does_not_ask_is_refused(capsys, tmp_path):
     with pytest.raises(SystemExit, match="2"):
         main(["depth", "--views=3", f"--out={tmp_path / 'out'}"])
     assert "unrecognized arguments: --views=3" in capsys.readouterr().err and not (tmp_path / "out").exists()
+
+
+def test_light_by_other_ways_moves_the_depth_of_a_room(tmp_path):
+    s = measured(tmp_path / "all", "--scene=room", "--rows=48", "--cols=48", "--golden")
+    assert 0.03 < s["multipath"]["median_m"] < 0.3 and s["multipath"]["rms_m"] < 0.3
+    straight = measured(tmp_path / "direct", "--scene=room", "--rows=48", "--cols=48", "--golden", "--direct")
+    assert straight["multipath"] is None
+
+
+def test_coded_light_sees_past_the_fog(tmp_path):
+    words = "--scene=fog", "--rows=48", "--cols=48", "--code=31"
+    s = measured(tmp_path, *words)
+    assert s["chip"] and s["stream_mismatches"] == s["decoded_mismatches"] == 0
+    code, sine, free = s["methods"]["code"], s["methods"]["sums"], s["baselines"]["constant"]
+    assert code["sure"] > 0.6 and code["rms_m"] < 0.2 * min(sine["rms_m"], free["rms_m"])
+
+
+def test_a_rendered_scene_through_another_lens_has_no_depth(capsys, tmp_path):
+    assert main(["depth", "--scene=room", "--focus=2", f"--out={tmp_path / 'out'}"]) == 2
+    assert "a rendered scene has one at its own size and lens" in capsys.readouterr().err
+
+
+def test_three_taps_where_nothing_moves(done):
+    _, s = done
+    four, three = s["methods"]["field"], s["methods"]["three"]
+    assert s["left_out"]["seconds"] < s["seconds"] and three["rms_m"] < 1.5 * four["rms_m"]

@@ -5,8 +5,8 @@ import pytest
 from scipy.ndimage import minimum_filter
 
 from talbot.models.parameters import ArrayParameters, ParameterError, SensorParameters
-from talbot.models.reconstruct.bayes import FieldEstimator
-from talbot.models.reconstruct.depth_field import DepthField, depth_field, foreground, refocused, unwrap
+from talbot.models.reconstruct.bayes import FieldEstimator, FieldPrior
+from talbot.models.reconstruct.depth_field import DepthField, depth_field, foreground, refocused, still, unwrap
 
 SHAPE = 30, 40
 SLOPE = np.linspace(0.4, 2.7, SHAPE[1]) * np.ones(SHAPE)  # turns
@@ -125,5 +125,42 @@ def test_taps_keep_the_disparity_of_their_sum():
     whole = estimator.mixture(pairs.sum(0) / 2)
     np.testing.assert_array_equal(found.disparity, whole.disparity)
     np.testing.assert_allclose(found.taps.sum(0) / 2, whole.light_field, atol=2e-3)
-    with pytest.raises(ParameterError, match="pairs = 3 taps"):
-        depth_field(estimator, pairs[:3])
+    with pytest.raises(ParameterError, match="pairs = 2 taps"):
+        depth_field(estimator, pairs[:2])
+
+
+def test_an_edge_that_defocus_smears_does_not_hold_two_surfaces_together():
+    """0.11 turns of phase over three pixels, 0.89 of depth: the disparity's turns count on both sides."""
+    x = np.arange(40)
+    true = np.where(x < 20, 1.0, 1.89) * np.ones((30, 1))
+    phase = 2 * np.pi * (true % 1)
+    for number, part in enumerate((0.3, 0.75)):
+        phase[:, 19 + number] = 2 * np.pi * ((1 - 0.11 * part) % 1)
+    coarse = true + np.random.default_rng(3).normal(0, 0.1, true.shape)
+    found = unwrap(phase, coarse, np.full(true.shape, 0.2))
+    away = np.abs(x - 19.5) > 2
+    assert np.abs(found.turns - true)[:, away].max() < 0.01 and found.sure[:, away].mean() > 0.95
+
+
+def test_a_mixture_of_two_surfaces_is_not_sure():
+    x = np.arange(40)
+    true = np.where(x < 20, 1.0, 1.4) * np.ones((30, 1))
+    true[:, 20] = 1.2
+    found = unwrap(phase_of(true), true, np.full(true.shape, 0.1))
+    assert found.sure[:, :20].all() and found.sure[:, 21:].all() and not found.sure[:, 20].any()
+
+
+def test_three_taps_are_four_where_nothing_moves():
+    sensor = SensorParameters(array=ArrayParameters(rows=12, cols=18))
+    estimator = FieldEstimator(sensor, 5, FieldPrior(disparities=3))
+    rng = np.random.default_rng(4)
+    mean, x, y = 0.5 + 0.1 * rng.random((3, 2, 12, 18))
+    pairs = np.stack([mean + 0.3 * x, mean - 0.3 * y, mean - 0.3 * x, mean + 0.3 * y])
+    four, three = depth_field(estimator, pairs), depth_field(estimator, pairs[:3])
+    np.testing.assert_allclose(three.taps, four.taps, atol=1e-5)
+    noisy = pairs + rng.normal(0, 0.01, pairs.shape)
+    assert still(noisy, 0.01)
+    noisy[3, :, 2:5, 3:9] += 0.2
+    assert not still(noisy, 0.01)
+    with pytest.raises(ParameterError, match="must be 3 or 4"):
+        depth_field(estimator, pairs[:2])

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from talbot.models.parameters import CameraParameters, ParameterError
-from talbot.models.scene.rendered import RENDERED
 from talbot.models.scene import Sampling, Scene, load, scenes
+from talbot.models.scene.rendered import RENDERED
 
 from .focused import focused
 
