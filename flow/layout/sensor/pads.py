@@ -25,7 +25,10 @@ SHORT = 10  # what the level shifter to the core has too little room for hvntm b
 GRID = 5
 ROW = "pads"
 GROUNDS = "vss", "iovss"
-AROUND = (80, 80), (80, 50), (50, 80), (50, 50), (80, 0), (0, 80)  # nm of a layer beyond a contact, the most first
+AROUND = (
+    ((80, 50), (50, 80)),
+    ((80, 0), (0, 80)),
+)  # nm of poly and of local interconnect around a contact: licon.8, li.5
 
 
 def library(process: PadProcess) -> tuple[Any, Any]:
@@ -125,19 +128,31 @@ def _clear_poly_contacts(cell: "db.Cell", process: PixelProcess) -> None:
 
 
 def _move(cell: "db.Cell", ways: "Sequence[tuple[db.Box, db.Vector]]", process: PixelProcess) -> None:
-    """Move contacts to poly, and as much of poly and local interconnect as is around each."""
+    """Move contacts to poly; poly and local interconnect grow by the least that they must be around each."""
     if not ways:
         return
     old, new = _boxes(box for box, _ in ways), _boxes(box.moved(way) for box, way in ways)
     _replace(cell, process.contact, (_region(cell, process.contact) - old) + new)
-    for mask, space in zip((process.poly, process.metals[0].gds), SPACES, strict=True):
+    for mask, space, around in zip((process.poly, process.metals[0].gds), SPACES, AROUND, strict=True):
         layer, more = _region(cell, mask), db.Region()
         for box, way in ways:
-            sides = (box.enlarged(*by) for by in AROUND)
-            more.insert(next((room for room in sides if (db.Region(room) - layer).is_empty()), box).moved(way))
+            rooms = [box.moved(way).enlarged(*by) for by in around]
+            near = space - GRID
+            more.insert(
+                min(
+                    rooms,
+                    key=lambda room: (
+                        layer.interacting(db.Region(room.enlarged(near, near))).count(),
+                        (db.Region(room) - layer).area(),
+                    ),
+                )
+            )
         made, half = (layer + more).merged(), space // 2 - 1  # a gap of the least space stays
-        notches = made.sized(half).sized(-half) & more.sized(space)
-        _replace(cell, mask, made + notches)
+        notches = (made.sized(half).sized(-half) - made) & more.sized(space)
+        for notch in notches.each():
+            if made.interacting(db.Region(notch)).count() == 1:  # else it would join two nets
+                more.insert(notch)
+        _replace(cell, mask, made + more)
 
 
 def _way(fits: "Callable[[db.Box], bool]", box: "db.Box") -> "db.Vector":
