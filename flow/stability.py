@@ -45,7 +45,7 @@ FRAMES = (
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot stability`."""
-    parser.add_argument("--out", type=Path, default=RESULTS / "stability", help="folder of the page")
+    parser.add_argument("--out", type=Path, default=RESULTS / "stability", help="folder of the page (default: build/stability)")
     parser.add_argument("--json", type=Path, help="also write the table to this file")
 
 
