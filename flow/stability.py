@@ -45,7 +45,7 @@ FRAMES = (
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot stability`."""
-    parser.add_argument("--out", type=Path, default=RESULTS / "stability", help="folder of the page (default: build/stability)")
+    parser.add_argument("--out", type=Path, help="folder of the page (default: build/stability)")
     parser.add_argument("--json", type=Path, help="also write the table to this file")
 
 
@@ -55,7 +55,12 @@ def run(options: Namespace) -> int:
         check_folder("json", options.json.parent)
     cases = all_cases()
     print(table(cases))
-    write_page(options.out, "Stiff and extreme cases", "of the optics and of the chip; make stability", cases)
+    write_page(
+        options.out or RESULTS / "stability",
+        "Stiff and extreme cases",
+        "of the optics and of the chip; make stability",
+        cases,
+    )
     if options.json:
         with staged(options.json.parent) as part:
             (part / options.json.name).write_text(json.dumps([vars(case) for case in cases], indent=1) + "\n")

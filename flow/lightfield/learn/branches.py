@@ -68,7 +68,7 @@ def forward(weights: Weights, kind: str, patches: Any, back: Any) -> Any:
     """What is added to the sum image, (n, 25, rows, cols)."""
     parts = [encoded(weights, patches)] if kind != "convolutions" else []
     parts += [turned(weights, back)] if kind != "autoencoder" else []
-    return (sum(parts[1:], parts[0]) / len(parts)).flatten(1, 3)
+    return torch().stack(parts).mean(0).flatten(1, 3)
 
 
 def importance() -> npt.NDArray[np.float32]:

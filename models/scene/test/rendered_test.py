@@ -5,9 +5,9 @@ from hashlib import sha256
 
 import numpy as np
 import pytest
+from scipy.constants import speed_of_light
 
 from talbot.models.parameters import CameraParameters, ParameterError
-from talbot.models.pixel.time_of_flight import SPEED_OF_LIGHT
 from talbot.models.scene import LightField, Sampling, camera, load, read_light_field, write_light_field
 from talbot.models.scene.echo import Echo
 from talbot.models.scene.rendered import FOLDER, RENDERED, manifest
@@ -100,7 +100,7 @@ def test_highlights_are_polarized_across_the_plane_of_incidence():
 
 def test_an_echo_of_one_late_bin_is_a_second_surface():
     echo = Echo(np.full((1, 1, 2, 3), 0.25), np.eye(4)[None, None, 2], 1.0, 0.5)
-    wave = lambda z: np.cos(4 * np.pi * 1e8 / SPEED_OF_LIGHT * z)  # noqa: E731
+    wave = lambda z: np.cos(4 * np.pi * 1e8 / speed_of_light * z)  # noqa: E731
     seen = echo.returned(wave)(np.full((2, 3), 1.3), np.zeros((2, 3)), 0, 0)
     np.testing.assert_allclose(seen, 0.25 * wave(1.3) + 0.75 * wave(2.0))
     none = Echo(np.full((1, 1, 2, 3), 0.25), np.zeros((1, 1, 4)), 1.0, 0.5)
