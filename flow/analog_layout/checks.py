@@ -4,7 +4,7 @@ import re
 from pathlib import Path
 
 from talbot.base.steps import StepError
-from talbot.flow.layout.geometry.decks import run_exported, violations
+from talbot.flow.layout.geometry.decks import broken_rules, is_circuit
 from talbot.flow.pixel_layout.checks import common_decks
 from talbot.platforms.analog import analog_masks
 
@@ -31,20 +31,9 @@ def decks(pdk: str) -> tuple[str, str]:
 
 def drc(gds: Path, pdk: str, report: Path) -> dict[str, int]:
     """Violations by rule. report: KLayout's report database. Raises StepError."""
-    deck = report.with_suffix(".drc")
-    deck.write_text(decks(pdk)[0])
-    status, output = run_exported(deck, gds, report)
-    if status:
-        raise StepError(f"drc: KLayout failed with status {status}: {output.strip().splitlines()[-1:]}")
-    return violations(report)
+    return broken_rules(decks(pdk)[0], gds, report)
 
 
 def lvs(gds: Path, spice: str, pdk: str, report: Path) -> bool:
     """Whether the top cell of ``gds`` is the circuit ``spice``, text. Raises StepError."""
-    deck, source = report.with_suffix(".lvs"), report.with_suffix(".spice")
-    deck.write_text(decks(pdk)[1])
-    source.write_text(spice)
-    _, output = run_exported(deck, gds, report, SPICE_FILE=source)
-    if ("LVS OK" in output) == ("LVS Failed" in output):
-        raise StepError(f"lvs: KLayout gave no verdict: {output.strip().splitlines()[-1:]}")
-    return "LVS OK" in output
+    return is_circuit(decks(pdk)[1], gds, spice, report)

@@ -82,7 +82,7 @@ def picture(gds: Path, process: PixelProcess) -> Figure:
     box = layout.top_cell().dbbox()
     wide = box.width() > box.height()
     figure = Figure(figsize=(11, 11 * box.height() / box.width()) if wide else (5, 5 * box.height() / box.width()))
-    shown = [(process.well, WELL), (process.active, ACTIVE), (process.poly, POLY)]
+    shown = [(process.well, WELL), (process.active, ACTIVE), (process.tap, ACTIVE), (process.poly, POLY)]
     shown += [(metal.gds, METALS[k]) for k, metal in enumerate(process.metals[:5])]
     draw_masks(figure.subplots(), gds, shown, "", (box.left, box.bottom, box.right, box.top))
     return figure

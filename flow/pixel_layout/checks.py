@@ -8,10 +8,10 @@ from talbot.base.gds import db, read_gds
 from talbot.base.paths import BUILD
 from talbot.base.sources import code
 from talbot.base.steps import StepError
-from talbot.flow.layout.geometry.decks import hole_rules, run_exported, via_rules, violations
+from talbot.flow.layout.geometry.decks import broken_rules, hole_rules, is_circuit, via_rules, with_taps
 from talbot.flow.layout.pdkmaster import export_decks
 from talbot.platforms.coriolis import coriolis_platform
-from talbot.platforms.pixel import PixelProcess, pixel_process
+from talbot.platforms.pixel import pixel_process
 
 STORE = BUILD / "pixel" / "decks"
 # Rules that pixels break on purpose: what they ask, and why they are waived
@@ -34,36 +34,24 @@ def common_decks(pdk: str) -> tuple[list[str], str]:
 
     kept = cached(STORE / digest(code("talbot.flow.layout.pdkmaster"), pdk), make)
     masks = [tech.masks.read_text()] if tech.masks else []
-    return [(kept / "drc").read_text(), *hole_rules(tech), *via_rules(tech), *masks], (kept / "lvs").read_text()
+    process = pixel_process(pdk)
+    rules, lvs = (with_taps((kept / name).read_text(), process.active, process.tap) for name in ("drc", "lvs"))
+    return [rules, *hole_rules(tech), *via_rules(tech), *masks], lvs
 
 
 def decks(pdk: str) -> tuple[str, str]:
     """The decks of design rules and of LVS, text, with what pixels need beyond PDKMaster's."""
     process, mark = pixel_process(pdk), "\nnetlist\n"
-    (exported, *others), lvs = common_decks(pdk)
-    exported, lvs = (_with_taps(deck, process) for deck in (exported, lvs))
+    rules, lvs = common_decks(pdk)
     if lvs.count(mark) != 1:
         raise StepError("lvs: the deck has no single line 'netlist' before which diodes could be extracted")
-    rules = "\n".join([exported, *others, process.masks.read_text(), ""])
-    return rules, lvs.replace(mark, f"\n{process.lvs.read_text()}{mark}")
-
-
-def _with_taps(deck: str, process: PixelProcess) -> str:
-    """PDKMaster's deck with taps on their own mask, too: it knows diffusion and taps as one. Raises StepError."""
-    active, tap = (f" = input({layer}, {datatype})" for layer, datatype in (process.active, process.tap))
-    if deck.count(f"{active}\n") != 1:
-        raise StepError(f"decks: must have one line with{active}, to which the taps are added")
-    return deck.replace(f"{active}\n", f"{active} +{tap.removeprefix(' =')}\n")
+    text = "\n".join([*rules, process.masks.read_text(), ""])
+    return text, lvs.replace(mark, f"\n{process.lvs.read_text()}{mark}")
 
 
 def drc(gds: Path, pdk: str, report: Path) -> dict[str, int]:
     """Violations by rule, waived ones among them. report: KLayout's report database. Raises StepError."""
-    deck = report.with_suffix(".drc")
-    deck.write_text(decks(pdk)[0])
-    status, output = run_exported(deck, gds, report)
-    if status:
-        raise StepError(f"drc: KLayout failed with status {status}: {output.strip().splitlines()[-1:]}")
-    return violations(report)
+    return broken_rules(decks(pdk)[0], gds, report)
 
 
 def unwaived(found: dict[str, int]) -> int:
@@ -73,13 +61,7 @@ def unwaived(found: dict[str, int]) -> int:
 
 def lvs(gds: Path, spice: str, pdk: str, report: Path) -> bool:
     """Whether the top cell of ``gds`` is the circuit that the text ``spice`` has last. Raises StepError."""
-    deck, source = report.with_suffix(".lvs"), report.with_suffix(".spice")
-    deck.write_text(decks(pdk)[1])
-    source.write_text(spice)
-    _, output = run_exported(deck, gds, report, SPICE_FILE=source)
-    if ("LVS OK" in output) == ("LVS Failed" in output):
-        raise StepError(f"lvs: KLayout gave no verdict: {output.strip().splitlines()[-1:]}")
-    return "LVS OK" in output
+    return is_circuit(decks(pdk)[1], gds, spice, report)
 
 
 def densities(gds: Path, pdk: str) -> dict[str, float]:

@@ -172,7 +172,7 @@ def _rail(canvas: Canvas, plan: Plan, y: float, implant: tuple[int, int]) -> Non
     base, left, right = canvas.process, plan.left - RAIL_ENDS, plan.right + RAIL_ENDS
     canvas.wire(1, left, y - RAIL_HALF, right, y + RAIL_HALF)
     canvas.wire(0, left, y - 0.085, right, y + 0.085)
-    canvas.box(base.active, left, y - TAP_HALF, right, y + TAP_HALF)
+    canvas.box(base.tap, left, y - TAP_HALF, right, y + TAP_HALF)
     canvas.box(implant, left - IMPLANT, y - TAP_HALF - IMPLANT, right + IMPLANT, y + TAP_HALF + IMPLANT)
     count = int((right - left - 0.5) / TAP_PITCH) + 1
     first = (left + right) / 2 - (count - 1) * TAP_PITCH / 2

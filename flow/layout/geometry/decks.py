@@ -10,6 +10,7 @@ from pathlib import Path
 from talbot.base.steps import StepError
 from talbot.base.tools import ToolError, finish
 from talbot.platforms.coriolis import CoriolisPlatform
+from talbot.platforms.layers import GdsLayer
 
 
 def run_deck(deck: Path, report: Path, variables: Mapping[str, object], **environment: object) -> tuple[int, str]:
@@ -35,6 +36,35 @@ def violations(report: Path) -> dict[str, int]:
         return dict(Counter((item.findtext("category") or "").strip("'") for item in items))
     except (ET.ParseError, FileNotFoundError) as error:
         raise ToolError(f"klayout: its report is not complete ({error})") from None
+
+
+def with_taps(deck: str, active: GdsLayer, tap: GdsLayer) -> str:
+    """A deck with taps on their own mask, too: PDKMaster knows diffusion and taps as one. Raises StepError."""
+    old, new = (f"input({layer}, {datatype})" for layer, datatype in (active, tap))
+    if deck.count(f" = {old}\n") != 1:
+        raise StepError(f"deck: must have one line with {old}, to which the taps are added")
+    return deck.replace(f" = {old}\n", f" = {old} + {new}\n")
+
+
+def broken_rules(deck: str, gds: Path, report: Path) -> dict[str, int]:
+    """Violations by rule of an exported deck, text. report: KLayout's report database. Raises StepError."""
+    file = report.with_suffix(".drc")
+    file.write_text(deck)
+    status, output = run_exported(file, gds, report)
+    if status:
+        raise StepError(f"drc: KLayout failed with status {status}: {output.strip().splitlines()[-1:]}")
+    return violations(report)
+
+
+def is_circuit(deck: str, gds: Path, spice: str, report: Path) -> bool:
+    """Whether ``gds`` is the circuit that ``spice``, text, has last, by an exported deck of LVS. Raises StepError."""
+    file, source = report.with_suffix(".lvs"), report.with_suffix(".spice")
+    file.write_text(deck)
+    source.write_text(spice)
+    _, output = run_exported(file, gds, report, SPICE_FILE=source)
+    if ("LVS OK" in output) == ("LVS Failed" in output):
+        raise StepError(f"lvs: KLayout gave no verdict: {output.strip().splitlines()[-1:]}")
+    return "LVS OK" in output
 
 
 def with_flat_spaces(deck: str) -> str:

@@ -6,7 +6,6 @@ from importlib import import_module
 from typing import Any
 
 from talbot.base.gds import db
-from talbot.base.steps import StepError
 from talbot.platforms.layers import GdsLayer
 from talbot.platforms.pads import PadProcess
 from talbot.platforms.pixel import PixelProcess
@@ -209,14 +208,6 @@ def row(found: "db.Layout", process: PadProcess) -> "db.Cell":
         x += round(1000 * width_um(name, process))
     top.insert(db.CellInstArray(corner, db.Trans(db.Trans.M90, x, 0)))
     return top
-
-
-def with_taps(deck: str, active: GdsLayer, tap: GdsLayer) -> str:
-    """A deck with taps on their own mask, too: PDKMaster knows diffusion and taps as one. Raises StepError."""
-    old, new = (f"input({layer}, {datatype})" for layer, datatype in (active, tap))
-    if deck.count(f" = {old}\n") != 1:
-        raise StepError(f"pads: the deck must have one line with {old}, to which the taps are added")
-    return deck.replace(f" = {old}\n", f" = {old} + {new}\n")
 
 
 def joined(spice: str, process: PadProcess) -> str:

@@ -13,6 +13,7 @@ from talbot.flow.layout.geometry.decks import (
     via_rules,
     violations,
     with_flat_spaces,
+    with_taps,
 )
 from talbot.flow.layout.pdkmaster import export_spice
 from talbot.flow.layout.steps.parameters import PdkParameters
@@ -57,7 +58,7 @@ class DiePadsDrc(Step[PdkParameters]):
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         tech, process = coriolis_platform(self.parameters.pdk), pad_process(self.parameters.pdk)
-        deck = with_flat_spaces(pads.with_taps(inputs["deck"].read_text(), tech.active, process.tap))
+        deck = with_flat_spaces(with_taps(inputs["deck"].read_text(), tech.active, process.tap))
         rules = [deck, *hole_rules(tech), *via_rules(tech), process.masks.read_text()]
         outputs["deck"].write_text("\n".join(rules) + "\n")
         status, output = run_exported(outputs["deck"], inputs["gds"], outputs["report"])
@@ -81,7 +82,7 @@ class DiePadsLvs(Step[PdkParameters]):
         process = pad_process(self.parameters.pdk)
         outputs["reports"].mkdir()
         active = coriolis_platform(self.parameters.pdk).active
-        outputs["deck"].write_text(pads.with_taps(inputs["deck"].read_text(), active, process.tap))
+        outputs["deck"].write_text(with_taps(inputs["deck"].read_text(), active, process.tap))
         found = {}
         for cell in (*process.signals.values(), *process.supplies.values()):
             report = outputs["reports"] / f"{cell}.lvsdb"
