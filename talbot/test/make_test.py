@@ -44,7 +44,7 @@ def make(*words, **environment):
         ("sequence", "the following arguments are required: --scene"),
         ("pixel PDKS=sky130", "PDKS = 'sky130': must be a variable of make pixel; did you mean PDK?"),
         ("sim PIXEL=gf180", "pixel = 'gf180': must be one of ideal, sky130, ihp-sg13g2"),
-        ("tradeoff SCENE=coins", "SCENE = 'coins': must be a variable of make tradeoff: ONLY, OUT, PYTHON"),
+        ("tradeoff SCENE=coins", "SCENE = 'coins': must be a variable of make tradeoff: ONLY, WORKERS, OUT, PYTHON"),
         ("mutate SEDE=2", "did you mean SEED?"),
         ("layout DESIGN=none UNTIMED=1", "DESIGN = 'none': must be one of "),
         ("layout DESIGN=amp_ctrl UTILISATION=0.8", "did you mean UTILIZATION?"),

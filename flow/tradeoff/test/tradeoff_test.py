@@ -80,7 +80,7 @@ def test_denser_patches_and_more_atoms_err_less(tables):
     by_stride = [rows["sparse", setting] for setting in ("stride 9", "", "stride 3", "stride 2")]
     assert by_stride == sorted(by_stride)
     assert rows["sparse", "atoms 64"] < rows["sparse", "atoms 192"] < rows["sparse", ""]
-    assert rows["direct", ""] + 2 < rows["linear", ""] < rows["sparse", ""]
+    assert rows["direct", ""] + 2 < rows["sparse", ""] < rows["linear", ""]
 
 
 def test_a_sweep_goes_on_from_what_is_kept(tmp_path, monkeypatch):
