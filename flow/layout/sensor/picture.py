@@ -37,7 +37,7 @@ def by_block(png: Path, plan: dict[str, Any], black_boxes: Collection[str]) -> N
         width, height, hatch = right - left, top - bottom, "//" if name in black_boxes else None
         style = {"facecolor": COLORS[name], "alpha": 0.85, "edgecolor": "0.3", "hatch": hatch, "linewidth": 0.6}
         axes.add_patch(Rectangle((left, bottom), width, height, **style))
-        label = f"{'digital chip' if name == CORE else name.replace('_', ' ')}\n{width:g} × {height:g} µm"
+        label = f"{'digital chip' if name == CORE else name.replace('_', ' ')}\n{width:.0f} × {height:.0f} µm"
         style = {"ha": "center", "va": "center", "fontsize": 8, "rotation": 90 if height > 3 * width else 0}
         box = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8}
         axes.annotate(label, ((left + right) / 2, (bottom + top) / 2), bbox=box, **style)
