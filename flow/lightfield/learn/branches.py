@@ -1,8 +1,6 @@
 """Training of the two-branch network of `models.reconstruct.branches` by PyTorch: each branch alone, then together."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from pathlib import Path
 from time import perf_counter
 from typing import Any
 
@@ -14,6 +12,7 @@ from talbot.models.pixel.weights import view_weights
 from talbot.models.reconstruct.branches import AFTER, CHANNELS, DENSE, KINDS, PATCH, Seen, shapes
 from talbot.models.reconstruct.network import NOISE, VIEWS
 
+from . import training
 from .samples import Shot, noisy, sensor, shots
 from .training import torch
 
@@ -94,12 +93,8 @@ def crop(shot: Shot, rng: np.random.Generator) -> tuple[npt.NDArray[np.float32],
     return seen.patches(*firsts).reshape(PATCHES, PATCHES, -1), seen.back.astype(np.float32), wanted
 
 
-@dataclass(frozen=True, eq=False)
-class Learned:
-    """Weights of the network, and how they were learned."""
-
-    weights: dict[str, npt.NDArray[np.float16]]
-    summary: dict[str, Any]
+class Learned(training.Learned):
+    """Weights of the network and of each branch alone, and how they were learned."""
 
     @property
     def text(self) -> str:
@@ -107,10 +102,6 @@ class Learned:
         s = self.summary
         errors = ", ".join(f"{kind} {s['error'][kind]:.3f}" for kind in KINDS)
         return f"{s['parameters']} weights in {s['seconds']:.0f} s; of the sum image's mean square error: {errors}"
-
-    def save(self, path: Path) -> None:
-        """Write the weights."""
-        np.savez_compressed(path, **self.weights)  # type: ignore[arg-type]
 
 
 def learned(seeds: Sequence[int], steps: int, seed: int) -> Learned:
