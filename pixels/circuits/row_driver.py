@@ -146,3 +146,38 @@ def row() -> Circuit:
         for line in ROW_LINES
     ]
     return Circuit("row", (*ROW_INPUTS, *ROW_LINES, *SUPPLIES), instances=tuple(parts))
+
+
+ADDRESS = 10  # bits
+CODES = {"high": 6, "mid": 8, "low": 8}  # lines of a group: the highest of 384 rows is in the sixth group of 64
+BANK_INPUTS = (*(f"{side}_row{bit}" for side in SIDES for bit in range(ADDRESS)), *CONTROLS)
+BANK_OUTPUTS = (
+    *(f"{side}_{group}{code}" for side in SIDES for group, count in CODES.items() for code in range(count)),
+    *(f"{name}_line" for name in CONTROLS),
+)
+
+
+def bank() -> Circuit:
+    """What drives the lines that cross all rows: predecoders of both addresses, buffers of the controls.
+
+    Pins BANK_INPUTS, BANK_OUTPUTS, vdd vss. `<side>_<group><code>` is high where the group's bits are the code.
+    """
+    rails, parts = ("vdd", "vss"), list[Instance]()
+    for side in SIDES:
+        for bit in range(ADDRESS):
+            parts.append(Instance(f"{side}_i{bit}", inverter(2), (f"{side}_row{bit}", f"{side}_row{bit}n", *rails)))
+        for group, (first, last) in GROUPS.items():
+            for code in range(CODES[group]):
+                bits = (f"{side}_row{first + k}{'' if code >> k & 1 else 'n'}" for k in range(last - first))
+                name = f"{side}_{group}{code}"
+                parts.append(Instance(f"{name}_n", nand_of(last - first), (*bits, f"{name}n", *rails)))
+                parts.append(Instance(f"{name}_s", inverter(6), (f"{name}n", name, *rails)))
+    for name in CONTROLS:
+        parts.append(Instance(f"{name}_n", inverter(3), (name, f"{name}n", *rails)))
+        parts.append(Instance(f"{name}_s", inverter(12), (f"{name}n", f"{name}_line", *rails)))
+    return Circuit("row_bank", (*BANK_INPUTS, *BANK_OUTPUTS, *rails), instances=tuple(parts))
+
+
+def taken(row: int) -> dict[str, int]:
+    """The code of each group that a row takes."""
+    return {group: row >> first & (1 << last - first) - 1 for group, (first, last) in GROUPS.items()}
