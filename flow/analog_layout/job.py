@@ -19,11 +19,13 @@ from talbot.flow.analog.deck import Setup, process_of
 from talbot.flow.analog.job import setup_of
 from talbot.flow.analog.lane import LaneResult, inl
 from talbot.flow.analog.linearity import inl_dnl, levels
-from talbot.models.parameters import ChipParameters
+from talbot.models.parameters import ArrayParameters, ChipParameters
 from talbot.pixels.analog_layout.cells import Cell, comparator_cell
 from talbot.pixels.analog_layout.converters import NAME as BLOCK
 from talbot.pixels.analog_layout.converters import Converters, draw_converters
 from talbot.pixels.analog_layout.lane import lane_cell
+from talbot.pixels.analog_layout.row_drivers import NAME as ROWS
+from talbot.pixels.analog_layout.row_drivers import RowDrivers, draw_row_drivers, row_cell
 from talbot.pixels.blocks import AnalogSizes
 from talbot.pixels.circuits.dac import BITS
 from talbot.pixels.circuits.lane import LaneSizes
@@ -32,6 +34,7 @@ from talbot.platforms.analog import AnalogMasks, analog_masks
 from talbot.platforms.coriolis import coriolis_platform
 from talbot.platforms.wires import wire_corner
 
+from . import row_driver
 from .checks import drc, lvs
 from .extract import Extracted, Nets, extract
 from .measure import Measured, measure
@@ -59,8 +62,12 @@ class Row:
 
 
 def cells(masks: AnalogMasks, sizes: LaneSizes) -> dict[str, Cell]:
-    """What is drawn, by name."""
-    return {"comparator": comparator_cell(masks, sizes.comparator), "sar_lane": lane_cell(masks, sizes)}
+    """What is drawn and extracted, by name."""
+    return {
+        "comparator": comparator_cell(masks, sizes.comparator),
+        "sar_lane": lane_cell(masks, sizes),
+        "row": row_cell(masks, ArrayParameters()),
+    }
 
 
 def make(
@@ -74,14 +81,16 @@ def make(
     masks, (setup, sizes) = analog_masks(pdk), setup_of(pdk)
     made = cells(masks, sizes)
     chip, room = ChipParameters(), AnalogSizes()
-    block = draw_converters(masks, sizes, chip, room)
-    drawn: dict[str, Cell | Converters] = {**made, BLOCK: block}
-    names = [f"{name}.{kind}" for name in drawn for kind in KINDS if (name, kind) != (BLOCK, "extracted.spice")]
-    with staged(out, (*names, f"{BLOCK}.lef", *page.NAMES, "summary.json")) as folder:
+    blocks = {BLOCK: draw_converters(masks, sizes, chip, room), ROWS: draw_row_drivers(masks, ArrayParameters(), room)}
+    drawn: dict[str, Cell | Converters | RowDrivers] = {**made, **blocks}
+    names = [f"{name}.{kind}" for name in drawn for kind in KINDS if name in made or kind != "extracted.spice"]
+    names += [f"{name}.lef" for name in blocks]
+    with staged(out, (*names, *page.NAMES, "summary.json")) as folder:
         note("draw")
         for name, cell in drawn.items():
             write_gds(cell.layout, folder / f"{name}.gds", cell.cell)
-        (folder / f"{BLOCK}.lef").write_text(block.lef(masks))
+        for name, block in blocks.items():
+            (folder / f"{name}.lef").write_text(block.lef(masks))
         note("drc")
         rules = {name: drc(folder / f"{name}.gds", pdk, folder / f"{name}.lyrdb") for name in drawn}
         note("lvs")
@@ -97,6 +106,10 @@ def make(
         note("measure")
         rows = list(_array(typical["sar_lane"][1], masks, sizes, setup.spec))
         rows += _measured(setup, sizes, corners, found, workers)
+        rows += [
+            Row(*one)
+            for one in row_driver.rows(setup, {name: found[wire_corner(name)]["row"][0] for name in corners}, workers)
+        ]
         summary = {
             "process": pdk,
             "corners": list(corners),
@@ -120,15 +133,13 @@ def _extracted(made: dict[str, Cell], masks: AnalogMasks, corner: str) -> dict[s
 
 
 def _cell(
-    cell: Cell | Converters, rules: dict[str, int], same: bool, found: tuple[Extracted, Nets] | None
+    cell: Cell | Converters | RowDrivers, rules: dict[str, int], same: bool, found: tuple[Extracted, Nets] | None
 ) -> dict[str, Any]:
     box = cell.cell.dbbox()
-    lanes = len(cell.nets) if isinstance(cell, Converters) else 1
-    one = cell.lane if isinstance(cell, Converters) else cell
     out = {
         "width_um": round(box.width(), 3),
         "height_um": round(box.height(), 3),
-        "transistors": lanes * len(one.transistors),
+        "transistors": cell.count,
         "drc": rules,
         "lvs_match": same,
     }

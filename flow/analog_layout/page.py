@@ -25,6 +25,11 @@ PICTURES = {
         "From the south drivers, switches, the DAC's capacitors, the comparator, the other side's "
         "capacitors, their switches.",
     ),
+    "row": (
+        "A row's driver",
+        "On the pixels' pitch: decoders, gates and the latch in the west, six level shifters under thick oxide in the "
+        "east, and the lines at their places.",
+    ),
     "adc_lanes": ("All lanes in the die's frame", "Below them the channel to the chip's pins, above the references."),
 }
 NAMES = ("analog_layout.html", *(f"{name}.png" for name in PICTURES))

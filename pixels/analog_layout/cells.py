@@ -20,8 +20,12 @@ MARGIN = 2.0  # of a cell beyond its rails, um
 
 @dataclass(frozen=True)
 class Cell:
-    """A drawn cell. ports: in the order of its pins. devices: its transistors in fingers. plates: its capacitors.
-    terminals: of its transistors. tracks: of its nets, of a cell with one strip. taps: of its capacitors, as `Array` has them, under the names of ``plates``."""
+    """A drawn cell.
+
+    ports: in the order of its pins. devices: its transistors in fingers. plates: its capacitors. terminals: of its
+    transistors. taps: of its capacitors, as `Array` has them, under the names of ``plates``. tracks: of its nets, of a
+    cell that is one strip.
+    """
 
     layout: "db.Layout"
     cell: "db.Cell"
@@ -36,6 +40,11 @@ class Cell:
     def transistors(self) -> list[Transistor]:
         """All transistors, dummies too."""
         return [t for device in self.devices for t in (device.transistor, *device.off)]
+
+    @property
+    def count(self) -> int:
+        """Transistors."""
+        return len(self.transistors)
 
     def spice(self, masks: AnalogMasks) -> str:
         """Its text for LVS."""
