@@ -26,6 +26,7 @@ from talbot.pixels.analog_layout.converters import Converters, draw_converters
 from talbot.pixels.analog_layout.lane import lane_cell
 from talbot.pixels.analog_layout.row_drivers import NAME as ROWS
 from talbot.pixels.analog_layout.row_drivers import RowDrivers, draw_row_drivers, row_cell
+from talbot.pixels.analog_layout.switch import switch_cell
 from talbot.pixels.blocks import AnalogSizes
 from talbot.pixels.circuits.dac import BITS
 from talbot.pixels.circuits.lane import LaneSizes
@@ -34,7 +35,7 @@ from talbot.platforms.analog import AnalogMasks, analog_masks
 from talbot.platforms.coriolis import coriolis_platform
 from talbot.platforms.wires import wire_corner
 
-from . import row_driver
+from . import row_driver, switch
 from .checks import drc, lvs
 from .extract import Extracted, Nets, extract
 from .measure import Measured, measure
@@ -46,7 +47,7 @@ KINDS = "gds", "spice", "extracted.spice", "lyrdb", "lvsdb"
 
 @dataclass(frozen=True)
 class Row:
-    """A characteristic at a corner, of the schematic and of the layout. most: its limit, or None."""
+    """A characteristic at a corner, of the schematic and of the layout. most, least: its limits, or None."""
 
     name: str
     unit: str
@@ -54,11 +55,14 @@ class Row:
     layout: float
     corner: str
     most: float | None = None
+    least: float | None = None
 
     @property
     def passes(self) -> bool:
         """Whether the layout is inside the limit."""
-        return self.most is None or abs(self.layout) <= self.most
+        return (self.most is None or abs(self.layout) <= self.most) and (
+            self.least is None or self.layout >= self.least
+        )
 
 
 def cells(masks: AnalogMasks, sizes: LaneSizes) -> dict[str, Cell]:
@@ -67,6 +71,7 @@ def cells(masks: AnalogMasks, sizes: LaneSizes) -> dict[str, Cell]:
         "comparator": comparator_cell(masks, sizes.comparator),
         "sar_lane": lane_cell(masks, sizes),
         "row": row_cell(masks, ArrayParameters()),
+        "non_overlap": switch_cell(masks),
     }
 
 
@@ -106,10 +111,9 @@ def make(
         note("measure")
         rows = list(_array(typical["sar_lane"][1], masks, sizes, setup.spec))
         rows += _measured(setup, sizes, corners, found, workers)
-        rows += [
-            Row(*one)
-            for one in row_driver.rows(setup, {name: found[wire_corner(name)]["row"][0] for name in corners}, workers)
-        ]
+        for name, of in (("row", row_driver.rows), ("non_overlap", switch.rows)):
+            drawn_at = {corner: found[wire_corner(corner)][name][0] for corner in corners}
+            rows += [Row(*one) for one in of(setup, drawn_at, workers)]
         summary = {
             "process": pdk,
             "corners": list(corners),

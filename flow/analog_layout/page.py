@@ -30,6 +30,7 @@ PICTURES = {
         "On the pixels' pitch: decoders, gates and the latch in the west, six level shifters under thick oxide in the "
         "east, and the lines at their places.",
     ),
+    "non_overlap": ("The switch drivers", "Two loops of a gate and its delays about the inverter between them."),
     "adc_lanes": ("All lanes in the die's frame", "Below them the channel to the chip's pins, above the references."),
 }
 NAMES = ("analog_layout.html", *(f"{name}.png" for name in PICTURES))
@@ -95,6 +96,7 @@ def picture(gds: Path, process: PixelProcess) -> Figure:
 
 def _row(row: dict[str, Any]) -> tuple[str, ...]:
     limit = "" if row["most"] is None else f"<= {row['most']:.3g}"
+    limit = limit if row["least"] is None else f">= {row['least']:.3g}"
     verdict = "" if not limit else "pass" if row["passes"] else "FAIL"
     return row["name"], row["unit"], f"{row['schematic']:.3g}", f"{row['layout']:.3g}", limit, verdict, row["corner"]
 

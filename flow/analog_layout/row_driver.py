@@ -13,11 +13,11 @@ from talbot.pixels.circuits.row_driver import RowDriverSpec
 from .extract import Extracted
 
 STORE = BUILD / "analog-layout" / "rows"
-Figures = tuple[str, str, float, float, str, float | None]
+Figures = tuple[str, str, float, float, str, float | None, float | None]
 
 
 def rows(setup: Setup, found: Mapping[str, Extracted], workers: int) -> Iterator[Figures]:
-    """(name, unit, schematic, layout, corner, most) of every characteristic; found: the extracted row by corner."""
+    """(name, unit, schematic, layout, corner, most, least) of every characteristic; found: the extracted row."""
     spec, jobs = RowDriverSpec.of(), list[Job]()
     for name, drawn in found.items():
         given = setup, spec, Corner.parse(name)
@@ -36,7 +36,7 @@ def rows(setup: Setup, found: Mapping[str, Extracted], workers: int) -> Iterator
             one: RowDriverResult = schematic,
             other: RowDriverResult = layout,
         ) -> Figures:
-            return f"row driver: {what}", unit, float(value(one)), float(value(other)), corner, most
+            return f"row driver: {what}", unit, float(value(one)), float(value(other)), corner, most, None
 
         yield row("wrong levels", "", lambda one: not one.right, 0.0)
         yield row("far end within 1 %", "ns", lambda one: 1e9 * one.settling, 1e9 * spec.settle)
