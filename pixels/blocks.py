@@ -89,7 +89,7 @@ def blocks(
     array, chip, sizes = array or ArrayParameters(), chip or ChipParameters(), sizes or AnalogSizes()
     return (
         pixel_array(array),
-        _row_driver(array, sizes),
+        row_driver(array, sizes),
         _column_amplifiers(array, chip, sizes),
         _adc_lanes(chip, sizes),
     )
@@ -145,7 +145,8 @@ def pixel_array(array: ArrayParameters) -> Block:
     )
 
 
-def _row_driver(array: ArrayParameters, sizes: AnalogSizes) -> Block:
+def row_driver(array: ArrayParameters, sizes: AnalogSizes) -> Block:
+    """The drivers of all rows: the chip in the south, each row's lines in the east, supplies in the west."""
     height = array.rows * array.pitch * 1e6
     return Block(
         "row_driver",

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 from talbot.base.gds import db
 from talbot.models.parameters import ArrayParameters, ParameterError
-from talbot.pixels.blocks import AnalogSizes, Block, blocks
+from talbot.pixels.blocks import AnalogSizes, Block, row_driver
 from talbot.pixels.circuits.row_driver import (
     BANK_INPUTS,
     BANK_OUTPUTS,
@@ -94,7 +94,7 @@ def bank_nets() -> tuple[str, ...]:
 
 def _plan(d: Mapping[str, Device], array: ArrayParameters, room: AnalogSizes) -> tuple[Block, RowPlan]:
     """The frame as the black box has it, and a row in it."""
-    plain = next(one for one in blocks(array, sizes=room) if one.name == NAME)
+    plain = row_driver(array, room)
     south = {pin.name: pin.at_um for pin in plain.pins if pin.side == "south"}
     return plain, row_plan(d, plain.width_um, {name: south[chip_pin(name)] for name in BANK_INPUTS})
 
