@@ -178,7 +178,7 @@ def _column_amplifiers(array: ArrayParameters, chip: ChipParameters, sizes: Anal
             *(Pin(name, "input", "north", at) for name, at in column_lines(array)),
             *_spread("column_amplifiers", pins, "input", 0, control),
             *(Pin(name, "output", "south", begin + at) for name, at in lane_lines(chip, sizes)),
-            *_supplies("west", sizes.columns_um, CIRCUIT_SUPPLIES),
+            *_supplies("west", sizes.columns_um / 2, CIRCUIT_SUPPLIES),  # above it the row driver is in the way
             *_supplies("east", sizes.columns_um, CIRCUIT_SUPPLIES),
         ),
     )
