@@ -12,11 +12,10 @@
 Both sides of the pair have the same middle in every strip, and every row of parts ends with dummies.
 """
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from talbot.pixels.circuits.amplifier import PINS, TRIM_BITS, AmplifierSizes, amplifier
-from talbot.pixels.circuits.netlist import Transistor
 from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.analog import AnalogMasks
 
@@ -25,10 +24,9 @@ from .amplifier_bank import BankPlan, draw_bank, units
 from .cells import MARGIN, Cell, new_canvas
 from .comparator import BETWEEN_STRIPS
 from .device import Device
+from .rows import dummies, row
 from .strip import (
-    DROP_PITCH,
     FOURTH,
-    GAP,
     RAIL_ENDS,
     SECOND,
     THIRD,
@@ -49,15 +47,14 @@ AWAY = 1.6  # of a bank from a rail
 FIRST, PITCH = 0.9, 1.0  # of the trunks beside the banks
 OVER, OVER_PITCH = 19.0, 4.0  # of the trunks over the strips
 PATCH = 0.35  # half the length of the third metal where a common node goes up
-GRID = 0.005
 ROOM = 5.0  # more between transistors of the bias, for drops between those of the tails
 # Parts in a strip, from the west: of side p or n of the pair and of the sinks; a capital steers, or is a diode
 PAIR_ORDER = "pnnPPnnp", "nppNNppn"
 SINK_ORDER = "pnNPnp", "pnnppn"
 NORTH = "column_a", "column_b"
-WEST = ("column_a", "vref", "out", *(f"bottom{k}" for k in reversed(range(TRIM_BITS))))
+WEST = ("column_a", "out", *(f"bottom{k}" for k in reversed(range(TRIM_BITS))), "vref")
 EAST = ("column_b", *(f"g{k}" for k in range(TRIM_BITS)), "reset", "on")
-BETWEEN = tuple(f"ota.{net}" for net in ("tail", "fold_p", "steer_n", "diode_p", "vcn", "vcp", "diode_n", "steer_p", "fold_n"))
+INNER = ("tail", "fold_p", "steer_n", "diode_p", "vcn"), ("vcp", "diode_n", "steer_p", "fold_n")  # west, east
 INPUTS = "xm", "xp"
 
 
@@ -83,20 +80,9 @@ def matched_units() -> dict[tuple[str, str], int]:
 def devices(sizes: AmplifierSizes) -> dict[str, Device]:
     """All transistors by name, in fingers; dummies at the ends of rows, too."""
     found = {t.name: Device.of(t) for t in flat.transistors(amplifier(sizes))}
-    for row, like in (("pair0", "inp_0"), ("pair1", "inp_0"), ("sink0", "sink_p_0"), ("sink1", "sink_p_0")):
-        found |= _ends(row, found[f"ota.{like}"])
-    return found | _ends("tails", found["ota.tail_0"]) | _ends("load", found["ota.down_p"])
-
-
-def _ends(row: str, like: Device) -> dict[str, Device]:
-    """Transistors that are off for both ends of a row."""
-    t = like.transistor
-    return {
-        f"{row}_{end}": Device(
-            Transistor(f"{row}_{end}", t.bulk, t.bulk, t.bulk, t.bulk, t.role, round(2 * like.finger_um, 3), t.l), 2
-        )
-        for end in ("west", "east")
-    }
+    for name, like in (("pair0", "inp_0"), ("pair1", "inp_0"), ("sink0", "sink_p_0"), ("sink1", "sink_p_0")):
+        found |= dummies(name, found[f"ota.{like}"])
+    return found | dummies("tails", found["ota.tail_0"]) | dummies("load", found["ota.down_p"])
 
 
 def _order(orders: Sequence[str], names: str, capital: str) -> list[list[str]]:
@@ -106,17 +92,6 @@ def _order(orders: Sequence[str], names: str, capital: str) -> list[list[str]]:
         [(capital if a.isupper() else names).format(side=a.lower(), k=next(counts[a])) for a in order]
         for order in orders
     ]
-
-
-def _row(d: Mapping[str, Device], names: Iterable[str], axis: float, room: float = 0.0) -> tuple[Placed, ...]:
-    """Devices beside each other about ``axis``; room: um more between them."""
-    own = [d[name] for name in names]
-    rooms = [_grid(max(one.width_um + GAP, 3 * DROP_PITCH) + room) for one in own]
-    x, placed = _grid(axis - sum(rooms) / 2), list[Placed]()
-    for one, room in zip(own, rooms, strict=True):
-        placed.append(Placed(one, _grid(x + (room - one.width_um) / 2), x, x + room))
-        x = _grid(x + room)
-    return tuple(placed)
 
 
 @dataclass(frozen=True)
@@ -133,8 +108,9 @@ def places() -> dict[str, float]:
     """X of what goes from strip to strip."""
     at = {net: FIRST + PITCH * k for k, net in enumerate(WEST)}
     at |= {net: RIGHT - FIRST - PITCH * k for k, net in enumerate(reversed(EAST))}
-    at |= {net: OVER + OVER_PITCH * k for k, net in enumerate((*BETWEEN[:5], "ibias"))}
-    at |= {net: RIGHT - OVER - OVER_PITCH * k for k, net in enumerate((*BETWEEN[5:], "off"))}
+    west, east = ([f"ota.{net}" for net in side] for side in INNER)
+    at |= {net: OVER + OVER_PITCH * k for k, net in enumerate((*west, "ibias"))}
+    at |= {net: RIGHT - OVER - OVER_PITCH * k for k, net in enumerate((*east, "off"))}
     return at | {net: RIGHT / 2 + way * 1.5 for net, way in zip(INPUTS, (-1, 1), strict=True)}
 
 
@@ -150,8 +126,8 @@ def amplifier_plan(d: Mapping[str, Device], masks: AnalogMasks, sizes: Amplifier
     sinks = _order(SINK_ORDER, "ota.sink_{side}_{k}", "ota.diode_{side}")
     halves = []
     for k, (pair, sink) in enumerate(zip(pairs, sinks, strict=True)):
-        n, p = ((f"{row}{k}_west", *own, f"{row}{k}_east") for row, own in (("sink", sink), ("pair", pair)))
-        halves.append(plan(_row(d, n, axis), _row(d, p, axis)))
+        n, p = ((f"{kind}{k}_west", *own, f"{kind}{k}_east") for kind, own in (("sink", sink), ("pair", pair)))
+        halves.append(plan(row(d, n, axis), row(d, p, axis)))
     parts = [name for name in d if name.startswith(("ota.tail_", "ota.boost_")) and "_on" not in name]
     middle = len(parts) // 2
     tails = ("tails_west", *parts[:middle], "ota.bias_p", *parts[middle:], "tails_east")
@@ -166,9 +142,9 @@ def amplifier_plan(d: Mapping[str, Device], masks: AnalogMasks, sizes: Amplifier
     p = (*load, *(f"{name}_p" for name in switches), *(f"{name}.p" for name in gates))
     strips = (
         halves[0],
-        plan(_row(d, biases, axis, ROOM), _row(d, (*tails, *rest), axis)),
+        plan(row(d, biases, axis, ROOM), row(d, (*tails, *rest), axis)),
         halves[1],
-        plan(_row(d, n, axis), _row(d, p, axis)),
+        plan(row(d, n, axis), row(d, p, axis)),
     )
     trim = []
     for bits in (range(5, TRIM_BITS), range(5)):
@@ -218,14 +194,12 @@ def amplifier_cell(masks: AnalogMasks, sizes: AmplifierSizes) -> Cell:
     beyond = RAIL_ENDS + WELL_ENDS
     canvas.box(masks.base.outline, -beyond, 0, RIGHT + beyond, top)
     ends = tuple(one for strip in strips for one in strip.terminals)
-    return Cell(canvas.layout, canvas.cell, PINS, tuple(d.values()), terminals=ends)
+    return Cell(
+        canvas.layout, canvas.cell, PINS, tuple(d.values()), terminals=ends, matched=matched_units(), unit=sizes.unit
+    )
 
 
 def _up(canvas: Canvas, x: float, y: float) -> None:
     """From a common node's spine to the trunks' metal."""
     canvas.stack(x, y, SECOND, FOURTH)
     canvas.wire(THIRD, x - PATCH, y - 0.19, x + PATCH, y + 0.19)
-
-
-def _grid(um: float) -> float:
-    return round(um / GRID) * GRID

@@ -1,4 +1,4 @@
-"""A bank of fringe capacitors: combs of the two lowest metals between a common node and bottom nets, in common centroid.
+"""A bank of fringe capacitors, combs of the two lowest metals between a common node and others, in common centroid.
 
     bottoms   ======= ======= =======    a spine of each comb, or of each part of one; a stub to its track
                | | |   | | |   | | |     a finger of a bottom net between two of the common node: a unit
@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from talbot.pixels.layout.canvas import Canvas
 
 from .device import Strap
-from .strip import SECOND, THIRD, TRACK, TRACK_PITCH
+from .strip import FIRST, SECOND, THIRD, TRACK, TRACK_PITCH
 
 FINGERS, COLUMNS, CHANNELS = 8, 13, 6  # units of a comb; combs of a row; pairs of rows
 # Combs by channel from the south, to the middle; the others are their mirror images about the middle
@@ -33,7 +33,6 @@ COMMON, SPINE = 0.42, 0.34  # heights of spines
 FIRST_TRACK = 0.45  # of a channel's first track from the spines
 JOIN, JOIN_AWAY = 0.42, 0.60  # what joins the common spines: width, its middle from the last finger
 GRID = 0.005
-FIRST = 1
 
 Names = tuple[tuple[str, ...], ...]
 
@@ -104,11 +103,13 @@ class BankPlan:
 
 
 def tracks(channel: int) -> list[str]:
-    """Capacitors that have a track in a channel, from the south."""
-    found = {
-        part: None for row in pattern()[2 * channel : 2 * channel + 2] for comb in row for part, _ in parts(comb)
-    }
-    return sorted(found)
+    """Capacitors that have a track in a channel, from the south.
+
+    The outermost two are beside the common fingers' ends: what evens out, and bits 9 and 8 as they have units.
+    """
+    found = {part: None for row in pattern()[2 * channel : 2 * channel + 2] for comb in row for part, _ in parts(comb)}
+    last = "b8" if channel in (CHANNELS // 2 - 1, CHANNELS // 2) else "b9"
+    return ["rest", *sorted(found.keys() - {"rest", last}), last]
 
 
 @dataclass
@@ -202,7 +203,8 @@ class _Drawing:
                 for x in xs[:: 2 if count > 2 else 1]:
                     self.canvas.stack(x, self.y((spine + far) / 2), FIRST, SECOND)
                 # Stubs of facing combs beside each other
-                x = (xs[0] + xs[-1]) / 2 - up * PITCH * (2 if count == FINGERS else 0)
+                aside = -2 * up if count == FINGERS else 3 if 2 * count > FINGERS else 0
+                x = (xs[0] + xs[-1]) / 2 + PITCH * aside
                 x = round(x / GRID) * GRID
                 v = heights[name]
                 self.metal(SECOND, x - 0.16, min(v, spine + up * SPINE / 2), x + 0.16, max(v, spine + up * SPINE / 2))
