@@ -31,6 +31,12 @@ PICTURES = {
         "east, and the lines at their places.",
     ),
     "non_overlap": ("The switch drivers", "Two loops of a gate and its delays about the inverter between them."),
+    "amplifier": (
+        "The amplifier",
+        "From the south the bank of one input, half of the pair over half of the sinks, the tail's parts, the other "
+        "half, mirror and switches, the bank of the other input, the trim's switches.",
+    ),
+    "bias": ("The bias", "A pair of one to four about its middle, two halves of each output, the resistor below."),
     "adc_lanes": ("All lanes in the die's frame", "Below them the channel to the chip's pins, above the references."),
 }
 NAMES = ("analog_layout.html", *(f"{name}.png" for name in PICTURES))
@@ -50,7 +56,7 @@ def write(folder: Path, s: dict[str, Any], process: PixelProcess) -> None:
         TABLES,
         f"{s['process']}: the analog circuits drawn",
         picture=pictures[0].image,
-        about="comparator, capacitor arrays, lane; make analog-layout",
+        about="comparator, capacitor arrays, lane, amplifier, bias; make analog-layout",
         tiles=[
             Tile(str(broken), "violations of design rules", "bad" if broken else "good"),
             Tile("matches" if same else "differs", "layout against circuit", "good" if same else "bad"),

@@ -11,13 +11,13 @@ from talbot.flow.analog.row_driver import RowDriverResult, measure
 from talbot.pixels.circuits.row_driver import RowDriverSpec
 
 from .extract import Extracted
+from .row import Row
 
 STORE = BUILD / "analog-layout" / "rows"
-Figures = tuple[str, str, float, float, str, float | None, float | None]
 
 
-def rows(setup: Setup, found: Mapping[str, Extracted], workers: int) -> Iterator[Figures]:
-    """(name, unit, schematic, layout, corner, most, least) of every characteristic; found: the extracted row."""
+def rows(setup: Setup, found: Mapping[str, Extracted], workers: int) -> Iterator[Row]:
+    """Every characteristic; found: the extracted row by corner."""
     spec, jobs = RowDriverSpec.of(), list[Job]()
     for name, drawn in found.items():
         given = setup, spec, Corner.parse(name)
@@ -35,8 +35,8 @@ def rows(setup: Setup, found: Mapping[str, Extracted], workers: int) -> Iterator
             corner: str = name,
             one: RowDriverResult = schematic,
             other: RowDriverResult = layout,
-        ) -> Figures:
-            return f"row driver: {what}", unit, float(value(one)), float(value(other)), corner, most, None
+        ) -> Row:
+            return Row(f"row driver: {what}", unit, float(value(one)), float(value(other)), corner, most)
 
         yield row("wrong levels", "", lambda one: not one.right, 0.0)
         yield row("far end within 1 %", "ns", lambda one: 1e9 * one.settling, 1e9 * spec.settle)

@@ -11,7 +11,7 @@ from talbot.pixels.circuits.netlist import Circuit
 from talbot.pixels.circuits.support import SupportSpec
 
 from .extract import Extracted
-from .row_driver import Figures
+from .row import Row
 
 STORE = BUILD / "analog-layout" / "switches"
 
@@ -22,8 +22,8 @@ def gaps(setup: Setup, spec: SupportSpec, corner: Corner, circuit: Circuit | Non
     return [min(found), max(found)]
 
 
-def rows(setup: Setup, found: Mapping[str, Extracted], workers: int) -> Iterator[Figures]:
-    """(name, unit, schematic, layout, corner, most, least) of both; found: the extracted drivers by corner."""
+def rows(setup: Setup, found: Mapping[str, Extracted], workers: int) -> Iterator[Row]:
+    """Both gaps; found: the extracted drivers by corner."""
     spec, jobs = SupportSpec(), list[Job]()
     for name, drawn in found.items():
         given = setup, spec, Corner.parse(name)
@@ -32,5 +32,5 @@ def rows(setup: Setup, found: Mapping[str, Extracted], workers: int) -> Iterator
         jobs.append(Job(f"layout-{name}", gaps, (*given, drawn), (repr(given), text)))
     results = run(jobs, STORE, "switch drivers", workers)
     for name, (short, long), (drawn_short, drawn_long) in zip(found, results[::2], results[1::2], strict=True):
-        yield "switch drivers: shortest gap", "ns", 1e9 * short, 1e9 * drawn_short, name, None, 1e9 * spec.gap
-        yield "switch drivers: longest gap", "ns", 1e9 * long, 1e9 * drawn_long, name, 1e9 * spec.lost, None
+        yield Row("switch drivers: shortest gap", "ns", 1e9 * short, 1e9 * drawn_short, name, least=1e9 * spec.gap)
+        yield Row("switch drivers: longest gap", "ns", 1e9 * long, 1e9 * drawn_long, name, 1e9 * spec.lost)
