@@ -3,6 +3,8 @@
 from collections.abc import Callable, Sequence
 from typing import Any
 
+import numpy as np
+
 from talbot.base.jobs import Job, run
 from talbot.base.paths import BUILD
 from talbot.pixels.layout.pixel import PixelLayout
@@ -27,9 +29,7 @@ def curves(pixels: Sequence[PixelLayout], wavelength_um: float, note: Callable[[
         for pixel in chosen.values()
     ]
     names = "beta", "gamma_deg", "alpha"
-    return [
-        dict(zip(names, map(float, key), strict=True)) | found for key, found in zip(chosen, run(jobs, STORE, "curves"))
-    ]
+    return [dict(zip(names, map(float, key), strict=True)) | found for key, found in zip(chosen, run(jobs, STORE, "curves"))]
 
 
 def table(pdk: str, wavelength_um: float, found: Sequence[dict[str, Any]]) -> dict[str, Any]:

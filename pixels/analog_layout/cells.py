@@ -24,8 +24,8 @@ class Cell:
 
     ports: in the order of its pins. devices: its transistors in fingers. plates: its capacitors. terminals: of its
     transistors. tracks: of its nets, of a cell with one strip. taps: of its capacitors, as `Array` has them, under the
-    names of ``plates``. matched: units of ``unit`` F of fringe capacitors between two nets, in the order of their names.
-    resistors: drawn ones, and their ``ends``.
+    names of ``plates``. matched: units of ``unit`` F of fringe capacitors between two nets, in the order of their
+    names. resistors: drawn ones, and their ``ends``.
     """
 
     layout: "db.Layout"
