@@ -17,6 +17,7 @@ class DieDrc(Drc):
     inputs = {"gds": "die_gds.checked", "deck": "library.drc"}
 
     def exported(self, deck: str) -> str:
+        """The deck with taps, without those rules."""
         pdk = self.parameters.pdk
         if pdk not in PROCESSES:
             return deck
