@@ -15,6 +15,7 @@ Both sides of the pair have the same middle in every strip, and every row of par
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from talbot.models.parameters import ParameterError
 from talbot.pixels.circuits.amplifier import PINS, TRIM_BITS, AmplifierSizes, amplifier
 from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.analog import AnalogMasks
@@ -117,11 +118,15 @@ def places() -> dict[str, float]:
 
 
 def amplifier_plan(d: Mapping[str, Device], masks: AnalogMasks, sizes: AmplifierSizes) -> AmplifierPlan:
-    """Where everything of an amplifier is."""
+    """Where everything of an amplifier is. Raises ParameterError where a row is too long."""
     at, axis = places(), RIGHT / 2
 
     def plan(n: tuple[Placed, ...], p: tuple[Placed, ...]) -> Plan:
         present = {net for one in (*n, *p) for net in one.device.transistor.nodes}
+        for row_end, first in ((one[-1].high, one[0].device.transistor.name) for one in (n, p)):
+            if row_end > RIGHT:
+                long = 2 * row_end - RIGHT
+                raise ParameterError(f"row of {first} = {long:.1f} um: must be {RIGHT:g} um at the most")
         return Plan(n, p, 0.0, RIGHT, {net: (x,) for net, x in at.items() if net in present})
 
     pairs = _order(PAIR_ORDER, "ota.in{side}_{k}", "ota.in{side}_steer_{k}")

@@ -104,6 +104,16 @@ def test_all_transistors_of_the_circuit_are_drawn_with_their_sizes():
         assert d[t.name].transistor == t
 
 
+@pytest.mark.parametrize("load", [2e-12, 4e-12])
+def test_amplifiers_of_other_loads_are_drawn_too_and_one_that_is_too_long_is_named(load):
+    sizes = size(AmplifierSpec(), load, analog)
+    plan = amplifier_plan(devices(sizes), MASKS, sizes)
+    assert sum(len(strip.p) for strip in plan.strips) > 40
+    large = size(AmplifierSpec(), 8e-12, analog)
+    with pytest.raises(ParameterError, match="row of pair0_west = 1"):
+        amplifier_plan(devices(large), MASKS, large)
+
+
 def test_a_finger_has_a_unit_and_a_senseless_unit_is_refused():
     length = MASKS.finger_um(SIZES.unit)
     assert length * MASKS.fringe_um + MASKS.fringe_end == pytest.approx(SIZES.unit * 1e15, rel=0.002)
