@@ -21,7 +21,7 @@ class AnalogMasks:
     mim_area, mim_edge: fF/um2, fF/um. fringe_um: fF for a um of a finger of the two lowest metals between two others,
     typical. fringe_end: fF of its end. fringe_share: what such fingers have, of what rays give. deck_mim: its device in
     LVS. resistor: mask over the body of a resistor of n+ diffusion of ``sheet_ohm``, typical. deck_resistor: its device
-    in LVS. rules, lvs: what the decks of PDKMaster lack.
+    in LVS. rules, thick (of thick oxide), lvs: what the decks of PDKMaster lack.
     contradicted: rules of its deck that are left out. connections: lines of its deck of LVS and what replaces them.
     """
 
@@ -41,6 +41,7 @@ class AnalogMasks:
     sheet_ohm: float
     deck_resistor: str
     rules: Path
+    thick: Path
     lvs: Path
     contradicted: tuple[str, ...]
     connections: Mapping[str, str]

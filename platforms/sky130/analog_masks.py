@@ -35,6 +35,7 @@ MASKS = AnalogMasks(
     sheet_ohm=RESISTOR_TYPICAL,
     deck_resistor="sky130_fd_pr__res_generic_nd",
     rules=Path(__file__).with_name("analog.drc"),
+    thick=Path(__file__).with_name("thick.drc"),
     lvs=Path(__file__).with_name("analog.lvs"),
     contradicted=("(nsdm&lvtn) empty", "(psdm&lvtn) empty"),
     connections={"connect(m3, via3)": "via3_beside = via3 - capm\nconnect(m3, via3_beside)\nconnect(via3_beside, m4)"},
