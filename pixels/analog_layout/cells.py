@@ -21,9 +21,9 @@ MARGIN = 2.0  # of a cell beyond its rails, um
 @dataclass(frozen=True)
 class Cell:
     """A drawn cell. ports: in the order of its pins. devices: its transistors in fingers. plates: its capacitors.
-    terminals: of its transistors. tracks: of its nets, of a cell with one strip. taps: of its capacitors, as `Array` has
-    them, under the names of ``plates``. matched: units of ``unit`` F of fringe capacitors between two nets, in the order
-    of their names. resistors: drawn ones, and their ``ends``."""
+    terminals: of its transistors. tracks: of its nets, of a cell with one strip. taps: of its capacitors, as `Array`
+    has them, under the names of ``plates``. matched: units of ``unit`` F of fringe capacitors between two nets, in the
+    order of their names. resistors: drawn ones, and their ``ends``."""
 
     layout: "db.Layout"
     cell: "db.Cell"
