@@ -104,7 +104,7 @@ analog: $(LAYOUT_READY) have-tools  ## the analog circuits in ngspice and their 
 	@$(talbot) analog
 
 .PHONY: analog-layout
-analog-layout: $(LAYOUT_READY) have-tools  ## comparator, capacitor arrays and lane drawn: DRC, LVS, extracted, measured beside the schematic: build/analog-layout/<pdk>/analog_layout.html [CORNERS=quick]
+analog-layout: $(LAYOUT_READY) have-tools  ## comparator, capacitor arrays, lane, amplifier and bias drawn: DRC, LVS, extracted, measured beside the schematic: build/analog-layout/<pdk>/analog_layout.html [CORNERS=quick]
 	@$(talbot) analog-layout
 
 .PHONY: polar
