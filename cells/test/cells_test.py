@@ -239,5 +239,5 @@ def _sta(path, folder):
 
 
 def _silent(command):
-    result = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    result = subprocess.run(command, capture_output=True, text=True, timeout=400, check=False)
     assert (result.returncode, result.stdout.strip(), result.stderr.strip()) == (0, "", "")

@@ -14,7 +14,8 @@ from .build import Build
 FRAME = Path(__file__).parent
 
 # No fused multiply-add: the front end's arithmetic must round as NumPy's does, on every processor.
-CXX_FLAGS = ("-O2", "-ffp-contract=off", "-DVL_FREAD_I=read_words")
+CXX_FLAGS = ("-O2", "-ffp-contract=off")
+READS = ("-DVL_FREAD_I=read_words",)  # $fread of the bench is main.cpp's own
 PACKED = ("zlib.h", "lz4.h")  # headers of what packs an FST
 VERILATOR_FLAGS = (*FAST, "-fno-split", "--output-split", "0", "-Wno-fatal")
 
@@ -26,7 +27,7 @@ def bench_program(build: Build, note: Callable[[str], None] = lambda text: None)
     """
     options = [*build.parameters("-G"), *([f"--trace-{build.waves}"] if build.waves else [])]
     sources = [PACKAGE / "pixels" / "afe.sv", FRAME / "bench.sv"]
-    return program_of(build, "Bench", options, sources, FRAME / "main.cpp", note)
+    return program_of(build, "Bench", options, sources, FRAME / "main.cpp", note, READS)
 
 
 def bare_program(
