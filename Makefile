@@ -243,7 +243,7 @@ bench: $(TESTS_READY)  ## speed and memory (pytest-benchmark)
 	@$(PY) -m pytest --benchmark-only --benchmark-disable-gc -p no:xdist -o python_files='*_bench_test.py' -vv --durations=0
 
 .PHONY: cells
-cells: $(LAYOUT_READY) have-tools  ## a cell library from transistors: build/cells/<LIB>/<CORNER>.lib
+cells: $(LAYOUT_READY) have-tools  ## a cell library from transistors: build/cells/<LIB>/<corner>.lib [CORNERS=tt_025C_1v80,ff_n40C_1v95]
 	@$(talbot) cells
 
 .PHONY: cells-report
