@@ -16,7 +16,8 @@ class AnalogMasks:
 
     base: what pixels are drawn with. low_threshold: mask over the gates of the roles in ``low``. models: name of the
     device in LVS by role. mim: mask of the capacitor's upper plate, over metal ``mim_metal`` of ``base.metals``.
-    mim_area, mim_edge: fF/um2, fF/um. deck_mim: its device in LVS. rules, lvs: what the decks of PDKMaster lack.
+    mim_area, mim_edge: fF/um2, fF/um. deck_mim: its device in LVS. rules, thick (of thick oxide), lvs:
+    what the decks of PDKMaster lack.
     contradicted: rules of its deck that are left out. connections: lines of its deck of LVS and what replaces them.
     """
 
@@ -30,6 +31,7 @@ class AnalogMasks:
     mim_edge: float
     deck_mim: str
     rules: Path
+    thick: Path
     lvs: Path
     contradicted: tuple[str, ...]
     connections: Mapping[str, str]

@@ -12,7 +12,7 @@ from talbot.platforms.analog import AnalogMasks
 
 from . import flat
 from .comparator import comparator_plans, devices, draw_comparator, least_half
-from .device import Device
+from .device import Device, Strap
 from .strip import RAIL_ENDS, THIRD, Strip, Terminal, join_rails
 
 MARGIN = 2.0  # of a cell beyond its rails, um
@@ -21,7 +21,7 @@ MARGIN = 2.0  # of a cell beyond its rails, um
 @dataclass(frozen=True)
 class Cell:
     """A drawn cell. ports: in the order of its pins. devices: its transistors in fingers. plates: its capacitors.
-    terminals: of its transistors. taps: of its capacitors, as `Array` has them, under the names of ``plates``."""
+    terminals: of its transistors. tracks: of its nets, of a cell with one strip. taps: of its capacitors, as `Array` has them, under the names of ``plates``."""
 
     layout: "db.Layout"
     cell: "db.Cell"
@@ -30,6 +30,7 @@ class Cell:
     plates: tuple[flat.Plate, ...] = ()
     terminals: tuple[Terminal, ...] = ()
     taps: tuple[flat.Tap, ...] = ()
+    tracks: tuple[Strap, ...] = ()
 
     @property
     def transistors(self) -> list[Transistor]:

@@ -26,6 +26,7 @@ MASKS = AnalogMasks(
     mim_edge=0.19,
     deck_mim="sky130_fd_pr__cap_mim_m3_1",
     rules=Path(__file__).with_name("analog.drc"),
+    thick=Path(__file__).with_name("thick.drc"),
     lvs=Path(__file__).with_name("analog.lvs"),
     contradicted=("(nsdm&lvtn) empty", "(psdm&lvtn) empty"),
     connections={"connect(m3, via3)": "via3_beside = via3 - capm\nconnect(m3, via3_beside)\nconnect(via3_beside, m4)"},
