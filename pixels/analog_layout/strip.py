@@ -32,7 +32,7 @@ WELL_ENDS = 0.50  # of the well beyond its taps
 RAIL_ENDS, RAIL_AT, RAIL_TRUNK = 1.7, 1.0, 1.0  # of a rail beyond the tracks; what joins rails: from there, its width
 TRUNK = 0.5  # um, of a net from strip to strip
 SPLIT, CROSS = 0.2, 0.9  # of the axis from the halves of tracks
-SECOND, THIRD, FOURTH = 2, 3, 4
+FIRST, SECOND, THIRD, FOURTH = 1, 2, 3, 4
 TRIES = 60
 
 
