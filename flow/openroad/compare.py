@@ -25,27 +25,31 @@ def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot openroad-compare`."""
     parser.add_argument("designs", nargs="*", default=DESIGNS, metavar="DESIGN", help="designs that are laid out")
     parser.add_argument("--out", type=Path, default=RESULTS / "layout", help="folder of the layouts")
-    parser.add_argument("--document", type=Path, help="also put the table between the marks of this file")
+    parser.add_argument(
+        "--document", type=Path, help="also put the table between the marks of this file; rows of layouts not here stay"
+    )
 
 
 def run(options: Namespace) -> int:
     """Print the table of the designs' summaries; a back end that has not run has none of the figures."""
-    text = table([design(name).name for name in options.designs], options.out)
+    before = options.document.read_text() if options.document else ""
+    text = table([design(name).name for name in options.designs], options.out, before)
     if options.document:
         insert(options.document, "back ends", text)
     print(text)
     return 0
 
 
-def table(names: Sequence[str], out: Path) -> str:
-    """The table in Markdown."""
+def table(names: Sequence[str], out: Path, before: str = "") -> str:
+    """The table in Markdown. before: one of earlier, whose rows stay where a layout is not in ``out``."""
     columns = HEAD.count("|") + 1
     lines = [f"| {HEAD} |", "|---" * 2 + "|---:" * (columns - 2) + "|"]
     for name in names:
         for backend, folder in (("embedded", name), ("OpenROAD", f"{name}-openroad")):
-            path = out / folder / "summary.json"
+            first, path = f"| {name} | {backend} |", out / folder / "summary.json"
             cells = row(json.loads(path.read_text())) if path.is_file() else [NOT_RUN] + [""] * (columns - 3)
-            lines.append(f"| {' | '.join([name, backend, *cells])} |")
+            kept = [] if path.is_file() else [line for line in before.splitlines() if line.startswith(first)]
+            lines.append(kept[0] if kept else f"{first} {' | '.join(cells)} |")
     return "\n".join(lines)
 
 

@@ -274,6 +274,19 @@ def test_constraints_and_timing_script_in_opensta(pdk, tmp_path):
     assert (folder / f"nom.{CORNERS[0]}.sdf").exists()
 
 
+@needs_yosys
+@needs_cells
+def test_models_are_there_for_cells_that_repair_removed(pdk, tmp_path):
+    netlist = "module top (a, y); input a; output y; wire b; {} endmodule\n"
+    inverter = "sky130_fd_sc_hd__inv_1 {} (.A({}), .Y({}));"
+    both = inverter.format("u", "a", "b") + inverter.format("v", "b", "y").replace("inv_1", "inv_2")
+    (tmp_path / "netlist.v").write_text(netlist.format(both))
+    (tmp_path / "final.v").write_text(netlist.format(inverter.format("u", "a", "y")))
+    chosen = replace(design("quad_divider"), top="top")
+    models = given(chosen, KNOWN, pdk, tmp_path, (10.0, 10.0))["sdc"].with_name("cells.v").read_text()
+    assert all(f"module sky130_fd_sc_hd__inv_{size}(" in models for size in (1, 2))
+
+
 def test_sdc_says_what_the_design_says():
     text = sdc(design("quad_divider"), propagated=False)
     assert "create_clock -name clk -period 20 " in text and "set_propagated_clock" not in text

@@ -1,0 +1,33 @@
+"""The table of both back ends."""
+
+import json
+
+from talbot.base.command import main
+from talbot.flow.openroad import compare
+
+SUMMARY = {
+    "backend": "embedded",
+    "wns_ns": {"ss": 1.0, "tt": 2.0},
+    "whs_ns": {"ss": 0.3, "tt": 0.1},
+    "power_uw": {"tt": 29.0},
+    "wall_s": {"route": 600.0, "sta": 37.4},
+    "peak_mib": {"route": 405},
+} | dict.fromkeys(("area_um2", "cells", "cell_area_um2", "f_max_mhz", "wire_um", "wire_pf"), 5000)
+
+
+def test_a_row_stays_where_its_layout_is_not_there(tmp_path, capsys):
+    document, folder = tmp_path / "README.md", tmp_path / "layout" / "quad_divider"
+    rows = "| quad_divider | OpenROAD | 7 |\n| quad_divider | embedded | 8 |\n"
+    document.write_text(f"<!-- back ends -->\n\n{rows}\n<!-- end of back ends -->\n")
+    folder.mkdir(parents=True)
+    (folder / "summary.json").write_text(json.dumps(SUMMARY))
+    line = ["quad_divider", "amp_ctrl", "--out", str(folder.parent)]
+    assert main(compare, [*line, "--document", str(document)]) == 0
+    written = document.read_text().splitlines()
+    assert written[0] == "<!-- back ends -->" and "| quad_divider | OpenROAD | 7 |" in written
+    (measured,) = [text for text in written if text.startswith("| quad_divider | embedded |")]
+    assert "| 0.0050 | 5,000 |" in measured and "| +1.00, +0.10 | 29 |" in measured and "| 637 | 405 |" in measured
+    assert sum("| amp_ctrl | " in text and "| not run |" in text for text in written) == 2
+    capsys.readouterr()
+    assert main(compare, line) == 0  # of no document nothing is known
+    assert "| quad_divider | OpenROAD | not run |" in capsys.readouterr().out
