@@ -101,17 +101,19 @@ def lines(normal: float, period: float, fill: float, least_width: float, least_s
     return replace(made, pitch=pitch)
 
 
-def polygons(made: Lines, window: Box, shift: float) -> Iterator[list[Point]]:
+def polygons(made: Lines, window: Box, shift: float, origin: Point | None = None) -> Iterator[list[Point]]:
     """Corners of every line in ``window``, a rectangle each, of at least three widths.
 
-    shift: of the middle of a line from the window's middle, in periods along the normal.
+    shift: of the middle of a line from ``origin``, in periods along the normal. origin: None: the window's middle.
     """
     left, bottom, right, top = window
     (p, q), (side_x, side_y) = made.direction, made.side
-    middle_x, middle_y = (left + right - side_x) / 2, (bottom + top - side_y) / 2
+    centre_x, centre_y = ((left + right) / 2, (bottom + top) / 2) if origin is None else origin
+    middle_x, middle_y = centre_x - side_x / 2, centre_y - side_y / 2
     at = made.along_axis(shift)
     x0, y0 = round(middle_x + (0 if made.upright else at)), round(middle_y + (at if made.upright else 0))
-    reach = ceil((right - left + top - bottom) / made.pitch) + 2
+    away = abs(centre_x - left) + abs(centre_x - right) + abs(centre_y - bottom) + abs(centre_y - top)
+    reach = ceil(away / made.pitch) + 2
     for k in range(-reach, reach + 1):
         x, y = (x0, y0 + k * made.pitch) if made.upright else (x0 + k * made.pitch, y0)
         spans = [_span(x, p, left - min(side_x, 0), right - max(side_x, 0))]

@@ -1,12 +1,12 @@
 """One pixel drawn: two photodiodes under the gratings of its type, and the transistors that read them.
 
-    +------------------+------------------+   Each half has an n well as photodiode, under a grating over an analyzer
-    | well a   bar     |  well b      bar |   that is half a period farther on in the other half. Bars of the upper
-    | analyzer  |      |  analyzer     |  |   grating's metal keep light from what is between the wells; the supply's
-    | grating   |      |  grating      |  |   plate on the metal below keeps it from the transistors. Columns and supply
-    +-----------+------+---------------+--+   run up between the two halves, rows across the strip of transistors.
-    | reset follower select   (mirrored)  |
-    +-------------------------------------+
+    +------------------+------------------+   One grating lies over both halves: light that walks from one into the
+    |b    g r a t      | i n g           b|   other meets there what an endless grating would give. Each half has an
+    |a  analyzer  fr-  | -ame  analyzer  a|   n well as photodiode under an analyzer, which is half a period farther
+    |r  well a         |       well b    r|   on in the other half. A frame on the rows' metal passes to a well only
+    +------------------+------------------+   what comes through its analyzer; bars on the upper grating's metal lie
+    | reset follower select   (mirrored)  |   between pixels, the supply's plate over the transistors. Columns and
+    +-------------------------------------+   supply run up between the halves, rows across the strip of transistors.
 
 The n well, and not n+ in the substrate: it has a fifteenth of the capacitance of an area and half of that of the whole
 diode, and its junction is deep where green and red light are absorbed (silicon: 1.1 um at 550 nm).
@@ -27,12 +27,18 @@ from talbot.platforms.pixel import PixelProcess, pixel_process
 
 from .canvas import Canvas
 from .circuit import Circuit, circuit
-from .gratings import Lines, lines, polygons
+from .gratings import Lines, Point, lines, polygons
 
+UPPER, COLUMNS, PLATES, ROWS_ON = 4, 2, 3, 1  # metals by their place in the process's table
 # um. Of the wells: half of the space between two, the strip of transistors below, the space to the next pixel's strip
 BESIDE, STRIP, ABOVE = 0.65, 2.95, 0.05
-WINDOW_BESIDE, WINDOW_BELOW, WINDOW_ABOVE = 0.75, 3.05, 0.15  # of the gratings, from the half's edges
-BAR, SHIELD = 0.45, (0.2, 1.3)  # half a bar's width; bottom and top of what joins the bars
+BAR, SHIELD = 0.45, (0.2, 1.3)  # least of half a bar's width; bottom and top of what joins the bars
+GRATING = 1.7, 9.8  # bottom and top of the upper grating
+OPENING = 0.7, 4.27, 3.1, 9.75  # of the frame in the western half: left, right, bottom, top
+REACH = 0.6, 4.35, 3.0, 9.85  # of analyzers on the frame's metal, whose lines end in it
+BELOW = 0.6, 4.26, 2.8, 9.95  # of analyzers on the columns' metal, over the frame
+FRAME = 2.8  # bottom of the frame
+BESIDE_WIDE = {UPPER: 0.4, ROWS_ON: 0.28}  # space to metal wider than 1.5 um
 PLATE = 0.45, 2.70  # bottom and top of the supply's plate
 RESET_Y, READ_Y, LINE = 0.5, 2.38, 0.2  # the rows' lines: middles and width
 COLUMN = 0.5  # of the columns' lines from the pixel's middle
@@ -41,7 +47,6 @@ IMPLANT, TAP, TAP_TALL = 0.125, 0.36, 0.42  # around diffusion; a tap's width an
 TAP_Y = 3.40
 END = 0.165  # of poly beyond the middle of a contact
 LEAST_PITCH = 10.0
-UPPER, COLUMNS, PLATES, ROWS_ON = 4, 2, 3, 1  # metals by their place in the process's table
 
 
 @dataclass(frozen=True)
@@ -163,18 +168,59 @@ def draw(layout: "db.Layout", made: PixelLayout) -> Canvas:
     return canvas
 
 
-def grating_polygons(made: PixelLayout) -> Iterator[tuple[int, list[tuple[int, int]]]]:
-    """(metal, corners in steps of the grid) of every line of both halves' gratings."""
+def grating_polygons(made: PixelLayout) -> Iterator[tuple[int, list[Point]]]:
+    """(metal, corners in steps of the grid) of every line: of the upper grating, then of both halves' analyzers."""
+    for level, _, polygons_of in _gratings(made):
+        for corners in polygons_of:
+            yield level, corners
+
+
+def openings(made: PixelLayout) -> Iterator[tuple[int, tuple[float, float, float, float]]]:
+    """(metal, box in um) of every opening that light has: between the bars, and of the frame over each well.
+
+    Upright and level lines continue in the edges beside them: the space to these is that of two lines, or the least to
+    wide metal.
+    """
+    grid, pitch = made.process.grid_um, made.geometry.pitch_um
+    upright, flat = (abs(of(made.kind.gamma)) < 1e-9 for of in (np.sin, np.cos))
+    left, right, bottom, top = OPENING
+    nominal = [(BAR, 0.0, pitch - BAR, pitch)]
+    nominal += [(x, bottom, y, top) for x, y in ((left, right), (pitch - right, pitch - left))]
+    for (level, of, polygons_of), box in zip(_gratings(made), nominal, strict=True):
+        axis = 0 if upright else 1
+        if level == UPPER and upright or level == ROWS_ON and (upright or flat):
+            places = [corner[axis] for corners in polygons_of for corner in corners]
+            space = max(of.pitch - of.width, round(BESIDE_WIDE[level] / grid))  # of a direction of length 1
+            aligned = list(box)
+            aligned[axis], aligned[axis + 2] = grid * (min(places) - space), grid * (max(places) + space)
+            box = (aligned[0], aligned[1], aligned[2], aligned[3])
+        yield (UPPER if level == UPPER else ROWS_ON), box
+
+
+def _gratings(made: PixelLayout) -> Iterator[tuple[int, Lines, list[list[Point]]]]:
+    """(metal, grating, its lines) of the upper grating and of the analyzer of each half, of one origin."""
     g, grid = made.geometry, made.process.grid_um
-    half = g.pitch_um / 2
-    for side, diode in enumerate(made.diodes):
-        left, right = side * half + WINDOW_BESIDE, (side + 1) * half - WINDOW_BESIDE
-        edges = (left, WINDOW_BELOW, right, g.pitch_um - WINDOW_ABOVE)
-        west, south, east, north = (round(edge / grid) for edge in edges)
-        shifts = 0.0, g.shift + QUADRATURE[diode]
-        for name, of, shift in zip((g.diffraction, g.analyzer), made.gratings(), shifts, strict=True):
-            for corners in polygons(of, (west, south, east, north), shift):
-                yield made.process.level(name or ""), corners
+    pitch, (upper, lower) = g.pitch_um, made.gratings()
+    upright, flat = (abs(of(made.kind.gamma)) < 1e-9 for of in (np.sin, np.cos))
+    origin = round(pitch / 2 / grid), round(sum(GRATING) / 2 / grid)
+
+    def within(of: Lines, box: tuple[float, float, float, float], shift: float) -> list[list[Point]]:
+        west, south, east, north = (round(edge / grid) for edge in box)
+        return [*polygons(of, (west, south, east, north), shift, origin)]
+
+    beside = BAR + (max(grid * (upper.pitch - upper.width), BESIDE_WIDE[UPPER]) if upright else BESIDE_WIDE[UPPER])
+    yield UPPER, upper, within(upper, (beside, GRATING[0], pitch - beside, GRATING[1]), 0.0)
+    level, least = made.process.level(g.analyzer or ""), BESIDE_WIDE[ROWS_ON]
+    if level != ROWS_ON:
+        left, right, bottom, top = BELOW
+    elif upright or flat:
+        space = max(grid * (lower.pitch - lower.width), least)
+        x, y = (space, 0.0) if upright else (0.0, space)
+        left, right, bottom, top = REACH[0] + x, REACH[1] - x, REACH[2] + y, REACH[3] - y
+    else:
+        left, right, bottom, top = OPENING[0] + least, OPENING[1] - least, OPENING[2] + least, OPENING[3] - least
+    for diode, (west, east) in zip(made.diodes, ((left, right), (pitch - right, pitch - left)), strict=True):
+        yield level, lower, within(lower, (west, bottom, east, top), g.shift + QUADRATURE[diode])
 
 
 def _diode(canvas: Canvas, made: PixelLayout) -> None:
@@ -249,10 +295,21 @@ def _lines(canvas: Canvas, made: PixelLayout) -> None:
 
 def _ground(canvas: Canvas, made: PixelLayout) -> None:
     """The light shield, which is the ground's mesh, and the tap of the substrate below it."""
-    pitch, upper = made.geometry.pitch_um, made.process.metals[UPPER].gds
-    for left, right in ((0, BAR), (pitch / 2 - BAR, pitch / 2 + BAR), (pitch - BAR, pitch)):
-        canvas.box(upper, left, 0, right, pitch)
-    canvas.box(upper, 0, SHIELD[0], pitch, SHIELD[1])
+    pitch = made.geometry.pitch_um
+    bars, *frame = (box for _, box in openings(made))
+    for left, right in ((0, BAR), (pitch - BAR, pitch)):
+        canvas.wire(UPPER, left, 0, right, pitch)
+    for left, right in ((0, bars[0]), (bars[2], pitch)):
+        canvas.wire(UPPER, left, SHIELD[0], right, GRATING[1])
+    canvas.wire(UPPER, 0, SHIELD[0], pitch, SHIELD[1])
+    for (left, bottom, right, top), (west, east) in zip(frame, ((0, pitch / 2), (pitch / 2, pitch)), strict=True):
+        for box in (
+            (west, FRAME, left, pitch),
+            (right, FRAME, east, pitch),
+            (west, FRAME, east, bottom),
+            (west, top, east, pitch),
+        ):
+            canvas.wire(ROWS_ON, *box)
     canvas.label(UPPER, "vssa", LINE, LINE / 2)
     x = 0.25
     _tap(canvas, made.process.pplus, x, TAP_Y)

@@ -12,13 +12,17 @@ QUADRATURE = 0.0, 0.25, 0.5, 0.75  # of a period: alpha = 0, pi/2, pi and 3 pi/2
 
 @dataclass(frozen=True)
 class Slab:
-    """A layer: its permittivity and thickness in um; with lines, their permittivity, share and number in a period."""
+    """A layer: its permittivity and thickness in um; with lines, their permittivity, share and number in a period.
+
+    spans: lines of any widths at any places, (left, right) in periods, in place of even ones.
+    """
 
     medium: complex
     thickness_um: float
     line: complex | None = None
     fill: float = 0.0
     lines: int = 1
+    spans: tuple[tuple[float, float], ...] | None = None
 
 
 @dataclass(frozen=True)
@@ -96,7 +100,7 @@ class PixelGeometry:
 
     def layers(self, wavelength_um: float) -> tuple[list[Slab], list[Slab]]:
         """Layers from the air down, cut above the analyzer; without one all are in the first. Raises ParameterError."""
-        cut = _Cutter(self.stack, wavelength_um)
+        cut = Cutter(self.stack, wavelength_um)
         upper = cut.grating("diffraction", self.diffraction, self.fill)
         if self.analyzer is None:
             return upper + cut.down_to(cut.stack.surface_um), []
@@ -106,7 +110,7 @@ class PixelGeometry:
         )
 
 
-class _Cutter:
+class Cutter:
     """The stack from the top down, cut at the faces of gratings."""
 
     def __init__(self, stack: OpticalStack, wavelength_um: float) -> None:
@@ -124,7 +128,14 @@ class _Cutter:
         self.at = min(self.at, height_um)
         return out
 
-    def grating(self, field: str, name: str, fill: float, lines: int = 1) -> list[Slab]:
+    def grating(
+        self,
+        field: str,
+        name: str,
+        fill: float,
+        lines: int = 1,
+        spans: tuple[tuple[float, float], ...] | None = None,
+    ) -> list[Slab]:
         """Films above a metal, and its lines. Raises ParameterError for one that is not inside one film."""
         metal = self.stack.metal(field, name)
         bottoms = [0.0, *(film.top_um for film in self.stack.films[:-1])]
@@ -138,7 +149,7 @@ class _Cutter:
         out = self.down_to(metal.top_um)
         line, medium = self._permittivity(metal.material), self._permittivity(around[0])
         self.at = metal.bottom_um
-        return [*out, Slab(medium, metal.thickness_um, line, fill, lines)]
+        return [*out, Slab(medium, metal.thickness_um, line, fill, lines, spans)]
 
     def _permittivity(self, material: str) -> complex:
         return complex(refractive_index(material, self.wavelength_um) ** 2)

@@ -9,18 +9,17 @@ fields that are even and odd in z, two linear systems, with no matrix of a thick
 import numpy as np
 import numpy.typing as npt
 
+from .geometry import Slab
 from .scattering import Complexes, Orders, Scattering, admittance, normal_wave, spread
 
 
-def grating(
-    line: complex, medium: complex, fill: float, thickness: float, orders: Orders, lines: int = 1
-) -> Scattering:
-    """Scattering of lines of permittivity ``line`` in ``medium``, a share ``fill`` of the period, one centred at x = 0.
+def grating(slab: Slab, thickness: float, orders: Orders) -> Scattering:
+    """Scattering of a layer's lines; even ones have one centred at x = 0.
 
-    thickness: as all lengths in `scattering`. lines: in a period, evenly spaced. Matrices (..., cN, cN).
+    thickness: as all lengths in `scattering`. Matrices (..., cN, cN).
     """
-    q, electric, magnetic = _modes(line, medium, fill, orders, lines)
-    _, outside = admittance(medium, orders)
+    q, electric, magnetic = _modes(slab, orders)
+    _, outside = admittance(slab.medium, orders)
     magnetic = spread(np.linalg.inv(outside)) @ magnetic  # as the electric field that has it outside
     through = np.exp(1j * q * thickness)[..., None, :]
     one = np.eye(q.shape[-1])
@@ -44,24 +43,30 @@ def _reflected(electric: Complexes, magnetic: Complexes) -> Complexes:
     return 2 * np.linalg.solve(both.swapaxes(-1, -2), electric.swapaxes(-1, -2)).swapaxes(-1, -2)
 
 
-def _toeplitz(line: complex, medium: complex, fill: float, count: int, lines: int) -> npt.NDArray[np.complex128]:
+def _toeplitz(slab: Slab, line: complex, medium: complex, count: int) -> npt.NDArray[np.complex128]:
     """Fourier coefficients of a property of lines and medium, as a matrix over orders."""
     m = np.subtract.outer(np.arange(count), np.arange(count))
-    return medium * (m == 0) + (line - medium) * fill * np.sinc(m / lines * fill) * (m % lines == 0)
+    if slab.spans is None:
+        share = slab.fill * np.sinc(m / slab.lines * slab.fill) * (m % slab.lines == 0)
+    else:
+        share = np.zeros((count, count), complex)
+        for low, high in slab.spans:
+            share += (high - low) * np.sinc(m * (high - low)) * np.exp(-1j * np.pi * m * (low + high))
+    return medium * (m == 0) + (line - medium) * share
 
 
-def _modes(
-    line: complex, medium: complex, fill: float, orders: Orders, lines: int
-) -> tuple[Complexes, Complexes, Complexes]:
+def _modes(slab: Slab, orders: Orders) -> tuple[Complexes, Complexes, Complexes]:
     """Modes of the lines: wave numbers (..., M), and E and H of each (..., cN, M) as it falls."""
+    line, medium = slab.line, slab.medium
+    assert line is not None
     kx, ky, count = orders.kx, orders.ky, orders.kx.shape[-1]
-    direct = _toeplitz(line, medium, fill, count, lines)
+    direct = _toeplitz(slab, line, medium, count)
     te = tm = None
     if orders.polarization != "tm":
         squares, fields = np.linalg.eig(direct - _diagonal(kx**2))
         te = normal_wave(squares - ky**2), squares, fields
     if orders.polarization != "te":
-        inverse = _toeplitz(1 / line, 1 / medium, fill, count, lines)
+        inverse = _toeplitz(slab, 1 / line, 1 / medium, count)
         across = kx[..., :, None] * np.linalg.inv(direct) * kx[..., None, :]
         squares, fields = np.linalg.eig(np.linalg.solve(inverse, np.eye(count) - across))
         tm = normal_wave(squares - ky**2), squares, fields, inverse @ fields * squares[..., None, :]

@@ -173,7 +173,7 @@ def scatter(slabs: Sequence[Slab], above: complex, below: complex, orders: Order
             continue
         close(slab.medium)
         assert whole is not None
-        whole = whole.over(grating(slab.line, slab.medium, slab.fill, wave * slab.thickness_um, orders, slab.lines))
+        whole = whole.over(grating(slab, wave * slab.thickness_um, orders))
         run = [(slab.medium, 0.0)]
     close(below)
     assert whole is not None
