@@ -19,6 +19,11 @@ settings.register_profile("seeded", settings.get_profile("first"), derandomize=F
 settings.register_profile("smallest", deadline=None, phases=list(Phase))
 settings.load_profile("first")
 
+# A worker has one core: with a thread a core, threads of NumPy's BLAS wait, busily, for those of other workers (NumPy,
+# which reads this, is not imported yet). Results are those of one thread on any machine, too.
+for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"):
+    os.environ.setdefault(name, "1")
+
 # These draw and read layouts: KLayout's Python module comes with the environment of cells and layouts
 LAYOUTS = "talbot/cells/extract", "talbot/cells/compact", "talbot/cells/lef", "talbot/cells/test"
 PACKAGE = Path(__file__).parent / "talbot"

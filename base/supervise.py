@@ -21,6 +21,7 @@ RUN = "TALBOT_RUN"  # the environment's name of the run's folder: temporary file
 WRITTEN, LOCK = "written", "lock"
 ENDS = signal.SIGINT, signal.SIGTERM, signal.SIGHUP
 SET_CHILD_SUBREAPER = 36  # linux/prctl.h: processes whose parent ended become this one's
+M_TRIM_THRESHOLD, M_MMAP_THRESHOLD = -1, -3  # malloc.h
 PATIENCE = 10.0  # s that files may take to appear
 
 
@@ -45,6 +46,7 @@ def supervised(program: Callable[[], int]) -> int:
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {*ENDS, signal.SIGCHLD})
         os.environ |= {RUN: str(folder), "TMPDIR": str(folder)}
         tempfile.tempdir = None
+        keep_freed_memory()
         return program()
     number, status = _end_of(child, ends)
     if number:
@@ -57,6 +59,17 @@ def supervised(program: Callable[[], int]) -> int:
         print(f"{clear}talbot: error: {line}; nothing was left half-written", file=sys.stderr)
     shutil.rmtree(folder, ignore_errors=True)
     return 128 + number if number else status
+
+
+def keep_freed_memory() -> None:
+    """Let this process use memory again that it freed, up to 256 MB, instead of asking the kernel for clean pages.
+
+    A third of the time of work on arrays of some MB. Where the C library is not glibc nothing changes.
+    """
+    with contextlib.suppress(AttributeError):
+        change = ctypes.CDLL(None).mallopt
+        change(M_MMAP_THRESHOLD, 32 << 20)  # the largest that glibc takes
+        change(M_TRIM_THRESHOLD, 256 << 20)
 
 
 def _passed_on(parent: int) -> Callable[[int, object], None]:

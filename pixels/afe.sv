@@ -37,7 +37,7 @@ module `AFE #(
   // ---- files ----
   reg [63:0] samples[0:TAPS*FRAME-1];
   reg [63:0] words[0:WORDS-1];
-  real gain, noise_scale, ktc_scale;
+  real gain, noise_scale, ktc_scale, noise_most;         // noise_most: of a decision, LSB
   real bend[0:3];                                       // LSB that the amplifier adds, times 1, x, x^2, x^3
   reg [31:0] key;
   reg noisy;
@@ -59,6 +59,7 @@ module `AFE #(
     gain = $bitstoreal(words[0]);
     noise_scale = $bitstoreal(words[1]);
     ktc_scale = $bitstoreal(words[2]);
+    noise_most = noise_scale * 510.0;
     for (int i = 0; i < 4; i++) bend[i] = $bitstoreal(words[4+i]);
     exposures = 32'd0;
     key = mix(words[3][31:0]);
@@ -95,12 +96,21 @@ module `AFE #(
     end
   endfunction
 
-  reg [3:0] next_decision;
+  reg [3:0] decision;                                   // since the hold
+  initial decision = 4'd0;
   always @(posedge clk)
-    if (noisy) begin
-      if (hold) next_decision <= 4'd1;
-      else if (next_decision != KTC - 4'd1) next_decision <= next_decision + 4'd1;
+    if (hold) decision <= 4'd0;
+    else if (decision != KTC - 4'd1) decision <= decision + 4'd1;
+
+  // held + noise >= level. The noise is not drawn where it cannot change the decision: nearly always.
+  function automatic decided(input real held, input real level, input [27:0] index, input [3:0] number);
+    real noise;
+    begin
+      noise = 0.0;
+      if (held - noise_most < level & held + noise_most >= level) noise = noise_scale * $itor(counts(index, number));
+      decided = held + noise >= level;
     end
+  endfunction
 
   // ---- lanes ----
   function automatic real level(input integer lane, input range, input [7:0] code);
@@ -129,24 +139,18 @@ module `AFE #(
   endfunction
 
   for (genvar l = 0; l < LANES; l++) begin : lane
-    real held, noise;
+    real held;
     reg [27:0] index;
     initial begin
       held = 0.0;
-      noise = 0.0;
       index = 28'd0;
     end
     always @(posedge clk)
-      if (hold) if (en[l])
+      if (hold) if (en[l]) begin
         held <= value(l) + (noisy ? ktc_scale * $itor(counts(pixel(l, sub), KTC)) : 0.0) + $bitstoreal(words[HEAD+l]);
-    always @(posedge clk)
-      if (noisy) begin
-        if (hold && en[l]) begin
-          index <= pixel(l, sub);
-          noise <= noise_scale * $itor(counts(pixel(l, sub), 4'd0));
-        end else noise <= noise_scale * $itor(counts(index, next_decision));
+        index <= pixel(l, sub);
       end
-    assign comparator[l] = held + noise >= level(l, unsigned_, dac[8*l+:8]);
+    assign comparator[l] = decided(held, level(l, unsigned_, dac[8*l+:8]), index, decision);
   end
 endmodule
 `default_nettype wire

@@ -9,7 +9,9 @@ from dataclasses import dataclass, field
 
 from talbot.models.parameters import ArrayParameters, ChipParameters, ParameterError, check_real
 
-SUPPLIES = "vdda", "vssa"
+# Supplies: of the pixels, of the circuits at the chip's level, of the rows' lines; one ground
+PIXEL_SUPPLIES, CIRCUIT_SUPPLIES, ROW_SUPPLIES = ("vdda", "vssa"), ("vddc", "vssa"), ("vddc", "vddr", "vssa")
+SUPPLIES = "vdda", "vddc", "vddr", "vssa"
 # Phases that the row driver gates with its row (rtl/amp_ctrl/README.md): each is a line of the row
 ROW_PHASES = {"pixel_reset": 1, "shutter": 1, "integrate": 1, "read": 1, "tap": 2}
 DIODES = "a", "b"
@@ -138,7 +140,7 @@ def pixel_array(array: ArrayParameters) -> Block:
         (
             *(Pin(name, "input", "west", at) for name, at in row_lines(array)),
             *(Pin(name, "output", "south", at) for name, at in column_lines(array)),
-            *_supplies("east", height),
+            *_supplies("east", height, PIXEL_SUPPLIES),
         ),
     )
 
@@ -152,7 +154,7 @@ def _row_driver(array: ArrayParameters, sizes: AnalogSizes) -> Block:
         (
             *_spread("row_driver", bits(DRIVER_IN), "input", 0, sizes.row_driver_um),
             *(Pin(name, "output", "east", at) for name, at in row_lines(array)),
-            *_supplies("west", height),
+            *_supplies("west", height, ROW_SUPPLIES),
         ),
     )
 
@@ -175,8 +177,8 @@ def _column_amplifiers(array: ArrayParameters, chip: ChipParameters, sizes: Anal
             *(Pin(name, "input", "north", at) for name, at in column_lines(array)),
             *_spread("column_amplifiers", pins, "input", 0, control),
             *(Pin(name, "output", "south", begin + at) for name, at in lane_lines(chip, sizes)),
-            *_supplies("west", sizes.columns_um),
-            *_supplies("east", sizes.columns_um),
+            *_supplies("west", sizes.columns_um, CIRCUIT_SUPPLIES),
+            *_supplies("east", sizes.columns_um, CIRCUIT_SUPPLIES),
         ),
     )
 
@@ -207,7 +209,7 @@ def _adc_lanes(chip: ChipParameters, sizes: AnalogSizes) -> Block:
                 Pin(pin.name, "output" if pin.name.startswith("comparator") else "input", "south", pin.at_um)
                 for pin in pins
             ),
-            *_supplies("east", sizes.lanes_um),
+            *_supplies("east", sizes.lanes_um, CIRCUIT_SUPPLIES),
         ),
     )
 
@@ -222,11 +224,11 @@ def _spread(block: str, names: Sequence[str], direction: str, begin: float, end:
     return [Pin(name, direction, "south", begin + MARGIN_UM + step * k) for k, name in enumerate(names)]
 
 
-def _supplies(side: str, length: float) -> list[Pin]:
-    """A pair of supply pins for every 500 um of the side, one at least."""
+def _supplies(side: str, length: float, names: Sequence[str]) -> list[Pin]:
+    """A pin of each supply for every 500 um of the side, one at least."""
     count = max(1, round(length / 500))
     return [
-        Pin(name, "inout", side, (place + (1 + k) / 3) * length / count, True)
+        Pin(name, "inout", side, (place + (1 + k) / (len(names) + 1)) * length / count, True)
         for place in range(count)
-        for k, name in enumerate(SUPPLIES)
+        for k, name in enumerate(names)
     ]

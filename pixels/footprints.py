@@ -20,7 +20,7 @@ from talbot.platforms.coriolis import coriolis_platform
 from talbot.platforms.die import top_metal
 from talbot.platforms.layers import Layer
 
-from .blocks import DEEP_UM, AnalogSizes, Block, Pin, blocks
+from .blocks import DEEP_UM, SUPPLIES, AnalogSizes, Block, Pin, blocks
 
 if TYPE_CHECKING:
     import klayout.db as db
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 # Of CoriolisPlatform.metals: of pins in the north and south, and in the west and east
 VERTICAL, ACROSS = 4, 3
 WIDE_UM = 0.4  # of a signal's pin
-USES = {"vdda": "POWER", "vssa": "GROUND"}
+USES = {name: "GROUND" if name == "vssa" else "POWER" for name in SUPPLIES}
 
 
 def layer(pin: Pin, pdk: str) -> Layer:

@@ -5,6 +5,8 @@ from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 
+from talbot.models.parameters import check_real
+
 from .layers import GdsLayer
 from .pixel import PROCESSES, PixelProcess
 from .processes import package
@@ -16,7 +18,10 @@ class AnalogMasks:
 
     base: what pixels are drawn with. low_threshold: mask over the gates of the roles in ``low``. models: name of the
     device in LVS by role. mim: mask of the capacitor's upper plate, over metal ``mim_metal`` of ``base.metals``.
-    mim_area, mim_edge: fF/um2, fF/um. deck_mim: its device in LVS. rules, lvs: what the decks of PDKMaster lack.
+    mim_area, mim_edge: fF/um2, fF/um. fringe_um: fF for a um of a finger of the two lowest metals between two others,
+    typical. fringe_end: fF of its end. fringe_share: what such fingers have, of what rays give. deck_mim: its device in
+    LVS. resistor: mask over the body of a resistor of n+ diffusion of ``sheet_ohm``, typical. deck_resistor: its device
+    in LVS. rules, thick (of thick oxide), lvs: what the decks of PDKMaster lack.
     contradicted: rules of its deck that are left out. connections: lines of its deck of LVS and what replaces them.
     """
 
@@ -28,8 +33,15 @@ class AnalogMasks:
     mim_metal: int
     mim_area: float
     mim_edge: float
+    fringe_um: float
+    fringe_end: float
+    fringe_share: float
     deck_mim: str
+    resistor: GdsLayer
+    sheet_ohm: float
+    deck_resistor: str
     rules: Path
+    thick: Path
     lvs: Path
     contradicted: tuple[str, ...]
     connections: Mapping[str, str]
@@ -37,6 +49,12 @@ class AnalogMasks:
     def mim_farad(self, width_um: float, height_um: float) -> float:
         """F of a capacitor, typical."""
         return 1e-15 * (self.mim_area * width_um * height_um + self.mim_edge * 2 * (width_um + height_um))
+
+    def finger_um(self, farad: float) -> float:
+        """Length of a finger that is a capacitor of ``farad``, on a grid of 0.01 um. Raises ParameterError."""
+        length = round((farad * 1e15 - self.fringe_end) / self.fringe_um, 2)
+        check_real("unit", length, 1.0, 100.0)
+        return length
 
 
 def analog_masks(pdk: str) -> AnalogMasks:

@@ -89,11 +89,11 @@ class OpenRoadPlatform:
     label_datatype: int
     deck_layers: tuple[str, ...]
     lvs: Path
-    utilization: float = 0.6
+    utilization: float = 0.55
     density_addon: float = 0.05
     padding: int = 0
     kept_free: float = 0.3
-    setup_margin_ns: float = field(default=0.2, metadata={"unit": "ns"})
+    setup_margin_ns: float = field(default=0.4, metadata={"unit": "ns"})
     hold_margin_ns: float = field(default=0.05, metadata={"unit": "ns"})
 
     @property

@@ -24,7 +24,15 @@ TABLES = FOLDER / "tables.html"  # a page of `Section`s
 CARD = (480, 340)  # px, of the picture on a card, at most
 CARD_TILES = 4
 # As people write them; in files, terminals and names they are ASCII
-UNITS = ((r"^-(0\.?0*)$", r"\1"), (r"\bum2\b", "µm²"), (r"\bu(?=[mWJAV]\b)", "µ"), (r"(?<=\d) x (?=\d)", " × "))
+UNITS = (
+    (r"^-(0\.?0*)$", r"\1"),
+    (r"\bum2\b", "µm²"),
+    (r"\bu(?=[mWJAV]\b)", "µ"),
+    (r"(^|(?<=\d ))us\b", "µs"),
+    (r"(?<=\d) x (?=\d)", " × "),
+    (r"<=(?= ?-?[\d.])", "≤"),
+    (r">=(?= ?-?[\d.])", "≥"),
+)
 
 
 class Tile(NamedTuple):

@@ -18,6 +18,7 @@ COMMANDS = {
     "magic": (["magic", "--version"], r"(\S+)"),
     "iverilog": (["iverilog", "-V"], r"version (\S+)"),
 }
+WHEELS = ("openroad",)  # programs whose Python package is called where there is no program
 
 
 @cache
@@ -26,6 +27,8 @@ def version(tool: str) -> str:
     if tool in COMMANDS:
         command, pattern = COMMANDS[tool]
         if not shutil.which(command[0]):
+            if tool in WHEELS:
+                return version(f"python {tool}")
             raise ToolError(f"{command[0]}: not found; install it with: make tools")
         done = finish(command)
         match = re.search(pattern, done.stdout + done.stderr)

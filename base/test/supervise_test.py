@@ -53,7 +53,13 @@ sys.exit(supervised(globals()[sys.argv[2]]))
 """
 
 
-def started(folder, words, prepare=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL)):
+def heard():
+    """Whether or not a shell in the background or nohup started the tests, in which these are ignored."""
+    for name in (signal.SIGINT, signal.SIGHUP):
+        signal.signal(name, signal.SIG_DFL)
+
+
+def started(folder, words, prepare=heard):
     """A Python with ``words`` in a session of its own, known by TEST_MARK=``folder``, in which Ctrl-C counts."""
     environment = {key: value for key, value in os.environ.items() if key != "TALBOT_RUN"}
     return subprocess.Popen(

@@ -35,13 +35,15 @@ class Row:
     @property
     def texts(self) -> tuple[str, ...]:
         """The row's cells; numbers to three digits."""
-        limit = " ".join(
-            [*([f">= {self.least:.3g}"] if self.least is not None else [])]
-            + [*([f"<= {self.most:.3g}"] if self.most is not None else [])]
-        )
-        numbers = ("" if v is None else f"{v:.3g}" for v in (self.low, self.typical, self.high))
+        limits = (">=", self.least), ("<=", self.most)
+        limit = " ".join(f"{sign} {_text(value)}" for sign, value in limits if value is not None)
+        numbers = ("" if v is None else _text(v) for v in (self.low, self.typical, self.high))
         verdict = ("pass" if self.passes else "FAIL") if limit else ""
         return (f"{self.circuit}: {self.name}", *numbers, limit, self.unit, verdict, self.worst or self.over)
+
+
+def _text(value: float) -> str:
+    return f"{value:.0f}" if abs(value) >= 999.5 else f"{value:.3g}"
 
 
 HEAD = ("characteristic", "min", "typ", "max", "limit", "unit", "", "worst at, or over")

@@ -20,7 +20,7 @@ CORNERS = ("corner", "decision ns", "energy pJ", "settling ns", "INL LSB", "droo
 
 def write(folder: Path, summary: dict[str, Any], rows: list[Row], found: Found) -> None:
     """Write the page into ``folder``, which exists."""
-    passed = sum(row.passes for row in rows)
+    passed, corners = sum(row.passes for row in rows), len(summary["corners"])
     tiles = [Tile(f"{passed} of {len(rows)}", "characteristics pass", "good" if passed == len(rows) else "bad")]
     for row in rows:
         if row.name in ("offset, rms", "ENOB of a sine", "energy of a decision") and row.typical is not None:
@@ -29,12 +29,12 @@ def write(folder: Path, summary: dict[str, Any], rows: list[Row], found: Found) 
     text = render(
         TABLES,
         f"{summary['pdk']}: amplifier and converter lane in transistors",
-        about=f"{len(summary['corners'])} corners, {summary['draws']} draws; make analog",
+        about=f"{corners} corner{'s' * (corners > 1)}, {summary['draws']} draws; make analog",
         tiles=tiles,
         sections=[
             Section(
                 "Datasheet",
-                "Limits follow from the sensor, the chip's clock and Table 6.1. The typical corner is tt, 27 degrees, "
+                "Limits follow from the sensor, the chip's clock and Table 6.1. The typical corner is tt, 27 °C, "
                 f"1.8 V; an LSB is {1e3 * (spec['refp'] - spec['refn']) / 256:.2f} mV at the lane's input.",
                 head=HEAD,
                 rows=[row.texts for row in rows],
@@ -52,8 +52,8 @@ def write(folder: Path, summary: dict[str, Any], rows: list[Row], found: Found) 
                 f"{summary['transients']} transients, {summary['retried']} of them with a retry.",
                 head=("", "value"),
                 rows=[
-                    (name, _text(value))
-                    for part in sizes.values()
+                    (f"{circuit}: {name.replace('_', ' ')}", _size(name, value))
+                    for circuit, part in sizes.items()
                     if isinstance(part, dict)
                     for name, value in part.items()
                 ],
@@ -63,8 +63,11 @@ def write(folder: Path, summary: dict[str, Any], rows: list[Row], found: Found) 
     (folder / "datasheet.html").write_text(text)
 
 
-def _text(value: object) -> str:
-    return f"{value:.4g}" if isinstance(value, float) else str(value)
+def _size(name: str, value: object) -> str:
+    if not isinstance(value, float):
+        return str(value)
+    scale, unit = {"unit": (1e15, "fF"), "area": (1e12, "um2"), "unit_mismatch": (100, "%")}.get(name, (1, "um"))
+    return f"{scale * value:.4g} {unit}"
 
 
 def _corner(name: str, found: Found) -> tuple[str, ...]:

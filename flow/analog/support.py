@@ -7,7 +7,7 @@ import numpy as np
 from talbot.cells.corner import Corner
 from talbot.cells.spice.engine import Points, Simulator
 from talbot.cells.spice.wave import Wave
-from talbot.pixels.circuits.netlist import Circuit, Instance
+from talbot.pixels.circuits.netlist import Circuit, Instance, Resistor
 from talbot.pixels.circuits.support import SupportSpec, bias, non_overlap, row_driver, row_line
 
 from .deck import EDGE, SETTINGS, Setup, clock, deck, simulator
@@ -16,6 +16,7 @@ FAR = 0.01  # of the supply, from its level: the line's far end has settled
 RAMP, STARTED = 1e-6, 30e-6  # s, of the supply when the bias starts, and until which it is simulated
 NEAR = 0.02  # of its last current: the bias has started
 PIN = 0.62  # V at the amplifier's ibias
+OPEN_OHM = 1e9  # of an output of the bias without an amplifier
 QUARTER = 5e-9  # s, of the switch drivers' clock
 
 
@@ -39,23 +40,29 @@ class SupportResult:
     repeated: int
 
 
+@dataclass(frozen=True)
+class BiasResult:
+    """A at an output, A of the whole, s after the supply's ramp until the current is there."""
+
+    current: float
+    idle: float
+    start: float
+
+
 def measure(setup: Setup, spec: SupportSpec, corner: Corner) -> SupportResult:
     """All three circuits."""
     row, one = pulse(setup, spec, corner)
     line, energy = settled(row, spec, corner), row.charge("vdd", 0.0, float(row.time[-1])) * corner.supply
     gaps, two = phases(setup, spec, corner)
-    wave, three = started(setup, corner)
-    current = -wave.current["ibias"]
-    away = wave.time[np.abs(current - current[-1]) > NEAR * abs(current[-1])]
-    idle = wave.charge("vdd", 0.9 * STARTED, STARTED) / (0.1 * STARTED)
+    bias_at, three = bias_measured(setup, corner)
     return SupportResult(
         line=line,
         line_energy=energy,
         gap=min(gaps),
         lost=max(gaps),
-        bias=float(current[-1]),
-        idle=idle,
-        start=max(float(away.max(initial=RAMP)) - RAMP, 0.0),
+        bias=bias_at.current,
+        idle=bias_at.idle,
+        start=bias_at.start,
         runs=one.runs + two.runs + three.runs,
         repeated=one.repeated + two.repeated + three.repeated,
     )
@@ -108,6 +115,24 @@ def phases(
         rises = float(time[wave.voltage[second][inside] < high / 2].max(initial=edge * period))
         gaps.append(rises - falls)
     return gaps, spice
+
+
+def bias_measured(setup: Setup, corner: Corner, circuit: Circuit | None = None) -> tuple[BiasResult, Simulator]:
+    """Current and start of a bias; circuit: in place of `bias`, of several outputs the first is loaded."""
+    wave, spice = started(setup, corner, circuit and first_output(circuit))
+    current = -wave.current["ibias"]
+    away = wave.time[np.abs(current - current[-1]) > NEAR * abs(current[-1])]
+    idle = wave.charge("vdd", 0.9 * STARTED, STARTED) / (0.1 * STARTED)
+    return BiasResult(float(current[-1]), idle, max(float(away.max(initial=RAMP)) - RAMP, 0.0)), spice
+
+
+def first_output(circuit: Circuit) -> Circuit:
+    """A bias whose outputs but the first are open."""
+    first, *others = (pin for pin in circuit.ports if pin not in ("vdd", "vss"))
+    nodes = tuple("ibias" if pin == first else pin for pin in circuit.ports)
+    opened = tuple(Resistor(f"open_{pin}", pin, "vss", OPEN_OHM) for pin in others)
+    inner = Instance("bias", circuit, nodes)
+    return Circuit("first_output", ("ibias", "vdd", "vss"), resistors=opened, instances=(inner,))
 
 
 def started(setup: Setup, corner: Corner, circuit: Circuit | None = None) -> tuple[Wave, Simulator]:

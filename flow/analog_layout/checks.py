@@ -13,7 +13,7 @@ def decks(pdk: str) -> tuple[str, str]:
     """The decks of design rules and of LVS, text. Raises StepError where PDKMaster's are not as they were."""
     masks = analog_masks(pdk)
     rules, lvs = common_decks(pdk)
-    text = "\n".join([*rules, masks.rules.read_text(), ""])
+    text = "\n".join([*rules, masks.rules.read_text(), masks.thick.read_text(), ""])
     for rule in masks.contradicted:
         text, count = re.subn(rf"^\(\w+&\w+\)\.output\(\"{re.escape(rule)}\"\)\n", "", text, flags=re.M)
         if count != 1:

@@ -3,7 +3,8 @@
 Every net is a tree of resistors (flow/layout/parasitics) from its pin, or from a transistor, to the straps of all its
 transistors and the taps of its capacitors. Of its capacitance the part to the substrate is spread over the tree as its
 metal is; what couples to another net is between the middles of both. The capacitors' upper plates are one node each: a
-mesh of some ohms. Metal over an upper plate does not couple to the lower one: that is the capacitor.
+mesh of some ohms. Metal over an upper plate does not couple to the lower one: that is the capacitor. Of a bank of
+fringe capacitors the rays give the ratios; all units together are as many of the circuit's.
 """
 
 from collections.abc import Iterator, Mapping
@@ -37,21 +38,18 @@ class Extracted(Circuit):
 
     drawn: Mapping[str, tuple[int, float, float, float, float]] = field(default_factory=dict)
 
-    def sizes(self) -> set[tuple[str, float, float]]:
+    def own_sizes(self) -> set[tuple[str, float, float]]:
         """(role, w of a finger, l) of every transistor."""
         return {(t.role, round(t.w / self.drawn[t.name][0], 6), t.l) for t in self.transistors}
 
-    def lines(self, process: ModuleType) -> list[str]:
-        """The .subckt text, each transistor as its fingers in parallel."""
-        text = [f".subckt {self.name} {' '.join(self.ports)}"]
+    def devices(self, process: ModuleType) -> list[str]:
+        """Lines of its transistors, each as its fingers in parallel."""
+        text = []
         for t in self.transistors:
             fingers, *junctions = self.drawn[t.name]
             each = tuple(one / fingers for one in junctions)
             text.append(process.finger(t.name, t.nodes, t.role, t.w / fingers, t.l, fingers, each))
-        for c in self.capacitors:
-            text.append(f"C{c.name} {c.a} {c.b} {{{c.value:.6g}*{'cscale' if c.units else '1'}}}")
-        text += [f"R{r.name} {r.a} {r.b} {r.value:.6g}" for r in self.resistors]
-        return [*text, f".ends {self.name}"]
+        return text
 
 
 @dataclass(frozen=True)
@@ -97,12 +95,19 @@ def extract(made: Cell, masks: AnalogMasks, wires: Wires, resistance: bool = Tru
     return _circuit(made, pins, made_trees, nets, resistance), nets
 
 
+def unit_farad(made: Cell, nets: Nets) -> float:
+    """F of a unit of the fringe capacitors by the rays, the mean over all; 0 without any. Raises StepError."""
+    if lost := [pair for pair in made.matched if pair not in nets.couplings]:
+        raise StepError(f"extraction: nets {' and '.join(lost[0])} must have a capacitor between them")
+    return sum(nets.couplings[pair] for pair in made.matched) / max(1, sum(made.matched.values()))
+
+
 def _um(at: tuple[int, int, int], dbu: float) -> tuple[int, float, float]:
     return at[0], at[1] * dbu, at[2] * dbu
 
 
 def _layouts(made: Cell, masks: AnalogMasks) -> tuple["db.Layout", "db.Layout"]:
-    """The cell without vias on upper plates, and without the metal over these, too."""
+    """The cell without vias on upper plates and resistors' bodies, and without the metal over plates, too."""
     whole = db.Layout()
     whole.assign(made.layout)
     top = whole.top_cell()
@@ -112,6 +117,11 @@ def _layouts(made: Cell, masks: AnalogMasks) -> tuple["db.Layout", "db.Layout"]:
     rest = db.Region(top.shapes(via)) - plates
     top.clear(via)
     top.shapes(via).insert(rest)
+    active = whole.layer(*masks.base.active)
+    bodies = db.Region(top.shapes(whole.layer(*masks.resistor))).merged()
+    ends = db.Region(top.shapes(active)) - bodies
+    top.clear(active)
+    top.shapes(active).insert(ends)
     cut = db.Layout()
     cut.assign(whole)
     metal = cut.layer(*masks.base.metals[masks.mim_metal + 1].gds)
@@ -128,6 +138,10 @@ def _pins(made: Cell) -> Iterator[_Pin]:
     lower = {plate.name: plate.lower for plate in made.plates}
     for k, (name, _, x, y) in enumerate(made.taps):
         yield _Pin(lower[name], (name, str(k)), THIRD, x, y)
+    own = {r.name: r for r in made.resistors}
+    for name, *places in made.ends:
+        for net, (x, y) in zip((own[name].a, own[name].b), places, strict=True):
+            yield _Pin(net, (name, net), FIRST, x, y)
 
 
 def _names(found: Shapes, pins: list[_Pin], boxes: list[int]) -> dict[int, str]:
@@ -193,8 +207,11 @@ def _circuit(made: Cell, pins: list[_Pin], grown: Any, nets: Nets, resistance: b
             if parent >= 0 and called[parent] != called[node]:
                 resistors.append(Resistor(f"w{len(resistors)}", called[parent], called[node], float(grown.ohm[node])))
     at = {pin.what: called[int(node)] for node, pin in zip(grown.pins, pins, strict=True)}
+    own_unit = unit_farad(made, nets)
     for (a, b), farad in nets.couplings.items():
-        capacitors.append(Capacitor(f"x{len(capacitors)}", middle.get(a, a), middle.get(b, b), farad))
+        count = made.matched.get((a, b), 0)
+        value = farad / own_unit * made.unit if count else farad
+        capacitors.append(Capacitor(f"x{len(capacitors)}", middle.get(a, a), middle.get(b, b), value, count))
     upper = {plate.name: plate for plate in made.plates}
     units: dict[str, float] = {}
     for name, count, _, _ in made.taps:
@@ -204,6 +221,7 @@ def _circuit(made: Cell, pins: list[_Pin], grown: Any, nets: Nets, resistance: b
         farad = count / units[name] * 1e-15 * (2.0 * plate.area + 0.19 * plate.edge)
         common = middle[plate.upper]
         capacitors.append(Capacitor(f"p{k}_{name}", common, at[name, str(k)], farad, max(1, round(count))))
+    resistors += [r._replace(a=at[r.name, r.a], b=at[r.name, r.b]) for r in made.resistors]
     ends = {device.transistor.name: device for device in made.devices}
     placed = []
     drawn: dict[str, tuple[int, float, float, float, float]] = {}

@@ -1,8 +1,8 @@
 """Cells drawn, written, checked, extracted and measured -> GDS, SPICE, pictures, page, summary.json."""
 
 import json
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import asdict
 from pathlib import Path
 from time import perf_counter
 from typing import Any
@@ -16,15 +16,18 @@ from talbot.base.paths import BUILD
 from talbot.base.records import from_json
 from talbot.cells.corner import Corner
 from talbot.flow.analog.deck import Setup, process_of
-from talbot.flow.analog.job import setup_of
+from talbot.flow.analog.job import amplifier_of, setup_of
 from talbot.flow.analog.lane import LaneResult, inl
 from talbot.flow.analog.linearity import inl_dnl, levels
 from talbot.models.parameters import ChipParameters
+from talbot.pixels.analog_layout.amplifier import amplifier_cell
+from talbot.pixels.analog_layout.bias import bias_cell
 from talbot.pixels.analog_layout.cells import Cell, comparator_cell
 from talbot.pixels.analog_layout.converters import NAME as BLOCK
 from talbot.pixels.analog_layout.converters import Converters, draw_converters
 from talbot.pixels.analog_layout.lane import lane_cell
 from talbot.pixels.blocks import AnalogSizes
+from talbot.pixels.circuits.amplifier import AmplifierSizes, AmplifierSpec
 from talbot.pixels.circuits.dac import BITS
 from talbot.pixels.circuits.lane import LaneSizes
 from talbot.pixels.circuits.specification import LaneSpec
@@ -32,35 +35,26 @@ from talbot.platforms.analog import AnalogMasks, analog_masks
 from talbot.platforms.coriolis import coriolis_platform
 from talbot.platforms.wires import wire_corner
 
+from . import amplifier
+from .amplifier import Amplified
 from .checks import drc, lvs
 from .extract import Extracted, Nets, extract
 from .measure import Measured, measure
+from .row import Row
 
 STEPS = "draw", "drc", "lvs", "extract", "measure", "report"
 STORE = BUILD / "analog-layout" / "measured"
 KINDS = "gds", "spice", "extracted.spice", "lyrdb", "lvsdb"
 
 
-@dataclass(frozen=True)
-class Row:
-    """A characteristic at a corner, of the schematic and of the layout. most: its limit, or None."""
-
-    name: str
-    unit: str
-    schematic: float
-    layout: float
-    corner: str
-    most: float | None = None
-
-    @property
-    def passes(self) -> bool:
-        """Whether the layout is inside the limit."""
-        return self.most is None or abs(self.layout) <= self.most
-
-
-def cells(masks: AnalogMasks, sizes: LaneSizes) -> dict[str, Cell]:
-    """What is drawn, by name."""
-    return {"comparator": comparator_cell(masks, sizes.comparator), "sar_lane": lane_cell(masks, sizes)}
+def cells(masks: AnalogMasks, sizes: LaneSizes, amplifier: AmplifierSizes, lanes: int) -> dict[str, Cell]:
+    """What is drawn, by name. lanes: that share a bias."""
+    return {
+        "comparator": comparator_cell(masks, sizes.comparator),
+        "sar_lane": lane_cell(masks, sizes),
+        "amplifier": amplifier_cell(masks, amplifier),
+        "bias": bias_cell(masks, lanes),
+    }
 
 
 def make(
@@ -72,7 +66,8 @@ def make(
     start = perf_counter()
     check_folder("out", out)
     masks, (setup, sizes) = analog_masks(pdk), setup_of(pdk)
-    made = cells(masks, sizes)
+    spec, own = amplifier_of(setup, sizes)
+    made = cells(masks, sizes, own, spec.lanes)
     chip, room = ChipParameters(), AnalogSizes()
     block = draw_converters(masks, sizes, chip, room)
     drawn: dict[str, Cell | Converters] = {**made, BLOCK: block}
@@ -96,7 +91,9 @@ def make(
             (folder / f"{name}.extracted.spice").write_text("\n".join([*circuit.lines(process_of(pdk)), ""]))
         note("measure")
         rows = list(_array(typical["sar_lane"][1], masks, sizes, setup.spec))
+        rows += amplifier.capacitors(made["amplifier"], typical["amplifier"][1], masks, spec)
         rows += _measured(setup, sizes, corners, found, workers)
+        rows += _amplified(setup, (spec, own, sizes), corners, found, workers)
         summary = {
             "process": pdk,
             "corners": list(corners),
@@ -169,13 +166,40 @@ def _measured(
         circuits = drawn["comparator"][0], drawn["sar_lane"][0]
         given = (repr((setup, sizes)), name)
         jobs.append(Job(f"schematic-{name}", measure, (setup, sizes, Corner.parse(name)), given))
-        text = [repr((one.transistors, one.capacitors, one.resistors, sorted(one.drawn.items()))) for one in circuits]
-        jobs.append(Job(f"layout-{name}", measure, (setup, sizes, Corner.parse(name), *circuits), (*given, *text)))
+        given = *given, *_text(circuits)
+        jobs.append(Job(f"layout-{name}", measure, (setup, sizes, Corner.parse(name), *circuits), given))
     results = [from_json(Measured, one) for one in run(jobs, STORE, "measure", workers)]
     rows = []
     for name, schematic, layout in zip(corners, results[::2], results[1::2], strict=True):
         rows += list(_rows(setup.spec, name, schematic, layout))
     return rows
+
+
+def _amplified(
+    setup: Setup,
+    sizes: tuple[AmplifierSpec, AmplifierSizes, LaneSizes],
+    corners: Sequence[str],
+    found: dict[str, dict[str, tuple[Extracted, Nets]]],
+    workers: int,
+) -> list[Row]:
+    """Rows of amplifier and bias at every corner."""
+    jobs = []
+    for name in corners:
+        drawn = found[wire_corner(name)]
+        circuits = [drawn[kind][0] for kind in ("amplifier", "bias")]
+        given = repr((setup, sizes)), name
+        call = (setup, *sizes, Corner.parse(name))
+        jobs.append(Job(f"amplifier-schematic-{name}", amplifier.measure, call, given))
+        jobs.append(Job(f"amplifier-layout-{name}", amplifier.measure, (*call, *circuits), (*given, *_text(circuits))))
+    results = [from_json(Amplified, one) for one in run(jobs, STORE, "amplifier", workers)]
+    rows = []
+    for name, schematic, layout in zip(corners, results[::2], results[1::2], strict=True):
+        rows += list(amplifier.rows(sizes[0], name, schematic, layout))
+    return rows
+
+
+def _text(circuits: Iterable[Extracted]) -> list[str]:
+    return [repr((one.transistors, one.capacitors, one.resistors, sorted(one.drawn.items()))) for one in circuits]
 
 
 def _rows(spec: LaneSpec, corner: str, schematic: Measured, layout: Measured) -> Iterator[Row]:

@@ -25,6 +25,12 @@ PICTURES = {
         "From the south drivers, switches, the DAC's capacitors, the comparator, the other side's "
         "capacitors, their switches.",
     ),
+    "amplifier": (
+        "The amplifier",
+        "From the south the bank of one input, half of the pair over half of the sinks, the tail's parts, the other "
+        "half, mirror and switches, the bank of the other input, the trim's switches.",
+    ),
+    "bias": ("The bias", "A pair of one to four about its middle, two halves of each output, the resistor below."),
     "adc_lanes": ("All lanes in the die's frame", "Below them the channel to the chip's pins, above the references."),
 }
 NAMES = ("analog_layout.html", *(f"{name}.png" for name in PICTURES))
@@ -44,7 +50,7 @@ def write(folder: Path, s: dict[str, Any], process: PixelProcess) -> None:
         TABLES,
         f"{s['process']}: the analog circuits drawn",
         picture=pictures[0].image,
-        about="comparator, capacitor arrays, lane; make analog-layout",
+        about="comparator, capacitor arrays, lane, amplifier, bias; make analog-layout",
         tiles=[
             Tile(str(broken), "violations of design rules", "bad" if broken else "good"),
             Tile("matches" if same else "differs", "layout against circuit", "good" if same else "bad"),

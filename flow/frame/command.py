@@ -118,16 +118,16 @@ def add_camera_arguments(parser: ArgumentParser, default: CameraParameters) -> N
 
 def run(options: Namespace) -> int:
     """Simulate one frame and print its figures; 1 where the chip and the golden model differ."""
-    from talbot.models.scene import scenes
-
-    from .job import STEPS, run
-
     if options.scene == "list":
+        from talbot.models.scene import scenes
+
         print("\n".join(sorted(scenes)))
         return 0
     typed = typed_of(options, add_arguments)
     options.out = options.out or Path("build/sim") / name_of(typed)
     asked = request_of(options)
+    from .job import STEPS, run  # Matplotlib and more: not before the arguments are right
+
     before = arguments_of(asked.folder)
     with Steps(STEPS) as steps:
         summary = run(asked, steps.note, typed)

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,7 @@ import numpy.typing as npt
 from talbot.flow.frame.reading import about, full, rms
 from talbot.flow.frame.result import GoldenResult
 from talbot.models.capture import CaptureOperator, cells
-from talbot.models.parameters import ParameterError
+from talbot.models.parameters import ParameterError, SensorParameters
 from talbot.models.reconstruct import psnr_db, white_sum
 from talbot.models.reconstruct.bad_pixels import dead_pixels, repaired
 from talbot.models.reconstruct.bayes import Estimate, FieldEstimator, FieldPrior
@@ -98,7 +99,12 @@ def estimator_of(result: GoldenResult, prior: FieldPrior) -> FieldEstimator:
     if not result.decoded.read.all():
         raise ParameterError("window, types, decimation = a part of the array: must be all, for a light field")
     scene = result.exposed.scene
-    return FieldEstimator(result.sensor, scene.views, prior, scene.views if scene.render is None else PUPIL)
+    return _estimator(result.sensor, scene.views, prior, scene.views if scene.render is None else PUPIL)
+
+
+@lru_cache(maxsize=1)  # with what it makes once a sensor, for the next method or frame
+def _estimator(sensor: SensorParameters, views: int, prior: FieldPrior, pupil: int) -> FieldEstimator:
+    return FieldEstimator(sensor, views, prior, pupil)
 
 
 def sent_pair(result: GoldenResult) -> tuple[Values, npt.NDArray[np.bool_]]:

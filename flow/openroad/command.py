@@ -14,9 +14,10 @@ from talbot.flow.layout.design import DESIGNS, flat_design
 from talbot.platforms.openroad import openroad_platform
 
 from .merge import merge
+from .program import INSTALL
 from .results import broken, summarize
 from .signoff import check, checks
-from .stages import INSTALL, missing_tools, pdk_root, stages, wire_corners
+from .stages import missing_tools, pdk_root, stages, wire_corners
 from .stages import run as run_stages
 from .write import write
 
@@ -46,7 +47,7 @@ def run(options: Namespace) -> int:
     if missing_tools():
         raise ToolError(f"{', '.join(missing_tools())}: not found; get it from {INSTALL}; written: {written}")
     root = pdk_root(tech)
-    names = [stage.log.removesuffix(".log") for stage in stages(tech, wire_corners(tech, root))]
+    names = [stage.label for stage in stages(tech, wire_corners(tech, root))]
     with Steps([*names, "gds", "library", *(step.name for step in checks(chosen, tech))], lines=True) as bar:
         found = run_stages(folder, chosen.top, tech, root, bar.note)
         bar.note("gds")

@@ -13,6 +13,8 @@ from talbot.base.tools import finish
 from talbot.flow.layout.netlist.netlist import OUTPUT_PINS, Netlist
 from talbot.flow.layout.steps.corner import CornerStep
 
+from .program import openroad
+
 SCRIPT = """
 read_liberty {liberty}
 read_db {database}
@@ -53,7 +55,7 @@ class IrDrop(CornerStep[IrDropParameters]):
         files = {name: inputs[name].resolve() for name in ("liberty", "database", "sdc", "spef")}
         files |= {"activity": activity, "supply_csv": outputs["supply"], "ground_csv": outputs["ground"]}
         script.write_text(SCRIPT.format(volts=p.volts, supply=p.supply, ground=p.ground, **files))
-        done = finish(["openroad", "-no_init", "-no_splash", "-exit", script])
+        done = finish([*openroad(), "-no_init", "-no_splash", "-exit", script])
         (folder / "openroad.log").write_text(done.stdout + done.stderr)
         if done.returncode or not all(path.is_file() for path in outputs.values()):
             raise StepError(f"{self.name}: openroad: {(done.stdout + done.stderr).strip().splitlines()[-3:]}")

@@ -1,5 +1,6 @@
 """The stages in their order: each a script in tcl/, run by Yosys or OpenROAD in the design's folder."""
 
+import json
 import os
 import re
 import shutil
@@ -8,37 +9,41 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from talbot.base.cache import digest
+from talbot.base.files import staged
 from talbot.base.liberty.read import without
 from talbot.base.steps.alone import alone
+from talbot.base.steps.versions import version
 from talbot.base.tools import ToolError, finish
 from talbot.models.parameters import ParameterError
 from talbot.platforms.openroad import WIRES, OpenRoadPlatform
 
 from .netlists import write_synthesized
+from .program import openroad
 
 SCRIPTS = Path(__file__).parent / "tcl"
 # Threads that wait give their core away: beside other jobs, placement of the divider took 15 times its CPU time
 ENVIRONMENT = {"OMP_WAIT_POLICY": "passive"}
-INSTALL = "https://openroad.readthedocs.io (packages, source) or a LibreLane or flow-scripts container"
+OPTIONS = "-no_init", "-no_splash", "-threads", "max", "-exit"
 
 
 @dataclass(frozen=True)
 class Stage:
-    """A script and its log. gives: file without which it failed. corner: of the wires, or ''."""
+    """A script. gives: file without which it failed. corner: of the wires, or ''."""
 
     name: str
     gives: str
     corner: str = ""
 
     @property
-    def log(self) -> str:
-        """File name of its log."""
-        return f"{self.name}.{self.corner}.log" if self.corner else f"{self.name}.log"
+    def label(self) -> str:
+        """Name of its log and record, without suffix."""
+        return f"{self.name}.{self.corner}" if self.corner else self.name
 
     def command(self) -> list[str]:
         """Its program and arguments."""
-        program = "yosys -q -c" if self.name == "synth" else "openroad -no_init -no_splash -threads max -exit"
-        return [*program.split(), f"{self.name}.tcl"]
+        program = ["yosys", "-q", "-c"] if self.name == "synth" else [*openroad(), *OPTIONS]
+        return [*program, f"{self.name}.tcl"]
 
 
 def stages(tech: OpenRoadPlatform, wires: Sequence[str] = WIRES) -> list[Stage]:
@@ -68,33 +73,59 @@ def pdk_root(tech: OpenRoadPlatform, environment: Mapping[str, str] = os.environ
 
 
 def missing_tools() -> list[str]:
-    """Of the programs that the stages call, those not on PATH."""
-    return [tool for tool in ("yosys", "openroad") if not shutil.which(tool)]
+    """Of the programs that the stages call, those that are not installed."""
+    return [*(["yosys"] if not shutil.which("yosys") else []), *(["openroad"] if not openroad() else [])]
 
 
 def run(folder: Path, top: str, tech: OpenRoadPlatform, root: Path, note: Callable[[str], None]) -> dict[str, float]:
     """Run every stage of the module ``top`` in ``folder``; returns the figures by name, of its logs.
 
-    They are the lines 'TALBOT name value', and 'seconds.<stage>' and 'mib.<stage>' (peak memory) of each. note: called
-    with each stage's name. Raises ToolError with the last lines of a stage that failed.
+    They are the lines 'TALBOT name value', and 'seconds.<stage>' and 'mib.<stage>' (peak memory) of each. A stage whose
+    scripts, tools and inputs are those of an earlier run is not run again. note: called with each stage's name. Raises
+    ToolError with the last lines of a stage that failed.
     """
     text = (root / tech.liberty[tech.corners[0]]).read_text()  # cells are chosen by their slowest delays
     (folder / "synthesis.lib").write_text(without(text, tech.dont_use))
-    found = {}
-    for stage in stages(tech, wire_corners(tech, root)):
-        name = stage.log.removesuffix(".log")
-        note(name)
-        begin = time.perf_counter()
-        (folder / stage.gives).unlink(missing_ok=True)
-        variables = ENVIRONMENT | {"PDK_ROOT": str(root), "CORNER": stage.corner}
-        done, peak = alone(finish, stage.command(), variables, folder, None, folder / stage.log)
-        written = (folder / stage.gives).is_file()
-        if done.returncode or not written:
-            tail = "\n".join(done.stdout.strip().splitlines()[-10:])
-            state = f"status {done.returncode}, {stage.gives} {'written' if written else 'not written'}"
-            raise ToolError(f"{stage.command()[0]} {stage.name}: {state}:\n{tail}")
-        if stage.name == "synth":
-            write_synthesized(folder, top, tech)
-        found |= {key: float(value) for key, value in re.findall(r"^TALBOT (\S+) (\S+)$", done.stdout, re.M)}
-        found |= {f"seconds.{name}": round(time.perf_counter() - begin, 1), f"mib.{name}": peak}
+    wires = wire_corners(tech, root)
+    pdk = [*tech.liberty.values(), tech.tech_lef, tech.cell_lef]
+    pdk += [path for name in wires for path in tech.rcx_rules[name] if (root / path).is_file()]
+    written = f"{top}.sv", f"{top}.sdc", "design.tcl", "common.tcl"
+    key = digest(*(folder / name for name in written), *(root / path for path in pdk))
+    found: dict[str, float] = {}
+    for stage in stages(tech, wires):
+        note(stage.label)
+        key = digest(
+            key, stage, folder / f"{stage.name}.tcl", version("yosys" if stage.name == "synth" else "openroad")
+        )
+        found |= _kept(folder, stage, key) or _run(folder, stage, key, top, tech, root)
     return found
+
+
+def _kept(folder: Path, stage: Stage, key: str) -> dict[str, float] | None:
+    """The figures of ``stage`` as it ran before with the same key; None where it did not, or its result changed."""
+    record, result = folder / f"{stage.label}.json", folder / stage.gives
+    if not record.is_file() or not result.is_file():
+        return None
+    before = json.loads(record.read_text())
+    return before["figures"] if before["key"] == key and before["result"] == digest(result) else None
+
+
+def _run(folder: Path, stage: Stage, key: str, top: str, tech: OpenRoadPlatform, root: Path) -> dict[str, float]:
+    """Run ``stage``; its figures, which are kept under ``key``. Raises ToolError."""
+    name, begin = stage.label, time.perf_counter()
+    (folder / stage.gives).unlink(missing_ok=True)
+    variables = ENVIRONMENT | {"PDK_ROOT": str(root), "CORNER": stage.corner}
+    done, peak = alone(finish, stage.command(), variables, folder, None, folder / f"{name}.log")
+    written = (folder / stage.gives).is_file()
+    if done.returncode or not written:
+        tail = "\n".join(done.stdout.strip().splitlines()[-10:])
+        state = f"status {done.returncode}, {stage.gives} {'written' if written else 'not written'}"
+        raise ToolError(f"{'yosys' if stage.name == 'synth' else 'openroad'} {stage.name}: {state}:\n{tail}")
+    if stage.name == "synth":
+        write_synthesized(folder, top, tech)
+    figures = {what: float(value) for what, value in re.findall(r"^TALBOT (\S+) (\S+)$", done.stdout, re.M)}
+    figures |= {f"seconds.{name}": round(time.perf_counter() - begin, 1), f"mib.{name}": peak}
+    kept = {"key": key, "result": digest(folder / stage.gives), "figures": figures}
+    with staged(folder) as part:
+        (part / f"{name}.json").write_text(json.dumps(kept, indent=1) + "\n")
+    return figures

@@ -8,7 +8,7 @@ from talbot.flow.frame import arguments as text
 from talbot.flow.frame import reading
 from talbot.flow.frame.reading import number
 
-STEPS = ("setup", "capture", "build", "rtl", "decode", "polarization", "report")
+STEPS = ("setup", "capture", "build", "rtl", "decode", "polarization", "disparity", "report")
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -41,5 +41,12 @@ def _print(s: dict[str, Any], folder: Path) -> None:
     print(f"  degree off by {number(s['degree_rms'], 3)} RMS (none: {number(s['baselines']['degree_rms_none'], 3)})")
     if s["f1"] is not None:
         print(f"  highlights: F1 {s['f1']:.3f} (brightest pixels: {number(s['baselines']['f1_bright'], 3)})")
+    if s["disparity"] is not None:
+        off = {name: number(value, 2) for name, value in s["disparity"].items()}
+        print(
+            f"  disparity in the highlights off by {off['untagged_rms_px']} px RMS without them (as found "
+            f"{off['found_rms_px']}, brightest pixels left out {off['unbright_rms_px']}, one for all "
+            f"{off['constant_rms_px']})"
+        )
     print(f"  {s['full_tagged']} of {s['full']} full pixels that are no highlight tagged")
     print(f"  look at {folder / 'polar.html'}")

@@ -10,8 +10,17 @@ import numpy.typing as npt
 
 from talbot.flow.frame.reading import about, full, rms
 from talbot.flow.frame.result import GoldenResult
+from talbot.flow.lightfield.fields import estimate
 from talbot.models.pixel.polarization import angle
-from talbot.models.reconstruct import Polarization, demosaiced, polarization, specular_tags, sum_image, sum_noise
+from talbot.models.reconstruct import (
+    Polarization,
+    demosaiced,
+    polarization,
+    specular_tags,
+    sum_image,
+    sum_noise,
+    without_highlights,
+)
 
 Values = npt.NDArray[np.floating]
 Bools = npt.NDArray[np.bool_]
@@ -21,7 +30,10 @@ POLARIZED = 0.02  # degree below which the truth has no angle
 
 @dataclass(frozen=True, eq=False)
 class PolarFrame:
-    """What a raw frame tells of polarization. tags: highlights. plain: by demosaicing alone, (s1, s2)."""
+    """What a raw frame tells of polarization. tags: highlights. plain: by demosaicing alone, (s1, s2).
+
+    disparity: in px per view step, as found and without the highlights; of a frame of a scene with highlights.
+    """
 
     result: GoldenResult
     found: Polarization
@@ -29,6 +41,7 @@ class PolarFrame:
     full: Bools
     tags: Bools
     summary: dict[str, Any]
+    disparity: tuple[Values, Values] | None = None
 
     @property
     def truth(self) -> tuple[Values, Values]:
@@ -48,13 +61,14 @@ def read_polarization(
     ideal, _, _ = _estimate(result, result.exposed.ideal)
     plain = demosaiced(sums, result.sensor.tile, result.sensor.optics.diattenuation)
     tags = specular_tags(found, highlight)
-    frame = PolarFrame(result, found, plain, over, tags, {})
+    shine = result.exposed.scene.specular
+    bright = None if shine is None else sums > np.quantile(sums, 1 - shine.mean())
+    disparity, off = _disparity(result, tags, over, bright, note)
+    frame = PolarFrame(result, found, plain, over, tags, {}, disparity)
     psi, degree = frame.truth
     sure = found.confidence > 0
     shown = sure & (degree > POLARIZED)
     constant = np.full(psi.shape, _mean_angle(psi[shown])) if shown.any() else psi
-    shine = result.exposed.scene.specular
-    bright = sums > np.quantile(sums, 1 - shine.mean()) if shine is not None else None
     frame.summary.update(
         about(result)
         | {
@@ -72,6 +86,7 @@ def read_polarization(
             "full_tagged": int((tags & over & ~(np.zeros_like(tags) if shine is None else shine)).sum()),
             "seconds": seconds,
             "f1": None if shine is None else _f1(tags, shine),
+            "disparity": off,
             "baselines": {
                 "psi_error_constant_deg": angle_error(constant, psi, shown),
                 "degree_rms_none": rms((degree)[shown]),
@@ -80,6 +95,30 @@ def read_polarization(
         }
     )
     return frame
+
+
+def _disparity(
+    result: GoldenResult, tags: Bools, over: Bools, bright: Bools | None, note: Callable[[str], None]
+) -> tuple[tuple[Values, Values] | None, dict[str, float | None] | None]:
+    """Disparity by `make lightfield`'s estimator as it is and without the highlights, and its errors in px.
+
+    RMS in the highlights of the scene: as found, without what is tagged, without as many of the brightest pixels, and
+    one disparity for all. None where the scene tells no highlights or disparity, or a part of the array is read.
+    """
+    scene = result.exposed.scene
+    if scene.specular is None or scene.disparity is None or not result.decoded.read.all() or not scene.specular.any():
+        return None, None
+    note("disparity")
+    got = estimate(result)
+    assert got.disparity is not None and got.spread is not None and bright is not None
+    # A full pixel tells no disparity, and is filled where it is tagged alone
+    spread = np.where(over, np.inf, got.spread)
+    free = without_highlights(got.disparity, spread, tags)[0]
+    by_light = without_highlights(got.disparity, spread, bright)[0]
+    errors = {"found": got.disparity, "untagged": free, "unbright": by_light}
+    out = {f"{name}_rms_px": rms((values - scene.disparity)[scene.specular]) for name, values in errors.items()}
+    out["constant_rms_px"] = float(np.std(scene.disparity[scene.specular]))
+    return (got.disparity, free), out
 
 
 def prepared(result: GoldenResult, pairs: Values) -> tuple[Values, Values, Bools, Bools]:

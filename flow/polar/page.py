@@ -40,6 +40,7 @@ def write(folder: Path, frame: PolarFrame) -> None:
             Section("Angle", "Gray: no polarization seen. The scale is cyclic.", pictures=angles),
             Section("Degree", pictures=_degrees(frame)),
             Section("Highlights", _tagged(s), pictures=_highlights(frame)),
+            *_depths(frame),
         ],
     )
     (folder / "polar.html").write_text(text)
@@ -102,6 +103,27 @@ def _degrees(frame: PolarFrame) -> list[Picture]:
     ]
     scale = Scale(pictures.depth_colours(), 0, 1)
     return [Picture(name, "", caption, pictures.depth(values, 0, 1), scale) for name, caption, values in named]
+
+
+def _depths(frame: PolarFrame) -> list[Section]:
+    """The disparity as found and without the highlights, beside the truth."""
+    off, truth = frame.summary["disparity"], frame.result.exposed.scene.disparity
+    if frame.disparity is None or truth is None:
+        return []
+    low, high = float(truth.min()), float(truth.max())
+    scale = Scale(pictures.depth_colours(), low, high, "px per view step")
+    named = [("disparity-true", "of the scene", truth)]
+    for key, caption, values in zip(
+        ("found", "untagged"), ("as found", "without the highlights"), frame.disparity, strict=True
+    ):
+        named.append((f"disparity-{key}", f"{caption}: {number(off[f'{key}_rms_px'], 2)} px RMS in them", values))
+    shown = [Picture(name, "", what, pictures.depth(values, low, high), scale) for name, what, values in named]
+    text = (
+        "A mirror image is at another depth than the surface that shows it: what is tagged takes the disparity around "
+        f"it. Of as many of the brightest pixels: {number(off['unbright_rms_px'], 2)} px RMS; one disparity for all: "
+        f"{number(off['constant_rms_px'], 2)} px."
+    )
+    return [Section("Disparity without the highlights", text, pictures=shown)]
 
 
 def _highlights(frame: PolarFrame) -> list[Picture]:

@@ -26,12 +26,12 @@ def run(options: Namespace) -> int:
     from talbot.base.progress import Frames
     from talbot.models.scene import Sampling, open_clip
 
-    from .outputs import run
-
     typed = typed_of(options, _with_scene)
     options.out = options.out or Path("build/sequence") / name_of(typed)
     asked = request_of(options)
     clip, before = open_clip(options.scene, Sampling.of(asked.sensor)), arguments_of(asked.folder)
+    from .outputs import run  # Matplotlib and more: not before the arguments are right
+
     with Frames(clip.count) as progress:
         summary = run(asked, clip, progress, typed)
     _print_figures(summary, asked.folder)

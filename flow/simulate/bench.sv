@@ -102,16 +102,18 @@ module Bench #(
   end
 
   // ---- integration of every row, as the row driver sees the pins (pixels/README.md) ----
-  reg [0:ROWS-1] open;
+  reg open[0:ROWS-1];
   reg [31:0] opened[0:ROWS-1], integrated[0:ROWS-1];
   reg [31:0] since, sum;
   reg was_integrate;
   integer at;
-  initial for (at = 0; at < ROWS; at = at + 1) integrated[at] = 0;
+  initial for (at = 0; at < ROWS; at = at + 1) begin
+    open[at] = 1'b0;
+    integrated[at] = 0;
+  end
   always @(posedge clk) begin
     was_integrate <= integrate & ~reset;
-    if (reset) open <= 0;
-    else begin
+    if (~reset & (pixel_reset | expose | read | (integrate ^ was_integrate))) begin
       if (pixel_reset) begin
         open[reset_row] <= 1'b0;
         if (reset_row == amp_row) sum <= 0;

@@ -14,7 +14,7 @@ from .build import Build
 FRAME = Path(__file__).parent
 
 # No fused multiply-add: the front end's arithmetic must round as NumPy's does, on every processor.
-CXX_FLAGS = ("-O2", "-ffp-contract=off")
+CXX_FLAGS = ("-O2", "-ffp-contract=off", "-DVL_FREAD_I=read_words")
 PACKED = ("zlib.h", "lz4.h")  # headers of what packs an FST
 VERILATOR_FLAGS = (*FAST, "-fno-split", "--output-split", "0", "-Wno-fatal")
 

@@ -36,7 +36,7 @@ SETTINGS: Sequence[tuple[str, int, int, int]] = (
 
 def points(quick: bool) -> list[tuple[tuple[str, int, int, int], int]]:
     """Settings, and rows of the array."""
-    return [(setting, 48 if quick else 96) for setting in SETTINGS if not quick or setting[2:] == (11, 8)]
+    return [(setting, 24 if quick else 96) for setting in SETTINGS if not quick or setting[2:] == (5, 8)]
 
 
 @lru_cache(maxsize=1)

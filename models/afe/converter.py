@@ -10,6 +10,7 @@ from talbot.models.parameters import ConverterParameters, check_int
 from talbot.models.parameters.electrical import AMPLIFIER
 
 from .noise import KTC_DECISION, NOISE_SCALE, noise_counts
+from .search import BIPOLAR, search
 
 CODES = 256
 
@@ -129,6 +130,8 @@ class Converter:
             In LSB, shape of ``v``.
         """
         v = np.asarray(v, np.float64)
+        if not any(self.amplifier):
+            return v
         offset, gain, square, cube = self.amplifier
         x = (v - (CODES // 2 if unsigned else 0)) / (CODES // 2)
         return v + (offset + x * (gain + x * (square + x * cube)))
@@ -186,3 +189,35 @@ class Converter:
         """
         noise = self.noise_scale * noise_counts(self.seed, index, decision)
         return held + noise >= self.levels[int(unsigned), np.asarray(lane), np.asarray(dac)]
+
+    def search(
+        self, v: npt.NDArray[np.float64], unsigned: bool, window: int, lane: npt.ArrayLike, index: npt.ArrayLike
+    ) -> tuple[npt.NDArray[np.int16], npt.NDArray[np.bool_]]:
+        """Hold and search many values: what `held` and `compare` give one decision after another.
+
+        Parameters
+        ----------
+        v : float64
+            Values in LSB.
+        unsigned : bool
+            The unipolar range.
+        window : int
+            0..127; 0 searches for every code.
+        lane : array of int
+            0..lanes-1, broadcastable to ``v``.
+        index : array of int
+            Sample number, 0..2**28-1, broadcastable to ``v``.
+
+        Returns
+        -------
+        codes : int16
+            Of the shape of ``v``; 0 where the window comparison gives them, otherwise as found.
+        converted : bool
+            Where the search ran.
+        """
+        codes, converted = np.empty(v.size, np.int16), np.empty(v.size, bool)
+        lane, index = (np.broadcast_to(x, v.shape).astype(np.int64).ravel() for x in (lane, index))
+        scales = float(self.noise_scale), float(self.ktc_scale)
+        levels, low = np.ascontiguousarray(self.levels[int(unsigned)], np.float64), 0 if unsigned else -BIPOLAR
+        search(v.ravel(), lane, index, levels, self.offset, scales, np.uint32(self.seed), window, low, codes, converted)
+        return codes.reshape(v.shape), converted.reshape(v.shape)

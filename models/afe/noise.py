@@ -9,7 +9,7 @@ import numpy.typing as npt
 DECISIONS = 16  # numbers of a sample: 0..14 are comparator decisions
 KTC_DECISION = DECISIONS - 1  # the number of the sampling capacitor
 NOISE_SCALE = float(1 / np.sqrt(4 * (256**2 - 1) / 12))  # a count -> unit variance
-_CENTRE = 4 * 255 // 2
+MOST = 4 * 255 // 2  # counts either way
 
 
 def _mix(x: npt.NDArray[np.uint32]) -> npt.NDArray[np.uint32]:
@@ -42,4 +42,4 @@ def noise_counts(seed: int, index: npt.ArrayLike, decision: npt.ArrayLike) -> np
     word = np.atleast_1d(np.asarray(index)).astype(np.uint32) * np.uint32(DECISIONS)
     h = _mix(key ^ (word + np.asarray(decision).astype(np.uint32)))
     total = (h & 255) + (h >> 8 & 255) + (h >> 16 & 255) + (h >> 24)
-    return total.astype(np.int32).reshape(np.broadcast_shapes(np.shape(index), np.shape(decision))) - _CENTRE
+    return total.astype(np.int32).reshape(np.broadcast_shapes(np.shape(index), np.shape(decision))) - MOST

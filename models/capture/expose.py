@@ -17,10 +17,9 @@ from talbot.models.parameters import (
     check_real,
 )
 
-from .shot import photon_count
+from .shot import PHOTONS_MAX, Pixels, collect, read
 
 NOISE_MAX = 100.0
-PHOTONS_MAX = 1e15  # electrons per diode and interval: far beyond any well
 
 
 @dataclass(frozen=True)
@@ -78,10 +77,9 @@ class Exposure:
 
 
 class _Pattern(NamedTuple):
-    """What is the same in every exposure of a chip: gain and offset of the diodes, offset of the columns, electrons."""
+    """What is the same in every exposure of a chip: the diodes, and the offsets of the columns in electrons."""
 
-    gain: npt.NDArray[np.floating]
-    offset: npt.NDArray[np.floating] | np.floating
+    pixels: Pixels
     columns: npt.NDArray[np.float64]
 
 
@@ -89,12 +87,16 @@ class _Pattern(NamedTuple):
 def _fixed_pattern(
     electrical: ElectricalParameters, noise: float, seed: int, shape: tuple[int, ...], dtype: np.dtype[Any]
 ) -> _Pattern:
-    def _normal(stream: int, rms: float) -> Any:
-        return _draw(np.random.default_rng([seed, stream]), shape, dtype, rms * noise)
+    e = electrical
 
-    columns = np.random.default_rng([seed, 401]).standard_normal((2, 1, shape[2])) * electrical.column_fpn
-    gain = np.maximum(1 + _normal(0, electrical.gain_fpn), 0)
-    return _Pattern(gain, _normal(101, electrical.offset_fpn), columns)
+    def _normal(stream: int, rms: float) -> Any:
+        return np.zeros(shape, dtype) + _draw(np.random.default_rng([seed, stream]), shape, dtype, rms * noise)
+
+    columns = np.random.default_rng([seed, 401]).standard_normal((2, 1, shape[2])) * e.column_fpn
+    gain = np.maximum(1 + _normal(0, e.gain_fpn), 0)
+    light, dark = e.white_current / ELEMENTARY_CHARGE, e.dark_current / ELEMENTARY_CHARGE
+    numbers = [light, dark, e.full_well, e.lsb_electrons, noise, e.read_noise * noise, PHOTONS_MAX]
+    return _Pattern(Pixels(gain, _normal(101, e.offset_fpn), np.array(numbers, dtype)), columns)
 
 
 def _draw(generator: np.random.Generator, shape: tuple[int, ...], dtype: np.dtype[Any], rms: float) -> Any:
@@ -139,47 +141,33 @@ def expose(
     e, n = exposure.electrical, exposure.noise
     dtype = pair.dtype
     moving = exposure.generator(1 + tap)
-    pattern = _fixed_pattern(e, n, exposure.seed, pair.shape, dtype)
-    current = pair * dtype.type(e.white_current / ELEMENTARY_CHARGE)
-    current *= pattern.gain
-    current += dtype.type(e.dark_current / ELEMENTARY_CHARGE)
+    pixels, columns = _fixed_pattern(e, n, exposure.seed, pair.shape, dtype)
+    pair, none = np.ascontiguousarray(pair), np.empty((0, 0, 0), dtype)
 
     resets = exposure.generator(301 + tap)
     g = dtype.type(1) if balance is None else np.asarray(balance, dtype)
-    wells = np.zeros_like(pair)
+    wells = np.zeros(pair.shape, dtype)
     for number, seconds in enumerate(exposure.intervals):
-        mean = np.minimum(current * dtype.type(seconds), dtype.type(PHOTONS_MAX))
         if number:
             common = np.minimum(wells[0] / g, wells[1])
             wells[0] -= g * common
             wells[1] -= common
             wells += _draw(resets, pair.shape, dtype, e.ktc_noise * n)
-        collected = mean
-        if n:
-            collected = photon_count(mean, moving.standard_normal(pair.shape, dtype))
-            collected -= mean
-            collected *= dtype.type(n)
-            collected += mean
-            np.maximum(collected, 0, out=collected)
-        wells += collected
-        np.clip(wells, 0, dtype.type(e.full_well), out=wells)
-    wells += pattern.offset + _draw(exposure.generator(201 + tap), pair.shape, dtype, e.read_noise * n)
+        collect(wells, pair, pixels, dtype.type(seconds), moving.standard_normal(pair.shape, dtype) if n else none)
+    z, pink = none, np.empty((0, 0, 0))
     if n:
-        columns = _flicker(exposure, tap, pair.shape)
-        columns += pattern.columns
-        columns *= n
-        wells += columns.astype(dtype, copy=False)
-    wells /= dtype.type(e.lsb_electrons)
-    return np.ascontiguousarray(np.moveaxis(wells, 0, -1))
+        z = exposure.generator(201 + tap).standard_normal(pair.shape, dtype) if e.read_noise else none
+        pink = _flicker(exposure, tap, pair.shape)
+    out = np.empty((*pair.shape[1:], 2), dtype)
+    read(out, wells, pixels, z, pink, e.flicker_noise, columns, n)
+    return out
 
 
 def _flicker(exposure: Exposure, tap: int, shape: tuple[int, ...]) -> npt.NDArray[np.float64]:
-    """1/f noise of the columns' amplifiers in electrons, (2, rows, cols)."""
+    """1/f noise of the columns' amplifiers, RMS 1, (2, 2 rows, cols): of a frame the first half."""
     _, rows, cols = shape
     white = np.fft.rfft(exposure.generator(501 + tap).standard_normal((2, 2 * rows, cols)), axis=1)
     shape_ = 1 / np.sqrt(np.maximum(np.arange(rows + 1), 1))  # power falls with 1/f; a frame sees half of the record
     gain = np.sqrt(2 * rows / (2 * np.sum(shape_[1:-1] ** 2) + shape_[0] ** 2 + shape_[-1] ** 2))
     white *= (shape_ * gain)[:, None]
-    pink = np.fft.irfft(white, 2 * rows, axis=1)[:, :rows]
-    pink *= exposure.electrical.flicker_noise
-    return pink
+    return np.fft.irfft(white, 2 * rows, axis=1)

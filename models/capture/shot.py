@@ -1,15 +1,34 @@
-"""Photon shot noise of one pixel, independent of its neighbours.
+"""Photons and electrons of one pixel, independent of its neighbours.
 
 The Poisson draws of a generator consume more or fewer random bits depending on the mean: leaving one pixel out would
 change the noise of all that follow. Here every count is a function of one normal deviate.
 """
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
-from numba import vectorize
+import numpy as np
+import numpy.typing as npt
+from numba import njit, vectorize
 
 FEW = 60.0  # electrons
+PHOTONS_MAX = 1e15  # electrons per diode and interval: far beyond any well
+
+Floats = npt.NDArray[np.floating]
+
+
+@njit(cache=True, nogil=True)
+def _count(mean: Any, z: Any) -> Any:
+    if mean > FEW:
+        return max(0.0, math.floor(mean + math.sqrt(mean) * z + (z * z - 1) / 6 + 0.5))
+    target = 0.5 * math.erfc(-z / math.sqrt(2.0))
+    term = math.exp(-mean)
+    total, k = term, 0.0
+    while total < target and k < 4 * FEW:
+        k += 1
+        term *= mean / k
+        total += term
+    return k
 
 
 @vectorize(["float32(float32, float32)", "float64(float64, float64)"], cache=True)
@@ -30,13 +49,91 @@ def photon_count(mean: Any, z: Any) -> Any:  # arrays outside, scalars inside
     float32 or float64
         Whole electrons.
     """
-    if mean > FEW:
-        return max(0.0, math.floor(mean + math.sqrt(mean) * z + (z * z - 1) / 6 + 0.5))
-    target = 0.5 * math.erfc(-z / math.sqrt(2.0))
-    term = math.exp(-mean)
-    total, k = term, 0
-    while total < target and k < 4 * FEW:
-        k += 1
-        term *= mean / k
-        total += term
-    return k
+    return _count(mean, z)
+
+
+class Pixels(NamedTuple):
+    """The diodes of an array, all of one type: float32 or float64.
+
+    Attributes
+    ----------
+    gain, offset : array (2, rows, cols)
+        Of each diode: factor of its photocurrent, and electrons.
+    numbers : array (7,)
+        Electrons/s of a photocurrent of 1, electrons/s of dark current, electrons of a full well, electrons an LSB,
+        factor of the shot noise, RMS of the read noise in electrons, PHOTONS_MAX.
+    """
+
+    gain: Floats
+    offset: Floats
+    numbers: Floats
+
+
+@njit(cache=True, nogil=True)
+def collect(wells: Floats, pair: Floats, pixels: Pixels, seconds: Any, z: Floats) -> None:
+    """Add what the diodes collect in an interval, up to the full well, in place.
+
+    Parameters
+    ----------
+    wells : array (2, rows, cols)
+        Electrons.
+    pair : array (2, rows, cols)
+        Relative photocurrents.
+    pixels : Pixels
+        The diodes.
+    seconds : float
+        Of the interval, of the arrays' type.
+    z : array (2, rows, cols)
+        Standard normal deviates; of no element where there is no noise.
+    """
+    unit, dark, full, _, noise, _, most = pixels.numbers
+    zero = noise - noise
+    counted = np.empty(1, wells.dtype)  # a count of the arrays' type
+    for d in range(wells.shape[0]):
+        for y in range(wells.shape[1]):
+            for x in range(wells.shape[2]):
+                mean = min((pair[d, y, x] * unit * pixels.gain[d, y, x] + dark) * seconds, most)
+                if z.size:
+                    counted[0] = _count(mean, z[d, y, x])
+                    mean = max((counted[0] - mean) * noise + mean, zero)
+                wells[d, y, x] = min(max(wells[d, y, x] + mean, zero), full)
+
+
+@njit(cache=True, nogil=True)
+def read(
+    out: Floats, wells: Floats, pixels: Pixels, z: Floats, pink: Floats, rms: float, columns: Floats, noise: float
+) -> None:
+    """What the pixels and the columns' amplifiers make of the electrons.
+
+    Parameters
+    ----------
+    out : array (rows, cols, 2)
+        Receives it, in LSB.
+    wells : array (2, rows, cols)
+        Electrons.
+    pixels : Pixels
+        The diodes.
+    z : array (2, rows, cols)
+        Standard normal deviates of the read noise; of no element where there is none.
+    pink : float64 (2, rows or more, cols)
+        1/f noise of the columns, RMS 1; of no element where the columns add nothing.
+    rms : float
+        Of the 1/f noise in electrons.
+    columns : float64 (2, 1, cols)
+        Offsets of the columns in electrons.
+    noise : float
+        Factor of what the columns add.
+    """
+    lsb, read_noise = pixels.numbers[3], pixels.numbers[5]
+    added = np.zeros(1, wells.dtype)  # a number of the arrays' type
+    for d in range(wells.shape[0]):
+        for y in range(wells.shape[1]):
+            for x in range(wells.shape[2]):
+                value = pixels.offset[d, y, x]
+                if z.size:
+                    value = value + z[d, y, x] * read_noise
+                value = wells[d, y, x] + value
+                if pink.size:
+                    added[0] = (pink[d, y, x] * rms + columns[d, 0, x]) * noise
+                    value = value + added[0]
+                out[y, x, d] = value / lsb

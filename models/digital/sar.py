@@ -36,17 +36,9 @@ class Conversion(NamedTuple):
 class _Lanes(Protocol):
     """The part of models.afe.Converter that a conversion needs."""
 
-    def held(self, v: npt.ArrayLike, lane: npt.ArrayLike, index: npt.ArrayLike) -> npt.NDArray[np.float64]: ...
-
-    def compare(
-        self,
-        held: npt.NDArray[np.float64],
-        dac: npt.ArrayLike,
-        unsigned: bool,
-        lane: npt.ArrayLike,
-        index: npt.ArrayLike,
-        decision: int,
-    ) -> npt.NDArray[np.bool_]: ...
+    def search(
+        self, v: npt.NDArray[np.float64], unsigned: bool, window: int, lane: npt.ArrayLike, index: npt.ArrayLike
+    ) -> tuple[npt.NDArray[np.int16], npt.NDArray[np.bool_]]: ...
 
 
 def decisions(unsigned: bool, threshold: int) -> Generator[int, bool, tuple[int, bool]]:
@@ -131,9 +123,7 @@ def convert(
     if converter is None:
         codes, converted = _ideal(v, unsigned, window)
     else:
-        lane, index = (np.broadcast_to(x, v.shape).ravel() for x in (lane, index))
-        held = converter.held(v.ravel(), lane, index)
-        codes, converted = _search(held, unsigned, window, converter, lane, index)
+        codes, converted = converter.search(v, unsigned, window, lane, index)
     codes[np.abs(codes) < window] = 0
     first = 2 if window else 0
     taken = np.where(converted, first + BITS, first).astype(np.uint8)
@@ -150,27 +140,3 @@ def _ideal(
     nearest -= limited < nearest - 0.5  # where the sum is rounded up to the next integer
     codes = nearest.astype(np.int16)
     return codes, np.abs(codes) >= window
-
-
-def _search(
-    held: npt.NDArray[np.float64],
-    unsigned: bool,
-    window: int,
-    converter: _Lanes,
-    lane: npt.NDArray[np.integer],
-    index: npt.NDArray[np.integer],
-) -> tuple[npt.NDArray[np.int16], npt.NDArray[np.bool_]]:
-    """Decide on flat arrays, one decision after another."""
-    converted = np.ones(held.size, bool)
-    if window:
-        above = converter.compare(held, BIPOLAR + window, unsigned, lane, index, 0)
-        converted = above | ~converter.compare(held, BIPOLAR + 1 - window, unsigned, lane, index, 1)
-    at = np.flatnonzero(converted)
-    held, lane, index = held[at], lane[at], index[at]
-    dac = np.zeros(at.size, np.int16)
-    for number, bit in enumerate(range(BITS - 1, -1, -1), start=2 if window else 0):
-        trial = dac | 1 << bit
-        dac = np.where(converter.compare(held, trial, unsigned, lane, index, number), trial, dac)
-    codes = np.zeros(converted.size, np.int16)
-    codes[at] = dac if unsigned else dac - BIPOLAR
-    return codes, converted

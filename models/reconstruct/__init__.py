@@ -2,6 +2,7 @@
 
 from .demosaic import demosaic, edge_images
 from .edges import EdgeOperator, Solver, image_from_edges
+from .highlights import without_highlights
 from .intensity import FULL, sum_image, sum_noise, white_sum
 from .light_field import light_field_estimate
 from .polarization import Polarization, demosaiced, polarization, specular_tags
@@ -27,4 +28,5 @@ __all__ = [
     "sum_image",
     "sum_noise",
     "white_sum",
+    "without_highlights",
 ]

@@ -28,7 +28,7 @@ from .strip import FOURTH, SECOND, THIRD, TRACK, TRACK_PITCH
 # um
 AROUND, TAB, APART = 0.14, 0.45, 1.2  # lower plate around the upper one, on the side of its via; between lower plates
 VIA_IN = 0.24  # of that via's middle from the upper plate
-LINE, LINE_PITCH, LINES = 0.14, 0.52, 6
+LINE, LINE_PITCH, LINES = 0.14, 0.64, 6
 COLUMN = 0.4  # width of the common node's metal
 RING_AWAY = 1.0  # of the bus's first track from the dummies
 GRID = 0.005
@@ -180,11 +180,12 @@ class _Drawing:
             raise ParameterError(f"column {column} = {len(kinds)} capacitors: must be {LINES} at most")
         x0, _ = self.middle(0, column)
         places = {name: x0 + (k - (len(kinds) - 1) / 2) * LINE_PITCH for k, name in enumerate(kinds)}
-        far = self.middle(SIDE - 1, column)[1] - self.plan.edge_um / 2 - VIA_IN + LINE
+        beyond = self.plan.edge_um / 2 + VIA_IN - LINE
         if column == HALF_COLUMN:
             self._half(places.pop(OUT), made)
         for name, x in places.items():
-            self._line(self.plan.nets[name], x, far, made)
+            last = int((own == name).nonzero()[0][-1])
+            self._line(self.plan.nets[name], x, self.middle(last, column)[1] - beyond, made)
         for row in range(SIDE):
             self._plate(row, column, self.plan.edge_um)
             self._lower(row, column, self.plan.edge_um)

@@ -1,18 +1,18 @@
 """Whole cells: strips joined by their rails, with pins and an outline, beside the circuit that they are."""
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from talbot.base.gds import db, write_gds
 from talbot.pixels.circuits.comparator import ComparatorSizes, comparator
-from talbot.pixels.circuits.netlist import Transistor
+from talbot.pixels.circuits.netlist import Resistor, Transistor
 from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.analog import AnalogMasks
 
 from . import flat
 from .comparator import comparator_plans, devices, draw_comparator, least_half
-from .device import Device
+from .device import Device, Strap
 from .strip import RAIL_ENDS, THIRD, Strip, Terminal, join_rails
 
 MARGIN = 2.0  # of a cell beyond its rails, um
@@ -21,7 +21,9 @@ MARGIN = 2.0  # of a cell beyond its rails, um
 @dataclass(frozen=True)
 class Cell:
     """A drawn cell. ports: in the order of its pins. devices: its transistors in fingers. plates: its capacitors.
-    terminals: of its transistors. taps: of its capacitors, as `Array` has them, under the names of ``plates``."""
+    terminals: of its transistors. tracks: of its nets, of a cell with one strip. taps: of its capacitors, as `Array` has
+    them, under the names of ``plates``. matched: units of ``unit`` F of fringe capacitors between two nets, in the order
+    of their names. resistors: drawn ones, and their ``ends``."""
 
     layout: "db.Layout"
     cell: "db.Cell"
@@ -30,6 +32,11 @@ class Cell:
     plates: tuple[flat.Plate, ...] = ()
     terminals: tuple[Terminal, ...] = ()
     taps: tuple[flat.Tap, ...] = ()
+    tracks: tuple[Strap, ...] = ()
+    matched: Mapping[tuple[str, str], int] = field(default_factory=dict)
+    unit: float = 0.0
+    resistors: tuple[Resistor, ...] = ()
+    ends: tuple[flat.Ends, ...] = ()
 
     @property
     def transistors(self) -> list[Transistor]:
@@ -38,7 +45,7 @@ class Cell:
 
     def spice(self, masks: AnalogMasks) -> str:
         """Its text for LVS."""
-        return flat.spice(self.cell.name, self.ports, self.transistors, masks, self.plates)
+        return flat.spice(self.cell.name, self.ports, self.transistors, masks, self.plates, self.resistors)
 
     def write(self, path: Path) -> None:
         """Write its GDS."""

@@ -36,7 +36,7 @@ REFERENCES, REFERENCE_WIDE, REFERENCE_PITCH, REFERENCE_AWAY = ("refp", "refn", "
 JOGS = 2.0, 3.5  # of lane_a and lane_b above the lanes
 STRAP, STRAP_PITCH, SPINE = 4.0, 30.0, (2.0, 13.0)  # of the supplies; of what joins straps from the edge
 VIA_PITCH = 1.6
-SUPPLIES = {"vdd": "vdda", "vss": "vssa"}
+SUPPLIES = {"vdd": "vddc", "vss": "vssa"}
 
 
 @dataclass(frozen=True)

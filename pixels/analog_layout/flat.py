@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
-from talbot.pixels.circuits.netlist import Capacitor, Circuit, Transistor
+from talbot.pixels.circuits.netlist import Capacitor, Circuit, Resistor, Transistor
 from talbot.platforms.analog import AnalogMasks
 
 
@@ -24,6 +24,14 @@ class Tap(NamedTuple):
     units: float
     x: float
     y: float
+
+
+class Ends(NamedTuple):
+    """Where a resistor's two ends meet the first metal, um."""
+
+    name: str
+    first: tuple[float, float]
+    last: tuple[float, float]
 
 
 def transistors(circuit: Circuit, prefix: str = "", nets: Mapping[str, str] | None = None) -> Iterator[Transistor]:
@@ -54,7 +62,12 @@ def capacitors(circuit: Circuit, prefix: str = "", nets: Mapping[str, str] | Non
 
 
 def spice(
-    name: str, ports: Iterable[str], devices: Iterable[Transistor], masks: AnalogMasks, plates: Iterable[Plate] = ()
+    name: str,
+    ports: Iterable[str],
+    devices: Iterable[Transistor],
+    masks: AnalogMasks,
+    plates: Iterable[Plate] = (),
+    resistors: Iterable[Resistor] = (),
 ) -> str:
     """The text for LVS. plates: of its capacitors."""
     lines = [f".subckt {name} {' '.join(ports)}"]
@@ -66,4 +79,5 @@ def spice(
         f"C{c} {upper} {lower} {2e-15 * area:.6g} {masks.deck_mim} A={area:.6g}P P={edge:.6g}U"
         for c, upper, lower, area, edge in plates
     ]
+    lines += [f"R{r.name} {r.a} {r.b} {r.value:.6g} {masks.deck_resistor}" for r in resistors]
     return "\n".join([*lines, f".ends {name}", ""])

@@ -44,7 +44,7 @@ from .strip import (
 # um
 CHANNEL, CHANNEL_FIRST, CHANNEL_PITCH = 9.0, 0.9, 1.6  # beside the arrays, for what passes them
 AWAY = 1.6  # of an array from a rail
-WEST, EAST = ("lane_a", "bottoms", "bottoms_n", "refp", "refn"), ("vcm", "fire", "comparator", "sample_1", "sample_2")
+WEST, EAST = ("lane_a", "refn", "bottoms", "refp", "bottoms_n"), ("vcm", "sample_1", "sample_2", "comparator", "fire")
 GATES = (("n", "p"),), (("na", "pa"), ("nb", "pb"))  # of an inverter, of a gate of two inputs
 NORTH = "lane_a", "lane_b", "refp", "refn", "vcm"  # pins there
 STEP = 2.8  # of the nets over the strips

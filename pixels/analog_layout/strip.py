@@ -32,7 +32,7 @@ WELL_ENDS = 0.50  # of the well beyond its taps
 RAIL_ENDS, RAIL_AT, RAIL_TRUNK = 1.7, 1.0, 1.0  # of a rail beyond the tracks; what joins rails: from there, its width
 TRUNK = 0.5  # um, of a net from strip to strip
 SPLIT, CROSS = 0.2, 0.9  # of the axis from the halves of tracks
-SECOND, THIRD, FOURTH = 2, 3, 4
+FIRST, SECOND, THIRD, FOURTH = 1, 2, 3, 4
 TRIES = 60
 
 
@@ -52,7 +52,8 @@ class Plan:
 
     n, p: rows. left, right: its ends, um. axis: of its symmetry, or None. split, twisted: pairs of nets that are mirror
     images, the western one first. through: x up to which the
-    tracks of nets that meet other strips go, too. quiet: nets whose tracks are together, away from the others.
+    tracks of nets that meet other strips go, too. rails: nets without tracks, the lower rail's first. quiet: nets whose
+    tracks are together, away from the others. least_um: of its height.
     """
 
     n: tuple[Placed, ...]
@@ -63,8 +64,9 @@ class Plan:
     split: tuple[tuple[str, str], ...] = ()
     twisted: tuple[tuple[str, str], ...] = ()
     axis: float | None = None
-    rails: tuple[str, str] = ("vss", "vdd")
+    rails: tuple[str, ...] = ("vss", "vdd")
     quiet: frozenset[str] = frozenset()
+    least_um: float = 0.0
 
     @property
     def height_um(self) -> float:
@@ -72,7 +74,7 @@ class Plan:
         heights = [max((placed.device.finger_um for placed in row), default=0.0) for row in (self.n, self.p)]
         between = MIDDLE if self.n and self.p else OPEN_ENDS
         devices = 2 * RAIL + sum(heights) + between
-        return max(devices, 2 * TRACK_IN + TRACK_PITCH * (len(self._rows()) - 1))
+        return max(devices, 2 * TRACK_IN + TRACK_PITCH * (len(self._rows()) - 1), self.least_um)
 
     def placed(self) -> tuple[Placed, ...]:
         """All devices."""
@@ -143,6 +145,13 @@ class Strip:
 
 def draw_strip(canvas: Canvas, masks: AnalogMasks, plan: Plan, y: float) -> Strip:
     """Draw a strip, the middle of its lower rail at ``y``. Raises ParameterError where a drop has no room."""
+    made = draw_rows(canvas, masks, plan, y)
+    draw_rails(canvas, masks, plan, y)
+    return made
+
+
+def draw_rows(canvas: Canvas, masks: AnalogMasks, plan: Plan, y: float) -> Strip:
+    """A strip's transistors and nets, without rails and well."""
     made, top = Strip(plan, y), y + plan.height_um
     made.tracks = [track._replace(y=y + track.y) for track in plan.tracks()]
     straps: list[tuple[Strap, Placed]] = []
@@ -156,7 +165,12 @@ def draw_strip(canvas: Canvas, masks: AnalogMasks, plan: Plan, y: float) -> Stri
         canvas.wire(THIRD, track.left, track.y - TRACK / 2, track.right, track.y + TRACK / 2)
     for pair in plan.twisted:
         _cross(canvas, made, pair, plan.axis or 0.0)
-    base = masks.base
+    return made
+
+
+def draw_rails(canvas: Canvas, masks: AnalogMasks, plan: Plan, y: float) -> None:
+    """A strip's rails with their taps, and its well."""
+    base, top = masks.base, y + plan.height_um
     if plan.n:
         _rail(canvas, plan, y, base.pplus)
     if plan.p:
@@ -164,7 +178,6 @@ def draw_strip(canvas: Canvas, masks: AnalogMasks, plan: Plan, y: float) -> Stri
         beyond = RAIL_ENDS + WELL_ENDS
         canvas.box(base.well, plan.left - beyond, low, plan.right + beyond, top + TAP_HALF + WELL_AROUND)
         _rail(canvas, plan, top, base.nplus)
-    return made
 
 
 def _rail(canvas: Canvas, plan: Plan, y: float, implant: tuple[int, int]) -> None:

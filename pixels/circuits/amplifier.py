@@ -176,12 +176,12 @@ def size(
         beta = feedback / (inputs + current / pair.density * pair.gate)
 
     def width(name: str, kind: tuple[str, float], amperes: float) -> float:
-        return max(0.42, round(amperes / process.operating(*kind, EFFICIENCY[name]).density, 2))
+        return max(0.42, _drawn(amperes / process.operating(*kind, EFFICIENCY[name]).density))
 
     branch = current / SPLIT
     ota = OtaSizes(
         ceil(2 * current / (LEG * BIAS)),
-        width("pair", PAIR, current),
+        SPLIT * PAIR_PARTS * _drawn(width("pair", PAIR, current) / (SPLIT * PAIR_PARTS)),
         width("tail", TAIL, LEG * BIAS),
         width("sink", SINK, current / SPLIT),
         width("cascode", CASCODE, branch),
@@ -190,6 +190,12 @@ def size(
         width("leg", LEGS, BIAS),
     )
     return AmplifierSizes(ota, unit, gain)
+
+
+def _drawn(um: float) -> float:
+    """The width nearest to ``um`` of an even number of fingers of at most 5 um on a grid of 0.01 um; one below 2 um."""
+    step = 0.01 * (2 * ceil(um / 10) if um >= 2 else 1)
+    return round(round(um / step) * step, 3)
 
 
 def _n(name: str, nodes: str, w: float, kind: tuple[str, float], parts: int = 1) -> list[Transistor]:
@@ -205,7 +211,7 @@ def _p(name: str, nodes: str, w: float, kind: tuple[str, float], parts: int = 1)
 def _parts(name: str, nodes: tuple[str, ...], w: float, kind: tuple[str, float], parts: int) -> list[Transistor]:
     drain, gate, source, bulk = nodes
     names = [name] if parts == 1 else [f"{name}_{k}" for k in range(parts)]
-    return [Transistor(one, drain, gate, source, bulk, kind[0], round(w, 3), kind[1]) for one in names]
+    return [Transistor(one, drain, gate, source, bulk, kind[0], _drawn(w), kind[1]) for one in names]
 
 
 def ota(sizes: OtaSizes) -> Circuit:

@@ -84,7 +84,11 @@ class Circuit:
 
     def sizes(self) -> set[tuple[str, float, float]]:
         """(role, w, l) of every transistor, those of inner circuits too."""
-        return {(t.role, t.w, t.l) for one in self.circuits().values() for t in one.transistors}
+        return {size for one in self.circuits().values() for size in one.own_sizes()}
+
+    def own_sizes(self) -> set[tuple[str, float, float]]:
+        """(role, w, l) of its own transistors, as its lines have them."""
+        return {(t.role, t.w, t.l) for t in self.transistors}
 
     def lines(self, process: ModuleType) -> list[str]:
         """The .subckt text of all circuits in it, without models.
@@ -92,17 +96,21 @@ class Circuit:
         process: a module like platforms.sky130.analog. A capacitor with units is ``value * cscale``: the deck sets
         ``.param cscale=1 rscale=1``, or other factors for a corner of the capacitors and of drawn resistors.
         """
-        text = []
-        for one in self.circuits().values():
-            text.append(f".subckt {one.name} {' '.join(one.ports)}")
-            text += [process.instance(t.name, t.nodes, t.role, t.w, t.l) for t in one.transistors]
-            for c in one.capacitors:
-                text.append(f"C{c.name} {c.a} {c.b} {{{c.value:.6g}*{'cscale' if c.units else '1'}}}")
-            for r in one.resistors:
-                text.append(f"R{r.name} {r.a} {r.b} " + (f"{{{r.value:.6g}*rscale}}" if r.drawn else f"{r.value:.6g}"))
-            text += [f"X{i.name} {' '.join(i.nodes)} {i.circuit.name}" for i in one.instances]
-            text.append(f".ends {one.name}")
-        return text
+        return [line for one in self.circuits().values() for line in one.own_lines(process)]
+
+    def own_lines(self, process: ModuleType) -> list[str]:
+        """Its own .subckt text."""
+        text = [f".subckt {self.name} {' '.join(self.ports)}", *self.devices(process)]
+        for c in self.capacitors:
+            text.append(f"C{c.name} {c.a} {c.b} {{{c.value:.6g}*{'cscale' if c.units else '1'}}}")
+        for r in self.resistors:
+            text.append(f"R{r.name} {r.a} {r.b} " + (f"{{{r.value:.6g}*rscale}}" if r.drawn else f"{r.value:.6g}"))
+        text += [f"X{i.name} {' '.join(i.nodes)} {i.circuit.name}" for i in self.instances]
+        return [*text, f".ends {self.name}"]
+
+    def devices(self, process: ModuleType) -> list[str]:
+        """Lines of its own transistors."""
+        return [process.instance(t.name, t.nodes, t.role, t.w, t.l) for t in self.transistors]
 
     def check(self, process: ModuleType) -> None:
         """Raise ParameterError that names the first broken device, net or size, in this circuit or an inner one."""

@@ -2,7 +2,8 @@
 
 Pins of `row_driver`: row phase line vdd vss; the line is high where both are. `row_line`: near far vss, a ladder.
 `non_overlap`: clk phi1 phi2 vdd vss; phi2 follows clk, phi1 is high while it is low, and both are low in between.
-`bias`: ibias vdd vss; BIAS amperes leave ibias (the amplifier's pin) at the typical corner.
+`bias`: ibias vdd vss; BIAS amperes leave ibias (the amplifier's pin) at the typical corner. With several outputs its
+pins are ibias_0, ibias_1 and so on: lanes convert side by side, and each amplifier has a current of its own.
 """
 
 from dataclasses import dataclass
@@ -93,11 +94,12 @@ def non_overlap() -> Circuit:
     return Circuit("non_overlap", ("clk", "phi1", "phi2", *supplies), instances=tuple(instances))
 
 
-def bias() -> Circuit:
+def bias(outputs: int = 1) -> Circuit:
     """A current proportional to absolute temperature, n kT/q ln 4 / r: a pair of 1 to 4 in weak inversion.
 
-    The transconductance of what it drives is constant. ibias has as much as both branches together. While no current
-    flows, `start` is high and draws the mirror's gate down; the current then pulls `start` low.
+    The transconductance of what it drives is constant. Each of ``outputs``, 1..32, has as much as both branches
+    together, and none where it is open. While no current flows, `start` is high and draws the mirror's gate down; the
+    current then pulls `start` low.
     """
 
     def n(name: str, drain: str, gate: str, source: str, w: float, length: float, role: str = "n") -> Transistor:
@@ -106,15 +108,17 @@ def bias() -> Circuit:
     def p(name: str, drain: str, gate: str, w: float, length: float) -> Transistor:
         return Transistor(name, drain, gate, "vdd", "vdd", "p_lvt", w, length)
 
+    check_int("outputs", outputs, 1, 32)
+    pins = ("ibias",) if outputs == 1 else tuple(f"ibias_{k}" for k in range(outputs))
     return Circuit(
         "bias",
-        ("ibias", "vdd", "vss"),
+        (*pins, "vdd", "vss"),
         (
             n("one", "vbn", "vbn", "vss", 20, 4.0),
             *(n(f"four_{k}", "vbp", "vbn", "source", 20, 4.0) for k in range(4)),
             p("mirror_one", "vbn", "vbp", 10, 4.0),
             p("mirror_four", "vbp", "vbp", 10, 4.0),
-            *(p(f"out_{k}", "ibias", "vbp", 10, 4.0) for k in range(2)),
+            *(p(pin.replace("ibias", "out") + f"_{k}", pin, "vbp", 10, 4.0) for pin in pins for k in range(2)),
             p("keep", "start", "vss", 0.42, 8.0),
             n("stop", "start", "vbn", "vss", 4, 0.5, "n_lvt"),
             n("start", "vbp", "start", "vss", 1, 0.5),

@@ -25,8 +25,10 @@ ROLES = {
     "p": "sky130_fd_pr__pfet_01v8",
     "n_lvt": "sky130_fd_pr__nfet_01v8_lvt",
     "p_lvt": "sky130_fd_pr__pfet_01v8_lvt",
+    "n_thick": "sky130_fd_pr__nfet_g5v0d10v5",
+    "p_thick": "sky130_fd_pr__pfet_g5v0d10v5",
 }
-SHORTEST = {"n": 0.15, "p": 0.15, "n_lvt": 0.15, "p_lvt": 0.35}  # um
+SHORTEST = {"n": 0.15, "p": 0.15, "n_lvt": 0.15, "p_lvt": 0.35, "n_thick": 0.5, "p_thick": 0.5}  # um
 WIDEST = 100.0  # um, of the models' last bin
 NARROWEST = 0.42  # um
 AREA = {"n": 8.2, "p": 6.4, "n_lvt": 6.1, "p_lvt": 14.8}  # mV um: rms of Vgs times sqrt(w l)

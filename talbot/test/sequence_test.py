@@ -14,6 +14,7 @@ from talbot.base.test.supervise_test import running, started
 from talbot.commands import main
 from talbot.flow.sequence.outputs import NAMES
 from talbot.models.digital.stream import decode_file
+from talbot.test.signals_test import begun
 
 SMALL = ("--rows", "13", "--cols", "50", "--lanes", "4")
 
@@ -103,7 +104,8 @@ def test_through_the_api(tmp_path):
 def test_a_signal_leaves_nothing(tmp_path, part):
     words = ["--scene", clip(tmp_path / "a.gif", 200), "--out", str(tmp_path / "out"), *SMALL]
     child = started(tmp_path, ["-m", "talbot", "sequence", *words])
-    time.sleep(1 + part + random.random())
+    begun(child)
+    time.sleep((part + random.random()) / 2)
     if child.poll() is None:
         child.send_signal(signal.SIGTERM)
     err = child.communicate(timeout=30)[1]

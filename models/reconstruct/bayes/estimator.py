@@ -22,7 +22,7 @@ from talbot.models.pixel.weights import view_weights
 from .covariance import Covariances, Tables
 from .evidence import REACH, Residuals, badness, pooled, probability, whitener
 from .prior import FieldPrior
-from .scene import Scene
+from .scene import Ways, shares_of
 from .windows import Axis, Group, even
 
 Floats = npt.NDArray[np.floating]
@@ -32,24 +32,6 @@ Windows = Sequence[tuple[Group, Group, Floats]]  # (samples, windows) of every g
 LINEAR, MIXTURE = 1.15, 1.06
 LOST = 0.5  # probability of no one disparity, from which on it is not known
 UNLIKELY = 1e-3  # probability below which a disparity is left out of a mixture
-
-
-class Component(NamedTuple):
-    """What one disparity needs, for every group of windows.
-
-    Attributes
-    ----------
-    filters : list of float32 (pixels * views**2, samples)
-        From samples to the views of a block.
-    residuals : list of Residuals
-        For the evidence.
-    certain : float32 (rows, cols)
-        Mean around each pixel of the logarithm of 1 over the variance of an error.
-    """
-
-    filters: list[Floats]
-    residuals: list[Residuals]
-    certain: Floats
 
 
 class Estimate(NamedTuple):
@@ -133,12 +115,29 @@ class FieldEstimator:
     def _linear(self, groups: Windows, told: Windows) -> Floats:
         """The estimate of `linear` from the windows of ``groups``, with the disparities that those of ``told`` show."""
         out = np.zeros((self.views, self.views, *self.shape), np.float32)
-        number, inner = self._inner
-        for index, ((down, across, samples), filters) in enumerate(zip(groups, self._mean.filters, strict=True)):
-            if index == number:
-                filters = inner.filters(told[index][2], self._count(down, across))
-            self._place(out, filters @ samples, down, across)
+        shares = self._shares(told)
+        for (down, across, samples), ways in zip(groups, self._ways, strict=True):
+            own = shares[:, down.blocks, across.blocks].reshape(len(shares), -1)
+            self._place(out, ways.estimate(samples, own, LINEAR, self.views, shares[0].size), down, across)
         return out
+
+    def _shares(self, groups: Windows) -> Floats:
+        """Shares of the disparities in every window, (disparities, block rows, block cols)."""
+        blocks = len(self.y.blocks), len(self.x.blocks)
+        count, pool = self.prior.disparities, self.prior.pool
+        squares, certain = np.zeros((2, count, *blocks), np.float32)
+        contrast = np.zeros(blocks)
+        for (down, across, samples), ways in zip(groups, self._ways, strict=True):
+            shape = self._count(down, across)
+            at = down.blocks, across.blocks
+            contrast[at] = samples[: len(samples) // 2].var(0).reshape(shape)
+            for number, residual in enumerate(ways.residuals):
+                errors = np.square(residual.matrix @ samples).sum(0) / ways.read
+                squares[number][at] = errors.reshape(shape)
+                certain[number][at] = residual.certain.sum() / ways.read
+        near = pool / (self.y.block * self.x.block) ** 0.5  # in blocks
+        scores = [badness(pooled(s, near), c, 4 * np.pi * pool**2) for s, c in zip(squares, certain, strict=True)]
+        return shares_of(probability(self.prior.trust * np.stack(scores), 0.0), contrast)
 
     def _windows(self, pair: Floats) -> Windows:
         """Samples of every group."""
@@ -146,29 +145,49 @@ class FieldEstimator:
         return [(down, across, self._samples(turned, down, across)) for down, across in self._groups()]
 
     @cached_property
-    def _inner(self) -> tuple[int, "Scene"]:
-        """The largest group of windows, and its estimator of a scene's own disparities."""
-        groups = list(self._groups())
-        number = max(range(len(groups)), key=lambda n: np.prod(self._count(*groups[n])))
-        ways = []
+    def _ways(self) -> list[Ways]:
+        """What every group is at each disparity, made once a sensor."""
+        kinds = {_kind(*group): group for group in self._groups()}
+        made: dict[tuple[int, ...], list[tuple[Floats, Floats, Residuals]]] = {kind: [] for kind in kinds}
         for d in self.prior.grid:
             tables = self.covariances.of(float(d))
-            ways.append((self._shared(tables, *groups[number]), self._field(tables, *groups[number], LINEAR)))
-        return number, Scene(ways, *self._own(*groups[number]), self.prior)
+            known: dict[
+                tuple[int, ...], tuple[Floats, Floats]
+            ] = {}  # of windows that begin at the same place in a tile
+            for kind, group in kinds.items():
+                if kind[:2] not in known:
+                    shared = self._shared(tables, *group)
+                    known[kind[:2]] = shared.astype(np.float32), whitener(shared)
+                shared, inverse = known[kind[:2]]
+                field = self._field(tables, *group).astype(np.float32)
+                made[kind].append((shared, field, Residuals.of(inverse, *self._own(*group))))
+        stacks: dict[tuple[int, ...], Floats] = {}
+        ways = {}
+        for kind, group in kinds.items():
+            shared, field, residuals = zip(*made.pop(kind), strict=True)
+            stack = stacks.setdefault(kind[:2], np.stack(shared))
+            ways[kind] = Ways(stack, np.stack(field), list(residuals), max(len(self._own(*group)[1]), 1))
+        return [ways[_kind(*group)] for group in self._groups()]
 
     def prepare(self) -> None:
         """Make what `linear` needs once a sensor; it does so itself where it has not been done."""
-        _ = self._mean, self._inner
+        _ = self._ways
 
     @cached_property
-    def components(self) -> list[Component]:
-        """For each disparity, made once a sensor."""
-        return [self._component(self.covariances.of(float(d)), MIXTURE) for d in self.prior.grid]
+    def components(self) -> list[list[Floats]]:
+        """Filters of each disparity for every group, float32 (pixels * views**2, samples), made once a sensor."""
+        units, own = np.eye(self.prior.disparities), {id(ways): ways for ways in self._ways}
+        filters = {key: [s.filters for s in ways.mixed(units, MIXTURE, self.views)] for key, ways in own.items()}
+        return [[filters[id(ways)][number] for ways in self._ways] for number in range(len(units))]
 
     @cached_property
-    def _mean(self) -> Component:
-        """For a scene of any disparity, made once a sensor."""
-        return self._component(self.covariances.mean(), LINEAR)
+    def _hypotheses(self) -> list[tuple[list[Residuals], Floats]]:
+        """Every disparity, then any of them: residuals of every group, and their `certain` around each pixel."""
+        tables, groups = self.covariances.mean(), list(self._groups())
+        every = [[ways.residuals[number] for ways in self._ways] for number in range(self.prior.disparities)]
+        every.append([Residuals.of(whitener(self._shared(tables, *g)), *self._own(*g)) for g in groups])
+        certain = [pooled(self._map(r.certain for r in residuals), self.prior.pool) / self._read for residuals in every]
+        return list(zip(every, certain, strict=True))
 
     @cached_property
     def _read(self) -> Floats:
@@ -239,9 +258,9 @@ class FieldEstimator:
         # What shows no disparity, or more than one, takes the linear estimate
         any_of = chance[-1] * (1 - blank) + blank
         out = self._linear(groups, told) * any_of.astype(np.float32)
-        for weight, component in zip(chance * (1 - blank), self.components, strict=False):
+        for weight, filters in zip(chance * (1 - blank), self.components, strict=False):
             if weight.any():
-                out += self._estimate(component.filters, groups, weight > 0) * weight.astype(np.float32)
+                out += self._estimate(filters, groups, weight > 0) * weight.astype(np.float32)
         planes = probability(scores[:-1], UNLIKELY) * (1 - blank) + blank / len(grid)
         mean = np.tensordot(grid, planes, 1)
         lost = np.where(any_of > LOST, any_of, 0)  # no disparity is likelier than any
@@ -273,12 +292,10 @@ class FieldEstimator:
     def _scores(self, groups: Windows) -> Floats:
         """What trust leaves of -2 log p of every disparity, and of any, (disparities + 1, rows, cols)."""
         pool, scores = self.prior.pool, []
-        for component in (*self.components, self._mean):
-            errors = [
-                residual.matrix @ samples for (*_, samples), residual in zip(groups, component.residuals, strict=True)
-            ]
+        for residuals, certain in self._hypotheses:
+            errors = [residual.matrix @ samples for (*_, samples), residual in zip(groups, residuals, strict=True)]
             squares = pooled(self._map(np.square(e) for e in errors), pool) / self._read
-            scores.append(badness(squares, component.certain, 4 * np.pi * pool**2))
+            scores.append(badness(squares, certain, 4 * np.pi * pool**2))
         return self.prior.trust * np.stack(scores)
 
     def _estimate(self, filters: list[Floats], groups: Windows, wanted: npt.NDArray[np.bool_]) -> Floats:
@@ -299,21 +316,6 @@ class FieldEstimator:
         if pair.shape != (2, *self.shape):
             raise ParameterError(f"pair shape = {pair.shape}: must be {(2, *self.shape)}")
         return np.stack([pair[0] + pair[1], pair[0] - pair[1]]).astype(np.float32) / np.float32(np.sqrt(2))
-
-    def _component(self, tables: Tables, parallax: float) -> Component:
-        """Filters and residuals of every group."""
-        inverses, made = {}, {}
-        for down, across in self._groups():
-            phase = down.phase, across.phase
-            if phase not in inverses:
-                inverses[phase] = whitener(self._shared(tables, down, across))
-            inverse, key = inverses[phase], (*phase, down.offset, across.offset)
-            if key not in made:
-                filters = (self._field(tables, down, across, parallax) @ inverse.T @ inverse).astype(np.float32)
-                made[key] = filters, Residuals.of(inverse, *self._own(down, across))
-        every = [made[d.phase, a.phase, d.offset, a.offset] for d, a in self._groups()]
-        certain = pooled(self._map(residual.certain for _, residual in every), self.prior.pool) / self._read
-        return Component([f for f, _ in every], [residual for _, residual in every], certain)
 
     def _groups(self) -> Iterator[tuple[Group, Group]]:
         return ((down, across) for down in self.y.groups() for across in self.x.groups())
@@ -358,18 +360,13 @@ class FieldEstimator:
         inside = (diode % 2 == 1) & (y >= 0) & (y < self.y.block) & (x >= 0) & (x < self.x.block)
         return np.flatnonzero(inside), (y * self.x.block + x)[inside], self.y.block * self.x.block
 
-    def _field(self, tables: Tables, down: Group, across: Group, parallax: float) -> npt.NDArray[np.float64]:
-        """Covariance of the views of a block with the samples of its window, (pixels * views**2, samples).
-
-        parallax: factor on what differs between views.
-        """
+    def _field(self, tables: Tables, down: Group, across: Group) -> npt.NDArray[np.float64]:
+        """Covariance of the views of a block with the samples of its window, (pixels * views**2, samples)."""
         y, x, diode = self._diodes(down, across)
         own = np.indices((self.y.block, self.x.block)).reshape(2, -1, 1)
         dy, dx = y - own[0] - down.offset, x - own[1] - across.offset
         out = tables.field[dy + self.y.window - 1, dx + self.x.window - 1, :, diode]  # (pixels, samples, views)
-        out = out.transpose(0, 2, 1)
-        mean = out.mean(1, keepdims=True)
-        return (mean + parallax * (out - mean)).reshape(-1, len(diode))
+        return out.transpose(0, 2, 1).reshape(-1, len(diode))
 
     def _place(self, out: Floats, values: Floats, down: Group, across: Group) -> None:
         """Write the blocks of a group into the light field."""
@@ -379,3 +376,8 @@ class FieldEstimator:
         for i, j in np.ndindex(self.y.block, self.x.block):
             rows = slice(lines.start + i, lines.stop + i, lines.step)
             out[:, :, rows, columns.start + j : columns.stop + j : columns.step] = part[i, j]
+
+
+def _kind(down: Group, across: Group) -> tuple[int, int, int, int]:
+    """What windows are alike in: where they begin in a tile, then where the blocks are in them."""
+    return down.phase, across.phase, down.offset, across.offset

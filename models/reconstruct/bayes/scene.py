@@ -1,78 +1,185 @@
-"""The linear estimate of one scene: the covariances of all disparities, each weighted with its share of the scene."""
+"""The linear estimate of one scene: covariances of all disparities, weighted as the windows around show them.
 
-from collections.abc import Sequence
+Windows that show like disparities are taken together: their covariance is the mean over the disparities, each with its
+share of them, and gives one filter for all. The estimate is linear in the samples but for these shares.
+"""
+
+import math
+from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 from scipy.linalg import cho_factor, cho_solve
+from scipy.ndimage import gaussian_filter
 
-from .evidence import Residuals, badness, pooled, probability, whitener
-from .prior import FieldPrior
+from .evidence import Residuals
 
 Floats = npt.NDArray[np.floating]
 Ints = npt.NDArray[np.int64]
-ANY = 0.1  # of the scene: counts as being at any of the disparities
+ANY = 0.01  # of a window: counts as being at any of the disparities
+AROUND = 0.7  # standard deviation of the weights of the windows around, in windows
+CLASSES = 20  # of windows with like shares, where a group is most of the frame
+ROUNDS = 4  # of moving windows to the class that is nearest
+ROUNDING = 1e-6  # of a sample's variance: what float32 leaves, so that no covariance is singular
 
 
-class Scene:
-    """Makes the filters of a group of windows from the disparities that their samples show.
+class Ways(NamedTuple):
+    """What a group of windows is at every disparity.
 
-    Parameters
+    Attributes
     ----------
-    ways : sequence of (float64 (samples, samples), float64 (pixels * views**2, samples))
-        For each disparity the covariance of the samples, and that of the block's views with them.
-    rows, places, pixels
-        As of `Residuals.of`.
-    prior : FieldPrior
-        The prior.
+    shared : float32 (disparities, samples, samples)
+        Covariance of the samples.
+    field : float32 (disparities, pixels * views**2, samples)
+        Covariance of the block's views with them.
+    residuals : list of Residuals
+        For the evidence.
+    read : int
+        Differences of the block that are read, 1 or more.
     """
 
-    def __init__(
-        self, ways: Sequence[tuple[Floats, Floats]], rows: Ints, places: Ints, pixels: int, prior: FieldPrior
-    ) -> None:
-        self.prior, self.pixels, self.read = prior, pixels, max(len(places), 1)
-        self.shared, self.field = (np.stack(part).astype(np.float32) for part in zip(*ways, strict=True))
-        self.residuals = [Residuals.of(whitener(shared), rows, places, pixels) for shared, _ in ways]
+    shared: Floats
+    field: Floats
+    residuals: list[Residuals]
+    read: int
 
-    def filters(self, samples: Floats, blocks: tuple[int, int]) -> Floats:
-        """Make the filters for this scene.
+    def estimate(self, samples: Floats, shares: Floats, parallax: float, views: int, whole: int) -> Floats:
+        """Estimate the blocks from the samples of their windows.
 
         Parameters
         ----------
         samples : float32 (samples, windows)
             Of all windows.
-        blocks : (int, int)
-            Down and across: windows in all.
+        shares : array (disparities, windows)
+            Of every disparity in a window, of sum 1.
+        parallax : float
+            Factor on what differs between views.
+        views : int
+            Along the pupil's diameter.
+        whole : int
+            Windows of all groups.
 
         Returns
         -------
-        float32 (pixels * views**2, samples)
-            From samples to the views of a block.
+        float32 (pixels * views**2, windows)
+            The views of the blocks.
         """
-        share = self.share(samples, blocks).astype(np.float32)
-        shared, field = (np.tensordot(share, part, 1) for part in (self.shared, self.field))
-        return cho_solve(cho_factor(shared), field.T).T
+        kinds = classes(shares, math.ceil(CLASSES * math.sqrt(samples.shape[1] / whole)))
+        own = [kinds == kind for kind in np.unique(kinds)]
+        out = np.empty((self.field.shape[1], samples.shape[1]), np.float32)
+        means = np.stack([shares[:, mine].mean(1) for mine in own])
+        for mine, solver in zip(own, self.mixed(means, parallax, views), strict=True):
+            out[:, mine] = solver(samples[:, mine])
+        return out
 
-    def share(self, samples: Floats, blocks: tuple[int, int]) -> Floats:
-        """Share of each disparity in the scene, as its contrast weighs it.
+    def mixed(self, shares: Floats, parallax: float, views: int) -> Iterator["Solver"]:
+        """Make the estimators of windows whose disparities have some shares.
 
         Parameters
         ----------
-        samples, blocks
-            As of `filters`.
+        shares : array (classes, disparities)
+            Each of sum 1.
+        parallax, views
+            As of `estimate`.
+
+        Yields
+        ------
+        Solver
+            From samples to the views of a block, for each.
+        """
+        weights = shares.astype(np.float32)
+        shared, field = (
+            (weights @ part.reshape(len(part), -1)).reshape(-1, *part.shape[1:]) for part in (self.shared, self.field)
+        )
+        diagonal = np.arange(shared.shape[1])
+        shared[:, diagonal, diagonal] *= 1 + ROUNDING
+        each = field.reshape(len(field), -1, views**2, field.shape[2])
+        middle = (1 - parallax) * each.mean(2, keepdims=True)
+        each *= np.float32(parallax)
+        each += middle
+        for one, other in zip(shared, field, strict=True):
+            yield Solver(cho_factor(one, overwrite_a=True, check_finite=False), other)
+
+
+class Solver(NamedTuple):
+    """An estimator of windows of one covariance.
+
+    Attributes
+    ----------
+    factor : tuple
+        Of the samples' covariance, as of `scipy.linalg.cho_factor`.
+    field : float32 (pixels * views**2, samples)
+        Covariance of the block's views with them.
+    """
+
+    factor: tuple[Floats, bool]
+    field: Floats
+
+    @property
+    def filters(self) -> Floats:
+        """From samples to the views of a block, float32 (pixels * views**2, samples)."""
+        return np.ascontiguousarray(cho_solve(self.factor, self.field.T).T)
+
+    def __call__(self, samples: Floats) -> Floats:
+        """Estimate the blocks.
+
+        Parameters
+        ----------
+        samples : float32 (samples, windows)
+            Of the windows.
 
         Returns
         -------
-        float64 (disparities,)
-            Of sum 1.
+        float32 (pixels * views**2, windows)
+            Their views.
         """
-        size = self.pixels**0.5  # of a block, px
-        scores = []
-        for residual in self.residuals:
-            squares = np.square(residual.matrix @ samples).sum(0).reshape(blocks) / self.read
-            certain = np.full(blocks, residual.certain.sum() / self.read, np.float32)
-            scores.append(badness(pooled(squares, self.prior.pool / size), certain, 4 * np.pi * self.prior.pool**2))
-        chance = probability(self.prior.trust * np.stack(scores), 0.0).reshape(len(scores), -1)
-        weight = samples[: len(samples) // 2].var(0)
-        found = chance @ weight / max(float(weight.sum()), 1e-12)
-        return (1 - ANY) * found + ANY / len(found)
+        return self.field @ cho_solve(self.factor, samples, check_finite=False)
+
+
+def shares_of(chance: Floats, contrast: Floats) -> Floats:
+    """Shares of the disparities in every window, from the windows around, as their contrast weighs them.
+
+    Parameters
+    ----------
+    chance : array (disparities, block rows, block cols)
+        Probability of each, of sum 1.
+    contrast : array (block rows, block cols)
+        Variance of a window.
+
+    Returns
+    -------
+    float64 (disparities, block rows, block cols)
+        Of sum 1, none of them 0.
+    """
+    weight = contrast + 1e-9 + 1e-3 * contrast.mean()
+    found = np.stack([gaussian_filter(part * weight, AROUND) for part in chance])
+    return (1 - ANY) * found / found.sum(0) + ANY / len(found)
+
+
+def classes(shares: Floats, count: int) -> Ints:
+    """Put windows into classes of like shares: k-means of their square roots, begun far apart.
+
+    Parameters
+    ----------
+    shares : array (disparities, windows)
+        Of sum 1.
+    count : int
+        Of the classes at most, 1 or more.
+
+    Returns
+    -------
+    int64 (windows,)
+        Number of each window's class.
+    """
+    places = np.sqrt(shares.T)
+    middles, away = places.mean(0)[None], np.full(len(places), np.inf)
+    for _ in range(count - 1):
+        away = np.minimum(away, np.square(places - middles[-1]).sum(1))
+        middles = np.concatenate([middles, places[None, away.argmax()]])
+    kinds = np.zeros(len(places), np.int64)
+    for _ in range(ROUNDS if count > 1 else 0):
+        kinds = np.argmax(2 * places @ middles.T - np.square(middles).sum(1), 1)
+        for kind in np.unique(kinds):
+            middles[kind] = places[kinds == kind].mean(0)
+    return kinds

@@ -7,8 +7,9 @@ from talbot.models.capture import CaptureOperator
 from talbot.models.parameters import ArrayParameters, ParameterError, SensorParameters, TileParameters
 from talbot.models.pixel import view_weights
 from talbot.models.reconstruct import light_field_estimate, psnr_db
-from talbot.models.reconstruct.bayes import FieldEstimator, FieldPrior
+from talbot.models.reconstruct.bayes import FieldEstimator, FieldPrior, scene
 from talbot.models.reconstruct.bayes.covariance import Covariances
+from talbot.models.reconstruct.bayes.scene import classes
 from talbot.models.reconstruct.bayes.windows import Axis
 from talbot.models.reconstruct.refocus import refocus
 
@@ -118,19 +119,36 @@ def test_where_two_planes_meet_the_mixture_is_no_worse_than_the_linear_estimate(
     assert np.median(mixture.spread) > 0.5
 
 
-def test_the_linear_estimate_takes_the_disparities_of_the_scene(estimator):
-    """A plane comes back better than by the mean over all disparities, and most of the scene counts as there."""
+def test_the_linear_estimate_takes_the_disparities_of_each_part_of_the_scene(estimator):
+    """Two planes side by side, each as well as alone: the other's disparity costs nothing away from it."""
+    truth, half = _plane(1.5), COLS // 2
+    truth[..., half:] = _plane(-1.5)[..., half:]
+    shares = estimator._shares(estimator._windows(_seen(truth)))
+    np.testing.assert_allclose(shares.sum(0), 1)
+    for d, columns in ((1.5, slice(0, 2)), (-1.5, slice(-2, None))):
+        assert shares[np.abs(PRIOR.grid - d) <= 0.5][..., columns].sum(0).min() > 0.6
+        alone = _plane(d)
+        rest = np.s_[..., : half - 8] if d > 0 else np.s_[..., half + 8 :]
+        both = psnr_db(estimator.linear(_seen(truth))[rest], truth[rest])
+        assert both > psnr_db(estimator.linear(_seen(alone))[rest], alone[rest]) - 1
+
+
+def test_windows_of_like_shares_are_a_class():
+    shares = np.eye(4)[:, [0, 1, 1, 3, 0, 2]]
+    kinds = classes(shares, 4)
+    assert len(set(kinds)) == 4 and kinds[0] == kinds[4] and kinds[1] == kinds[2]
+    assert not classes(shares, 1).any()
+    assert not classes(np.full((4, 5), 0.25), 3).any()  # all alike
+
+
+def test_classes_cost_little(monkeypatch, estimator):
+    """One filter for windows of like shares is nearly one for each."""
     truth = _plane(1.0)
-    groups = estimator._windows(_seen(truth))
-    number, inner = estimator._inner
-    down, across, samples = groups[number]
-    share = inner.share(samples, estimator._count(down, across))
-    grid = PRIOR.grid
-    assert share.sum() == pytest.approx(1) and share[np.abs(grid - 1) <= 0.5].sum() > 0.7
-    out = np.zeros(truth.shape, np.float32)
-    for (down, across, samples), filters in zip(groups, estimator._mean.filters, strict=True):
-        estimator._place(out, filters @ samples, down, across)
-    assert psnr_db(estimator.linear(_seen(truth)), truth) > psnr_db(out, truth) + 1
+    truth[..., COLS // 2 :] = _plane(-1.5)[..., COLS // 2 :]
+    pair = _seen(truth)
+    few = psnr_db(estimator.linear(pair), truth)
+    monkeypatch.setattr(scene, "CLASSES", 1000)
+    assert psnr_db(estimator.linear(pair), truth) < few + 0.5
 
 
 def test_black_white_and_saturated_samples_give_finite_values(estimator):

@@ -1,0 +1,89 @@
+"""The drawn amplifier and the drawn bias measured as their schematics are, and what the banks have by the rays."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from talbot.cells.corner import Corner
+from talbot.flow.analog.amplifier import AmplifierResult
+from talbot.flow.analog.amplifier import measure as measure_amplifier
+from talbot.flow.analog.deck import Setup
+from talbot.flow.analog.support import BiasResult, bias_measured
+from talbot.pixels.analog_layout.cells import Cell
+from talbot.pixels.circuits.amplifier import BIAS, TRIM_BITS, AmplifierSizes, AmplifierSpec
+from talbot.pixels.circuits.lane import LaneSizes
+from talbot.pixels.circuits.netlist import Circuit
+from talbot.pixels.circuits.support import SupportSpec, bias
+from talbot.platforms.analog import AnalogMasks
+
+from .extract import Nets, unit_farad
+from .row import Row
+
+UNIT_OFF = 3.0  # %, most, of the drawn unit
+
+
+@dataclass(frozen=True)
+class Amplified:
+    """Amplifier and bias at one corner."""
+
+    amplifier: AmplifierResult
+    bias: BiasResult
+
+
+def measure(
+    setup: Setup,
+    spec: AmplifierSpec,
+    sizes: AmplifierSizes,
+    lane: LaneSizes,
+    corner: Corner,
+    amplifier: Circuit | None = None,
+    biased: Circuit | None = None,
+) -> Amplified:
+    """Both at a corner; without circuits the schematics. The amplifier has its current from the bias's schematic."""
+    return Amplified(
+        measure_amplifier(setup, spec, sizes, lane, corner, amplifier),
+        bias_measured(setup, corner, biased or bias(spec.lanes))[0],
+    )
+
+
+def rows(spec: AmplifierSpec, corner: str, schematic: Amplified, layout: Amplified) -> Iterator[Row]:
+    """Layout beside schematic, with the limits of `make analog`."""
+    before, after = schematic.amplifier, layout.amplifier
+
+    def row(name: str, unit: str, field: str, most: float | None = None, scale: float = 1.0) -> Row:
+        first, second = (scale * float(getattr(one, field)) for one in (before, after))
+        return Row(f"amplifier: {name}", unit, first, second, corner, most)
+
+    yield Row("amplifier: gain, off by", "%", 100 * (before.gain - 1), 100 * (after.gain - 1), corner, 100 * spec.gain)
+    yield row("offset, systematic", "LSB", "offset")
+    yield row("INL", "LSB", "inl", spec.inl)
+    yield row("settling to half an LSB", "ns", "settling", 1e9 * spec.hold, 1e9)
+    yield row("left after one cycle", "LSB", "left", spec.settling)
+    yield row("change under 100 times ambient", "LSB", "ambient", spec.ambient)
+    yield row("steps of the trim, off by", "steps", "trim", spec.trim)
+    yield row("energy of a sample", "pJ", "energy", 1e12 * spec.energy, 1e12)
+    yield row("current while off", "uA", "off", None, 1e6)
+    limits = SupportSpec.of()
+
+    def pair(name: str, unit: str, value: Callable[[BiasResult], float], most: float | None = None) -> Row:
+        return Row(f"bias: {name}", unit, value(schematic.bias), value(layout.bias), corner, most)
+
+    yield pair("current, off by", "%", lambda one: 100 * (one.current / BIAS - 1), 100 * limits.bias)
+    yield pair("start", "us", lambda one: 1e6 * one.start, 1e6 * limits.start)
+    yield pair("current of the whole", "uA", lambda one: 1e6 * one.idle)
+
+
+def capacitors(made: Cell, nets: Nets, masks: AnalogMasks, spec: AmplifierSpec) -> Iterator[Row]:
+    """What the rays find in the banks: unit, steps of the trim, both inputs."""
+    unit = unit_farad(made, nets)
+    off = 100 * (unit * masks.fringe_share / made.unit - 1)
+    yield Row("amplifier: unit capacitor, off by", "%", 0.0, off, "capacitances", UNIT_OFF)
+    weights = np.array([nets.couplings[f"bottom{k}", "xp"] for k in range(TRIM_BITS)]) / unit
+    codes = np.arange(1 << TRIM_BITS)
+    steps = np.diff((codes[:, None] >> np.arange(TRIM_BITS) & 1) @ weights) - 1
+    yield Row(
+        "amplifier: DNL of all steps of the trim", "steps", 0.0, float(np.abs(steps).max()), "capacitances", spec.trim
+    )
+    apart = 1e15 * (nets.totals["xp"] - nets.totals["xm"])
+    yield Row("amplifier: input p over input m", "fF", 0.0, apart, "capacitances")

@@ -1,0 +1,20 @@
+"""A line of the drawn circuits' datasheet."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Row:
+    """A characteristic at a corner, of the schematic and of the layout. most: its limit, or None."""
+
+    name: str
+    unit: str
+    schematic: float
+    layout: float
+    corner: str
+    most: float | None = None
+
+    @property
+    def passes(self) -> bool:
+        """Whether the layout is inside the limit."""
+        return self.most is None or abs(self.layout) <= self.most

@@ -1,0 +1,65 @@
+"""OpenROAD's Python package in place of the program: which is called, and the package itself where it is installed."""
+
+import sys
+from importlib import metadata
+
+import pytest
+
+from talbot.base.steps.versions import version
+from talbot.base.tools import finish
+from talbot.flow.openroad.program import LAUNCHER, openroad
+
+LEF = """VERSION 5.8 ;
+UNITS DATABASE MICRONS 1000 ; END UNITS
+SITE unit CLASS CORE ; SIZE 0.5 BY 2 ; END unit
+LAYER m1 TYPE ROUTING ; DIRECTION HORIZONTAL ; PITCH 0.5 ; WIDTH 0.2 ; END m1
+END LIBRARY
+"""
+FLOORPLAN = """read_lef cells.lef
+read_verilog top.v
+link_design top
+initialize_floorplan -site unit -die_area {0 0 20 20} -core_area {0 0 20 20}
+make_tracks
+puts "rows [llength [[ord::get_db_block] getRows]] [clock format 0 -gmt 1 -format %Y]"
+"""
+
+
+def called(tmp_path, script):
+    """The run of a Tcl file by the launcher; skips where the package is not installed."""
+    pytest.importorskip("openroad", reason="the Python package openroad is not installed: not run")
+    (tmp_path / "cells.lef").write_text(LEF)
+    (tmp_path / "top.v").write_text("module top (); endmodule\n")
+    (tmp_path / "script.tcl").write_text(script)
+    return finish([sys.executable, "-P", LAUNCHER, "-no_init", "-threads", "max", "-exit", "script.tcl"], cwd=tmp_path)
+
+
+def test_the_program_comes_before_the_package(tmp_path, monkeypatch):
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.setattr(sys, "path", [str(tmp_path)])
+    monkeypatch.delitem(sys.modules, "openroad", raising=False)
+    assert openroad() == []
+    (tmp_path / "openroad.py").write_text("")
+    assert openroad() == [sys.executable, "-P", str(LAUNCHER)]
+    (tmp_path / "openroad").write_text("#!/bin/sh\n")
+    (tmp_path / "openroad").chmod(0o755)
+    assert openroad() == ["openroad"]
+
+
+def test_a_script_runs_to_its_end(tmp_path):
+    done = called(tmp_path, FLOORPLAN)
+    assert done.returncode == 0 and "rows 10 1970" in done.stdout, done.stdout + done.stderr
+
+
+@pytest.mark.parametrize(
+    "line, status, said", [("exit 4", 4, ""), ("nosuch", 1, "nosuch"), ("read_lef no.lef", 1, "no.lef does not exist")]
+)
+def test_a_command_that_fails_ends_it(line, status, said, tmp_path):
+    done = called(tmp_path, f"puts begun\n{line}\nputs ended\n")
+    assert done.returncode == status and "begun" in done.stdout and "ended" not in done.stdout
+    assert said in done.stdout + done.stderr
+
+
+def test_its_version_is_the_package_s(tmp_path, monkeypatch):
+    pytest.importorskip("openroad", reason="the Python package openroad is not installed: not run")
+    monkeypatch.setenv("PATH", str(tmp_path))
+    assert version.__wrapped__("openroad") == metadata.version("openroad")

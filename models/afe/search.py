@@ -1,0 +1,97 @@
+"""Successive approximation of many held values at once: `Converter.held` and `Converter.compare`, compiled."""
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+
+from .noise import DECISIONS, KTC_DECISION, MOST
+
+Floats, Ints = npt.NDArray[np.float64], npt.NDArray[np.int64]
+BITS, BIPOLAR = 8, 128
+
+
+@njit(cache=True, nogil=True)
+def _mix(x: Any) -> Any:
+    """As of models.afe.noise."""
+    x = np.uint32(x ^ (x >> np.uint32(16)))
+    x = np.uint32(x * np.uint32(0x7FEB352D))
+    x = np.uint32(x ^ (x >> np.uint32(15)))
+    x = np.uint32(x * np.uint32(0x846CA68B))
+    return np.uint32(x ^ (x >> np.uint32(16)))
+
+
+@njit(cache=True, nogil=True)
+def _counts(key: Any, index: int, decision: int) -> Any:
+    h = _mix(np.uint32(key ^ np.uint32(DECISIONS * index + decision)))
+    return np.int64(h & 255) + np.int64(h >> 8 & 255) + np.int64(h >> 16 & 255) + np.int64(h >> 24) - MOST
+
+
+@njit(cache=True, nogil=True)
+def _passes(held: float, level: float, scale: float, key: Any, index: int, decision: int) -> bool:
+    """held + noise >= level; the noise is not drawn where it cannot change that."""
+    noise, most = 0.0, scale * MOST
+    if held - most < level <= held + most:
+        noise = scale * _counts(key, index, decision)
+    return held + noise >= level
+
+
+@njit(cache=True, nogil=True)
+def search(
+    v: Floats,
+    lane: Ints,
+    index: Ints,
+    levels: Floats,
+    offset: Floats,
+    scales: tuple[float, float],
+    seed: Any,
+    window: int,
+    low: int,
+    codes: npt.NDArray[np.int16],
+    converted: npt.NDArray[np.bool_],
+) -> None:
+    """Decide, sample by sample, as models.digital.sar.decisions asks.
+
+    Parameters
+    ----------
+    v : float64 (n,)
+        Values in LSB.
+    lane, index : int64 (n,)
+        Lane and number of each.
+    levels : float64 (lanes, 256)
+        Of every DAC code.
+    offset : float64 (lanes,)
+        Of the comparators.
+    scales : tuple of float
+        LSB per count of a decision's noise and of the sampling capacitor's.
+    seed : uint32
+        Of the noise.
+    window : int
+        Codes of a smaller magnitude are not searched for; 0 searches for all.
+    low : int
+        Code of the DAC's 0.
+    codes : int16 (n,)
+        Receives the codes, 0 where the window gives them.
+    converted : bool (n,)
+        Receives whether the search ran.
+    """
+    key = _mix(seed)
+    scale, ktc = scales
+    for n in range(v.size):
+        i, level = index[n], levels[lane[n]]
+        held = v[n] + ktc * _counts(key, i, KTC_DECISION) + offset[lane[n]]
+        decision = 0
+        codes[n], converted[n] = 0, True
+        if window:
+            above = _passes(held, level[BIPOLAR + window], scale, key, i, 0)
+            if not above and _passes(held, level[BIPOLAR + 1 - window], scale, key, i, 1):
+                converted[n] = False
+                continue
+            decision = 2
+        dac = 0
+        for bit in range(BITS - 1, -1, -1):
+            if _passes(held, level[dac | 1 << bit], scale, key, i, decision):
+                dac |= 1 << bit
+            decision += 1
+        codes[n] = dac + low

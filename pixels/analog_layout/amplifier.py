@@ -1,0 +1,205 @@
+"""The difference amplifier: the operational amplifier between the banks of its two inputs, the trim's switches beyond.
+
+    trim         10 inverters and selectors, in two strips       north: column_a, column_b
+    bank         common node xp: trim, and what evens it out
+    load         mirror, cascodes; switches of reset and rest
+    pair         half of the pair's parts over half of the sinks
+    tails        parts of the tail, mirrors of the bias
+    pair         the other half
+    bank         common node xm: column_a, feedback
+                                                                 south: out, vref, ibias, on, reset, g9 .. g0
+
+Both sides of the pair have the same middle in every strip, and every row of parts ends with dummies.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from talbot.pixels.circuits.amplifier import PINS, TRIM_BITS, AmplifierSizes, amplifier
+from talbot.pixels.layout.canvas import Canvas
+from talbot.platforms.analog import AnalogMasks
+
+from . import flat
+from .amplifier_bank import BankPlan, draw_bank, units
+from .cells import MARGIN, Cell, new_canvas
+from .comparator import BETWEEN_STRIPS
+from .device import Device
+from .rows import dummies, row
+from .strip import (
+    FOURTH,
+    RAIL_ENDS,
+    SECOND,
+    THIRD,
+    TRUNK,
+    WELL_ENDS,
+    Placed,
+    Plan,
+    draw_strip,
+    in_columns,
+    join_rails,
+    trunk,
+)
+
+# um
+RIGHT = 92.0  # length of the strips
+BANK_WEST = 15.5  # of a bank's first finger
+AWAY = 1.6  # of a bank from a rail
+FIRST, PITCH = 0.9, 1.0  # of the trunks beside the banks
+OVER, OVER_PITCH = 19.0, 4.0  # of the trunks over the strips
+PATCH = 0.35  # half the length of the third metal where a common node goes up
+ROOM = 5.0  # more between transistors of the bias, for drops between those of the tails
+# Parts in a strip, from the west: of side p or n of the pair and of the sinks; a capital steers, or is a diode
+PAIR_ORDER = "pnnPPnnp", "nppNNppn"
+SINK_ORDER = "pnNPnp", "pnnppn"
+NORTH = "column_a", "column_b"
+WEST = ("column_a", "out", *(f"bottom{k}" for k in reversed(range(TRIM_BITS))), "vref")
+EAST = ("column_b", *(f"g{k}" for k in range(TRIM_BITS)), "reset", "on")
+INNER = ("tail", "fold_p", "steer_n", "diode_p", "vcn"), ("vcp", "diode_n", "steer_p", "fold_n")  # west, east
+INPUTS = "xm", "xp"
+
+
+def bank_nets(side: str) -> dict[str, str]:
+    """Nets of a bank's capacitors: side m has a, feedback and rest; side p the trim and rest."""
+    if side == "m":
+        return {name: {"b9": "column_a", "rest": "out"}.get(name, "vref") for name in units()}
+    own = {f"b{k}": f"bottom{k}" for k in range(TRIM_BITS)}
+    return {name: own.get(name, "vref") for name in units()}
+
+
+def matched_units() -> dict[tuple[str, str], int]:
+    """Units between each two nets of the drawn amplifier."""
+    found: dict[tuple[str, str], int] = {}
+    for side in "mp":
+        nets = bank_nets(side)
+        for name, count in units().items():
+            key = min(f"x{side}", nets[name]), max(f"x{side}", nets[name])
+            found[key] = found.get(key, 0) + count
+    return found
+
+
+def devices(sizes: AmplifierSizes) -> dict[str, Device]:
+    """All transistors by name, in fingers; dummies at the ends of rows, too."""
+    found = {t.name: Device.of(t) for t in flat.transistors(amplifier(sizes))}
+    for name, like in (("pair0", "inp_0"), ("pair1", "inp_0"), ("sink0", "sink_p_0"), ("sink1", "sink_p_0")):
+        found |= dummies(name, found[f"ota.{like}"])
+    return found | dummies("tails", found["ota.tail_0"]) | dummies("load", found["ota.down_p"])
+
+
+def _order(orders: Sequence[str], names: str, capital: str) -> list[list[str]]:
+    """Names of parts by strip. names, capital: with {side} and {k}, which counts."""
+    counts: dict[str, Iterator[int]] = {letter: iter(range(100)) for letter in "pnPN"}
+    return [
+        [(capital if a.isupper() else names).format(side=a.lower(), k=next(counts[a])) for a in order]
+        for order in orders
+    ]
+
+
+@dataclass(frozen=True)
+class AmplifierPlan:
+    """Strips of the operational amplifier and of the trim, from the south; both banks; x of the nets between them."""
+
+    strips: tuple[Plan, ...]
+    trim: tuple[Plan, ...]
+    banks: tuple[BankPlan, BankPlan]
+    at: Mapping[str, float]
+
+
+def places() -> dict[str, float]:
+    """X of what goes from strip to strip."""
+    at = {net: FIRST + PITCH * k for k, net in enumerate(WEST)}
+    at |= {net: RIGHT - FIRST - PITCH * k for k, net in enumerate(reversed(EAST))}
+    west, east = ([f"ota.{net}" for net in side] for side in INNER)
+    at |= {net: OVER + OVER_PITCH * k for k, net in enumerate((*west, "ibias"))}
+    at |= {net: RIGHT - OVER - OVER_PITCH * k for k, net in enumerate((*east, "off"))}
+    return at | {net: RIGHT / 2 + way * 1.5 for net, way in zip(INPUTS, (-1, 1), strict=True)}
+
+
+def amplifier_plan(d: Mapping[str, Device], masks: AnalogMasks, sizes: AmplifierSizes) -> AmplifierPlan:
+    """Where everything of an amplifier is."""
+    at, axis = places(), RIGHT / 2
+
+    def plan(n: tuple[Placed, ...], p: tuple[Placed, ...]) -> Plan:
+        present = {net for one in (*n, *p) for net in one.device.transistor.nodes}
+        return Plan(n, p, 0.0, RIGHT, {net: (x,) for net, x in at.items() if net in present})
+
+    pairs = _order(PAIR_ORDER, "ota.in{side}_{k}", "ota.in{side}_steer_{k}")
+    sinks = _order(SINK_ORDER, "ota.sink_{side}_{k}", "ota.diode_{side}")
+    halves = []
+    for k, (pair, sink) in enumerate(zip(pairs, sinks, strict=True)):
+        n, p = ((f"{kind}{k}_west", *own, f"{kind}{k}_east") for kind, own in (("sink", sink), ("pair", pair)))
+        halves.append(plan(row(d, n, axis), row(d, p, axis)))
+    parts = [name for name in d if name.startswith(("ota.tail_", "ota.boost_")) and "_on" not in name]
+    middle = len(parts) // 2
+    tails = ("tails_west", *parts[:middle], "ota.bias_p", *parts[middle:], "tails_east")
+    rest = ("ota.boost_on_0", "ota.boost_on_1", "ota.bias_to_n", "ota.off_p", "ota.cascode_p")
+    biases = ("take", "off_n", "bias_n", "bias_to_p_0", "bias_to_p_1", "bias_to_pc", "off_cascode", "stack_n")
+    biases = (*(f"ota.{name}" for name in biases), "ota.stack_low")
+    load = ("load_west", "ota.down_p", "ota.top_p", "ota.top_n", "ota.down_n", "load_east")
+    gates = ("on_n", "reset_n")
+    switches = ("zero", "follow", "rest")
+    above = ("diode_cascode_p", "up_p", "up_n", "diode_cascode_n")
+    n = (*(f"ota.{name}" for name in above), *(f"{name}_n" for name in switches), *(f"{name}.n" for name in gates))
+    p = (*load, *(f"{name}_p" for name in switches), *(f"{name}.p" for name in gates))
+    strips = (
+        halves[0],
+        plan(row(d, biases, axis, ROOM), row(d, (*tails, *rest), axis)),
+        halves[1],
+        plan(row(d, n, axis), row(d, p, axis)),
+    )
+    trim = []
+    for bits in (range(5, TRIM_BITS), range(5)):
+        columns = []
+        for k in bits:
+            columns += [(d[f"not{k}.n"], d[f"not{k}.p"]), (d[f"select{k}.n"], d[f"select{k}.p"])]
+            columns.append((d[f"select{k}.r"], None))
+        room = (RIGHT - in_columns(columns, 0.0)[2]) / len(columns) - 1e-3
+        rows = in_columns(columns, 0.0, min(room, 2.0))
+        trim.append(plan(*rows[:2]))
+    ends = {net: x - TRUNK / 2 for net, x in at.items()}
+    length = masks.finger_um(sizes.unit)
+    banks = tuple(BankPlan(length, bank_nets(side), f"x{side}", ends, BANK_WEST) for side in "mp")
+    return AmplifierPlan(strips, tuple(trim), (banks[0], banks[1]), at)
+
+
+def amplifier_cell(masks: AnalogMasks, sizes: AmplifierSizes) -> Cell:
+    """Draw an amplifier; its south-west corner is at the origin but for the rails' ends."""
+    d = devices(sizes)
+    plan, canvas = amplifier_plan(d, masks, sizes), new_canvas(masks, "amplifier")
+    banks = [draw_bank(canvas, plan.banks[0], MARGIN)]
+    y, strips = MARGIN + plan.banks[0].height_um + AWAY, []
+    for one in plan.strips:
+        strips.append(draw_strip(canvas, masks, one, y))
+        y += one.height_um + BETWEEN_STRIPS
+    inner = tuple(strips)
+    y += AWAY - BETWEEN_STRIPS
+    banks.append(draw_bank(canvas, plan.banks[1], y, upright=False))
+    y += plan.banks[1].height_um + AWAY
+    for one in plan.trim:
+        strips.append(draw_strip(canvas, masks, one, y))
+        y += one.height_um + BETWEEN_STRIPS
+    top = y - BETWEEN_STRIPS + MARGIN
+    join_rails(canvas, strips)
+    tracks = [track for one in (*strips, *banks) for track in one.tracks]
+    for net, x in plan.at.items():
+        if net in INPUTS:
+            bank = banks[INPUTS.index(net)]
+            end = bank.ends[1 - INPUTS.index(net)]
+            _up(canvas, x, end)
+            trunk(canvas, [track for one in inner for track in one.tracks], net, x, end)
+            continue
+        edge = [top if net in NORTH else 0.0] if net in PINS else []
+        trunk(canvas, tracks, net, x, *edge)
+        if edge:
+            canvas.label(FOURTH, net, x, edge[0] - 0.3 if net in NORTH else 0.3)
+    beyond = RAIL_ENDS + WELL_ENDS
+    canvas.box(masks.base.outline, -beyond, 0, RIGHT + beyond, top)
+    ends = tuple(one for strip in strips for one in strip.terminals)
+    return Cell(
+        canvas.layout, canvas.cell, PINS, tuple(d.values()), terminals=ends, matched=matched_units(), unit=sizes.unit
+    )
+
+
+def _up(canvas: Canvas, x: float, y: float) -> None:
+    """From a common node's spine to the trunks' metal."""
+    canvas.stack(x, y, SECOND, FOURTH)
+    canvas.wire(THIRD, x - PATCH, y - 0.19, x + PATCH, y + 0.19)

@@ -1,0 +1,109 @@
+"""The bias: a pair of 1 to 4 with its mirror, an output for each amplifier, a resistor of n+ diffusion, the starter.
+
+    upper    an output's second half each, mirror of the four; below them the starter
+    lower    an output's first half each, mirror of the one; below them the four about the one
+    resistor a straight bar
+
+Both halves of an output are at the same distance from the middle, on opposite sides. Rows end with dummies.
+"""
+
+from talbot.pixels.circuits.netlist import Resistor
+from talbot.pixels.circuits.support import bias
+from talbot.pixels.layout.canvas import CONTACT_UM, Canvas
+from talbot.platforms.analog import AnalogMasks
+
+from . import flat
+from .cells import MARGIN, Cell, new_canvas
+from .comparator import BETWEEN_STRIPS
+from .device import IMPLANT, Device
+from .rows import dummies, row, snap
+from .strip import FIRST, FOURTH, RAIL_ENDS, RAIL_HALF, THIRD, WELL_ENDS, Plan, draw_strip, join_rails, trunk
+
+# um
+WIDE, HEAD, BELOW = 1.0, 1.0, 2.0  # of the resistor: width, length of its ends, middle below the lowest rail
+ENDS = 1.5  # of the strips beyond their longest row
+PINS_IN = 4.0  # of the outputs from the strips' ends
+
+
+def resistor_um(ohm: float, masks: AnalogMasks) -> float:
+    """Length of a bar, on the grid."""
+    return snap(ohm / masks.sheet_ohm * WIDE)
+
+
+def bias_cell(masks: AnalogMasks, outputs: int) -> Cell:
+    """Draw a bias with so many outputs, whose pins are in the south."""
+    circuit = bias(outputs)
+    d = {t.name: Device.of(t) for t in flat.transistors(circuit)}
+    for name, like in (("four", "one"), ("lower", "mirror_one"), ("upper", "mirror_four")):
+        d |= dummies(name, d[like])
+    pins = circuit.ports[:outputs]
+    halves = [[f"{pin.replace('ibias', 'out')}_{k}" for pin in pins] for k in range(2)]
+    half = outputs // 2
+    lower = ("lower_west", *halves[0][:half], "mirror_one", *halves[0][half:], "lower_east")
+    turned = halves[1][::-1]
+    upper = ("upper_west", *turned[: outputs - half], "mirror_four", *turned[outputs - half :], "upper_east", "keep")
+    fours = ("four_west", "four_0", "four_1", "one", "four_2", "four_3", "four_east")
+    ohm = circuit.resistors[0]
+    length = resistor_um(ohm.value, masks)
+    long = max(sum(d[name].width_um + 0.5 for name in upper), length + 2 * HEAD) + 2 * ENDS
+    right = 2 * snap(long / 2)
+    west = snap((right - length) / 2)
+    at = {net: right / 2 + 5.0 * way for net, way in (("vbn", -1), ("vbp", 1))}
+    at |= {"source": west - HEAD / 2}
+    step = (right - 2 * PINS_IN) / outputs
+    at |= {pin: snap(PINS_IN + step * (k + 0.5)) for k, pin in enumerate(pins)}
+    plans = []
+    for n, p in ((fours, lower), (("stop", "start"), upper)):
+        rows = row(d, n, right / 2), row(d, p, right / 2)
+        present = {net for one in (*rows[0], *rows[1]) for net in one.device.transistor.nodes}
+        plans.append(Plan(*rows, 0.0, right, {net: (x,) for net, x in at.items() if net in present}))
+    canvas, y = new_canvas(masks, "bias"), MARGIN + 2 * BELOW
+    strips = []
+    for plan in plans:
+        strips.append(draw_strip(canvas, masks, plan, y))
+        y += plan.height_um + BETWEEN_STRIPS
+    join_rails(canvas, strips)
+    low = strips[0].y - BELOW
+    ends = _resistor(canvas, masks, west, low, length)
+    canvas.wire(FIRST, ends[1][0] - 0.3, low - 0.3, ends[1][0] + 0.3, strips[0].y + RAIL_HALF)
+    canvas.stack(at["source"], low, FIRST, FOURTH)
+    canvas.wire(THIRD, at["source"] - 0.35, low - 0.19, at["source"] + 0.35, low + 0.19)
+    tracks = [track for strip in strips for track in strip.tracks]
+    for net, x in at.items():
+        beyond = [low] if net == "source" else [0.0] if net in pins else []
+        trunk(canvas, tracks, net, x, *beyond)
+        if net in pins:
+            canvas.label(FOURTH, net, x, 0.3)
+    beside = RAIL_ENDS + WELL_ENDS
+    canvas.box(masks.base.outline, -beside, 0, right + beside, y - BETWEEN_STRIPS + MARGIN)
+    terminals = tuple(one for strip in strips for one in strip.terminals)
+    drawn = Resistor(ohm.name, ohm.a, ohm.b, length / WIDE * masks.sheet_ohm, True)
+    return Cell(
+        canvas.layout,
+        canvas.cell,
+        circuit.ports,
+        tuple(d.values()),
+        terminals=terminals,
+        resistors=(drawn,),
+        ends=(flat.Ends(ohm.name, *ends),),
+    )
+
+
+def _resistor(
+    canvas: Canvas, masks: AnalogMasks, x: float, y: float, length: float
+) -> tuple[tuple[float, float], tuple[float, float]]:
+    """A bar of diffusion from ``x`` on, its middle at ``y``, with its ends on the first metal; returns these."""
+    base, half = masks.base, WIDE / 2
+    canvas.box(base.active, x - HEAD, y - half, x + length + HEAD, y + half)
+    around = half + IMPLANT
+    canvas.box(base.nplus, x - HEAD - IMPLANT, y - around, x + length + HEAD + IMPLANT, y + around)
+    canvas.box(masks.resistor, x, y - half, x + length, y + half)
+    ends = (x - HEAD / 2, y), (x + length + HEAD / 2, y)
+    for at, _ in ends:
+        for dx in (-0.2, 0.2):
+            for dy in (-0.2, 0.2):
+                canvas.square(base.contact, at + dx, y + dy, CONTACT_UM)
+                canvas.square(base.vias[0].gds, at + dx, y + dy, CONTACT_UM)
+        for level in (0, FIRST):
+            canvas.wire(level, at - 0.4, y - 0.4, at + 0.4, y + 0.4)
+    return ends

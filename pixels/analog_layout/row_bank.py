@@ -1,0 +1,96 @@
+"""South of all rows: predecoders of both addresses and buffers, in strips; what crosses the rows begins here.
+
+All nets between strips, and from the pins in the south, are on the fourth metal, each at an x of its own.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from talbot.models.parameters import ParameterError
+from talbot.pixels.circuits.row_driver import (
+    ADDRESS,
+    BANK_INPUTS,
+    BANK_OUTPUTS,
+    CODES,
+    CONTROLS,
+    GROUPS,
+    SIDES,
+    bank,
+)
+from talbot.pixels.layout.canvas import Canvas
+from talbot.platforms.analog import AnalogMasks
+
+from .cells import Cell
+from .comparator import BETWEEN_STRIPS, devices
+from .device import Device
+from .row_driver import LINE_PITCH, ROOM, RowPlan, legs
+from .strip import FOURTH, RAIL_HALF, SECOND, THIRD, Plan, Strip, draw_strip, in_columns, trunk
+
+NORTH, SOUTH = 2.0, 3.0  # um, of the strips
+APART = 0.95  # um, least between middles of what crosses strips
+BESIDE_JOINT = 1.2  # um, of the middle of what joins rails
+
+
+def _strips() -> Iterator[list[str]]:
+    """Gates of each strip, from the south."""
+    for side in SIDES:
+        yield [f"{side}_i{bit}" for bit in range(ADDRESS)] + [f"{name}_{end}" for name in _codes(side, "high") for end in "ns"]
+        for group in ("mid", "low"):
+            extra = CONTROLS if (side, group) == ("amp", "mid") else ()
+            yield [f"{name}_{end}" for name in (*_codes(side, group), *extra) for end in "ns"]
+
+
+def _codes(side: str, group: str) -> list[str]:
+    return [f"{side}_{group}{code}" for code in range(CODES[group])]
+
+
+def crossings(rows: RowPlan) -> dict[str, float]:
+    """X of every net between strips."""
+    at = dict(rows.pins)
+    for name, x in rows.lines.items():
+        at[f"{name}_line" if name in CONTROLS else name] = x
+    taken = [*at.values()]
+    for side in SIDES:
+        for bit in range(ADDRESS):
+            own = at[f"{side}_row{bit}"]
+            wanted = max(own, max(rows.lines[name] for name in _codes("reset", "low")))
+            place = wanted
+            while any(abs(place - x) < APART for x in taken) or any(abs(place - x) < BESIDE_JOINT for x in rows.joints.values()):
+                place = round(place + LINE_PITCH / 4, 3)
+            at[f"{side}_row{bit}n"] = place
+            taken.append(place)
+    return at
+
+
+def draw_bank(canvas: Canvas, masks: AnalogMasks, rows: RowPlan) -> tuple[Cell, float]:
+    """Draw it with its south edge at y = 0; returns it and its height."""
+    d, at = devices(bank()), crossings(rows)
+    rows_of = [in_columns([leg for name in gates for leg in legs(d, name)], 0.0, ROOM) for gates in _strips()]
+    right = max(rows.logic.right, *(end for _, _, end in rows_of))
+    y, strips = SOUTH, list[Strip]()
+    for n, p, _ in rows_of:
+        present = {net for one in (*n, *p) for net in one.device.transistor.nodes}
+        reach = {net: (x,) for net, x in at.items() if net in present}
+        strips.append(draw_strip(canvas, masks, Plan(n, p, 0.0, right, reach), y))
+        y += strips[-1].plan.height_um + BETWEEN_STRIPS
+    top = round(y - BETWEEN_STRIPS + NORTH, 2)
+    tracks = [track for strip in strips for track in strip.tracks]
+    for net, x in at.items():
+        beyond = [0.0] if net in rows.pins else [top] if net in BANK_OUTPUTS else []
+        if beyond or sum(track.net == net for track in tracks) > 1:
+            trunk(canvas, tracks, net, x, *beyond)
+    for net in ("vss", "vdd"):
+        _join(canvas, strips, net, rows.joints[net], top)
+    ports = (*BANK_INPUTS, *BANK_OUTPUTS, "vdd", "vss")
+    terminals = tuple(one for strip in strips for one in strip.terminals)
+    return Cell(canvas.layout, canvas.cell, ports, tuple(d.values()), terminals=terminals), top
+
+
+def _join(canvas: Canvas, strips: Sequence[Strip], net: str, x: float, top: float) -> None:
+    """Rails of all strips to what joins those of the rows."""
+    canvas.wire(FOURTH, x - 0.5, strips[0].y - 0.5, x + 0.5, top)
+    for strip in strips:
+        y = strip.y + (strip.plan.height_um if net == strip.plan.rails[1] else 0.0)
+        for level in (SECOND, THIRD):
+            canvas.wire(level, x - 0.5, y - RAIL_HALF, x + 0.5, y + RAIL_HALF)
+        for side in (-0.25, 0.25):
+            canvas.stack(x + side, y, 1, FOURTH)

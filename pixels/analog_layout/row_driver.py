@@ -1,0 +1,234 @@
+"""A row's driver on the pixels' pitch: logic in the west, level shifters under thick oxide in the east, one set of tracks.
+
+    rail vdd   ================   rail vddr  ================
+               gates               | n well, hvi  lift  lift |   jogs to the lines' places in the row
+    rail vss   ================   rail vss   ================
+
+Predecoded lines and controls cross all rows on the fourth metal; a row has a via at one line of each group.
+"""
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import permutations
+
+from talbot.models.parameters import ParameterError
+from talbot.pixels.circuits.row_driver import CODES, CONTROLS, ROW_INPUTS, ROW_LINES, SIDES, SUPPLIES, row
+from talbot.pixels.layout.canvas import Canvas
+from talbot.platforms.analog import AnalogMasks
+
+from .cells import Cell
+from .comparator import devices
+from .device import Device, Strap
+from .strip import (
+    FOURTH,
+    RAIL_AT,
+    RAIL_ENDS,
+    RAIL_HALF,
+    RAIL_TRUNK,
+    TAP_HALF,
+    THIRD,
+    TRACK,
+    TRUNK,
+    WELL_ENDS,
+    Placed,
+    Plan,
+    Strip,
+    draw_rails,
+    draw_rows,
+    in_columns,
+    join_rails,
+)
+
+# um
+PITCH, BETWEEN = 10.0, 1.2  # of the rows; of the rails' middles of two rows
+LINE, LINE_PITCH, LINE_APART = 0.4, 0.8, 0.9  # of what crosses all rows; from pins
+LEAST_WEST = 3.0  # of the rows in their block
+ROOM = 0.6  # beside each device, for its drops
+APART = 8.0  # of the level shifters from the logic's tracks: wells of two levels, rails and their joints
+THICK_WELL, THICK_IN, TIP = 0.33, 0.33, 0.185  # hvi well around diffusion and taps; hvi beyond the well; hvntm
+JOG, JOG_FIRST, PIN_END = 0.8, 2.2, 1.5  # of the ways to the lines' places; east of the last
+LEAST_JOG = 0.3  # of one, for the least area
+LOGIC = (
+    "amp_n",
+    "amp_s",
+    "reset_n",
+    "reset_s",
+    "pixel_reset_n",
+    "pixel_reset_s",
+    "expose_n",
+    "open_s",
+    "open_n",
+    "integrate_n",
+    "integrate_s",
+    *(f"{name}_{end}" for name in ("tap1", "tap0", "read", "shutter") for end in "ns"),
+)
+SHIFTERS = "read", "shutter", "pixel_reset", "tap1", "integrate", "tap0"  # in this order all lines have ways out
+GATE_OF_VDD = "vdd_gate"  # the track of what the shifters' gates have at the chip's level
+
+
+@dataclass(frozen=True)
+class RowPlan:
+    """Where everything of a row is, um from its logic's west end.
+
+    lines: x of what crosses all rows; joints: of the supplies that do. jogs: of the ways of its lines to their places.
+    pins: of the block's pins in the south. right: its east edge. west: of its logic from the block's west.
+    """
+
+    plan: Plan
+    logic: Plan
+    thick: Plan
+    lines: Mapping[str, float]
+    joints: Mapping[str, float]
+    jogs: Mapping[str, float]
+    pins: Mapping[str, float]
+    right: float
+    west: float
+
+
+def _lines(n: Sequence[Placed], pins: Collection[float]) -> dict[str, float]:
+    """X of what crosses all rows: a control over its gate, predecoded lines from the west on, where there is room.
+
+    pins: x of what comes from the south.
+    """
+    places = [k * LINE_PITCH for k in range(1, 400) if all(abs(k * LINE_PITCH - x) >= LINE_APART for x in pins)]
+    found = {}
+    for control in CONTROLS:
+        (gate,) = (one for one in n if one.device.transistor.gate == control)
+        middle = (gate.low + gate.high) / 2
+        found[control] = min(places, key=lambda x: abs(x - middle))
+    free = iter(x for x in places if x not in found.values())
+    for name in (f"{side}_{group}{k}" for side in SIDES for group, count in CODES.items() for k in range(count)):
+        found[name] = next(free)
+    return {name: round(x, 3) for name, x in found.items()}
+
+
+def legs(d: Mapping[str, Device], name: str) -> list[tuple[Device | None, Device | None]]:
+    """Columns of a gate or of a level shifter."""
+    if f"{name}.pa" in d and f"{name}.n" in d:
+        return [(d[f"{name}.{n}"], d[f"{name}.{p}"]) for n, p in (("na", "pa"), ("nb", "pb"), ("n", "p"))]
+    legs = [leg for leg in ("", *"abcd") if f"{name}.n{leg}" in d]
+    return [(d[f"{name}.n{leg}"], d[f"{name}.p{leg}"]) for leg in legs]
+
+
+def _renamed(device: Device) -> Device:
+    """A shifter's transistor whose gate has the chip's level, with the net of its track."""
+    t = device.transistor
+    thick = t.role.endswith("thick")
+    return replace(device, transistor=t._replace(gate=GATE_OF_VDD)) if thick and t.gate == "vdd" else device
+
+
+def row_plan(d: Mapping[str, Device], width: float, pins: Mapping[str, float]) -> RowPlan:
+    """The row in a block of ``width`` um, whose ``pins`` in the south are so far from its west.
+
+    Raises ParameterError where the row is wider, or has more nets than its pitch has tracks.
+    """
+    n, p, end = in_columns([leg for name in LOGIC for leg in legs(d, name)], 0.0, ROOM)
+    thick = [(_renamed(a), _renamed(b)) for name in SHIFTERS for a, b in legs(d, f"{name}_l") if a and b]
+    begin = round(end + APART, 2)
+    tn, tp, right = in_columns(thick, begin, ROOM)
+    first = right + RAIL_AT + JOG_FIRST
+    whole = round(first + JOG * len(ROW_LINES) + PIN_END, 2)
+    west = round(width - whole, 3)
+    if west < LEAST_WEST:
+        raise ParameterError(f"row_driver_um = {width:g}: must be {whole + LEAST_WEST:g} at the least, the drawn row")
+    pins = {name: round(x - west, 3) for name, x in pins.items()}
+    lines = _lines(n, pins.values())
+    joints = {"vss": -RAIL_AT, "vdd": end + RAIL_AT, "vss_thick": begin - RAIL_AT, "vddr": right + RAIL_AT}
+    reach: dict[str, tuple[float, ...]] = {name: (lines[name],) for name in CONTROLS}
+    for side in SIDES:
+        for group, count in CODES.items():
+            reach[f"{side}_{group}"] = lines[f"{side}_{group}0"], lines[f"{side}_{group}{count - 1}"]
+    reach[GATE_OF_VDD] = (joints["vdd"],)
+    common = {"least_um": PITCH - BETWEEN}
+    for order in permutations(ROW_LINES):
+        jogs = {net: round(first + JOG * k, 3) for k, net in enumerate(order)}
+        through = reach | {net: (at,) for net, at in jogs.items()}
+        plan = Plan((*n, *tn), (*p, *tp), 0.0, right, through, rails=("vss", "vdd", "vddr"), **common)
+        if plan.height_um > PITCH - BETWEEN + 1e-9:
+            raise ParameterError(f"row = {len(plan.tracks())} nets: must have tracks in {PITCH:g} um")
+        if _clear(plan, jogs):
+            break
+    else:
+        raise ParameterError("row: its lines must have ways to their places")
+    logic = Plan(n, p, 0.0, end, {}, **common)
+    shifters = Plan(tn, tp, begin, right, {}, rails=("vss", "vddr"), **common)
+    return RowPlan(plan, logic, shifters, lines, joints, jogs, pins, whole, west)
+
+
+def places() -> dict[str, float]:
+    """Y of each line in its row, from the row's south edge."""
+    return {net: (k + 0.5) / len(ROW_LINES) * PITCH for k, net in enumerate(ROW_LINES)}
+
+
+def _clear(plan: Plan, jogs: Mapping[str, float]) -> bool:
+    """Whether no line's way from its jog to its place is beside the track of one that goes farther."""
+    at = places()
+    tracks = {track.net: BETWEEN / 2 + track.y for track in plan.tracks() if track.net in jogs}
+    return not any(
+        jogs[far] > jogs[near] and abs(tracks[far] - at[near]) < TRACK + 0.32
+        for near in jogs
+        for far in jogs
+        if near != far
+    )
+
+
+def draw_row(canvas: Canvas, masks: AnalogMasks, made: RowPlan) -> Strip:
+    """A row, its south edge at y = 0, with its part of the controls and supplies that cross all rows."""
+    y, top, base = BETWEEN / 2, PITCH - BETWEEN / 2, masks.base
+    strip = draw_rows(canvas, masks, made.plan, y)
+    for plan in (made.logic, made.thick):
+        draw_rails(canvas, masks, plan, y)
+        join_rails(canvas, [Strip(plan, y)])
+    canvas.wire(1, made.logic.right, y - RAIL_HALF, made.thick.left, y + RAIL_HALF)  # one ground
+    _thick(canvas, made, y, top)
+    crossing = {name: made.lines[name] for name in CONTROLS}
+    for places_of, wide in ((crossing, LINE), (made.joints, RAIL_TRUNK)):
+        for x in places_of.values():
+            canvas.wire(FOURTH, x - wide / 2, 0, x + wide / 2, PITCH)
+    at = places()
+    for track in strip.tracks:
+        for x in [made.lines[track.net]] if track.net in CONTROLS else []:
+            canvas.stack(x, track.y, THIRD, FOURTH)
+        if track.net == GATE_OF_VDD:
+            canvas.stack(made.joints["vdd"], track.y, THIRD, FOURTH)
+        if track.net in made.jogs:
+            x, to, half = made.jogs[track.net], at[track.net], LINE / 2
+            low, high = sorted((track.y, to))
+            more = max(LEAST_JOG - (high - low), 0.0) / 2
+            canvas.wire(FOURTH, x - half, low - half - more, x + half, high + half + more)
+            for end in (track.y, to):
+                canvas.stack(x, end, THIRD, FOURTH)
+            canvas.wire(THIRD, x - half, to - half, made.right, to + half)
+            if high - low < TRACK + 0.32:  # no notch between both
+                canvas.wire(THIRD, x - TRUNK / 2, low, x + TRUNK / 2, high)
+    return strip
+
+
+def _thick(canvas: Canvas, made: RowPlan, y: float, top: float) -> None:
+    """What thick oxide needs: its mask over all of the shifters, the tip implant over n, more well around p."""
+    process, plan = canvas.process, made.thick
+    (oxide, _), (tip, _) = process.thick
+    ends = RAIL_ENDS + WELL_ENDS + THICK_IN
+    canvas.box(oxide, plan.left - ends, 0, plan.right + ends, PITCH)
+    low = min(top - 0.96 - one.device.finger_um for one in plan.p) - THICK_WELL
+    canvas.box(process.well, plan.left - ends + THICK_IN, low, plan.right + ends - THICK_IN, top + TAP_HALF + THICK_WELL)
+    high = max(y + 0.96 + one.device.finger_um for one in plan.n)
+    left, right = plan.n[0].x, plan.n[-1].x + plan.n[-1].device.width_um
+    canvas.box(tip, left - TIP, y + 0.96 - TIP, right + TIP, high + TIP)
+
+
+def as_cell(canvas: Canvas, d: Mapping[str, Device], strip: Strip) -> Cell:
+    """The drawn row with its circuit's names."""
+    terminals = tuple(
+        one._replace(strap=one.strap._replace(net="vdd")) if one.strap.net == GATE_OF_VDD else one
+        for one in strip.terminals
+    )
+    ports = (*ROW_INPUTS, *ROW_LINES, *SUPPLIES)
+    return Cell(canvas.layout, canvas.cell, ports, tuple(d.values()), terminals=terminals, tracks=tuple(strip.tracks))
+
+
+def named(canvas: Canvas, tracks: Sequence[Strap]) -> None:
+    """Labels of the row's inputs and lines on their tracks."""
+    for track in tracks:
+        if track.net in ROW_INPUTS or track.net in ROW_LINES:
+            canvas.label(THIRD, track.net, track.left + 0.3, track.y)

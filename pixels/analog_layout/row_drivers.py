@@ -1,0 +1,154 @@
+"""The drivers of all rows in the die's frame `row_driver`: a column of rows at the pixels' pitch, a bank in the south.
+
+    west     supplies, each on the top metal to what joins the rows' rails
+             row 0
+             ...                                                         its lines, at the array's pins    east
+             the last row
+             bank: predecoders and buffers
+    south    the chip's pins
+"""
+
+from dataclasses import dataclass, replace
+
+from talbot.base.gds import db
+from talbot.models.parameters import ArrayParameters, ParameterError
+from talbot.pixels.blocks import AnalogSizes, Block, blocks
+from talbot.pixels.circuits.row_driver import (
+    BANK_INPUTS,
+    BANK_OUTPUTS,
+    CODES,
+    CONTROLS,
+    ROW_INPUTS,
+    ROW_LINES,
+    SIDES,
+    SUPPLIES,
+    row,
+    taken,
+)
+from talbot.pixels.footprints import draw_pins, lef
+from talbot.pixels.layout.canvas import Canvas
+from talbot.platforms.analog import AnalogMasks
+
+from .cells import Cell, new_canvas
+from .comparator import devices
+from .row_bank import draw_bank
+from .row_driver import LINE, PITCH, RowPlan, as_cell, draw_row, row_plan
+from .strip import FOURTH, THIRD
+
+NAME = "row_driver"
+TOP = 5
+NETS = {"vdd": "vddc", "vddr": "vddr", "vss": "vssa"}
+JOINTS = {"vddc": ("vdd",), "vddr": ("vddr",), "vssa": ("vss", "vss_thick")}
+VIA, VIA_PITCH, VIA_PAD = 0.8, 1.6, 0.59  # um: of the top metal's vias; half of their pad below
+
+
+@dataclass(frozen=True)
+class RowDrivers:
+    """The drawn block. row, bank: its cells. rows: how many."""
+
+    block: Block
+    layout: "db.Layout"
+    cell: "db.Cell"
+    row: Cell
+    bank: Cell
+    rows: int
+
+    @property
+    def transistors(self) -> int:
+        """How many."""
+        return self.rows * len(self.row.transistors) + len(self.bank.transistors)
+
+    def spice(self, masks: AnalogMasks) -> str:
+        """Its text for LVS."""
+        ports = list(dict.fromkeys(pin.name for pin in self.block.pins))
+        lines = [f"X{k} {' '.join(row_nets(k, self.rows))} {self.row.cell.name}" for k in range(self.rows)]
+        lines.append(f"Xbank {' '.join(bank_nets())} {self.bank.cell.name}")
+        top = [f".subckt {NAME} {' '.join(ports)}", *lines, f".ends {NAME}", ""]
+        return self.row.spice(masks) + self.bank.spice(masks) + "\n".join(top)
+
+    def lef(self, masks: AnalogMasks) -> str:
+        """Its LEF: all metals taken."""
+        return lef(self.block, masks.base.name, AnalogSizes().supply_um, [metal.lef for metal in masks.base.metals])
+
+
+def chip_pin(name: str) -> str:
+    """The block's pin of an input of the bank: amp_row3 is amp_row[3]."""
+    return f"{name.rstrip('0123456789')}[{name[len(name.rstrip('0123456789')) :]}]" if name[-1].isdigit() else name
+
+
+def row_nets(number: int, rows: int) -> tuple[str, ...]:
+    """The block's nets at the ports of a row."""
+    codes = taken(number)
+    own = {f"{side}_{group}": f"{side}_{group}{code}" for side in SIDES for group, code in codes.items()}
+    own |= {name: f"{name}_line" for name in CONTROLS}
+    own |= {name: f"{name}[{number}]" for name in ROW_LINES} | NETS
+    return tuple(own[port] for port in (*ROW_INPUTS, *ROW_LINES, *SUPPLIES))
+
+
+def bank_nets() -> tuple[str, ...]:
+    """The block's nets at the ports of the bank."""
+    return (*map(chip_pin, BANK_INPUTS), *BANK_OUTPUTS, NETS["vdd"], NETS["vss"])
+
+
+def draw_row_drivers(masks: AnalogMasks, array: ArrayParameters, room: AnalogSizes | None = None) -> RowDrivers:
+    """Draw all rows in their frame. Raises ParameterError where they do not fit, or the bank has too few lines."""
+    room = room or AnalogSizes()
+    if abs(1e6 * array.pitch - PITCH) > 1e-6:
+        raise ParameterError(f"pitch = {array.pitch:g}: must be {PITCH * 1e-6:g} m, that of the drawn rows")
+    if taken(array.rows - 1)["high"] >= CODES["high"]:
+        raise ParameterError(f"rows = {array.rows}: must be at most {64 * CODES['high']} for the drawn bank")
+    plain = next(one for one in blocks(array, sizes=room) if one.name == NAME)
+    south = {pin.name: pin.at_um for pin in plain.pins if pin.side == "south"}
+    pins = {name: south[chip_pin(name)] for name in BANK_INPUTS}
+    d = devices(row())
+    plan = row_plan(d, plain.width_um, pins)
+    canvas = new_canvas(masks, NAME)
+    bank_canvas, row_canvas = (Canvas(canvas.layout, name, masks.base) for name in ("row_bank", "row"))
+    bank, height = draw_bank(bank_canvas, masks, plan)
+    made = as_cell(row_canvas, d, draw_row(row_canvas, masks, plan))
+    moved = (pin if pin.side == "south" else replace(pin, at_um=round(pin.at_um + height, 3)) for pin in plain.pins)
+    block = Block(NAME, plain.width_um, round(plain.height_um + height, 3), tuple(moved))
+    x, y, pitch = canvas.snap(plan.west), canvas.snap(height), canvas.snap(PITCH)
+    canvas.cell.insert(db.CellInstArray(bank.cell.cell_index(), db.Trans(x, 0)))
+    step = db.Vector(0, pitch)
+    canvas.cell.insert(
+        db.CellInstArray(made.cell.cell_index(), db.Trans(x, y), step, db.Vector(1, 0), array.rows, 1)
+    )
+    _lines(canvas, plan, made, height, array.rows)
+    _supplies(canvas, block, plan, height, room)
+    draw_pins(canvas.layout, canvas.cell, block, masks.base.name, room.supply_um)
+    canvas.box(masks.base.outline, 0, 0, block.width_um, block.height_um)
+    return RowDrivers(block, canvas.layout, canvas.cell, made, bank, array.rows)
+
+
+def _lines(canvas: Canvas, plan: RowPlan, made: Cell, south: float, rows: int) -> None:
+    """Predecoded lines across all rows, and each row's vias to its own."""
+    via = Canvas(canvas.layout, "row_code", canvas.process)
+    via.stack(0, 0, THIRD, FOURTH)
+    tracks = {track.net: track.y for track in made.tracks}
+    for side in SIDES:
+        for group, count in CODES.items():
+            for code in range(count):
+                x = plan.west + plan.lines[f"{side}_{group}{code}"]
+                canvas.wire(FOURTH, x - LINE / 2, south, x + LINE / 2, south + rows * PITCH)
+    for number in range(rows):
+        for group, code in taken(number).items():
+            for side in SIDES:
+                x = plan.west + plan.lines[f"{side}_{group}{code}"]
+                y = south + (rows - 1 - number) * PITCH + tracks[f"{side}_{group}"]
+                at = db.Trans(canvas.snap(x), canvas.snap(y))
+                canvas.cell.insert(db.CellInstArray(via.cell.cell_index(), at))
+
+
+def _supplies(canvas: Canvas, block: Block, plan: RowPlan, south: float, room: AnalogSizes) -> None:
+    """From each pin in the west to what joins the rows' rails, and this across the bank where that has none."""
+    via, half = canvas.process.vias[FOURTH].gds, room.supply_um / 2
+    for pin in (pin for pin in block.pins if pin.supply):
+        ends = [plan.west + plan.joints[name] for name in JOINTS[pin.name]]
+        canvas.wire(TOP, 0, pin.at_um - half, max(ends) + 2, pin.at_um + half)
+        count = int((room.supply_um - 2) / VIA_PITCH)
+        for x in ends:
+            for k in range(count):
+                y = pin.at_um + (k - (count - 1) / 2) * VIA_PITCH
+                canvas.square(via, x, y, VIA)
+            canvas.wire(FOURTH, x - VIA_PAD, pin.at_um - half, x + VIA_PAD, pin.at_um + half)

@@ -1,0 +1,36 @@
+"""Rows of transistors beside each other, with transistors at their ends that are off."""
+
+from collections.abc import Iterable, Mapping
+
+from talbot.pixels.circuits.netlist import Transistor
+
+from .device import Device
+from .strip import DROP_PITCH, GAP, Placed
+
+GRID = 0.005  # um
+
+
+def dummies(name: str, like: Device) -> dict[str, Device]:
+    """Transistors of two fingers that are off, for both ends of a row of ``like``."""
+    t = like.transistor
+    width = round(2 * like.finger_um, 3)
+    return {
+        f"{name}_{end}": Device(Transistor(f"{name}_{end}", t.bulk, t.bulk, t.bulk, t.bulk, t.role, width, t.l), 2)
+        for end in ("west", "east")
+    }
+
+
+def row(d: Mapping[str, Device], names: Iterable[str], axis: float, room: float = 0.0) -> tuple[Placed, ...]:
+    """Devices beside each other about ``axis``; room: um more between them."""
+    own = [d[name] for name in names]
+    rooms = [snap(max(one.width_um + GAP, 3 * DROP_PITCH) + room) for one in own]
+    x, placed = snap(axis - sum(rooms) / 2), list[Placed]()
+    for one, wide in zip(own, rooms, strict=True):
+        placed.append(Placed(one, snap(x + (wide - one.width_um) / 2), x, x + wide))
+        x = snap(x + wide)
+    return tuple(placed)
+
+
+def snap(um: float) -> float:
+    """The nearest length on the grid."""
+    return round(um / GRID) * GRID

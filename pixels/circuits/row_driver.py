@@ -1,0 +1,183 @@
+"""The driver of a row: which row it is, whether it integrates, and every phase lifted from the chip's level to the pixels'.
+
+    high, mid, low of amp_row ---- nand3 --- amp_on ---+-- shutter, read, tap0, tap1 --- lift --- the row's lines
+    high, mid, low of reset_row -- nand3 --- reset_on -+-- pixel_reset -------------- lift --- its line
+                                             expose ---+-- set   open --+
+                                   pixel_reset, integrate --- clear     +------------ lift --- integrate's line
+
+Predecoded lines (`predecoder`) run along all rows; a row takes one of each group. The latch `open` is set by `expose`
+and cleared by `pixel_reset` or its own `integrate`, which win: the integrate line is high while it is set, and with
+`integrate`. `lift` has one input and no complement: its second transistor is switched at its source.
+
+Pins of `row`: ROW_INPUTS, ROW_LINES, vdd (the chip's level) vddr (of the lines) vss.
+"""
+
+from dataclasses import dataclass
+from typing import Self
+
+from talbot.models.parameters import ArrayParameters, SensorParameters, check_int, check_real, drawn_lines
+
+from .gates import LENGTH, UNIT, inverter, nand
+from .netlist import Circuit, Instance, Transistor
+from .support import GATE, row_line
+
+GROUPS = {"high": (6, 10), "mid": (3, 6), "low": (0, 3)}  # bits of a row's number, from the lowest on
+SIDES = "amp", "reset"
+PHASES = ("reset", "pixel_reset"), ("amp", "shutter"), ("amp", "read"), ("amp", "tap0"), ("amp", "tap1")
+CONTROLS = "pixel_reset", "shutter", "integrate", "read", "tap0", "tap1", "expose"
+ROW_INPUTS = (*(f"{side}_{group}" for side in SIDES for group in GROUPS), *CONTROLS)
+ROW_LINES = tuple(f"{name}_row" for name in ("pixel_reset", "shutter", "integrate", "read", "tap0", "tap1"))
+SUPPLIES = "vdd", "vddr", "vss"
+THICK = 0.5  # um, shortest gate of thick oxide
+PULL, HOLD, HOLD_LENGTH = 3.0, 0.42, 2.0  # um: what must win in a level shifter, and what it wins against
+DRIVE = 3.0, 6.0  # um, n and p of what drives a line
+
+
+@dataclass(frozen=True)
+class RowDriverSpec:
+    """What a row's driver must do.
+
+    Attributes
+    ----------
+    cols : int
+        Pixels at a line, 1..100000.
+    ohm, farad : float
+        Of a line for each, 0.01..1e5 ohm, 1e-17..1e-11 F: metal of the drawn array, as extracted, and two gates.
+    supply, high : float
+        V of the chip, 1.2..2, and of the lines, 2..5.5; limits hold for 10 % around each, in any combination.
+    settle : float
+        S from a phase's edge until the line's far end has its level: a cycle, the shortest guard.
+    slew : float
+        S at the far end from 10 to 90 %.
+    idle : float
+        A of a row in which nothing changes.
+    """
+
+    cols: int = ArrayParameters().cols
+    ohm: float = drawn_lines().row_ohm
+    farad: float = drawn_lines().row_farad + 2 * GATE
+    supply: float = 1.8
+    high: float = 5.0
+    settle: float = 100e-9
+    slew: float = 50e-9
+    idle: float = 1e-6
+
+    def __post_init__(self) -> None:
+        check_int("cols", self.cols, 1, 100_000)
+        check_real("ohm", self.ohm, 0.01, 1e5)
+        check_real("farad", self.farad, 1e-17, 1e-11)
+        check_real("supply", self.supply, 1.2, 2.0)
+        check_real("high", self.high, 2.0, 5.5)
+        for name in ("settle", "slew"):
+            check_real(name, getattr(self, name), 1e-12, 1e-3)
+        check_real("idle", self.idle, 1e-12, 1e-3)
+
+    @classmethod
+    def of(cls, sensor: SensorParameters | None = None) -> Self:
+        """Of a sensor: the columns of its array, the cycle of its chip."""
+        sensor = sensor or SensorParameters()
+        return cls(cols=sensor.array.cols, settle=1 / sensor.chip.f_clk, slew=0.5 / sensor.chip.f_clk)
+
+    @property
+    def line(self) -> Circuit:
+        """The line as a ladder. Pins near far vss."""
+        return row_line(self)
+
+
+def nand_of(inputs: int) -> Circuit:
+    """Pins a b c ... y vdd vss: 2 to 4 inputs."""
+    check_int("inputs", inputs, 2, 4)
+    names = "abcd"[:inputs]
+    nodes = ["y", *(f"m{k}" for k in range(1, inputs)), "vss"]
+    w = 2 * UNIT
+    return Circuit(
+        f"nand{inputs}",
+        (*names, "y", "vdd", "vss"),
+        (
+            *(Transistor(f"n{a}", nodes[k], a, nodes[k + 1], "vss", "n", w, LENGTH) for k, a in enumerate(names)),
+            *(Transistor(f"p{a}", "y", a, "vdd", "vdd", "p", w, LENGTH) for a in names),
+        ),
+    )
+
+
+def lift() -> Circuit:
+    """A level shifter and what drives the line. Pins a line vdd vddr vss; the line is at vddr where a is at vdd."""
+
+    def n(name: str, drain: str, gate: str, source: str, w: float) -> Transistor:
+        return Transistor(name, drain, gate, source, "vss", "n_thick", w, THICK)
+
+    def p(name: str, drain: str, gate: str, w: float, length: float) -> Transistor:
+        return Transistor(name, drain, gate, "vddr", "vddr", "p_thick", w, length)
+
+    return Circuit(
+        "lift",
+        ("a", "line", *SUPPLIES),
+        (
+            n("na", "low", "a", "vss", PULL),
+            n("nb", "high", "vdd", "a", PULL),
+            p("pa", "low", "high", HOLD, HOLD_LENGTH),
+            p("pb", "high", "low", HOLD, HOLD_LENGTH),
+            n("n", "line", "low", "vss", DRIVE[0]),
+            p("p", "line", "low", DRIVE[1], THICK),
+        ),
+    )
+
+
+def row() -> Circuit:
+    """All of a row. Pins ROW_INPUTS, ROW_LINES, SUPPLIES."""
+    rails = "vdd", "vss"
+    parts = []
+    for side in SIDES:
+        lines = (f"{side}_{group}" for group in GROUPS)
+        parts.append(Instance(f"{side}_n", nand_of(3), (*lines, f"{side}_off", *rails)))
+        parts.append(Instance(f"{side}_s", inverter(2), (f"{side}_off", f"{side}_on", *rails)))
+    for side, phase in PHASES:
+        parts.append(Instance(f"{phase}_n", nand(), (f"{side}_on", phase, f"{phase}_off", *rails)))
+        parts.append(Instance(f"{phase}_s", inverter(2), (f"{phase}_off", f"{phase}_on", *rails)))
+    parts += [
+        Instance("expose_n", nand(), ("reset_on", "expose", "expose_off", *rails)),
+        Instance("integrate_n", nand(), ("amp_on", "integrate", "integrate_off", *rails)),
+        Instance("open_s", nand(), ("expose_off", "closed", "open", *rails)),
+        Instance("open_n", nand_of(3), ("pixel_reset_off", "integrate_off", "open", "closed", *rails)),
+        Instance("integrate_s", nand(2), ("closed", "integrate_off", "integrate_on", *rails)),
+    ]
+    parts += [
+        Instance(f"{line.removesuffix('_row')}_l", lift(), (f"{line.removesuffix('_row')}_on", line, *SUPPLIES))
+        for line in ROW_LINES
+    ]
+    return Circuit("row", (*ROW_INPUTS, *ROW_LINES, *SUPPLIES), instances=tuple(parts))
+
+
+ADDRESS = 10  # bits
+CODES = {"high": 6, "mid": 8, "low": 8}  # lines of a group: the highest of 384 rows is in the sixth group of 64
+BANK_INPUTS = (*(f"{side}_row{bit}" for side in SIDES for bit in range(ADDRESS)), *CONTROLS)
+BANK_OUTPUTS = (
+    *(f"{side}_{group}{code}" for side in SIDES for group, count in CODES.items() for code in range(count)),
+    *(f"{name}_line" for name in CONTROLS),
+)
+
+
+def bank() -> Circuit:
+    """What drives the lines that cross all rows: predecoders of both addresses, buffers of the controls.
+
+    Pins BANK_INPUTS, BANK_OUTPUTS, vdd vss. `<side>_<group><code>` is high where the group's bits are the code.
+    """
+    rails, parts = ("vdd", "vss"), list[Instance]()
+    for side in SIDES:
+        for bit in range(ADDRESS):
+            parts.append(Instance(f"{side}_i{bit}", inverter(2), (f"{side}_row{bit}", f"{side}_row{bit}n", *rails)))
+        for group, (first, last) in GROUPS.items():
+            for code in range(CODES[group]):
+                bits = (f"{side}_row{first + k}{'' if code >> k & 1 else 'n'}" for k in range(last - first))
+                name = f"{side}_{group}{code}"
+                parts.append(Instance(f"{name}_n", nand_of(last - first), (*bits, f"{name}n", *rails)))
+                parts.append(Instance(f"{name}_s", inverter(6), (f"{name}n", name, *rails)))
+    for name in CONTROLS:
+        parts.append(Instance(f"{name}_n", inverter(3), (name, f"{name}n", *rails)))
+        parts.append(Instance(f"{name}_s", inverter(12), (f"{name}n", f"{name}_line", *rails)))
+    return Circuit("row_bank", (*BANK_INPUTS, *BANK_OUTPUTS, *rails), instances=tuple(parts))
+
+
+def taken(row: int) -> dict[str, int]:
+    """The code of each group that a row takes."""
+    return {group: row >> first & (1 << last - first) - 1 for group, (first, last) in GROUPS.items()}
