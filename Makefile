@@ -104,7 +104,7 @@ analog: $(LAYOUT_READY) have-tools  ## the analog circuits in ngspice and their 
 	@$(talbot) analog
 
 .PHONY: analog-layout
-analog-layout: $(LAYOUT_READY) have-tools  ## comparator, capacitor arrays and lane drawn: DRC, LVS, extracted, measured beside the schematic: build/analog-layout/<pdk>/analog_layout.html [CORNERS=quick]
+analog-layout: $(LAYOUT_READY) have-tools  ## comparator, capacitor arrays, lane, amplifier and bias drawn: DRC, LVS, extracted, measured beside the schematic: build/analog-layout/<pdk>/analog_layout.html [CORNERS=quick]
 	@$(talbot) analog-layout
 
 .PHONY: polar
@@ -243,7 +243,7 @@ bench: $(TESTS_READY)  ## speed and memory (pytest-benchmark)
 	@$(PY) -m pytest --benchmark-only --benchmark-disable-gc -p no:xdist -o python_files='*_bench_test.py' -vv --durations=0
 
 .PHONY: cells
-cells: $(LAYOUT_READY) have-tools  ## a cell library from transistors: build/cells/<LIB>/<CORNER>.lib
+cells: $(LAYOUT_READY) have-tools  ## a cell library from transistors: build/cells/<LIB>/<corner>.lib [CORNERS=tt_025C_1v80,ff_n40C_1v95]
 	@$(talbot) cells
 
 .PHONY: cells-report

@@ -27,10 +27,17 @@ LIKE = 0.6  # how like an unknown word the nearest known one must be, 0..1
 
 
 class HelpFormatter(argparse.RawDescriptionHelpFormatter, argparse.ArgumentDefaultsHelpFormatter):
-    """Shows the defaults of options that have one."""
+    """Shows the defaults of options that have one and do not name it: several as words, folders from here."""
 
     def _get_help_string(self, action: argparse.Action) -> str | None:
-        return super()._get_help_string(action) if action.default else action.help
+        default, words = action.default, action.help or ""
+        if not default or default is argparse.SUPPRESS or "default" in words:
+            return action.help
+        if isinstance(default, list | tuple):
+            default = " ".join(map(str, default))
+        if isinstance(default, Path) and default.is_relative_to(Path.cwd()):
+            default = default.relative_to(Path.cwd())
+        return f"{words} (default: {str(default).replace('%', '%%')})"
 
 
 class Parser(argparse.ArgumentParser):

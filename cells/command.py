@@ -1,4 +1,4 @@
-"""A cell library characterized at one corner, to build/cells/<library>/."""
+"""A cell library characterized at one corner or several, to build/cells/<library>/."""
 
 import json
 from argparse import ArgumentParser, Namespace
@@ -16,7 +16,8 @@ def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot cells`."""
     add = parser.add_argument
     add("--lib", default="sky130_hd", help=f"{', '.join(sources.LIBRARIES)}, or a SPICE file of cells")
-    add("--corner", default="tt_025C_1v80", help="process, temperature, supply: ff_n40C_1v95")
+    corners = "process, temperature, supply, with commas between: tt_025C_1v80,ff_n40C_1v95"
+    add("--corners", default="tt_025C_1v80", help=corners)
     add("--cells", help="names with commas between, inv_1,nand2_1 (default: all for synthesis)")
     add("--models", default="fitted", choices=sources.process("sky130_hd").SETS, help="set of device models")
     netlists = "what is simulated: with parasitics, with capacitances, transistors as laid out, or the schematic"
@@ -27,10 +28,11 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 
 def run(options: Namespace) -> int:
-    """Characterize the library and print its summary; 1 where a cell fails or has problems."""
-    o, conditions = options, Conditions(Corner.parse(options.corner), options.models)
-    names = o.cells and o.cells.split(",")
-    summary = characterize_library(o.lib, conditions, names, o.netlist, o.out, o.reference, o.workers)
-    long = ("cell_s", "cell_cpu_s", "names", "left_out")
-    print(json.dumps({name: value for name, value in summary.items() if name not in long}, indent=1))
-    return 1 if summary["failed"] or summary["problems"] else 0
+    """Characterize the library and print a summary of each corner; 1 where a cell fails or has problems."""
+    o, wrong = options, False
+    names, long = o.cells and o.cells.split(","), ("cell_s", "cell_cpu_s", "names", "left_out")
+    for conditions in [Conditions(Corner.parse(name), o.models) for name in o.corners.split(",")]:
+        summary = characterize_library(o.lib, conditions, names, o.netlist, o.out, o.reference, o.workers)
+        print(json.dumps({name: value for name, value in summary.items() if name not in long}, indent=1))
+        wrong |= bool(summary["failed"] or summary["problems"])
+    return int(wrong)

@@ -89,7 +89,7 @@ def blocks(
     array, chip, sizes = array or ArrayParameters(), chip or ChipParameters(), sizes or AnalogSizes()
     return (
         pixel_array(array),
-        _row_driver(array, sizes),
+        row_driver(array, sizes),
         _column_amplifiers(array, chip, sizes),
         _adc_lanes(chip, sizes),
     )
@@ -145,7 +145,8 @@ def pixel_array(array: ArrayParameters) -> Block:
     )
 
 
-def _row_driver(array: ArrayParameters, sizes: AnalogSizes) -> Block:
+def row_driver(array: ArrayParameters, sizes: AnalogSizes) -> Block:
+    """The drivers of all rows: the chip in the south, each row's lines in the east, supplies in the west."""
     height = array.rows * array.pitch * 1e6
     return Block(
         "row_driver",
@@ -177,7 +178,7 @@ def _column_amplifiers(array: ArrayParameters, chip: ChipParameters, sizes: Anal
             *(Pin(name, "input", "north", at) for name, at in column_lines(array)),
             *_spread("column_amplifiers", pins, "input", 0, control),
             *(Pin(name, "output", "south", begin + at) for name, at in lane_lines(chip, sizes)),
-            *_supplies("west", sizes.columns_um, CIRCUIT_SUPPLIES),
+            *_supplies("west", sizes.columns_um / 2, CIRCUIT_SUPPLIES),  # above it the row driver is in the way
             *_supplies("east", sizes.columns_um, CIRCUIT_SUPPLIES),
         ),
     )

@@ -54,7 +54,7 @@ COMMANDS = {
     "document": ("talbot.flow.host.document.command", "the documents for a host: register map, pins, tile, C header"),
     "site": ("talbot.site.command", "the documents site: READMEs, docs, API, architecture, gallery"),
     "footprints": ("talbot.pixels.footprints", "footprints of the analog blocks: LEF and GDS"),
-    "cells": ("talbot.cells.command", "a cell library characterized at one corner"),
+    "cells": ("talbot.cells.command", "a cell library characterized at one corner or several"),
     "cells-report": ("talbot.cells.report.command", "the characterizer against a foundry's tables"),
     "cells-stability": ("talbot.cells.stability", "stiff and extreme cases of the characterizer"),
     "cells-compact": ("talbot.cells.compact.command", "the library Compact drawn and checked"),

@@ -99,7 +99,7 @@ def test_nothing_is_left(tmp_path, name, sent, whole_group):
     process.stdout.readline()
     assert len(running(mark)) > 1
     (os.killpg if whole_group else os.kill)(process.pid, sent)
-    _, err = process.communicate(timeout=20)
+    _, err = process.communicate(timeout=200)
     assert process.returncode == 128 + sent and err.count("\n") == 1 and "nothing was left half-written" in err
     assert not running(mark) and not list(tmp_path.iterdir())
 
@@ -111,7 +111,7 @@ def test_files_that_appear_together_do(tmp_path):
         pass
     seen = len(os.listdir(tmp_path / "out"))
     process.terminate()
-    process.communicate(timeout=20)
+    process.communicate(timeout=200)
     assert process.returncode == 143 and seen < 20000
     names = os.listdir(tmp_path / "out")
     assert len(names) == 20000 and not any(name.startswith(PART) for name in names) and not running(mark)
@@ -119,14 +119,14 @@ def test_files_that_appear_together_do(tmp_path):
 
 def test_a_program_that_crashes_is_cleared_away_too(tmp_path):
     process, mark = program(tmp_path, "crashes")
-    _, err = process.communicate(timeout=20)
+    _, err = process.communicate(timeout=200)
     assert process.returncode == 139 and "SIGSEGV" in err
     assert not running(mark) and not list(tmp_path.iterdir())
 
 
 def test_a_tool_that_a_program_forgets_ends_with_it(tmp_path):
     process, mark = program(tmp_path, "leaves")
-    process.communicate(timeout=20)
+    process.communicate(timeout=200)
     assert process.returncode == 7 and not running(mark)
 
 
@@ -136,7 +136,7 @@ def test_a_worker_that_the_signal_ends_first_is_no_error(tmp_path, sent, attempt
     process, mark = program(tmp_path, "works")
     process.stdout.readline()
     os.killpg(process.pid, sent)
-    _, err = process.communicate(timeout=20)
+    _, err = process.communicate(timeout=200)
     assert process.returncode == 128 + sent and err.count("\n") == 1 and "nothing was left" in err
     assert not running(mark)
 
@@ -144,7 +144,7 @@ def test_a_worker_that_the_signal_ends_first_is_no_error(tmp_path, sent, attempt
 def test_a_signal_to_the_child_alone_ends_both(tmp_path):
     process, mark = program(tmp_path, "works")
     os.kill(int(process.stdout.readline()), signal.SIGTERM)
-    _, err = process.communicate(timeout=20)
+    _, err = process.communicate(timeout=200)
     assert process.returncode == 143 and "nothing was left" in err and not running(mark)
 
 
@@ -154,5 +154,5 @@ def test_an_ignored_signal_stays_ignored(tmp_path):
     for _ in range(20):
         process.send_signal(signal.SIGHUP)
         time.sleep(0.01)
-    process.communicate(timeout=20)
+    process.communicate(timeout=200)
     assert process.returncode == 7 and not running(mark)

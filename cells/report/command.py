@@ -31,7 +31,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--reference", type=Path, help="folder of <cell>.lib.json; without it nothing is compared")
     parser.add_argument("--cells", help="names with commas between of cells to compare (default: all of the reference)")
     parser.add_argument("--netlists", action="store_true", help="also other models and netlists: whose error it is")
-    parser.add_argument("--corner", default="tt_025C_1v80", help="of the reference")
+    parser.add_argument("--corners", default="tt_025C_1v80", help="the corner of the reference, one")
     parser.add_argument("--models", default="fitted", help="set of device models of the comparison")
     parser.add_argument("--workers", type=worker_count, default=-1, help="processes; -1: all cores")
     parser.add_argument("--out", type=Path, default=RESULTS / "cells" / "report", help="folder of the page")
@@ -39,8 +39,8 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Measure, write the page and print the errors by kind."""
-    conditions = Conditions(Corner.parse(options.corner), options.models)
-    page = {"corner": options.corner, "default": curve.DEFAULT, "points": curve.OFF_GRID, "tables": {}}
+    conditions = Conditions(Corner.parse(options.corners), options.models)
+    page = {"corner": options.corners, "default": curve.DEFAULT, "points": curve.OFF_GRID, "tables": {}}
     if options.reference:
         page |= against(conditions, options)
     measured = curve.measure("sky130_hd", conditions, options.out / "jobs", options.workers)
@@ -52,7 +52,7 @@ def run(options: Namespace) -> int:
         figures = {name: page.get(name) for name in ("tables", "curve", "off_grid", "variants", "alone")}
         (part / "report.json").write_text(json.dumps(figures, indent=1) + "\n")
     for title, kinds in page["tables"].items():
-        print(f"{options.corner}, {title}")
+        print(f"{options.corners}, {title}")
         for kind, e in kinds.items():
             errors = (
                 "median {median:7.2f} {unit}, 95th percentile {p95:7.2f}" if "median" in e else "nothing to compare"

@@ -6,6 +6,7 @@ from .amplifier import AmplifierResult
 from .comparator import Decisions
 from .lane import LaneResult
 from .noise import Noise
+from .row_driver import RowDriverResult
 from .spread import AmplifierNoise, Drawn
 from .support import SupportResult
 
@@ -29,3 +30,4 @@ class Found:
     amplifier_draws: list[Drawn]
     amplifier_noise: AmplifierNoise
     supports: dict[str, SupportResult]
+    rows: dict[str, RowDriverResult]

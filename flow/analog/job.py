@@ -20,10 +20,11 @@ from talbot.pixels.circuits import amplifier as amplifiers
 from talbot.pixels.circuits import lane as lanes
 from talbot.pixels.circuits.amplifier import AmplifierSizes, AmplifierSpec
 from talbot.pixels.circuits.lane import LaneSizes
+from talbot.pixels.circuits.row_driver import RowDriverSpec
 from talbot.pixels.circuits.specification import LaneSpec
 from talbot.pixels.circuits.support import SupportSpec
 
-from . import amplifier, comparator, lane, linearity, spread, support
+from . import amplifier, comparator, lane, linearity, row_driver, spread, support
 from . import noise as noises
 from .amplifier import AmplifierResult
 from .comparator import BATCH, Decisions, interval
@@ -31,6 +32,7 @@ from .deck import Setup, deck, process_of
 from .found import TYPICAL, Found
 from .lane import LaneResult, inl
 from .noise import Noise
+from .row_driver import RowDriverResult
 from .rows import datasheet
 from .spread import AmplifierNoise, Drawn
 from .support import SupportResult
@@ -111,6 +113,7 @@ def make(
     note("report")
     rows = datasheet(setup.spec, found, len(found.offsets))
     counts = [*found.decisions.values(), *found.lanes.values(), *found.amplifiers.values(), *found.supports.values()]
+    counts += found.rows.values()
     summary = {
         "pdk": pdk,
         "corners": list(corners),
@@ -163,12 +166,18 @@ def measured(
         for name, corner in places.items()
     ]
     amplifiers = run(amplified, STORE, "amplifier", workers)
-    spec_s = SupportSpec.of()
+    spec_s = SupportSpec()
     standing = [
         Job(f"support-{name}", support.measure, (setup, spec_s, corner), (repr((setup, spec_s)), name))
         for name, corner in places.items()
     ]
     supports = run(standing, STORE, "support", workers)
+    spec_r = RowDriverSpec.of()
+    driving = [
+        Job(f"row-{name}", row_driver.measure, (setup, spec_r, corner), (repr((setup, spec_r)), name))
+        for name, corner in places.items()
+    ]
+    rows = run(driving, STORE, "row driver", workers)
     note("mismatch")
     typical = places[TYPICAL]
     batches = range(1, -(-draws // BATCH) + 1)
@@ -211,6 +220,7 @@ def measured(
         amplifier_draws,
         amplifier_noise,
         {name: from_json(SupportResult, one) for name, one in zip(places, supports, strict=True)},
+        {name: from_json(RowDriverResult, one) for name, one in zip(places, rows, strict=True)},
     )
 
 

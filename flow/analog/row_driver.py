@@ -9,7 +9,7 @@ from talbot.cells.corner import Corner
 from talbot.cells.spice.engine import Points
 from talbot.cells.spice.wave import Wave
 from talbot.pixels.circuits.netlist import Circuit, Instance
-from talbot.pixels.circuits.row_driver import CONTROLS, ROW_INPUTS, ROW_LINES, SUPPLIES, RowDriverSpec, row
+from talbot.pixels.circuits.row_driver import CONTROLS, ROW_INPUTS, ROW_LINES, SUPPLIES, RowDriverSpec, row, row_line
 
 from .deck import EDGE, Setup, deck, patient, simulator
 
@@ -69,7 +69,7 @@ def measure(
 def bench(spec: RowDriverSpec, driver: Circuit) -> Circuit:
     """The driver with a line behind each of its outputs; the lines' names are those of their far ends."""
     near = tuple(f"{line}_near" for line in ROW_LINES)
-    ends = [Instance(line, spec.line, (start, line, "vss")) for line, start in zip(ROW_LINES, near, strict=True)]
+    ends = [Instance(line, row_line(spec), (start, line, "vss")) for line, start in zip(ROW_LINES, near, strict=True)]
     parts = (Instance("driver", driver, (*ROW_INPUTS, *near, *SUPPLIES)), *ends)
     return Circuit("bench", (*ROW_INPUTS, *ROW_LINES, *SUPPLIES), instances=parts)
 
@@ -103,9 +103,7 @@ def _figures(wave: Wave, spec: RowDriverSpec, corner: Corner, high: float) -> Ma
             times = wave.time[inside][between]
             slew.append(float(np.ptp(times)) if len(times) else cycle)
     begin, end = 4 * cycle - EDGE, 7 * cycle - EDGE
-    energy = sum(
-        wave.charge(name, begin, end) * volts for name, volts in (("vddr", high), ("vdd", corner.supply))
-    )
+    energy = sum(wave.charge(name, begin, end) * volts for name, volts in (("vddr", high), ("vdd", corner.supply)))
     quiet = (CYCLES - 0.5) * cycle, CYCLES * cycle
     idle = sum(wave.charge(name, *quiet) for name in ("vdd", "vddr")) / (0.5 * cycle)
     return {"right": right, "settling": max(settling), "slew": max(slew), "energy": energy, "idle": idle}

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from talbot.pixels.circuits.amplifier import BIAS, AmplifierSpec
+from talbot.pixels.circuits.row_driver import RowDriverSpec
 from talbot.pixels.circuits.specification import LaneSpec
 from talbot.pixels.circuits.support import SupportSpec
 
@@ -12,6 +13,7 @@ from .comparator import interval
 from .datasheet import Row, over_corners
 from .found import TYPICAL, Found
 from .lane import VALUE, inl
+from .row_driver import RowDriverResult
 from .support import SupportResult
 
 
@@ -64,6 +66,7 @@ def datasheet(spec: LaneSpec, found: Found, draws: int) -> list[Row]:
         ),
         corners("lane", "energy of a decision", "pJ", energies, share),
         *_amplifier(found),
+        *_row_driver(found.rows),
         *_support(found.supports),
     ]
 
@@ -101,9 +104,27 @@ def _amplifier(found: Found) -> list[Row]:
     ]
 
 
+def _row_driver(found: dict[str, RowDriverResult]) -> list[Row]:
+    """The rows of a row's driver."""
+    spec = RowDriverSpec.of()
+
+    def row(name: str, unit: str, field: str, scale: float, **limits: float) -> Row:
+        values = {corner: scale * getattr(one, field) for corner, one in found.items()}
+        return over_corners("row driver", name, unit, values.items(), TYPICAL, **limits)
+
+    wrong = {corner: float(not one.right) for corner, one in found.items()}
+    return [
+        over_corners("row driver", "wrong levels", "", wrong.items(), TYPICAL, most=0.0),
+        row("far end within 1 %", "ns", "settling", 1e9, most=1e9 * spec.settle),
+        row("far end from 10 to 90 %", "ns", "slew", 1e9, most=1e9 * spec.slew),
+        row("energy of a pulse", "pJ", "energy", 1e12),
+        row("current of a row at rest", "uA", "idle", 1e6, most=1e6 * spec.idle),
+    ]
+
+
 def _support(found: dict[str, SupportResult]) -> list[Row]:
-    """The rows of row driver, switch drivers and bias."""
-    spec = SupportSpec.of()
+    """The rows of switch drivers and bias."""
+    spec = SupportSpec()
 
     def row(circuit: str, name: str, unit: str, field: str, scale: float, **limits: float) -> Row:
         values = {corner: scale * getattr(one, field) for corner, one in found.items()}
@@ -111,8 +132,6 @@ def _support(found: dict[str, SupportResult]) -> list[Row]:
 
     off = {corner: 100 * abs(one.bias / BIAS - 1) for corner, one in found.items()}
     return [
-        row("row driver", "far end within 1 %", "ns", "line", 1e9, most=1e9 * spec.settle),
-        row("row driver", "energy of a pulse", "pJ", "line_energy", 1e12),
         row("switch drivers", "shortest gap", "ns", "gap", 1e9, least=1e9 * spec.gap),
         row("switch drivers", "longest gap", "ns", "lost", 1e9, most=1e9 * spec.lost),
         row("bias", "current", "uA", "bias", 1e6),

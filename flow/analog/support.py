@@ -1,18 +1,17 @@
-"""Row driver with its line, switch drivers, bias: delays, gaps, currents, start-up and energy at one corner."""
+"""Switch drivers and bias: gaps, currents, start-up at one corner."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
 from talbot.cells.corner import Corner
-from talbot.cells.spice.engine import Points, Simulator
+from talbot.cells.spice.engine import Simulator
 from talbot.cells.spice.wave import Wave
 from talbot.pixels.circuits.netlist import Circuit, Instance, Resistor
-from talbot.pixels.circuits.support import SupportSpec, bias, non_overlap, row_driver, row_line
+from talbot.pixels.circuits.support import SupportSpec, bias, non_overlap
 
-from .deck import EDGE, SETTINGS, Setup, clock, deck, simulator
+from .deck import SETTINGS, Setup, clock, deck, simulator
 
-FAR = 0.01  # of the supply, from its level: the line's far end has settled
 RAMP, STARTED = 1e-6, 30e-6  # s, of the supply when the bias starts, and until which it is simulated
 NEAR = 0.02  # of its last current: the bias has started
 PIN = 0.62  # V at the amplifier's ibias
@@ -24,13 +23,10 @@ QUARTER = 5e-9  # s, of the switch drivers' clock
 class SupportResult:
     """At one corner.
 
-    line: s until the row line's far end has settled, the later of rise and fall, at most two cycles. line_energy: J of
-    a pulse. gap, lost: s with both phases low, the shortest (below 0: both are high) and the longest. bias: A at the
+    gap, lost: s with both phases low, the shortest (below 0: both are high) and the longest. bias: A at the
     amplifier's pin. idle: A of the whole bias. start: s after the supply's ramp until the current is there.
     """
 
-    line: float
-    line_energy: float
     gap: float
     lost: float
     bias: float
@@ -50,52 +46,18 @@ class BiasResult:
 
 
 def measure(setup: Setup, spec: SupportSpec, corner: Corner) -> SupportResult:
-    """All three circuits."""
-    row, one = pulse(setup, spec, corner)
-    line, energy = settled(row, spec, corner), row.charge("vdd", 0.0, float(row.time[-1])) * corner.supply
-    gaps, two = phases(setup, spec, corner)
-    bias_at, three = bias_measured(setup, corner)
+    """Both circuits."""
+    gaps, one = phases(setup, spec, corner)
+    bias_at, two = bias_measured(setup, corner)
     return SupportResult(
-        line=line,
-        line_energy=energy,
         gap=min(gaps),
         lost=max(gaps),
         bias=bias_at.current,
         idle=bias_at.idle,
         start=bias_at.start,
-        runs=one.runs + two.runs + three.runs,
-        repeated=one.repeated + two.repeated + three.repeated,
+        runs=one.runs + two.runs,
+        repeated=one.repeated + two.repeated,
     )
-
-
-def pulse(setup: Setup, spec: SupportSpec, corner: Corner, line: Circuit | None = None) -> tuple[Wave, Simulator]:
-    """A phase of a selected row, two cycles long; line: in place of that of ``spec``."""
-    whole = Circuit(
-        "row",
-        ("row", "phase", "far", "vdd", "vss"),
-        instances=(
-            Instance("driver", row_driver(), ("row", "phase", "near", "vdd", "vss")),
-            Instance("line", line or row_line(spec), ("near", "far", "vss")),
-        ),
-    )
-    cycle, high = spec.settle, corner.supply
-    up, down = cycle, 3 * cycle
-    stimulus: dict[str, Points] = {
-        "row": [(0.0, high)],
-        "phase": [(0.0, 0.0), (up, 0.0), (up + EDGE, high), (down, high), (down + EDGE, 0.0)],
-    }
-    with simulator(deck(whole, setup, corner), ("row", "phase"), ("far",), corner) as spice:
-        return spice.transient(stimulus, {}, 5 * cycle, cycle / 200), spice
-
-
-def settled(wave: Wave, spec: SupportSpec, corner: Corner) -> float:
-    """S from the edges of a `pulse` until the far end is within FAR of its level, at most two cycles."""
-    found = []
-    for edge, level in ((spec.settle, corner.supply), (3 * spec.settle, 0.0)):
-        inside = (wave.time > edge) & (wave.time < edge + 2 * spec.settle)
-        out = np.abs(wave.voltage["far"][inside] - level) > FAR * corner.supply
-        found.append(float(wave.time[inside][out].max(initial=edge) - edge))
-    return max(found)
 
 
 def phases(

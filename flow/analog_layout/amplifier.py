@@ -64,7 +64,7 @@ def rows(spec: AmplifierSpec, corner: str, schematic: Amplified, layout: Amplifi
     yield row("steps of the trim, off by", "steps", "trim", spec.trim)
     yield row("energy of a sample", "pJ", "energy", 1e12 * spec.energy, 1e12)
     yield row("current while off", "uA", "off", None, 1e6)
-    limits = SupportSpec.of()
+    limits = SupportSpec()
 
     def pair(name: str, unit: str, value: Callable[[BiasResult], float], most: float | None = None) -> Row:
         return Row(f"bias: {name}", unit, value(schematic.bias), value(layout.bias), corner, most)

@@ -40,7 +40,8 @@ def _print(s: dict[str, Any], folder: Path) -> None:
         )
     print(f"  {'':46} {'schematic':>9} {'layout':>9} {'limit':>9}")
     for row in s["rows"]:
-        limit = "" if row["most"] is None else f"{row['most']:9.3g} {'pass' if row['passes'] else 'FAIL'}"
+        least = row["most"] if row["least"] is None else row["least"]
+        limit = "" if least is None else f"{least:9.3g} {'pass' if row['passes'] else 'FAIL'}"
         print(
             f"  {row['name']:38} {row['unit']:7} {row['schematic']:9.3g} {row['layout']:9.3g} {limit} {row['corner']}"
         )

@@ -19,13 +19,16 @@ from talbot.flow.analog.deck import Setup, process_of
 from talbot.flow.analog.job import amplifier_of, setup_of
 from talbot.flow.analog.lane import LaneResult, inl
 from talbot.flow.analog.linearity import inl_dnl, levels
-from talbot.models.parameters import ChipParameters
+from talbot.models.parameters import ArrayParameters, ChipParameters
 from talbot.pixels.analog_layout.amplifier import amplifier_cell
 from talbot.pixels.analog_layout.bias import bias_cell
 from talbot.pixels.analog_layout.cells import Cell, comparator_cell
 from talbot.pixels.analog_layout.converters import NAME as BLOCK
 from talbot.pixels.analog_layout.converters import Converters, draw_converters
 from talbot.pixels.analog_layout.lane import lane_cell
+from talbot.pixels.analog_layout.row_drivers import NAME as ROWS
+from talbot.pixels.analog_layout.row_drivers import RowDrivers, draw_row_drivers, row_cell
+from talbot.pixels.analog_layout.switch import switch_cell
 from talbot.pixels.blocks import AnalogSizes
 from talbot.pixels.circuits.amplifier import AmplifierSizes, AmplifierSpec
 from talbot.pixels.circuits.dac import BITS
@@ -35,7 +38,7 @@ from talbot.platforms.analog import AnalogMasks, analog_masks
 from talbot.platforms.coriolis import coriolis_platform
 from talbot.platforms.wires import wire_corner
 
-from . import amplifier
+from . import amplifier, row_driver, switch
 from .amplifier import Amplified
 from .checks import drc, lvs
 from .extract import Extracted, Nets, extract
@@ -48,12 +51,14 @@ KINDS = "gds", "spice", "extracted.spice", "lyrdb", "lvsdb"
 
 
 def cells(masks: AnalogMasks, sizes: LaneSizes, amplifier: AmplifierSizes, lanes: int) -> dict[str, Cell]:
-    """What is drawn, by name. lanes: that share a bias."""
+    """What is drawn and extracted, by name. lanes: that share a bias."""
     return {
         "comparator": comparator_cell(masks, sizes.comparator),
         "sar_lane": lane_cell(masks, sizes),
         "amplifier": amplifier_cell(masks, amplifier),
         "bias": bias_cell(masks, lanes),
+        "row": row_cell(masks, ArrayParameters()),
+        "non_overlap": switch_cell(masks),
     }
 
 
@@ -69,14 +74,16 @@ def make(
     spec, own = amplifier_of(setup, sizes)
     made = cells(masks, sizes, own, spec.lanes)
     chip, room = ChipParameters(), AnalogSizes()
-    block = draw_converters(masks, sizes, chip, room)
-    drawn: dict[str, Cell | Converters] = {**made, BLOCK: block}
-    names = [f"{name}.{kind}" for name in drawn for kind in KINDS if (name, kind) != (BLOCK, "extracted.spice")]
-    with staged(out, (*names, f"{BLOCK}.lef", *page.NAMES, "summary.json")) as folder:
+    blocks = {BLOCK: draw_converters(masks, sizes, chip, room), ROWS: draw_row_drivers(masks, ArrayParameters(), room)}
+    drawn: dict[str, Cell | Converters | RowDrivers] = {**made, **blocks}
+    names = [f"{name}.{kind}" for name in drawn for kind in KINDS if name in made or kind != "extracted.spice"]
+    names += [f"{name}.lef" for name in blocks]
+    with staged(out, (*names, *page.NAMES, "summary.json")) as folder:
         note("draw")
         for name, cell in drawn.items():
             write_gds(cell.layout, folder / f"{name}.gds", cell.cell)
-        (folder / f"{BLOCK}.lef").write_text(block.lef(masks))
+        for name, block in blocks.items():
+            (folder / f"{name}.lef").write_text(block.lef(masks))
         note("drc")
         rules = {name: drc(folder / f"{name}.gds", pdk, folder / f"{name}.lyrdb") for name in drawn}
         note("lvs")
@@ -93,6 +100,9 @@ def make(
         rows = list(_array(typical["sar_lane"][1], masks, sizes, setup.spec))
         rows += amplifier.capacitors(made["amplifier"], typical["amplifier"][1], masks, spec)
         rows += _measured(setup, sizes, corners, found, workers)
+        for name, of in (("row", row_driver.rows), ("non_overlap", switch.rows)):
+            drawn_at = {corner: found[wire_corner(corner)][name][0] for corner in corners}
+            rows += of(setup, drawn_at, workers)
         rows += _amplified(setup, (spec, own, sizes), corners, found, workers)
         summary = {
             "process": pdk,
@@ -117,15 +127,13 @@ def _extracted(made: dict[str, Cell], masks: AnalogMasks, corner: str) -> dict[s
 
 
 def _cell(
-    cell: Cell | Converters, rules: dict[str, int], same: bool, found: tuple[Extracted, Nets] | None
+    cell: Cell | Converters | RowDrivers, rules: dict[str, int], same: bool, found: tuple[Extracted, Nets] | None
 ) -> dict[str, Any]:
     box = cell.cell.dbbox()
-    lanes = len(cell.nets) if isinstance(cell, Converters) else 1
-    one = cell.lane if isinstance(cell, Converters) else cell
     out = {
         "width_um": round(box.width(), 3),
         "height_um": round(box.height(), 3),
-        "transistors": lanes * len(one.transistors),
+        "transistors": cell.count,
         "drc": rules,
         "lvs_match": same,
     }

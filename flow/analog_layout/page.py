@@ -25,6 +25,12 @@ PICTURES = {
         "From the south drivers, switches, the DAC's capacitors, the comparator, the other side's "
         "capacitors, their switches.",
     ),
+    "row": (
+        "A row's driver",
+        "On the pixels' pitch: decoders, gates and the latch in the west, six level shifters under thick oxide in the "
+        "east, and the lines at their places.",
+    ),
+    "non_overlap": ("The switch drivers", "Two loops of a gate and its delays about the inverter between them."),
     "amplifier": (
         "The amplifier",
         "From the south the bank of one input, half of the pair over half of the sinks, the tail's parts, the other "
@@ -96,6 +102,7 @@ def picture(gds: Path, process: PixelProcess) -> Figure:
 
 def _row(row: dict[str, Any]) -> tuple[str, ...]:
     limit = "" if row["most"] is None else f"<= {row['most']:.3g}"
+    limit = limit if row["least"] is None else f">= {row['least']:.3g}"
     verdict = "" if not limit else "pass" if row["passes"] else "FAIL"
     return row["name"], row["unit"], f"{row['schematic']:.3g}", f"{row['layout']:.3g}", limit, verdict, row["corner"]
 

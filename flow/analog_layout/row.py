@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Row:
-    """A characteristic at a corner, of the schematic and of the layout. most: its limit, or None."""
+    """A characteristic at a corner, of the schematic and of the layout. most, least: its limits, or None."""
 
     name: str
     unit: str
@@ -13,8 +13,10 @@ class Row:
     layout: float
     corner: str
     most: float | None = None
+    least: float | None = None
 
     @property
     def passes(self) -> bool:
         """Whether the layout is inside the limit."""
-        return self.most is None or abs(self.layout) <= self.most
+        below = self.most is None or abs(self.layout) <= self.most
+        return below and (self.least is None or self.layout >= self.least)

@@ -18,7 +18,7 @@ STEPS = ("bench", "fit", "picture", "report")
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot calibrate`: texts, checked by `run`."""
-    parser.add_argument("--scene", default=SCENE, help=f"of the picture that it is tried on ({SCENE})")
+    parser.add_argument("--scene", default=SCENE, help="of the picture that it is tried on")
     parser.add_argument("--depth", help="depth file for --scene (models/scene/README.md)")
     add_frame_arguments(parser, WHOLE | {"mode": "raw", "calibration": None})
     parser.set_defaults(rows=SIDE, cols=SIDE)

@@ -58,7 +58,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     )
     add("--depth", help="depth file for --scene: .npy/.npz in m, or an image (see models/scene/README.md)")
     add_frame_arguments(parser)
-    add("--out", help="folder for the results (default: build/sim/<scene>, and what is not the default: coins-raw)")
+    add("--out", help="folder for the results (default: build/sim/<scene>, with the settings typed: coins-raw)")
     add("--waves", help="also write waves.vcd of these rows, first:last (1 = the first four rows)")
     add("--waves-format", default=WAVES[0], help="vcd, or fst: smaller, needs the headers of zlib and lz4 to compile")
 
@@ -100,7 +100,7 @@ def add_frame_arguments(
     )
     add("--lanes", default=Own("8"), help="converters, one of " + ", ".join(map(str, LANES)))
     add("--phase", action="store_true", help="tof mode: phase and amplitude from the chip's divider")
-    add("--converter", default=Own("typical"), help="typical (INL, DNL, offset, noise as in the report) or ideal")
+    add("--converter", default=Own("typical"), help="typical (INL, DNL, offset, noise), ideal, or circuit")
     add(
         "--afe",
         default="ideal",

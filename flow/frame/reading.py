@@ -55,11 +55,11 @@ def add_arguments(
     fixed, with `WHOLE`, and camera: see `add_frame_arguments`.
     """
     add = parser.add_argument
-    add("--scene", default=scene, help=f"name of a scene, an image, or a light field, as for talbot sim ({scene})")
+    add("--scene", default=scene, help="name of a scene, an image, or a light field, as for talbot sim")
     add("--depth", help="depth file for --scene (models/scene/README.md)")
     add_frame_arguments(parser, WHOLE | dict(fixed), camera)
     add("--golden", action="store_true", help="by the golden chip alone, without its Verilog")
-    add("--out", help=f"folder for the results (default: build/{command}/<scene>, as of sim)")
+    add("--out", help=f"folder for the results (default: build/{command}/<scene>, named as by sim)")
 
 
 def asked(

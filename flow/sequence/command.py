@@ -18,7 +18,7 @@ def add_arguments(parser: ArgumentParser) -> None:
         help="a folder of frames, an animated GIF, WebP, PNG or AVIF, or a video (models/scene/README.md)",
     )
     add_frame_arguments(parser, FIXED)
-    parser.add_argument("--out", help="folder for the results (default: build/sequence/<scene>, as of sim)")
+    parser.add_argument("--out", help="folder for the results (default: build/sequence/<scene>, named as by sim)")
 
 
 def run(options: Namespace) -> int:

@@ -29,15 +29,6 @@ static const char* path(VerilatedContext& context, const char* name) {
   return text;
 }
 
-// $fread of 64-bit words, big-endian, a frame at once: Verilator's (flow/simulate/verilator.py gives it this name) takes
-// a byte a call, a third of a frame's time.
-IData read_words(int, int, int size, void* words, IData file, IData, IData) {
-  auto* const to = static_cast<std::uint64_t*>(words);
-  const std::size_t bytes = std::fread(to, 1, sizeof *to * size, VL_CVT_I_FP(file));
-  for (std::size_t i = 0; i < bytes / sizeof *to; ++i) to[i] = __builtin_bswap64(to[i]);
-  return static_cast<IData>(bytes);
-}
-
 // A rising edge. VBench::eval() less its locks around message queues, which one thread does not need; once the reset is
 // over also less what settles other inputs than the clock: together a seventh of the time. The model is part of this
 // translation unit, and has one kind of event, this edge.

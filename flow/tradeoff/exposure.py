@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from talbot.base.charts import curves
 from talbot.flow.frame import job
 from talbot.flow.frame.figures import summarize
-from talbot.flow.frame.request import request
+from talbot.flow.frame.request import FrameRequest, request
 
 from .threshold import costs
 
@@ -25,14 +25,19 @@ def points(quick: bool) -> list[tuple[int, int]]:
 def measure(point: tuple[int, int]) -> dict[str, Any]:
     """Quality and cost of a frame with this lead."""
     lead, size = point
-    result = job.simulate_frame(request(rows=size, cols=size, exposure=lead))
+    return exposed(request(rows=size, cols=size, exposure=lead))
+
+
+def exposed(asked: FrameRequest) -> dict[str, Any]:
+    """Rows of lead, exposure, quality and cost of a frame."""
+    result = job.simulate_frame(asked)
     summary = summarize(result)
     x = summary["exposure"]
     return {
-        "exposure": lead,
+        "exposure": x["rows"],
         "integration_ms": 1e3 * x["integration_s"],
         "frame_ms": 1e3 * summary["frame_s_at_clock"],
-        "white_of_full_well": x["white_volts"] / result.request.sensor.electrical.swing,
+        "white_of_full_well": x["white_volts"] / asked.sensor.electrical.swing,
         "deviating_rows": x["deviating_rows"],
         "snr_edges_db": summary["snr_db"],
         "psnr_image_db": result.rebuilt.psnr_db,

@@ -7,11 +7,9 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from talbot.base.charts import curves
-from talbot.flow.frame import job
-from talbot.flow.frame.figures import summarize
 from talbot.flow.frame.request import request
 
-from .threshold import costs
+from .exposure import exposed
 
 LUX = (20.0, 50.0, 100.0, 200.0, 500.0, 2000.0, 10000.0, 50000.0)
 
@@ -24,19 +22,7 @@ def points(quick: bool) -> list[tuple[float, int]]:
 def measure(point: tuple[float, int]) -> dict[str, Any]:
     """Quality and cost of a frame in this light."""
     lux, size = point
-    result = job.simulate_frame(request(rows=size, cols=size, lux=lux))
-    summary = summarize(result)
-    x = summary["exposure"]
-    return {
-        "lux": lux,
-        "exposure": x["rows"],
-        "integration_ms": 1e3 * x["integration_s"],
-        "frame_ms": 1e3 * summary["frame_s_at_clock"],
-        "white_of_full_well": x["white_volts"] / result.request.sensor.electrical.swing,
-        "snr_edges_db": summary["snr_db"],
-        "psnr_image_db": result.rebuilt.psnr_db,
-        **costs(result, summary),
-    }
+    return {"lux": lux} | exposed(request(rows=size, cols=size, lux=lux))
 
 
 def plot(rows: Sequence[dict[str, Any]]) -> Figure:

@@ -15,6 +15,7 @@ Both sides of the pair have the same middle in every strip, and every row of par
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from talbot.models.parameters import ParameterError
 from talbot.pixels.circuits.amplifier import PINS, TRIM_BITS, AmplifierSizes, amplifier
 from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.analog import AnalogMasks
@@ -24,10 +25,11 @@ from .amplifier_bank import BankPlan, draw_bank, units
 from .cells import MARGIN, Cell, new_canvas
 from .comparator import BETWEEN_STRIPS
 from .device import Device
-from .rows import dummies, row
+from .rows import dummies, row, snap
 from .strip import (
     FOURTH,
     RAIL_ENDS,
+    RAIL_HALF,
     SECOND,
     THIRD,
     TRUNK,
@@ -47,6 +49,7 @@ AWAY = 1.6  # of a bank from a rail
 FIRST, PITCH = 0.9, 1.0  # of the trunks beside the banks
 OVER, OVER_PITCH = 19.0, 4.0  # of the trunks over the strips
 PATCH = 0.35  # half the length of the third metal where a common node goes up
+RAIL_VIAS, BESIDE = 24, 0.5  # of a rail; their distance from other vias
 ROOM = 5.0  # more between transistors of the bias, for drops between those of the tails
 # Parts in a strip, from the west: of side p or n of the pair and of the sinks; a capital steers, or is a diode
 PAIR_ORDER = "pnnPPnnp", "nppNNppn"
@@ -115,11 +118,15 @@ def places() -> dict[str, float]:
 
 
 def amplifier_plan(d: Mapping[str, Device], masks: AnalogMasks, sizes: AmplifierSizes) -> AmplifierPlan:
-    """Where everything of an amplifier is."""
+    """Where everything of an amplifier is. Raises ParameterError where a row is too long."""
     at, axis = places(), RIGHT / 2
 
     def plan(n: tuple[Placed, ...], p: tuple[Placed, ...]) -> Plan:
         present = {net for one in (*n, *p) for net in one.device.transistor.nodes}
+        for row_end, first in ((one[-1].high, one[0].device.transistor.name) for one in (n, p)):
+            if row_end > RIGHT:
+                long = 2 * row_end - RIGHT
+                raise ParameterError(f"row of {first} = {long:.1f} um: must be {RIGHT:g} um at the most")
         return Plan(n, p, 0.0, RIGHT, {net: (x,) for net, x in at.items() if net in present})
 
     pairs = _order(PAIR_ORDER, "ota.in{side}_{k}", "ota.in{side}_steer_{k}")
@@ -179,6 +186,9 @@ def amplifier_cell(masks: AnalogMasks, sizes: AmplifierSizes) -> Cell:
         y += one.height_um + BETWEEN_STRIPS
     top = y - BETWEEN_STRIPS + MARGIN
     join_rails(canvas, strips)
+    for strip in strips:
+        for k, net in enumerate(strip.plan.rails):
+            _thicker(canvas, strip.y + k * strip.plan.height_um, [x for own, x, _, _ in strip.drops if own == net])
     tracks = [track for one in (*strips, *banks) for track in one.tracks]
     for net, x in plan.at.items():
         if net in INPUTS:
@@ -197,6 +207,17 @@ def amplifier_cell(masks: AnalogMasks, sizes: AmplifierSizes) -> Cell:
     return Cell(
         canvas.layout, canvas.cell, PINS, tuple(d.values()), terminals=ends, matched=matched_units(), unit=sizes.unit
     )
+
+
+def _thicker(canvas: Canvas, y: float, drops: Sequence[float]) -> None:
+    """A rail on two more metals, for its current. drops: x at which it has vias."""
+    left, right = -RAIL_ENDS, RIGHT + RAIL_ENDS
+    for level in (SECOND, THIRD):
+        canvas.wire(level, left, y - RAIL_HALF, right, y + RAIL_HALF)
+    for k in range(RAIL_VIAS):
+        x = snap(left + (k + 0.5) * (right - left) / RAIL_VIAS)
+        if all(abs(x - drop) > BESIDE for drop in drops):
+            canvas.stack(x, y, 1, THIRD)
 
 
 def _up(canvas: Canvas, x: float, y: float) -> None:

@@ -20,10 +20,13 @@ MARGIN = 2.0  # of a cell beyond its rails, um
 
 @dataclass(frozen=True)
 class Cell:
-    """A drawn cell. ports: in the order of its pins. devices: its transistors in fingers. plates: its capacitors.
-    terminals: of its transistors. tracks: of its nets, of a cell with one strip. taps: of its capacitors, as `Array` has
-    them, under the names of ``plates``. matched: units of ``unit`` F of fringe capacitors between two nets, in the order
-    of their names. resistors: drawn ones, and their ``ends``."""
+    """A drawn cell.
+
+    ports: in the order of its pins. devices: its transistors in fingers. plates: its capacitors. terminals: of its
+    transistors. tracks: of its nets, of a cell with one strip. taps: of its capacitors, as `Array` has them, under the
+    names of ``plates``. matched: units of ``unit`` F of fringe capacitors between two nets, in the order of their
+    names. resistors: drawn ones, and their ``ends``.
+    """
 
     layout: "db.Layout"
     cell: "db.Cell"
@@ -42,6 +45,11 @@ class Cell:
     def transistors(self) -> list[Transistor]:
         """All transistors, dummies too."""
         return [t for device in self.devices for t in (device.transistor, *device.off)]
+
+    @property
+    def count(self) -> int:
+        """Transistors."""
+        return len(self.transistors)
 
     def spice(self, masks: AnalogMasks) -> str:
         """Its text for LVS."""

@@ -49,6 +49,11 @@ class Converters:
     lane: Cell
     nets: tuple[tuple[str, ...], ...]
 
+    @property
+    def count(self) -> int:
+        """Transistors."""
+        return len(self.nets) * self.lane.count
+
     def spice(self, masks: AnalogMasks) -> str:
         """Its text for LVS."""
         ports = dict.fromkeys(net for nets in self.nets for net in nets)

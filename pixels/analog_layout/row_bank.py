@@ -3,25 +3,14 @@
 All nets between strips, and from the pins in the south, are on the fourth metal, each at an x of its own.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 
-from talbot.models.parameters import ParameterError
-from talbot.pixels.circuits.row_driver import (
-    ADDRESS,
-    BANK_INPUTS,
-    BANK_OUTPUTS,
-    CODES,
-    CONTROLS,
-    GROUPS,
-    SIDES,
-    bank,
-)
+from talbot.pixels.circuits.row_driver import ADDRESS, BANK_INPUTS, BANK_OUTPUTS, CODES, CONTROLS, SIDES, bank
 from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.analog import AnalogMasks
 
 from .cells import Cell
 from .comparator import BETWEEN_STRIPS, devices
-from .device import Device
 from .row_driver import LINE_PITCH, ROOM, RowPlan, legs
 from .strip import FOURTH, RAIL_HALF, SECOND, THIRD, Plan, Strip, draw_strip, in_columns, trunk
 
@@ -33,7 +22,9 @@ BESIDE_JOINT = 1.2  # um, of the middle of what joins rails
 def _strips() -> Iterator[list[str]]:
     """Gates of each strip, from the south."""
     for side in SIDES:
-        yield [f"{side}_i{bit}" for bit in range(ADDRESS)] + [f"{name}_{end}" for name in _codes(side, "high") for end in "ns"]
+        yield [f"{side}_i{bit}" for bit in range(ADDRESS)] + [
+            f"{name}_{end}" for name in _codes(side, "high") for end in "ns"
+        ]
         for group in ("mid", "low"):
             extra = CONTROLS if (side, group) == ("amp", "mid") else ()
             yield [f"{name}_{end}" for name in (*_codes(side, group), *extra) for end in "ns"]
@@ -54,7 +45,9 @@ def crossings(rows: RowPlan) -> dict[str, float]:
             own = at[f"{side}_row{bit}"]
             wanted = max(own, max(rows.lines[name] for name in _codes("reset", "low")))
             place = wanted
-            while any(abs(place - x) < APART for x in taken) or any(abs(place - x) < BESIDE_JOINT for x in rows.joints.values()):
+            while any(abs(place - x) < APART for x in taken) or any(
+                abs(place - x) < BESIDE_JOINT for x in rows.joints.values()
+            ):
                 place = round(place + LINE_PITCH / 4, 3)
             at[f"{side}_row{bit}n"] = place
             taken.append(place)

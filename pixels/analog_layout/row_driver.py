@@ -1,4 +1,4 @@
-"""A row's driver on the pixels' pitch: logic in the west, level shifters under thick oxide in the east, one set of tracks.
+"""A row's driver on the pixels' pitch: logic in the west, level shifters in the east, one set of tracks.
 
     rail vdd   ================   rail vddr  ================
                gates               | n well, hvi  lift  lift |   jogs to the lines' places in the row
@@ -12,13 +12,12 @@ from dataclasses import dataclass, replace
 from itertools import permutations
 
 from talbot.models.parameters import ParameterError
-from talbot.pixels.circuits.row_driver import CODES, CONTROLS, ROW_INPUTS, ROW_LINES, SIDES, SUPPLIES, row
+from talbot.pixels.circuits.row_driver import CODES, CONTROLS, ROW_INPUTS, ROW_LINES, SIDES, SUPPLIES
 from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.analog import AnalogMasks
 
 from .cells import Cell
-from .comparator import devices
-from .device import Device, Strap
+from .device import Device
 from .strip import (
     FOURTH,
     RAIL_AT,
@@ -139,19 +138,19 @@ def row_plan(d: Mapping[str, Device], width: float, pins: Mapping[str, float]) -
         for group, count in CODES.items():
             reach[f"{side}_{group}"] = lines[f"{side}_{group}0"], lines[f"{side}_{group}{count - 1}"]
     reach[GATE_OF_VDD] = (joints["vdd"],)
-    common = {"least_um": PITCH - BETWEEN}
+    least = PITCH - BETWEEN
     for order in permutations(ROW_LINES):
         jogs = {net: round(first + JOG * k, 3) for k, net in enumerate(order)}
         through = reach | {net: (at,) for net, at in jogs.items()}
-        plan = Plan((*n, *tn), (*p, *tp), 0.0, right, through, rails=("vss", "vdd", "vddr"), **common)
+        plan = Plan((*n, *tn), (*p, *tp), 0.0, right, through, rails=("vss", "vdd", "vddr"), least_um=least)
         if plan.height_um > PITCH - BETWEEN + 1e-9:
             raise ParameterError(f"row = {len(plan.tracks())} nets: must have tracks in {PITCH:g} um")
         if _clear(plan, jogs):
             break
     else:
         raise ParameterError("row: its lines must have ways to their places")
-    logic = Plan(n, p, 0.0, end, {}, **common)
-    shifters = Plan(tn, tp, begin, right, {}, rails=("vss", "vddr"), **common)
+    logic = Plan(n, p, 0.0, end, {}, least_um=least)
+    shifters = Plan(tn, tp, begin, right, {}, rails=("vss", "vddr"), least_um=least)
     return RowPlan(plan, logic, shifters, lines, joints, jogs, pins, whole, west)
 
 
@@ -174,7 +173,7 @@ def _clear(plan: Plan, jogs: Mapping[str, float]) -> bool:
 
 def draw_row(canvas: Canvas, masks: AnalogMasks, made: RowPlan) -> Strip:
     """A row, its south edge at y = 0, with its part of the controls and supplies that cross all rows."""
-    y, top, base = BETWEEN / 2, PITCH - BETWEEN / 2, masks.base
+    y, top = BETWEEN / 2, PITCH - BETWEEN / 2
     strip = draw_rows(canvas, masks, made.plan, y)
     for plan in (made.logic, made.thick):
         draw_rails(canvas, masks, plan, y)
@@ -211,7 +210,9 @@ def _thick(canvas: Canvas, made: RowPlan, y: float, top: float) -> None:
     ends = RAIL_ENDS + WELL_ENDS + THICK_IN
     canvas.box(oxide, plan.left - ends, 0, plan.right + ends, PITCH)
     low = min(top - 0.96 - one.device.finger_um for one in plan.p) - THICK_WELL
-    canvas.box(process.well, plan.left - ends + THICK_IN, low, plan.right + ends - THICK_IN, top + TAP_HALF + THICK_WELL)
+    canvas.box(
+        process.well, plan.left - ends + THICK_IN, low, plan.right + ends - THICK_IN, top + TAP_HALF + THICK_WELL
+    )
     high = max(y + 0.96 + one.device.finger_um for one in plan.n)
     left, right = plan.n[0].x, plan.n[-1].x + plan.n[-1].device.width_um
     canvas.box(tip, left - TIP, y + 0.96 - TIP, right + TIP, high + TIP)
@@ -225,10 +226,3 @@ def as_cell(canvas: Canvas, d: Mapping[str, Device], strip: Strip) -> Cell:
     )
     ports = (*ROW_INPUTS, *ROW_LINES, *SUPPLIES)
     return Cell(canvas.layout, canvas.cell, ports, tuple(d.values()), terminals=terminals, tracks=tuple(strip.tracks))
-
-
-def named(canvas: Canvas, tracks: Sequence[Strap]) -> None:
-    """Labels of the row's inputs and lines on their tracks."""
-    for track in tracks:
-        if track.net in ROW_INPUTS or track.net in ROW_LINES:
-            canvas.label(THIRD, track.net, track.left + 0.3, track.y)

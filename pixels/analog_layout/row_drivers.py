@@ -1,18 +1,19 @@
 """The drivers of all rows in the die's frame `row_driver`: a column of rows at the pixels' pitch, a bank in the south.
 
-    west     supplies, each on the top metal to what joins the rows' rails
-             row 0
-             ...                                                         its lines, at the array's pins    east
-             the last row
-             bank: predecoders and buffers
-    south    the chip's pins
+west     supplies, each on the top metal to what joins the rows' rails
+         row 0
+         ...                                                         its lines, at the array's pins    east
+         the last row
+         bank: predecoders and buffers
+south    the chip's pins
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from talbot.base.gds import db
 from talbot.models.parameters import ArrayParameters, ParameterError
-from talbot.pixels.blocks import AnalogSizes, Block, blocks
+from talbot.pixels.blocks import AnalogSizes, Block, row_driver
 from talbot.pixels.circuits.row_driver import (
     BANK_INPUTS,
     BANK_OUTPUTS,
@@ -31,9 +32,10 @@ from talbot.platforms.analog import AnalogMasks
 
 from .cells import Cell, new_canvas
 from .comparator import devices
+from .device import Device
 from .row_bank import draw_bank
 from .row_driver import LINE, PITCH, RowPlan, as_cell, draw_row, row_plan
-from .strip import FOURTH, THIRD
+from .strip import FOURTH, RAIL_ENDS, THIRD
 
 NAME = "row_driver"
 TOP = 5
@@ -54,9 +56,9 @@ class RowDrivers:
     rows: int
 
     @property
-    def transistors(self) -> int:
-        """How many."""
-        return self.rows * len(self.row.transistors) + len(self.bank.transistors)
+    def count(self) -> int:
+        """Transistors."""
+        return self.rows * self.row.count + self.bank.count
 
     def spice(self, masks: AnalogMasks) -> str:
         """Its text for LVS."""
@@ -90,6 +92,25 @@ def bank_nets() -> tuple[str, ...]:
     return (*map(chip_pin, BANK_INPUTS), *BANK_OUTPUTS, NETS["vdd"], NETS["vss"])
 
 
+def _plan(d: Mapping[str, Device], array: ArrayParameters, room: AnalogSizes) -> tuple[Block, RowPlan]:
+    """The frame as the black box has it, and a row in it."""
+    plain = row_driver(array, room)
+    south = {pin.name: pin.at_um for pin in plain.pins if pin.side == "south"}
+    return plain, row_plan(d, plain.width_um, {name: south[chip_pin(name)] for name in BANK_INPUTS})
+
+
+def row_cell(masks: AnalogMasks, array: ArrayParameters, room: AnalogSizes | None = None) -> Cell:
+    """A row alone, its pins named on its tracks: what is extracted and simulated."""
+    d, canvas = devices(row()), new_canvas(masks, "row")
+    _, plan = _plan(d, array, room or AnalogSizes())
+    made = as_cell(canvas, d, draw_row(canvas, masks, plan))
+    for track in made.tracks:
+        if track.net in made.ports:
+            canvas.label(THIRD, track.net, track.left + 0.3, track.y)
+    canvas.box(masks.base.outline, plan.logic.left - RAIL_ENDS, 0, plan.right, PITCH)
+    return made
+
+
 def draw_row_drivers(masks: AnalogMasks, array: ArrayParameters, room: AnalogSizes | None = None) -> RowDrivers:
     """Draw all rows in their frame. Raises ParameterError where they do not fit, or the bank has too few lines."""
     room = room or AnalogSizes()
@@ -97,23 +118,22 @@ def draw_row_drivers(masks: AnalogMasks, array: ArrayParameters, room: AnalogSiz
         raise ParameterError(f"pitch = {array.pitch:g}: must be {PITCH * 1e-6:g} m, that of the drawn rows")
     if taken(array.rows - 1)["high"] >= CODES["high"]:
         raise ParameterError(f"rows = {array.rows}: must be at most {64 * CODES['high']} for the drawn bank")
-    plain = next(one for one in blocks(array, sizes=room) if one.name == NAME)
-    south = {pin.name: pin.at_um for pin in plain.pins if pin.side == "south"}
-    pins = {name: south[chip_pin(name)] for name in BANK_INPUTS}
     d = devices(row())
-    plan = row_plan(d, plain.width_um, pins)
+    plain, plan = _plan(d, array, room)
     canvas = new_canvas(masks, NAME)
     bank_canvas, row_canvas = (Canvas(canvas.layout, name, masks.base) for name in ("row_bank", "row"))
     bank, height = draw_bank(bank_canvas, masks, plan)
     made = as_cell(row_canvas, d, draw_row(row_canvas, masks, plan))
-    moved = (pin if pin.side == "south" else replace(pin, at_um=round(pin.at_um + height, 3)) for pin in plain.pins)
+    for inner in (bank.cell, made.cell):
+        for index in canvas.layout.layer_indexes():
+            for text in list(inner.shapes(index).each(db.Shapes.STexts)):
+                inner.shapes(index).erase(text)
+    moved = (pin if pin.side == "south" else replace(pin, at_um=pin.at_um + height) for pin in plain.pins)
     block = Block(NAME, plain.width_um, round(plain.height_um + height, 3), tuple(moved))
     x, y, pitch = canvas.snap(plan.west), canvas.snap(height), canvas.snap(PITCH)
     canvas.cell.insert(db.CellInstArray(bank.cell.cell_index(), db.Trans(x, 0)))
     step = db.Vector(0, pitch)
-    canvas.cell.insert(
-        db.CellInstArray(made.cell.cell_index(), db.Trans(x, y), step, db.Vector(1, 0), array.rows, 1)
-    )
+    canvas.cell.insert(db.CellInstArray(made.cell.cell_index(), db.Trans(x, y), step, db.Vector(1, 0), array.rows, 1))
     _lines(canvas, plan, made, height, array.rows)
     _supplies(canvas, block, plan, height, room)
     draw_pins(canvas.layout, canvas.cell, block, masks.base.name, room.supply_um)

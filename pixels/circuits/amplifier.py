@@ -28,6 +28,7 @@ from talbot.models.parameters import EnergyParameters, SensorParameters, check_i
 
 from .gates import inverter
 from .netlist import Capacitor, Circuit, Instance, Transistor
+from .specification import one_digit
 
 TRIM_BITS = 10
 UNITS = 512  # of the first diode's capacitor
@@ -64,7 +65,8 @@ class AmplifierSpec:
     inl: LSB, peak, over three quarters of the range. ktc: LSB, rms, of what the reset's end leaves. ambient: LSB by
     which a difference may change where ambient light is 100 times it. trim: steps, peak error of a step of the trim.
     offset: LSB, rms over lanes. noise: LSB, rms, of both phases, as much as a decision may have. energy: J a sample,
-    Table 6.1's. sample: s between two samples of a lane at the table's frame rate. lanes: that share a bias, 1..32.
+    Table 6.1's to one digit. sample: s between two samples of a lane at the table's frame rate. lanes: that share a
+    bias, 1..32.
     """
 
     vref: float = 0.8
@@ -81,7 +83,7 @@ class AmplifierSpec:
     trim: float = 1.0
     offset: float = 1.0
     noise: float = 0.25
-    energy: float = 203e-12
+    energy: float = 200e-12
     sample: float = 1.8e-6
     lanes: int = 8
 
@@ -107,7 +109,7 @@ class AmplifierSpec:
         return cls(
             swing=sensor.electrical.swing,
             hold=1 / sensor.chip.f_clk,
-            energy=energy.amplifiers / rate,
+            energy=one_digit(energy.amplifiers / rate),
             sample=sensor.chip.lanes / rate,
             lanes=sensor.chip.lanes,
         )

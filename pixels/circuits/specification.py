@@ -16,6 +16,11 @@ from talbot.models.parameters.energy import DECISIONS
 CODES = 256
 
 
+def one_digit(value: float) -> float:
+    """``value`` to one significant digit, which is what the powers of Table 6.1 have."""
+    return float(f"{value:.0e}")
+
+
 @dataclass(frozen=True)
 class LaneSpec:
     """A converter lane: what converts ``lane_a - lane_b`` into a code, and its parts.
@@ -44,7 +49,7 @@ class LaneSpec:
     enob : float
         Least effective number of bits.
     decision_energy : float
-        J: a decision's part of the converters' power in Table 6.1.
+        J: a decision's part of the converters' power in Table 6.1, to one digit.
     comparator_share : float
         Of it, for the comparator; the rest is for capacitors and switches.
     droop : float
@@ -64,7 +69,7 @@ class LaneSpec:
     dnl: float = 0.5
     settling: float = 0.5
     enob: float = 7.3
-    decision_energy: float = 2.83e-12
+    decision_energy: float = 3e-12
     comparator_share: float = 0.5
     droop: float = 0.5
 
@@ -97,7 +102,7 @@ class LaneSpec:
             noise=converter.noise,
             ktc=converter.ktc,
             inl=converter.inl,
-            decision_energy=energy.adcs / (energy.frame_rate * energy.pixels * DECISIONS),
+            decision_energy=one_digit(energy.adcs / (energy.frame_rate * energy.pixels * DECISIONS)),
         )
 
     @property

@@ -1,22 +1,18 @@
-"""What the lanes and rows stand on: row driver with its line, non-overlapping switch drivers, bias with start-up.
+"""What the lanes stand on: non-overlapping switch drivers, bias with start-up. Rows have `row_driver`.
 
-Pins of `row_driver`: row phase line vdd vss; the line is high where both are. `row_line`: near far vss, a ladder.
 `non_overlap`: clk phi1 phi2 vdd vss; phi2 follows clk, phi1 is high while it is low, and both are low in between.
 `bias`: ibias vdd vss; BIAS amperes leave ibias (the amplifier's pin) at the typical corner. With several outputs its
 pins are ibias_0, ibias_1 and so on: lanes convert side by side, and each amplifier has a current of its own.
 """
 
 from dataclasses import dataclass
-from typing import Self
 
-from talbot.models.parameters import ArrayParameters, SensorParameters, check_int, check_real, drawn_lines
+from talbot.models.parameters import check_int, check_real
 
-from .gates import inverter, nand, nor
-from .netlist import Capacitor, Circuit, Instance, Resistor, Transistor
+from .gates import inverter, nor
+from .netlist import Circuit, Instance, Resistor, Transistor
 
-SECTIONS = 32  # of the ladder; its delay is within 0.2 % of that of an infinite number
 BIAS_OHM = 11.5e3  # of the bias: 5 uA in each branch at 27 degrees
-GATE = 1.1e-15  # F, of a pixel's transistor of 0.42 x 0.25 um
 DELAYS = 4  # inverters in each loop of the switch drivers
 
 
@@ -24,16 +20,11 @@ DELAYS = 4  # inverters in each loop of the switch drivers
 class SupportSpec:
     """Limits and loads.
 
-    cols: pixels at a row line, 1..100000. ohm, farad: of the line for each, 0..1e5 ohm, 1e-17..1e-11 F: metal of the
-    drawn array, as extracted, and two gates. settle: s, for the line's far end: a guard's cycle. gap: s, least between
+    gap: s, least between
     two phases. lost: s, most. switches: F, 1e-17..1e-9, of the switches on each phase. bias: relative, by which its
     current may be off BIAS. start: s, most until it is there.
     """
 
-    cols: int = ArrayParameters().cols
-    ohm: float = drawn_lines().row_ohm
-    farad: float = drawn_lines().row_farad + 2 * GATE
-    settle: float = 100e-9
     gap: float = 0.1e-9
     lost: float = 5e-9
     switches: float = 0.2e-12
@@ -41,45 +32,10 @@ class SupportSpec:
     start: float = 10e-6
 
     def __post_init__(self) -> None:
-        check_int("cols", self.cols, 1, 100_000)
-        check_real("ohm", self.ohm, 0.01, 1e5)
-        check_real("farad", self.farad, 1e-17, 1e-11)
-        for name in ("settle", "gap", "lost", "start"):
+        for name in ("gap", "lost", "start"):
             check_real(name, getattr(self, name), 1e-12, 1e-3)
         check_real("bias", self.bias, 0.01, 1)
         check_real("switches", self.switches, 1e-17, 1e-9)
-
-    @classmethod
-    def of(cls, sensor: SensorParameters | None = None) -> Self:
-        """Of a sensor: the columns of its array, the cycle of its chip."""
-        sensor = sensor or SensorParameters()
-        return cls(cols=sensor.array.cols, settle=1 / sensor.chip.f_clk)
-
-
-def row_driver() -> Circuit:
-    """Pins row phase line vdd vss."""
-    supplies = ("vdd", "vss")
-    return Circuit(
-        "row_driver",
-        ("row", "phase", "line", *supplies),
-        instances=(
-            Instance("select", nand(), ("row", "phase", "selectn", *supplies)),
-            Instance("first", inverter(3), ("selectn", "selected", *supplies)),
-            Instance("second", inverter(9), ("selected", "linen", *supplies)),
-            Instance("last", inverter(30), ("linen", "line", *supplies)),
-        ),
-    )
-
-
-def row_line(spec: SupportSpec) -> Circuit:
-    """A line as a ladder of T sections. Pins near far vss."""
-    ohm, farad = spec.ohm * spec.cols / SECTIONS, spec.farad * spec.cols / SECTIONS
-    nodes = ["near", *(f"n{k}" for k in range(1, SECTIONS)), "far"]
-    resistors, capacitors = [], []
-    for k, (a, b) in enumerate(zip(nodes, nodes[1:], strict=False)):
-        resistors += [Resistor(f"a{k}", a, f"m{k}", ohm / 2), Resistor(f"b{k}", f"m{k}", b, ohm / 2)]
-        capacitors.append(Capacitor(f"c{k}", f"m{k}", "vss", farad))
-    return Circuit("row_line", ("near", "far", "vss"), (), tuple(capacitors), tuple(resistors))
 
 
 def non_overlap() -> Circuit:

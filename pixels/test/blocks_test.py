@@ -9,9 +9,10 @@ from talbot.base.command import main
 from talbot.base.lef.read import read_macro
 from talbot.models.parameters import ArrayParameters, ChipParameters, ParameterError
 from talbot.pixels import footprints
-from talbot.pixels.blocks import ROW_PHASES, SUPPLIES, AnalogSizes, blocks
+from talbot.pixels.blocks import CIRCUIT_SUPPLIES, PIXEL_SUPPLIES, ROW_PHASES, ROW_SUPPLIES, AnalogSizes, blocks
 
 AFE = Path(__file__).parents[1] / "afe.sv"
+OWN_SUPPLIES = {"pixel_array": PIXEL_SUPPLIES, "row_driver": ROW_SUPPLIES}
 SMALL = ArrayParameters(8, 100), ChipParameters(2), AnalogSizes(chip_um=100.0)
 
 
@@ -81,7 +82,8 @@ def test_footprints_read_back(tmp_path):
         assert {name: pin.direction.lower() for name, pin in pins.items()} == {
             pin.name: pin.direction for pin in block.pins
         }
-        assert {name for name, pin in pins.items() if pin.use != "SIGNAL"} == set(SUPPLIES)
+        own = OWN_SUPPLIES.get(block.name, CIRCUIT_SUPPLIES)
+        assert {name for name, pin in pins.items() if pin.use != "SIGNAL"} == set(own)
         layout = db.Layout()
         layout.read(str(tmp_path / f"{block.name}.gds"))
         (cell,) = layout.top_cells()

@@ -113,8 +113,10 @@ def _with_ordered_ports(text: str, names: dict[Component, str]) -> str:
 def tidy(text: str) -> str:
     """PyMTL's Verilog without absolute paths, fields in type names, one-bit loop counters and unused constants.
 
-    A bit is no vector [0:0]. The registers of synchronizers have the attribute `keep`.
+    Its first lines name the file as it is written, <top>.sv. A bit is no vector [0:0]. The registers of synchronizers
+    have the attribute `keep`.
     """
+    text = re.sub(r"(?m)^// (\w+)\.v$", r"// \1.sv", text, count=1)
     text = text.replace(f"// At {PACKAGE}{os.sep}", "// At ")
     text = re.sub(r"(?m)^(\s*// At )/.*/(pymtl3/\S+)$", r"\1\2", text)
     text = re.sub(r"(int unsigned \w+ = )1'd0;", r"\g<1>32'd0;", text)

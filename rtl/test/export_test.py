@@ -41,6 +41,7 @@ def test_the_same_bytes_every_time(exported, name):
     text = (exported / f"{name}.sv").read_text()
     assert text == translate(name, SensorParameters())
     assert str(ROOT) not in text and "site-packages" not in text
+    assert text.splitlines()[1] == f"// {name}.sv"
 
 
 @pytest.mark.parametrize("name", TOPS)

@@ -108,7 +108,7 @@ def test_a_signal_leaves_nothing(tmp_path, part):
     time.sleep((part + random.random()) / 2)
     if child.poll() is None:
         child.send_signal(signal.SIGTERM)
-    err = child.communicate(timeout=30)[1]
+    err = child.communicate(timeout=200)[1]
     assert child.returncode in (0, 143) and "Traceback" not in err
     assert not running(f"TEST_MARK={tmp_path}")
     names = {path.name for path in tmp_path.iterdir()}

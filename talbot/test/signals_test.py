@@ -25,7 +25,7 @@ def sim(folder, *more):
 
 def begun(child):
     """Wait for the first line of `talbot`, which holds signals back: before it, Python ends by rules of its own."""
-    bit, until = 1 << signal.SIGTERM - 1, time.monotonic() + 30
+    bit, until = 1 << signal.SIGTERM - 1, time.monotonic() + 200
     while child.poll() is None and time.monotonic() < until:
         masks = re.findall(r"Sig(?:Blk|Cgt):\s*(\w+)", Path(f"/proc/{child.pid}/status").read_text())
         if any(int(mask, 16) & bit for mask in masks):
@@ -37,7 +37,7 @@ def end(child, sent, whole_group):
     """Send the signal; status and standard error."""
     if child.poll() is None:
         (os.killpg if whole_group else os.kill)(child.pid, sent)
-    err = child.communicate(timeout=30)[1]
+    err = child.communicate(timeout=200)[1]
     assert "Traceback" not in err and "Exception" not in err
     return child.returncode, err.splitlines()
 

@@ -232,13 +232,13 @@ def test_a_killed_run_leaves_no_tool(tmp_path, text, sent, call):
     tool = int(text.read_text())
     time.sleep(0.3)  # the tool speaks before Popen has returned: who is killed right there knows no tool to end
     run.send_signal(sent)
-    run.wait(timeout=20)
+    run.wait(timeout=200)
     assert waited(lambda: not Path(f"/proc/{tool}").exists())
 
 
 def waited(condition):
-    """Whether ``condition`` came true within 20 s."""
-    end = time.monotonic() + 20
+    """Whether ``condition`` came true within 200 s."""
+    end = time.monotonic() + 200
     while not condition() and time.monotonic() < end:
         time.sleep(0.05)
     return condition()

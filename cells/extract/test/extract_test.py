@@ -161,7 +161,7 @@ def test_the_same_layout_has_the_same_netlist_in_every_process():
         "capacitors=False))"
     )
     first, second = (
-        subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60).stdout
+        subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=400).stdout
         for _ in range(2)
     )
     assert first == second and first.startswith(".subckt")

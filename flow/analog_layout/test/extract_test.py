@@ -18,6 +18,7 @@ from talbot.pixels.analog_layout.cells import Cell, comparator_cell, new_canvas
 from talbot.pixels.analog_layout.pattern import binary
 from talbot.pixels.circuits.comparator import ComparatorSizes
 from talbot.pixels.circuits.lane import size
+from talbot.pixels.circuits.netlist import Circuit, Instance
 from talbot.pixels.circuits.specification import LaneSpec
 from talbot.platforms.analog import analog_masks
 from talbot.platforms.sky130 import analog
@@ -41,6 +42,14 @@ def test_matched_nets_have_the_same_capacitance_and_couplings(cell):
     assert {t.name for t in circuit.transistors} == {t.name for t in cell.transistors}
     widths = {t.name: t.w for t in circuit.transistors}
     assert widths == {t.name: t.w for t in cell.transistors}
+
+
+def test_a_circuit_around_an_extracted_one_has_its_fingers(cell):
+    found, _ = extract(cell, MASKS, TYPICAL)
+    whole = Circuit("whole", found.ports, instances=(Instance("inner", found, found.ports),))
+    assert whole.sizes() == found.sizes()
+    assert [line for line in whole.lines(analog) if " m=20 " in line]
+    assert found.lines(analog) == whole.lines(analog)[: len(found.lines(analog))]
 
 
 def test_capacitance_is_kept_with_and_without_resistance(cell):

@@ -13,11 +13,11 @@ from talbot.platforms.die import TopMetal
 from talbot.platforms.pads import Capacitor
 
 from . import shapes
-from .plan import ANALOG, SUPPLIES, Block, Box, DieParameters, nm
+from .plan import CIRCUITS, SUPPLIES, Block, Box, DieParameters, nm
 from .shapes import Shape
 from .supplies import vias
 
-SUPPLY, GROUND = ANALOG
+SUPPLY, GROUND = CIRCUITS
 # um: side of a top plate, from one to the next in a column; of a column and from one to the next; less than 60 % of
 # both metals, the process's limit
 PLATE, STEP, COLUMN, PITCH = 30.0, 34.0, 38.0, 72.0

@@ -14,7 +14,6 @@ from talbot.flow.layout.options import Options
 from talbot.flow.layout.report.metrics import broken
 from talbot.flow.layout.report.page import picture, write_report
 from talbot.flow.layout.report.picture import render
-from talbot.flow.layout.steps.drc import Drc
 from talbot.flow.layout.steps.parameters import PdkParameters
 from talbot.flow.layout.steps.sta import StaParameters
 from talbot.platforms.coriolis import coriolis_platform
@@ -29,6 +28,7 @@ from .metrics import RULES, summarize
 from .picture import by_block
 from .steps.die_antenna import DieAntenna
 from .steps.die_connectivity import DieConnectivity
+from .steps.die_drc import DieDrc
 from .steps.die_gds import DieGds, DieGdsParameters
 from .steps.die_ir_drop import DieIrDrop, DieIrDropParameters
 from .steps.die_pads import DiePads, DiePadsDrc, DiePadsLvs
@@ -42,7 +42,7 @@ PARTS = {"core.lef": "lef.lef", "core.gds": "fill.gds", "core.sdc": "sdc"}
 PARTS |= {f"core.{wires}": f"extraction.{wires}" for wires in CORNERS}
 PARTS |= {"core.verilog": "stream_out.verilog", "library.rules": "library.rules"}
 PARTS |= {f"library.{deck}": f"library.{deck}" for deck in ("drc", "lvs")}
-RESULTS = {"gds": "die_gds.gds", "v": "die_plan.verilog", "sdc": "die_parasitics.sdc", "drc.lyrdb": "drc.report"}
+RESULTS = {"gds": "die_gds.gds", "v": "die_plan.verilog", "sdc": "die_parasitics.sdc", "drc.lyrdb": "die_drc.report"}
 RESULTS |= {"connectivity.json": "die_connectivity.report", "parasitics.json": "die_parasitics.nets"}
 PACKAGE = f"{SENSOR}.pins.md", f"{SENSOR}.package.png", f"{SENSOR}.package.svg"
 
@@ -50,8 +50,6 @@ PACKAGE = f"{SENSOR}.pins.md", f"{SENSOR}.package.png", f"{SENSOR}.package.svg"
 def die_steps(chip: Design, options: Options, extra: Iterable[str] = (), drawn: Iterable[str] = ()) -> list[Step]:
     """The die's steps in order. extra: see DiePlanParameters. drawn: see DieGdsParameters."""
     pdk, clock, io, drawn = options.pdk, chip.clock, chip.io, tuple(drawn)
-    drc = Drc(PdkParameters(pdk))
-    drc.inputs = {**drc.inputs, "gds": "die_gds.checked"}
     ns = {"input_ns": io.input_delay * clock.period_ns, "output_ns": io.output_delay * clock.period_ns}
     parasitics = DieParasiticsParameters(pdk, clock.port, load_pf=io.load_pf, **ns)
     return [
@@ -61,7 +59,7 @@ def die_steps(chip: Design, options: Options, extra: Iterable[str] = (), drawn: 
         DieConnectivity(PdkParameters(pdk)),
         DieParasitics(parasitics),
         *(DieSta(StaParameters(chip.top, corner, clock.period_ns)) for corner in options.corners),
-        drc,
+        DieDrc(PdkParameters(pdk)),
         DieAntenna(PdkParameters(pdk)),
         *([DieIrDrop(DieIrDropParameters(pdk))] if ARRAY in drawn else []),
         DiePadsDrc(PdkParameters(pdk)),

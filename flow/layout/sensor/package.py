@@ -104,7 +104,9 @@ def _cross(one: Wire, other: Wire) -> bool:
 
 def volts(name: str, process: PadProcess, analog_v: float, reset_v: float) -> float | None:
     """Level of a lead; None of an analog signal, which is any up to the clamps' supply."""
-    known = {"vdd": process.core_v, "vdda": analog_v, "vddr": reset_v} | dict.fromkeys(("vss", "vssa", "vssio"), 0.0)
+    known = {"vdd": process.core_v, "vddc": process.core_v, "vdda": analog_v, "vddr": reset_v} | dict.fromkeys(
+        ("vss", "vssa", "vssio"), 0.0
+    )
     return known.get(name, process.pad_v)
 
 

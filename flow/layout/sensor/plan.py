@@ -28,7 +28,9 @@ ABUTMENTS = (
     Abutment("pixel_array", "column_amplifiers", "north", "column_a[0]"),
     Abutment("column_amplifiers", "adc_lanes", "north", "lane_a[0]"),
 )
-DIGITAL, ANALOG = ("vdd", "vss"), ("vdda", "vssa")
+# Supplies of the chip; of the pixels (3.3 V), of the analog circuits (1.8 V), of the rows' lines (5 V), their ground
+DIGITAL, ANALOG = ("vdd", "vss"), ("vdda", "vddc", "vddr", "vssa")
+CIRCUITS = "vddc", "vssa"  # with bars in the west and in the east
 SUPPLIES = DIGITAL + ANALOG
 # Pins of the die, beside the supplies, from the west
 LINK = *(f"link_data[{k}]" for k in range(8)), "link_val", "link_rdy"

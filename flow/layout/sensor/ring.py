@@ -1,8 +1,10 @@
 """The ring of pads around the blocks: which pads, where on the four sides, what joins them to the die's nets; in nm.
 
-The ring has two segments. In the south up to the last pin of the host, and in the west beside the chip, are the
-host's pins and the supplies of chip and pads; all else is the analog segment. Fillers and corners continue the
-supplies' tracks through a segment; at the two borders the pads' ground alone continues.
+The ring has four segments. In the south up to the last pin of the host, and in the west beside the chip, are the
+host's pins and the supplies of chip and pads. The pixels' supply is in the north and in the east beside the array, that
+of the analog circuits in the south-east and in the west above the chip. Fillers and corners continue the supplies'
+tracks through a segment; at a border those tracks continue that are of one net on both sides: at the host's segment the
+pads' ground alone, between the analog ones all but the supply.
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -19,10 +21,12 @@ Pins = Mapping[str, Mapping[str, Sequence[Sequence[int]]]]  # cell -> pin -> [le
 INPUTS = "clk", "reset", "sclk", "csn", "mosi", "link_rdy"
 # Net of each of the tracks, by segment
 DIGITAL = {"vdd": "vdd", "vss": "vss", "iovdd": "vddio", "iovss": "vssio"}
-ANALOG = {"vdd": "vdda", "vss": "vssa", "iovdd": "vddr", "iovss": "vssio"}
+ANALOG = {"vdd": "vddc", "vss": "vssa", "iovdd": "vddr", "iovss": "vssio"}
+PIXELS = ANALOG | {"vdd": "vdda"}
 # Supplies on a side, evenly: in the west beside the chip, and on each side of the analog segment
 BESIDE_CHIP = "vdd", "vss", "vssio", "vddio"
-ON_SIDE = "vdda", "vssa", "vddr", "vssio", "vssa", "vdda"
+CIRCUITS_ON_SIDE = "vddc", "vssa", "vddr", "vssio", "vssa", "vddc"
+PIXELS_ON_SIDE = "vdda", "vssa", "vddr", "vssio", "vssa", "vdda"
 SIDES = "south", "east", "north", "west"
 UM, GAP = 1000, 20_000  # the grid of cells in the ring; between the segments
 OUTSIDE = "pad_"  # of the names of pads, and of the nets of their bond pads
@@ -73,11 +77,12 @@ class Frame:
 
 @dataclass(frozen=True)
 class Pads:
-    """Outline, the pins of all cells, and the process."""
+    """Outline, the pins of all cells, and the process. borders: y of those of segments, in the west and in the east."""
 
     frame: Frame
     cells: Pins
     process: PadProcess
+    borders: Mapping[str, int]
 
     @property
     def filler(self) -> Mapping[str, Sequence[Sequence[int]]]:
@@ -95,9 +100,22 @@ class Pads:
         _, *box = next(found for found in self.cells[self.process.signals[kind]][CORE_PINS[kind]] if found[0] == 1)
         return box[0], box[1], box[2], box[3]
 
-    def track(self, net: str, side: str, level: int) -> tuple[int, int]:
-        """Of the track of a core supply, on a level of metal, its two ends across the side."""
-        pin = next(pin for tracks in (DIGITAL, ANALOG) for pin, own in tracks.items() if own == net)
+    def tracks(self, side: str, at: int) -> Mapping[str, str]:
+        """Nets of the tracks of the west or the east at y = ``at``."""
+        above = at > self.borders[side] + GAP // 2
+        return {"west": (DIGITAL, ANALOG), "east": (ANALOG, PIXELS)}[side][above]
+
+    def track(self, net: str, side: str, level: int, ends: tuple[int, int]) -> tuple[int, int] | None:
+        """Of the track of a supply, on a level of metal, its two ends across the side; None where it has none there.
+
+        ends: y of what is to meet it. Raises StepError where that is across the border.
+        """
+        pin = next((pin for pin, own in self.tracks(side, ends[0]).items() if own == net), None)
+        if pin is None:
+            return None
+        border = self.borders[side]
+        if ends[0] < border + GAP and ends[1] > border and self.tracks(side, ends[1]) != self.tracks(side, ends[0]):
+            raise StepError(f"ring: {net} at {ends[0] / UM:g} um in the {side} is at the border of two segments")
         _, _, bottom, _, top = next(found for found in self.filler[pin] if found[0] == level)
         left, low, right, high = self.frame.box(side, 0, (0, bottom, 0, top))
         return (left, right) if side in ("west", "east") else (low, high)
@@ -121,22 +139,29 @@ def supply(net: str, number: int, side: str, at: int, process: PadProcess, track
     return Place(f"{OUTSIDE}{net}_{number}", process.supplies[track], side, at, dict(tracks))
 
 
-def ring(pads: Pads, signals: Sequence[Place], border: int) -> tuple[list[Place], list[Place]]:
+def ring(pads: Pads, signals: Sequence[Place]) -> tuple[list[Place], list[Place]]:
     """All cells of the ring but its corners, and the gaps between the segments, as places without a cell.
 
-    signals: pads in the south, digital ones before analog ones. border: y above which the west is analog.
-    Raises StepError where there is no room.
+    A gap has the nets of the tracks that continue. signals: pads in the south, digital ones before analog ones. Raises
+    StepError where there is no room.
     """
     frame, process = pads.frame, pads.process
     digital = [place for place in signals if "vddio" in place.nets.values()]
     low, _ = frame.span("west")
     end = max(place.at for place in digital) + frame.pad
-    gaps = [Place("south_border", "", "south", end, {}), Place("west_border", "", "west", border // UM * UM, {})]
+    west, east = pads.borders["west"], pads.borders["east"]
+    gaps = [
+        Place("south_border", "", "south", end, _common(DIGITAL, ANALOG)),
+        Place("west_border", "", "west", west, _common(DIGITAL, ANALOG)),
+        Place("east_border", "", "east", east, _common(ANALOG, PIXELS)),
+        Place("north_border", "", "north", frame.span("north")[0], _common(ANALOG, PIXELS)),
+    ]
     parts = [
-        ("west", low, gaps[1].at, BESIDE_CHIP, DIGITAL),
-        ("east", *frame.span("east"), ON_SIDE, ANALOG),
-        ("north", *frame.span("north"), ON_SIDE, ANALOG),
-        ("west", gaps[1].at + GAP, frame.span("west")[1], ON_SIDE, ANALOG),
+        ("west", low, west, BESIDE_CHIP, DIGITAL),
+        ("east", frame.span("east")[0], east, CIRCUITS_ON_SIDE, ANALOG),
+        ("east", east + GAP, frame.span("east")[1], PIXELS_ON_SIDE, PIXELS),
+        ("north", frame.span("north")[0] + GAP, frame.span("north")[1], PIXELS_ON_SIDE, PIXELS),
+        ("west", west + GAP, frame.span("west")[1], CIRCUITS_ON_SIDE, ANALOG),
     ]
     made, count = list(signals), dict[str, int]()
     for side, begin, to, nets, tracks in parts:
@@ -148,6 +173,11 @@ def ring(pads: Pads, signals: Sequence[Place], border: int) -> tuple[list[Place]
             at = begin + room + place * (frame.pad + room)
             made.append(supply(net, count[net], side, at, process, tracks))
     return made + list(_fillers(frame, [*made, *gaps], process)), gaps
+
+
+def _common(one: Mapping[str, str], other: Mapping[str, str]) -> dict[str, str]:
+    """Nets of the tracks that two segments share."""
+    return {pin: net for pin, net in one.items() if other[pin] == net}
 
 
 def _fillers(frame: Frame, taken: Iterable[Place], process: PadProcess) -> Iterator[Place]:
@@ -166,10 +196,11 @@ def _fillers(frame: Frame, taken: Iterable[Place], process: PadProcess) -> Itera
 
 
 def bridges(pads: Pads, gaps: Iterable[Place]) -> Iterator[tuple[str, int, Box]]:
-    """Triples (net, level of metal, box) that continue the pads' ground between the segments."""
+    """Triples (net, level of metal, box) that continue tracks between the segments."""
     for gap in gaps:
-        for level, _, bottom, _, top in pads.filler["iovss"]:
-            yield DIGITAL["iovss"], level, pads.frame.box(gap.side, gap.at, (0, bottom, GAP, top))
+        for pin, net in gap.nets.items():
+            for level, _, bottom, _, top in pads.filler[pin]:
+                yield net, level, pads.frame.box(gap.side, gap.at, (0, bottom, GAP, top))
 
 
 def middle(box: Box) -> int:
@@ -189,5 +220,5 @@ def nets(inside: Mapping[str, Sequence[Terminal]], places: Iterable[Place]) -> d
         for pin, net in place.nets.items():
             found.setdefault(net, []).append((place.name, pin))
     bonded = {net for place in places for net in place.nets.values() if net.startswith(OUTSIDE)}
-    supplied = {*DIGITAL.values(), *ANALOG.values()}
+    supplied = {*DIGITAL.values(), *ANALOG.values(), *PIXELS.values()}
     return {net: [("die", net)] * (net in bonded | supplied) + ends for net, ends in sorted(found.items())}

@@ -9,7 +9,7 @@ from talbot.platforms.die import TopMetal
 
 from . import shapes
 from .arrange import Arranged
-from .plan import ANALOG, CORE, DIGITAL, SUPPLIES, Block, Box, DieParameters, check_way, nm
+from .plan import ANALOG, CIRCUITS, CORE, DIGITAL, SUPPLIES, Block, Box, DieParameters, check_way, nm
 from .ring import Pads
 from .routing import Tracks
 from .shapes import Shape
@@ -39,19 +39,23 @@ def supplies(
     """Shapes of the supplies.
 
     Lines on the top metal lead from the straps over the chip and from the analog blocks' pins to the tracks of the ring
-    in the west and the east, across bars of the metal below, one a net; two lines in the north connect the west with
-    the east.
+    in the west and the east, across bars of the metal below, one a net; a line whose net has no track beside it ends at
+    the bar. Two lines in the north connect the west with the east.
     """
     straps = [(net, (box[0] + box[2]) // 2) for net in DIGITAL for _, box in blocks[CORE].pins[net]]
     lines = [*_over_core(blocks[CORE], straps, die), *_from_blocks(blocks, die, top), *_in_north(die)]
     found: list[Shape] = []
     for net in SUPPLIES:
         for side in ("west", "east"):
-            track = pads.track(net, side, len(rules.layers) - 1)
-            boxes = [to_track(line.box, side, track) for line in lines if (line.net, line.side) == (net, side)]
-            if boxes:
-                found += _bar(net, side, boxes, die, rules.layers[-1], top)
-                found += (shape for box in boxes for shape in vias(net, (track[0], box[1], track[1], box[3]), top))
+            own = [line.box for line in lines if (line.net, line.side) == (net, side)]
+            if own:
+                bar = _bar_ends(net, side, die)
+                tracks = [pads.track(net, side, len(rules.layers) - 1, (box[1], box[3])) for box in own]
+                boxes = [to_track(box, side, track or bar) for box, track in zip(own, tracks, strict=True)]
+                found += _bar(net, bar, boxes, rules.layers[-1], top)
+                for box, track in zip(boxes, tracks, strict=True):
+                    if track:
+                        found += vias(net, (track[0], box[1], track[1], box[3]), top)
     half = nm(top.via.size_um + 2 * top.via.enclosure_below_um) // 2
     for net, at in straps:
         for line in lines:
@@ -61,7 +65,7 @@ def supplies(
 
 
 def to_track(box: Box, side: str, track: tuple[int, int]) -> Box:
-    """The box of a line, up to the far end of a track of the ring."""
+    """The box of a line, up to the far end of a track of the ring, or of a bar."""
     return (track[0], *box[1:]) if side == "west" else (box[0], box[1], track[1], box[3])
 
 
@@ -71,12 +75,17 @@ def crossing(blocks: Mapping[str, Block], die: DieParameters, top: TopMetal, nam
     return [(line.net, line.box) for line in east if line.side == "east"]
 
 
-def _bar(net: str, side: str, boxes: Sequence[Box], die: DieParameters, below: Layer, top: TopMetal) -> Iterator[Shape]:
-    """Shapes of a net's lines ``boxes`` and of the bar that connects them on one side of the die."""
+def _bar_ends(net: str, side: str, die: DieParameters) -> tuple[int, int]:
+    """The bar's ends across its side."""
     bar = nm(die.bar_um)
     begin = nm(die.ring_um + die.edge_um) + SUPPLIES.index(net) * (bar + nm(die.gap_um))
     left = begin if side == "west" else nm(die.width_um) - begin - bar
-    across = (left, min(box[1] for box in boxes), left + bar, max(box[3] for box in boxes))
+    return left, left + bar
+
+
+def _bar(net: str, bar: tuple[int, int], boxes: Sequence[Box], below: Layer, top: TopMetal) -> Iterator[Shape]:
+    """Shapes of a net's lines ``boxes`` and of the bar that connects them on one side of the die."""
+    across = (bar[0], min(box[1] for box in boxes), bar[1], max(box[3] for box in boxes))
     yield shapes.drawn(below, net, across)
     for box in boxes:
         yield shapes.drawn(top.metal, net, box)
@@ -101,7 +110,7 @@ def _from_blocks(blocks: Mapping[str, Block], die: DieParameters, top: TopMetal)
             for pin, layer, box in blocks[name].at(side)
             if pin in ANALOG and layer == top.metal.lef
         ]
-        if lacking := set(ANALOG) - {line.net for line in found}:
+        if lacking := (set(ANALOG) & set(blocks[name].pins)) - {line.net for line in found}:
             where = f"neither its west nor its east side on {top.metal.lef}"
             raise StepError(f"{name}: its pin {min(lacking)} reaches {where}")
         for pin, side, box in found:
@@ -111,9 +120,9 @@ def _from_blocks(blocks: Mapping[str, Block], die: DieParameters, top: TopMetal)
 
 
 def _in_north(die: DieParameters) -> Iterator[Line]:
-    """Lines that connect the analog supplies' bars."""
+    """Lines that connect the bars of the circuits' supplies."""
     bar, high = nm(die.bar_um), nm(die.height_um - die.ring_um - die.edge_um)
-    for place, net in enumerate(ANALOG):
+    for place, net in enumerate(CIRCUITS):
         y = high - (place + 1) * bar - place * nm(die.gap_um)
         middle, width = nm(die.width_um) // 2, nm(die.width_um)
         yield Line(net, "west", (0, y, middle, y + bar))

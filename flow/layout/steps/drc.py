@@ -25,8 +25,12 @@ class Drc(Step[PdkParameters]):
     metrics = {"drc_violations": ""}
     tools = ("klayout",)
 
+    def exported(self, deck: str) -> str:
+        """What is checked of the exported deck."""
+        return deck
+
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
-        deck = with_flat_spaces(inputs["deck"].read_text())
+        deck = with_flat_spaces(self.exported(inputs["deck"].read_text()))
         tech = coriolis_platform(self.parameters.pdk)
         masks = [tech.masks.read_text()] if tech.masks else []
         outputs["deck"].write_text("\n".join([deck, *hole_rules(tech), *via_rules(tech), *masks]) + "\n")

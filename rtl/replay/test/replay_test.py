@@ -41,7 +41,7 @@ def gates(folder, recorded):
         f"write_verilog -noattr {netlist}",
         f"read_liberty {LIBRARY}; write_verilog -noattr {cells}",
     ):
-        subprocess.run(["yosys", "-q", "-p", script], check=True, capture_output=True, timeout=100)
+        subprocess.run(["yosys", "-q", "-p", script], check=True, capture_output=True, timeout=400)
     return netlist, cells
 
 

@@ -1,8 +1,8 @@
 """Placement and routing of the die."""
 
 import json
-from collections.abc import Sequence
-from dataclasses import asdict, dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
 from talbot.base.steps import Files, Step
@@ -53,8 +53,10 @@ class DiePlan(Step[DiePlanParameters]):
         layers = [tech.metals[level].lef for level in (routing.STUB, routing.BRANCH)]
         blocks = {name: Block.read(name, inputs[f"{name}.lef"].read_text()) for name in (*BLOCKS, CORE)}
         tracks = routing.Tracks.of(rules, p.die)
-        pads = self.pads(json.loads(inputs["pads"].read_text()))
+        pads = self.pads(json.loads(inputs["pads"].read_text()), {})
         made = arrange.arranged(blocks, p.die, tracks, layers, pads, p.extra)
+        borders = {"west": made.blocks[CORE].box[3], "east": made.blocks["pixel_array"].y}
+        pads = replace(pads, borders={side: y // ring.UM * ring.UM for side, y in borders.items()})
         metal = supplies.metal(made, p.die, tracks, rules, top_metal(p.pdk), pads)
         signals = [
             ring.signal(net, kind, branch.x - offset, pads.process)
@@ -68,7 +70,7 @@ class DiePlan(Step[DiePlanParameters]):
         taken = [branch.x for found in made.routes.values() for branch in found]
         field = decoupling.field(made.blocks, taken, p.die)
         metal += decoupling.metal(field, lines, rules, top_metal(p.pdk))
-        places, gaps = ring.ring(pads, signals, made.blocks[CORE].box[3])
+        places, gaps = ring.ring(pads, signals)
         levels = [*tech.metals, top_metal(p.pdk).metal]
         metal += [drawn(levels[level], net, box) for net, level, box in ring.bridges(pads, gaps)]
         plan = as_json(made, metal, places, pads, p.die, tracks, levels[-1]) | {"decoupling": field._asdict()}
@@ -88,12 +90,12 @@ class DiePlan(Step[DiePlanParameters]):
             "wire_um": round(made.wire / 1000, 1),
         }
 
-    def pads(self, cells: ring.Pins) -> Pads:
+    def pads(self, cells: ring.Pins, borders: Mapping[str, int]) -> Pads:
         """The pads in the frame of the die."""
         p, process = self.parameters, pad_process(self.parameters.pdk)
         depth, width = nm(process.height_um), nm(process.width_um)
         frame = Frame(nm(p.die.width_um), nm(p.die.height_um), nm(p.die.ring_um) - depth, depth, width)
-        return Pads(frame, cells, process)
+        return Pads(frame, cells, process, borders)
 
 
 def as_json(

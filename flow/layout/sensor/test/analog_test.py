@@ -133,3 +133,31 @@ def test_the_drawn_array_is_a_block_of_the_die(tmp_path):
     lacking = cells("gds") - cells("checked")
     assert len(lacking) == 24 and all(name.startswith("pixel_") for name in lacking)
     assert {"pixel_array", "row_end", "column_end", "supply_end"} <= cells("checked")
+
+
+def test_the_drawn_rows_are_a_block_of_the_die(tmp_path):
+    """Supplies of three levels, every line and control are found again where rows and array are drawn."""
+    from talbot.base.gds import write_gds
+    from talbot.flow.layout.sensor.plan import DieParameters
+    from talbot.models.parameters import ArrayParameters, ChipParameters
+    from talbot.pixels.analog_layout.row_drivers import draw_row_drivers
+    from talbot.pixels.blocks import AnalogSizes, blocks
+    from talbot.pixels.footprints import write
+    from talbot.platforms.analog import analog_masks
+
+    given, masks = small.files(tmp_path), analog_masks("sky130")
+    sizes = AnalogSizes(columns_um=200.0, lane_um=100.0, chip_um=360.0)
+    columns = next(
+        one for one in blocks(ArrayParameters(16, 120), ChipParameters(2), sizes) if one.name == "column_amplifiers"
+    )
+    write(tmp_path, [columns], "sky130", sizes.supply_um)
+    made = draw_row_drivers(masks, ArrayParameters(16, 120))
+    lef = tmp_path / "drawn.lef"
+    lef.write_text(made.lef(masks))
+    assert check(lef, given["row_driver.lef"]) == []
+    given["row_driver.lef"].write_text(made.lef(masks))
+    write_gds(made.layout, given["row_driver.gds"], made.cell)
+    assert (
+        small.plan(given, tmp_path, DieParameters(2960.0, 1800.0, pad_um=91.0))["abutted"] == 16 * 6 + 120 * 2 + 2 * 2
+    )
+    assert small.connectivity(given, tmp_path) == {"open_nets": 0, "shorts": 0, "lvs_match": True}

@@ -13,7 +13,7 @@ from talbot.base.paths import ROOT
 from talbot.base.steps import StepError
 from talbot.flow.layout.geometry.abstract import ports
 from talbot.flow.layout.sensor import arrange
-from talbot.flow.layout.sensor.plan import CORE, ORIENTATIONS, SIGNALS, DieParameters
+from talbot.flow.layout.sensor.plan import CORE, ORIENTATIONS, SIGNALS, SUPPLIES, DieParameters
 from talbot.models.parameters import ParameterError
 from talbot.pixels.blocks import blocks
 
@@ -49,8 +49,8 @@ def test_every_net_is_found_again(made, tmp_path):
     assert metrics == {"open_nets": 0, "shorts": 0, "lvs_match": True} and report == {"open": {}, "short": {}}
     assert made[0]["metrics"]["routed"] == len(small.core_pins())
     assert made[0]["metrics"]["abutted"] == 16 * 6 + 120 * 2 + 2 * 2
-    assert made[0]["metrics"]["nets"] == made[0]["metrics"]["routed"] + made[0]["metrics"]["abutted"] + 4
-    assert made[0]["metrics"]["pads"] == len(SIGNALS) + 4 + 3 * 6
+    assert made[0]["metrics"]["nets"] == made[0]["metrics"]["routed"] + made[0]["metrics"]["abutted"] + len(SUPPLIES)
+    assert made[0]["metrics"]["pads"] == len(SIGNALS) + 4 + 4 * 6
 
 
 @pytest.mark.parametrize("way", ORIENTATIONS)
@@ -194,7 +194,7 @@ def test_blocks_that_the_die_has_no_room_for(made, tmp_path):
     with pytest.raises(ParameterError, match=r"height_um = 900: must be at least \d+"):
         small.plan(made[0] | {}, tmp_path, DieParameters(2800.0, 900.0))
     with pytest.raises(StepError, match="ring: no room for the pad of "):
-        small.plan(made[0] | {}, tmp_path, DieParameters(1950.0, 1800.0))
+        small.plan(made[0] | {}, tmp_path, DieParameters(2050.0, 1800.0))
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,29 @@
+"""The help of every command, as a stranger reads it."""
+
+from argparse import _SubParsersAction
+
+import pytest
+
+from talbot.base.paths import ROOT
+from talbot.commands import COMMANDS, parser
+
+
+def help_of(name, monkeypatch):
+    monkeypatch.chdir(ROOT)
+    monkeypatch.setenv("COLUMNS", "100000")
+    (commands,) = (action for action in parser(name)._actions if isinstance(action, _SubParsersAction))
+    return commands.choices[name].format_help()
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_a_default_is_named_once_in_words_and_from_here(name, monkeypatch):
+    text = help_of(name, monkeypatch)
+    for line in text.splitlines():
+        assert line.count("default:") <= 1, line
+    assert str(ROOT) not in text and "(default: (" not in text and "(default: [" not in text
+
+
+def test_what_a_default_looks_like(monkeypatch):
+    assert "(default: radix2 radix4 pipelined cordic)" in help_of("divider", monkeypatch)
+    assert "(default: build/verify)" in help_of("verify", monkeypatch)
+    assert "(default: 384)" in help_of("sim", monkeypatch)
