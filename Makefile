@@ -92,7 +92,7 @@ cosim: $(TESTS_READY) $(LAYOUT_READY)  ## a row with transistors in the loop: th
 	@$(talbot) cosim
 
 .PHONY: pixel-layout
-pixel-layout: $(TESTS_READY) $(LAYOUT_READY)  ## the pixel drawn: 24 types, tile, array with dummies and rings; DRC, LVS: build/pixel-layout/<pdk>/pixel_layout.html (ROWS= COLS= TABLE=)
+pixel-layout: $(TESTS_READY) $(LAYOUT_READY)  ## the pixel drawn: 24 types, tile, array with dummies and rings; DRC, LVS: build/pixel-layout/<pdk>/pixel_layout.html (ROWS= COLS= TABLE= CURVES=)
 	@$(talbot) pixel-layout
 
 .PHONY: pixel-circuit

@@ -39,11 +39,13 @@ DESIGNS = {
         },
     ),
 }
-IDEAL = "ideal"
-PIXELS = IDEAL, *DESIGNS
+IDEAL, ENDLESS = "ideal", "-endless"
+DRAWN = ("sky130",)  # whose pixels are drawn and solved as drawn: `models.parameters.drawn_curves`
+PIXELS = IDEAL, *DESIGNS, *(name + ENDLESS for name in DRAWN)
 
 
 def gratings(process: str) -> Gratings:
-    """Gratings of ``process``. Raises ParameterError."""
+    """Gratings of ``process``, or of a pixel with endless ones. Raises ParameterError."""
+    process = process.removesuffix(ENDLESS)
     check_choice("pixel", process, DESIGNS)
     return DESIGNS[process]

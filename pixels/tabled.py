@@ -6,14 +6,16 @@ from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
 from talbot.base.cache import cached, digest
 from talbot.base.paths import BUILD
 from talbot.base.sources import code
-from talbot.models.parameters import ParameterError, PixelType, SensorParameters, check_choice
+from talbot.models.parameters import ParameterError, PixelType, SensorParameters, check_choice, drawn_curves
 from talbot.models.pixel import TableResponse
+from talbot.platforms.materials import refractive_index
 
-from .designs import IDEAL, PIXELS, gratings
+from .designs import DRAWN, IDEAL, PIXELS, gratings
 from .optics.design import REACHED, Design, measure
 from .optics.fit import Fit
 from .optics.response import bare_share
@@ -27,14 +29,17 @@ SOURCE = "PIXEL="  # of a response, and the pixel behind it
 def tabled(sensor: SensorParameters, pixel: str, note: Callable[[str], None] = lambda text: None) -> SensorParameters:
     """``sensor`` with the computed responses of ``pixel``, "ideal" (Eq. 3.1 as it is) or a process's.
 
-    A process's tables are computed once, then kept. note: called with a line about each part that takes long. Types
-    with a response of their own stay as they are. Raises ParameterError for a beta without gratings.
+    Pixels that are drawn respond as they are drawn (`layout.section`), others and those named "-endless" as endless
+    gratings: their tables are computed once, then kept. note: called with a line about each part that takes long. Types
+    with a response of their own stay as they are. Raises ParameterError for a beta without gratings, or for an angle at
+    which nothing is drawn.
     """
     check_choice("pixel", pixel, PIXELS)
     if pixel == IDEAL:
         return sensor
     for beta in _betas(sensor, pixel):
-        _table(pixel, beta, note)
+        if pixel not in DRAWN:
+            _table(pixel, beta, note)
     types = tuple(
         kind if kind.response else replace(kind, response=_response(kind, pixel)) for kind in sensor.tile.types
     )
@@ -105,7 +110,40 @@ def _loaded(pixel: str, beta: float) -> tuple[Design, Floats]:
 
 @lru_cache(maxsize=256)  # sensors of the same pixels are equal
 def _response(kind: PixelType, pixel: str) -> TableResponse:
-    design, table = _loaded(pixel, _nearest(kind.beta, pixel))
     along, across = np.deg2rad(along_degrees()), np.deg2rad(ACROSS_DEGREES)
-    chosen = [*rows(kind.alpha, design.fit)]
-    return TableResponse(along, across, np.maximum(table[chosen], 0.0), kind.gamma, f"{SOURCE}{pixel}")
+    if pixel in DRAWN:
+        values = _drawn(kind, pixel, along, across)
+    else:
+        design, table = _loaded(pixel, _nearest(kind.beta, pixel))
+        values = table[[*rows(kind.alpha, design.fit)]]
+    return TableResponse(along, across, np.maximum(values, 0.0), kind.gamma, f"{SOURCE}{pixel}")
+
+
+def _drawn(kind: PixelType, pixel: str, along: Floats, across: Floats) -> Floats:
+    """Response (2, along, across) of a drawn type, 1 as a plain diode. Raises ParameterError.
+
+    Its curve is solved for rays across the lines. Of others counts how far they walk in that direction on their way
+    through the oxide, which is where the phase comes from.
+    """
+    chosen, beta = gratings(pixel), _nearest(kind.beta, pixel)
+    found = {(g, a): curve for (b, g, a), curve in drawn_curves().items() if b == beta}
+    angles = sorted({g for g, _ in found})
+    if abs(kind.gamma_deg) not in angles:
+        known = ", ".join(f"{angle:g}" for angle in angles)
+        raise ParameterError(
+            f"gamma_deg = {kind.gamma_deg:g}: must be one of {known}, of either sign, at which beta {beta:g} of "
+            f"pixel = {pixel!r} is drawn"
+        )
+    # Diodes of a type half a period on are those of this one, exchanged
+    turns = [(a + half, a, half > 0) for g, a in found if g == abs(kind.gamma_deg) for half in (0.0, np.pi)]
+    _, alpha, swapped = max(turns, key=lambda turn: np.cos(turn[0] - kind.alpha))
+    sines, *shares = found[abs(kind.gamma_deg), alpha]
+    index = float(refractive_index("silica", chosen.wavelength_um).real)
+    tangents = np.tan(along)[:, None], np.tan(across)
+    down = 1 / np.sqrt(1 + tangents[0] ** 2 + tangents[1] ** 2)
+    kx, ky = (tangent * down for tangent in tangents)
+    walk = kx / np.sqrt(index**2 - kx**2 - ky**2)
+    at = np.clip(index * walk / np.sqrt(1 + walk**2), sines[0], sines[-1])
+    stack = chosen.geometries[beta].stack
+    diodes = np.array([CubicSpline(sines, share)(at) for share in shares]) / bare_share(stack, chosen.wavelength_um)
+    return diodes[::-1] if swapped else diodes

@@ -16,6 +16,9 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--table", type=Path, help="also write the lines for models: models/parameters/pixel_lines.json"
     )
+    parser.add_argument(
+        "--curves", type=Path, help="also write the drawn types' responses: models/parameters/pixel_curves.json"
+    )
     parser.add_argument("--out", type=Path, help="folder for the results (default: build/pixel-layout/<pdk>)")
 
 
@@ -27,7 +30,7 @@ def run(options: Namespace) -> int:
 
     out = options.out or RESULTS / "pixel-layout" / options.pdk
     with Steps(STEPS, lines=True) as steps:
-        summary = make(options.pdk, options.rows, options.cols, out, options.table, steps.note)
+        summary = make(options.pdk, options.rows, options.cols, out, options.table, options.curves, steps.note)
     _print(summary, out)
     return 0 if summary["passed"] else 1
 
@@ -46,8 +49,11 @@ def _print(s: dict[str, Any], folder: Path) -> None:
         print(f"  LVS of {name}: {'matches' if same else 'DIFFERS'}")
     dense = max(s["density"], key=lambda name: s["density"][name])
     print(f"  fill factor {s['fill_factor']:.3f}; densest metal {dense}, {100 * s['density'][dense]:.0f} % of the tile")
-    for name, one in s["finite"].items():
-        print(f"  {name}: m {one['m']:.2f} and light {one['light']:.2f} of endless gratings', by scalar waves")
+    for name, one in s["response"].items():
+        print(
+            f"  {name}: the drawn pixel keeps {one['kept']:.2f} of the endless gratings' differences and "
+            f"{one['light']:.2f} of their light; correlation {one['correlation']:.2f}"
+        )
     for name, line in s["lines"].items():
         print(f"  {name}: {line['ohm']:.2f} ohm, {1e15 * line['farad']['typ']:.2f} fF a pixel")
     print(f"  {s['wall_s']:.0f} s; look at {folder / 'pixel_layout.html'}")

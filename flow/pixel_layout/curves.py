@@ -1,6 +1,7 @@
-"""Angular responses of all drawn types, for `PIXEL=`: solved one by one, kept, and written as the table of models."""
+"""Angular responses of all drawn types, for `PIXEL=`: solved one by one, kept, beside those of endless gratings."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -9,34 +10,61 @@ from talbot.base.jobs import Job, run
 from talbot.base.paths import BUILD
 from talbot.pixels.layout.pixel import PixelLayout
 from talbot.pixels.layout.section import drawn_curves
+from talbot.pixels.optics.response import respond
 
 STORE = BUILD / "pixel" / "drawn"
 DIGITS = 5
+ORDERS = 15  # of the endless gratings
+DEGREES = 20  # over which they are compared
+
+
+@dataclass(frozen=True)
+class Kept:
+    """A drawn type beside endless gratings.
+
+    kept: least-squares share of their (a - b) / (a + b). correlation: of both. light: ratio of the mean.
+    """
+
+    kept: float
+    correlation: float
+    light: float
 
 
 def solve_drawn(made: PixelLayout, wavelength_um: float) -> dict[str, Any]:
-    """A type's curves, as lists: a job."""
+    """A type's curves, and those of endless gratings, as lists: a job."""
     found = drawn_curves(made, wavelength_um)
-    return {"sines": found.sines.round(DIGITS).tolist(), "shares": found.shares.round(DIGITS).tolist()}
+    endless = respond(made.drawn, np.arcsin(found.sines), wavelength_um, orders=ORDERS).unpolarized[0]
+    return {
+        "sines": found.sines.round(DIGITS).tolist(),
+        "shares": found.shares.round(DIGITS).tolist(),
+        "endless": endless[list(made.diodes)].round(DIGITS).tolist(),
+    }
 
 
-def curves(pixels: Sequence[PixelLayout], wavelength_um: float, note: Callable[[str], None]) -> list[dict[str, Any]]:
-    """Curves of every type; those of -gamma are gamma's, but for what lies around the pixel: its mirror image."""
-    chosen = {(p.kind.beta, p.kind.gamma_deg, round(p.kind.alpha, 6)): p for p in pixels if p.kind.gamma_deg >= 0}
-    note(f"curves of {len(chosen)} types")
-    jobs = [
-        Job(f"drawn-{pixel.name}", solve_drawn, (pixel, wavelength_um), (pixel, wavelength_um))
-        for pixel in chosen.values()
-    ]
-    names = "beta", "gamma_deg", "alpha"
-    return [dict(zip(names, map(float, key), strict=True)) | found for key, found in zip(chosen, run(jobs, STORE, "curves"))]
+def curves(pixels: Sequence[PixelLayout], wavelength_um: float) -> list[dict[str, Any]]:
+    """Curves of every type. Those of -gamma are taken as gamma's, of which the pixel is nearly the mirror image."""
+    chosen = [pixel for pixel in pixels if pixel.kind.gamma_deg >= 0]
+    jobs = [Job(f"drawn-{pixel.name}", solve_drawn, (pixel, wavelength_um), (pixel, wavelength_um)) for pixel in chosen]
+    kinds = [{"beta": p.kind.beta, "gamma_deg": p.kind.gamma_deg, "alpha": p.kind.alpha} for p in chosen]
+    return [kind | found for kind, found in zip(kinds, run(jobs, STORE, "curves"), strict=True)]
+
+
+def kept(curve: dict[str, Any]) -> Kept:
+    """What the drawn pixel of a curve keeps."""
+    near = np.abs(curve["sines"]) <= np.sin(np.deg2rad(DEGREES))
+    drawn, endless = (np.array(curve[name])[:, near] for name in ("shares", "endless"))
+    mine, theirs = ((a - b) / (a + b) for a, b in (drawn, endless))
+    return Kept(
+        float(mine @ theirs / (theirs @ theirs)),
+        float(np.corrcoef(mine, theirs)[0, 1]),
+        float(drawn.sum() / endless.sum()),
+    )
 
 
 def table(pdk: str, wavelength_um: float, found: Sequence[dict[str, Any]]) -> dict[str, Any]:
-    """What `talbot.pixels.tabled` reads."""
+    """What `talbot.models.parameters.drawn_curves` reads."""
     return {
-        "command": f"make pixel-layout PDK={pdk} CURVES=models/parameters/pixel_curves.json",
-        "process": pdk,
-        "wavelength_um": wavelength_um,
-        "curves": list(found),
+        "command": "make pixel-layout CURVES=models/parameters/pixel_curves.json",
+        "source": f"{pdk}, {1e3 * wavelength_um:g} nm: cuts through the drawn masks, by rigorous coupled waves",
+        "curves": [{name: curve[name] for name in curve if name != "endless"} for curve in found],
     }

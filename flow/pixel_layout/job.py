@@ -1,7 +1,7 @@
 """Pixels, tile and array: drawn, written, checked -> GDS, LEF, SPICE, pictures, page, summary.json."""
 
 import json
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import asdict
 from pathlib import Path
 from time import perf_counter
@@ -12,21 +12,23 @@ import numpy as np
 from talbot.base.files import check_file, check_folder, staged, write
 from talbot.base.gds import db, write_gds
 from talbot.flow.pixel.job import name_of
+from talbot.models.parameters import PixelType
 from talbot.pixels.designs import gratings
-from talbot.pixels.layout.array import DUMMIES, SOUTH, WEST, ArrayLayout, draw_array, draw_pixels, draw_tile
+from talbot.pixels.layout.array import DUMMIES, SOUTH, WEST, draw_array, draw_pixels, draw_tile
 from talbot.pixels.layout.circuit import Diode, spice, spice_array
-from talbot.pixels.layout.finite import Finite, finite
 from talbot.pixels.layout.pixel import PixelLayout
 from talbot.pixels.layout.write import array_layout, array_lef, fitted
 from talbot.platforms.foundry import installed
 
 from . import foundry
 from .checks import WAIVERS, densities, drc, lvs, placed, unwaived
+from .curves import curves, kept
+from .curves import table as curve_table
 from .lines import extracted
 from .lines import table as line_table
 from .made import SMALL, Made
 
-STEPS = "optics", "draw", "count", "drc", "foundry", "lvs", "lines", "report"
+STEPS = "optics", "draw", "count", "drc", "foundry", "lvs", "lines", "curves", "report"
 FILES = "pixel_array.gds", "pixel_array.lef", "tile.gds", "pixel.gds", "small_array.gds", "pixel.spice", "summary.json"
 REPORTS = "drc.lyrdb", "pixel.lvsdb", "small_array.lvsdb", *foundry.REPORTS
 MOST_SECONDS, MOST_BYTES = 30.0, 20e6  # of the array's GDS
@@ -38,9 +40,10 @@ def make(
     cols: int,
     out: Path,
     table: Path | None = None,
+    responses: Path | None = None,
     note: Callable[[str], None] = lambda text: None,
 ) -> dict[str, Any]:
-    """Draw, check and report into ``out``, the lines into ``table``; returns the summary.
+    """Draw, check and report into ``out``, the lines into ``table``, curves into ``responses``; returns the summary.
 
     Raises ParameterError, StepError.
     """
@@ -48,8 +51,9 @@ def make(
 
     start = perf_counter()
     check_folder("out", out)
-    if table:
-        check_file("table", table)
+    for name, file in (("table", table), ("curves", responses)):
+        if file:
+            check_file(name, file)
     decks = installed(pdk)
     array, small = array_layout(pdk, rows, cols), array_layout(pdk, *SMALL)
     types = [_type(pixel, gratings(pdk).wavelength_um) for pixel in array.pixels]
@@ -69,6 +73,8 @@ def make(
         }
         note("lines")
         lines = extracted(pdk)
+        note("curves")
+        solved = curves(array.pixels, gratings(pdk).wavelength_um)
         share, most = densities(made.path("tile.gds"), pdk), array.pixels[0].process.density_most
         block, size = array.block, made.path("pixel_array.gds").stat().st_size
         summary = {
@@ -88,7 +94,8 @@ def make(
             "waivers": {rule: {"count": found[rule], "reason": WAIVERS[rule]} for rule in found if rule in WAIVERS},
             "foundry": theirs,
             "lines": {name: asdict(line) for name, line in lines.items()},
-            "finite": {name: asdict(one) for name, one in edges(array, gratings(pdk).wavelength_um)},
+            "curves": solved,
+            "response": {_name(curve): asdict(kept(curve)) for curve in solved},
             "density": share,
             "density_most": most,
             "lvs_match": same,
@@ -103,14 +110,13 @@ def make(
         (folder / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n")
     if table:
         write(table, json.dumps(line_table(pdk, lines), indent=1, allow_nan=False) + "\n")
+    if responses:
+        write(responses, json.dumps(curve_table(pdk, gratings(pdk).wavelength_um, solved), allow_nan=False) + "\n")
     return summary
 
 
-def edges(array: ArrayLayout, wavelength_um: float) -> Iterator[tuple[str, Finite]]:
-    """What its edges do to every type whose lines are upright in the section."""
-    for pixel in array.pixels:
-        if pixel.kind.gamma_deg == 0:
-            yield name_of(pixel.kind), finite(pixel, wavelength_um)
+def _name(curve: dict[str, Any]) -> str:
+    return name_of(PixelType(curve["beta"], curve["gamma_deg"], curve["alpha"]))
 
 
 def _draw(made: Made) -> float:

@@ -6,7 +6,7 @@ from typing import Any
 from PIL import Image
 
 from talbot.base import page
-from talbot.base.charts import save
+from talbot.base.charts import save, svg
 from talbot.base.page import TABLES, Picture, Section, Tile
 from talbot.pixels.designs import gratings
 from talbot.pixels.layout.array import DUMMIES
@@ -23,8 +23,7 @@ PICTURES = {
     ),
     "tile": (
         "The tile",
-        "24 types: three periods, eight orientations, two analyzers. Dark: the bars that shade what is "
-        "between the diodes.",
+        "24 types: three periods, eight orientations, two analyzers; bars between pixels, frames over the diodes.",
     ),
     "layers": (
         "One pixel, mask by mask",
@@ -101,11 +100,16 @@ def _sections(s: dict[str, Any]) -> list[Section]:
             numbers=False,
         ),
         Section(
-            "What a pixel's edges do",
-            "The drawn cross-section over endless gratings, both by scalar waves: windows, bars, wells, and light that "
-            "walks from one half to the other on its way down.",
-            head=("type", "m, times", "light, times"),
-            rows=[(name, f"{one['m']:.2f}", f"{one['light']:.2f}") for name, one in s["finite"].items()],
+            "What the drawn pixel does to light",
+            "The drawn masks, cut across the lines and solved rigorously, beside the endless gratings of the same "
+            "diodes, -20..20 degrees: least-squares share of the differences (a - b) / (a + b) that is kept, their "
+            "correlation, and light. Of the rest of the pixel, transistors and bars, nothing reaches a well.",
+            charts=[svg(pictures.responses(s["curves"]))],
+            head=("type", "differences, times", "correlation", "light, times"),
+            rows=[
+                (name, f"{one['kept']:.2f}", f"{one['correlation']:.2f}", f"{one['light']:.2f}")
+                for name, one in s["response"].items()
+            ],
         ),
         Section(
             "Lines",

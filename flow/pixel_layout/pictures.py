@@ -1,8 +1,9 @@
 """Pictures of drawn pixels: masks one by one, the tile, the array's corner, a cross-section with the light in it."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -10,8 +11,9 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
+from talbot.base.charts import COLOURS
 from talbot.base.gds import db, read_gds
-from talbot.pixels.layout.pixel import UPPER, PixelLayout
+from talbot.pixels.layout.pixel import UPPER, PixelLayout, openings
 from talbot.pixels.optics.field import field_between
 from talbot.pixels.optics.geometry import QUADRATURE
 from talbot.platforms.layers import GdsLayer
@@ -70,6 +72,23 @@ def corner(gds: Path, process: PixelProcess) -> Figure:
     return figure
 
 
+def responses(curves: Sequence[Mapping[str, Any]]) -> Figure:
+    """Shares of both diodes of every type: drawn, and of endless gratings (dotted)."""
+    across = 4
+    down = -(-len(curves) // across)
+    figure = Figure(figsize=(10, 2.1 * down), layout="constrained")
+    for axes, curve in zip(figure.subplots(down, across, sharex=True, squeeze=False).flat, curves):
+        degrees = np.rad2deg(np.arcsin(curve["sines"]))
+        for drawn, endless, colour in zip(curve["shares"], curve["endless"], COLOURS, strict=False):
+            axes.plot(degrees, 100 * np.array(drawn), color=colour)
+            axes.plot(degrees, 100 * np.array(endless), ":", color=colour, linewidth=1)
+        phase = f"{np.rad2deg(curve['alpha']):g}"
+        axes.set_title(f"{curve['beta']:g} / {curve['gamma_deg']:g} / {phase}: %, degrees", fontsize=8, loc="left")
+        axes.set_ylim(bottom=0)
+        axes.tick_params(labelsize=7)
+    return figure
+
+
 def cross_section(gds: Path, made: PixelLayout, wavelength_um: float) -> Figure:
     """What is cut at the middle of the gratings, to scale, and the light between these of a wave on the axis."""
     g, process = made.geometry, made.process
@@ -106,10 +125,10 @@ def _light(axes: Axes, made: PixelLayout, side: int, diode: int, wavelength_um: 
     if abs(np.sin(made.kind.gamma)) > 1e-6:
         return
     half = g.pitch_um / 2
-    left, right = side * half + 0.75, (side + 1) * half - 0.75
+    left, _, right, _ = [box for _, box in openings(made)][1 + side]
     moved = replace(g, shift=(g.shift + QUADRATURE[diode]) % 1.0)
     x, up = np.linspace(left, right, 260), np.linspace(0, g.gap_um, 200)
-    field = field_between(moved, 0.0, wavelength_um, x - (left + right) / 2, up)
+    field = field_between(moved, 0.0, wavelength_um, x - half, up)
     low = g.stack.metal("analyzer", str(g.analyzer)).top_um
     most = float(np.quantile(field, 0.995))
     axes.imshow(

@@ -6,7 +6,7 @@ from .checks import ParameterError, check_choice, check_int, check_real
 from .chip import ASYNCHRONOUS, LANES, SPI_INPUTS, ChipParameters
 from .circuit import circuit_converter
 from .divider import DIVIDERS
-from .drawn import LineParameters, drawn_electrical, drawn_lines
+from .drawn import LineParameters, drawn_curves, drawn_electrical, drawn_lines
 from .electrical import ELEMENTARY_CHARGE, TYPICAL_CONVERTER, ConverterParameters, ElectricalParameters
 from .energy import EnergyParameters, LightParameters
 from .frame import ALL_TYPES, EXPOSURE_MAX, MODES, SAMPLES_PER_PIXEL, SHORT_TIMING, AmpTiming, FrameParameters, Window
@@ -56,6 +56,7 @@ __all__ = [
     "check_int",
     "check_real",
     "circuit_converter",
+    "drawn_curves",
     "drawn_electrical",
     "drawn_lines",
     "read_sensor",

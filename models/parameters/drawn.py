@@ -1,15 +1,22 @@
-"""The drawn pixel as measured: its lines by `make pixel-layout TABLE=`, its circuit by `make pixel-circuit TABLE=`."""
+"""The drawn pixel as computed: its lines and response by `make pixel-layout TABLE= CURVES=`, its circuit by
+`make pixel-circuit TABLE=`.
+"""
 
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
 
 from .checks import check_real
 from .electrical import ElectricalParameters
 
 LINES = Path(__file__).with_name("pixel_lines.json")
 PIXEL = Path(__file__).with_name("pixel.json")
+CURVES = Path(__file__).with_name("pixel_curves.json")
 
 
 @dataclass(frozen=True)
@@ -97,3 +104,22 @@ def drawn_sources(electrical: ElectricalParameters, table: Path = PIXEL) -> dict
         Source by name; none for other pixels.
     """
     return json.loads(table.read_text())["sources"] if electrical == drawn_electrical(electrical, table) else {}
+
+
+@cache
+def drawn_curves(table: Path = CURVES) -> Mapping[tuple[float, float, float], npt.NDArray[np.float64]]:
+    """Angular responses of drawn pixels along their own gratings, light without polarization.
+
+    Parameters
+    ----------
+    table : path
+        JSON: "curves" has the beta, gamma_deg, alpha, sines and shares of each type.
+
+    Returns
+    -------
+    mapping of (beta, gamma in degrees, alpha in rad) to float64 (3, n)
+        Sine of the angle in air, ascending; share of the light on the pixel that reaches each diode. Gamma is 0 or
+        more: of -gamma they are those of gamma.
+    """
+    found = json.loads(table.read_text())["curves"]
+    return {(c["beta"], c["gamma_deg"], c["alpha"]): np.array([c["sines"], *c["shares"]]) for c in found}

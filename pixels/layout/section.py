@@ -1,8 +1,9 @@
 """The drawn pixel's response: its masks cut across the lines, and the cuts solved with all that is in them.
 
-A pixel among its like, as in `optics.supercell`: windows, bars, frame, plate, lines of rows and columns, wells, and light
-that walks from one half to the other or to the next pixel. A cut runs along the direction in which the type modulates,
-until it repeats itself; the type's response is the mean of cuts side by side. Waves are taken as uniform along the lines.
+A pixel among its like, as in `optics.supercell`: windows, bars, frame, plate, lines of rows and columns, wells, and
+light that walks from one half to the other or to the next pixel. A cut runs along the direction in which the type
+modulates, until it repeats itself; the response is the mean of cuts side by side. Waves are taken as uniform along
+the lines.
 """
 
 from collections.abc import Iterator

@@ -129,12 +129,7 @@ class Cutter:
         return out
 
     def grating(
-        self,
-        field: str,
-        name: str,
-        fill: float,
-        lines: int = 1,
-        spans: tuple[tuple[float, float], ...] | None = None,
+        self, field: str, name: str, fill: float, lines: int = 1, spans: tuple[tuple[float, float], ...] | None = None
     ) -> list[Slab]:
         """Films above a metal, and its lines. Raises ParameterError for one that is not inside one film."""
         metal = self.stack.metal(field, name)

@@ -6,8 +6,6 @@ import pytest
 import talbot
 from talbot.commands import main
 from talbot.models.parameters import ParameterError
-from talbot.pixels import tabled
-from talbot.pixels.optics.table import ACROSS_DEGREES, along_degrees
 
 
 def test_a_solution_by_the_public_name():
@@ -33,7 +31,7 @@ def test_a_solution_by_the_public_name():
         ("pixel-circuit --corners tt_30", "corners = 'tt_30': must be all, typical, or some of tt_-40"),
         ("pixel-circuit --gate 9", "gate_v = 9.0: must be"),
         ("pixel-circuit --sink 0", "sink_a = 0.0: must be"),
-        ("sim --pixel gf180", "pixel = 'gf180': must be one of ideal, sky130, ihp-sg13g2"),
+        ("sim --pixel gf180", "pixel = 'gf180': must be one of ideal, sky130, ihp-sg13g2, sky130-endless"),
     ],
 )
 def test_refused_in_one_line(words, said, capsys):
@@ -42,15 +40,8 @@ def test_refused_in_one_line(words, said, capsys):
     assert said in error and error.count("\n") == 1
 
 
-def test_pixels_by_name_as_on_the_command_line(tmp_path, monkeypatch):
-    """The same bytes, for tables that take no time; the name is shown, kept and taken back."""
-
-    def cosines(geometry, wavelength_um, note):
-        turns = np.pi / 2 * np.arange(4)[:, None, None] + 40 * np.sin(np.deg2rad(along_degrees()))[:, None] / 3
-        return 0.2 + 0.1 * np.cos(turns) * np.cos(np.deg2rad(ACROSS_DEGREES))
-
-    monkeypatch.setattr(tabled, "angle_table", cosines)
-    monkeypatch.setattr(tabled, "STORE", tmp_path / "tables")
+def test_pixels_by_name_as_on_the_command_line(tmp_path):
+    """The same bytes; the name is shown, kept and taken back."""
     plain = talbot.Sensor(rows=13, cols=50, lanes=4, f_number=2)
     sensor = plain.replace(pixel="sky130")
     assert sensor == talbot.Sensor(rows=13, cols=50, lanes=4, f_number=2, pixel="sky130") != plain
@@ -63,14 +54,17 @@ def test_pixels_by_name_as_on_the_command_line(tmp_path, monkeypatch):
     assert main(["sim", "--pixel", "sky130", *map(str, words)]) == 0
     stream = (tmp_path / "out" / "stream.bin").read_bytes()
     assert stream == sensor.golden(tmp_path / "lf").stream != plain.golden(tmp_path / "lf").stream
-    with pytest.raises(ParameterError, match="pixel = 'gf180': must be one of ideal, sky130, ihp-sg13g2"):
+    with pytest.raises(
+        ParameterError, match="pixel = 'gf180': must be one of ideal, sky130, ihp-sg13g2, sky130-endless"
+    ):
         talbot.Sensor(pixel="gf180")
 
 
-@pytest.mark.slow  # a table takes half a minute
-def test_a_chip_with_tables_is_equal_to_its_model(tmp_path):
-    sensor = talbot.Sensor(rows=24, cols=36, lanes=4, pixel="sky130")
-    assert "# its response is that of PIXEL=sky130" in sensor.text
+@pytest.mark.slow  # eight runs; a table of endless gratings takes half a minute
+@pytest.mark.parametrize("pixel", ["sky130", "sky130-endless"])
+def test_a_chip_with_tables_is_equal_to_its_model(pixel):
+    sensor = talbot.Sensor(rows=24, cols=36, lanes=4, pixel=pixel)
+    assert f"# its response is that of PIXEL={pixel}" in sensor.text
     for mode in ("edge", "image", "raw", "tof"):
         run = sensor.simulate("motorcycle", mode=mode)
         assert run.summary["stream_mismatches"] == run.summary["decoded_mismatches"] == 0

@@ -274,7 +274,7 @@ def _pass(
             if cell != (max(enters, begun) if sign > 0 else min(enters, begun)):
                 continue
             if levels[n] == level:
-                wall, far = n, near
+                wall, far = n, max(near, 0.0)  # boxes of slanted metal may reach behind the side
                 continue
             spans[count, 0], spans[count, 1], ids[count] = max(near, 0.0), end, n
             count += 1

@@ -7,7 +7,7 @@ import pytest
 
 from talbot.models.parameters import ParameterError, TileParameters
 from talbot.pixels.designs import gratings
-from talbot.pixels.layout.pixel import COLUMNS, ROWS_ON, UPPER, PixelLayout, draw, grating_polygons
+from talbot.pixels.layout.pixel import COLUMNS, ROWS_ON, UPPER, PixelLayout, draw, grating_polygons, openings
 from talbot.pixels.optics.geometry import QUADRATURE, PixelGeometry
 
 TYPES = TileParameters().types
@@ -19,8 +19,8 @@ def pixel(number: int) -> PixelLayout:
     return PixelLayout(gratings("sky130").geometries[kind.beta], kind, ROWS[kind.alpha])
 
 
-def phase(made: PixelLayout, side: int, upper: bool) -> float:
-    """Phase of the lines of a half's grating along the type's direction, in periods, from the area that they cover."""
+def phase(made: PixelLayout, side: int | None) -> float:
+    """Phase of a half's analyzer, or of the upper grating, along the type's direction, in periods: from all lines."""
     half, grid = made.geometry.pitch_um / 2, made.process.grid_um
     p, q = made.gratings()[0].direction
     normal = np.array([-q, p]) / np.hypot(p, q)
@@ -29,7 +29,7 @@ def phase(made: PixelLayout, side: int, upper: bool) -> float:
     total = 0j
     for metal, corners in grating_polygons(made):
         points = grid * np.array(corners)
-        if (metal == UPPER) == upper and (points[:, 0].mean() > half) == bool(side):
+        if (metal == UPPER) == (side is None) and side in (None, int(points[:, 0].mean() > half)):
             length = np.linalg.norm(points[1] - points[0])
             total += length * np.exp(2j * np.pi * (points.mean(0) @ normal) / made.drawn.period_um)
     return float(np.angle(total) / (2 * np.pi))
@@ -39,9 +39,25 @@ def phase(made: PixelLayout, side: int, upper: bool) -> float:
 def test_analyzers_are_where_the_optics_has_them(number):
     made = pixel(number)
     for side, diode in enumerate(made.diodes):
-        off = phase(made, side, upper=False) - phase(made, side, upper=True)
+        off = phase(made, side) - phase(made, None)
         wanted = made.geometry.shift + QUADRATURE[diode]
         assert abs((off - wanted + 0.5) % 1 - 0.5) < 0.01
+
+
+@pytest.mark.parametrize("number", range(len(TYPES)))
+def test_light_reaches_a_well_through_its_analyzer_alone(number):
+    """Openings lie inside the wells' rows and columns; lines beside an opening's edge leave at most a period open."""
+    made = pixel(number)
+    _, *frame = openings(made)
+    lines = [np.array(corners) * made.process.grid_um for metal, corners in grating_polygons(made) if metal != UPPER]
+    for side, (level, (left, bottom, right, top)) in enumerate(frame):
+        assert level == ROWS_ON
+        assert 5 * side + 0.6 < left < right < 5 * side + 4.4 and 2.9 < bottom < top < 9.9
+        inside = [points for points in lines if int(points[:, 0].mean() > 5) == side]
+        for axis, (low, high) in enumerate(((left, right), (bottom, top))):
+            reach = made.drawn.period_um * 1.5
+            assert min(points[:, axis].min() for points in inside) < low + reach
+            assert max(points[:, axis].max() for points in inside) > high - reach
 
 
 def test_every_type_has_a_cell_and_keeps_the_optics_parameters():
