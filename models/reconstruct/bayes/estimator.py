@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 from numpy.lib.stride_tricks import sliding_window_view
 from scipy.ndimage import maximum_filter
+from threadpoolctl import threadpool_limits
 
 from talbot.models.parameters import ParameterError, SensorParameters
 from talbot.models.pixel.weights import view_weights
@@ -112,6 +113,8 @@ class FieldEstimator:
         groups = self._windows(pair)
         return self._linear(groups, groups)
 
+    # NumPy and SciPy have threads of their own for BLAS, which wait for one another: three times as long as one alone
+    @threadpool_limits.wrap(limits=1, user_api="blas")
     def _linear(self, groups: Windows, told: Windows) -> Floats:
         """The estimate of `linear` from the windows of ``groups``, with the disparities that those of ``told`` show."""
         out = np.zeros((self.views, self.views, *self.shape), np.float32)
