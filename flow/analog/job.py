@@ -52,11 +52,15 @@ def corners_of(text: str) -> tuple[str, ...]:
     """Names of corners from an option: all, quick, typical, or names with commas between. Raises ParameterError."""
     names = CORNER_SETS.get(text) or tuple(name for name in text.split(",") if name)
     for name in names:
-        corner = Corner.parse(name)
+        try:
+            corner = Corner.parse(name)
+        except ParameterError:
+            must = f"must be {', '.join(CORNER_SETS)}, or names like {TYPICAL} with commas between"
+            raise ParameterError(f"corners = {text!r}: {must}") from None
         if not 1.6 <= corner.supply <= 2.0 or not -40 <= corner.temperature <= 125:
             raise ParameterError(f"corners = {name}: must be at 1.6 to 2 V and -40 to 125 degrees Celsius")
     if not names:
-        raise ParameterError(f"corners = {text!r}: must be all, quick, typical, or names like {TYPICAL}")
+        raise ParameterError(f"corners = {text!r}: must be {', '.join(CORNER_SETS)}, or names like {TYPICAL}")
     return tuple(dict.fromkeys((TYPICAL, *names)))
 
 

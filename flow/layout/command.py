@@ -37,7 +37,8 @@ def add_arguments(parser: ArgumentParser) -> None:
 def run(arguments: Namespace) -> int:
     """Lay out a design and print what came of it; 1 where a limit is broken."""
     check_choice("DESIGN", arguments.design, (*DESIGNS, SENSOR))
-    check_choice("backend", arguments.backend, ("coriolis",))
+    if arguments.backend != "coriolis":
+        raise ParameterError(f"backend = {arguments.backend!r}: must be coriolis (openroad: talbot openroad, or make)")
     chosen = design(CHIP if arguments.design == SENSOR else arguments.design)
     start = chosen.utilization if arguments.utilization is None else arguments.utilization
     decks = tuple(installed(arguments.pdk).items())

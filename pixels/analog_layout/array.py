@@ -10,7 +10,7 @@ plates.
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from math import sqrt
+from math import floor, sqrt
 
 import numpy as np
 import numpy.typing as npt
@@ -28,7 +28,12 @@ from .strip import FOURTH, SECOND, THIRD, TRACK, TRACK_PITCH
 # um
 AROUND, TAB, APART = 0.14, 0.45, 1.2  # lower plate around the upper one, on the side of its via; between lower plates
 VIA_IN = 0.24  # of that via's middle from the upper plate
-LINE, LINE_PITCH, LINES = 0.14, 0.64, 6
+LINE, LINE_PITCH, LINES = (
+    0.14,
+    0.64,
+    6,
+)  # lines below a column; their pitch, less where their vias would leave the plate
+LANDING = 0.185  # half of a via's metal
 COLUMN = 0.4  # width of the common node's metal
 RING_AWAY = 1.0  # of the bus's first track from the dummies
 GRID = 0.005
@@ -179,7 +184,9 @@ class _Drawing:
         if len(kinds) > LINES:
             raise ParameterError(f"column {column} = {len(kinds)} capacitors: must be {LINES} at most")
         x0, _ = self.middle(0, column)
-        places = {name: x0 + (k - (len(kinds) - 1) / 2) * LINE_PITCH for k, name in enumerate(kinds)}
+        room = (self.plan.edge_um + 2 * (AROUND - LANDING)) / max(len(kinds) - 1, 1)
+        pitch = min(LINE_PITCH, floor(room / (4 * GRID)) * 4 * GRID)
+        places = {name: x0 + (k - (len(kinds) - 1) / 2) * pitch for k, name in enumerate(kinds)}
         beyond = self.plan.edge_um / 2 + VIA_IN - LINE
         if column == HALF_COLUMN:
             self._half(places.pop(OUT), made)
