@@ -1,6 +1,6 @@
 """The drawn amplifier and the drawn bias measured as their schematics are, and what the banks have by the rays."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,6 +17,7 @@ from talbot.pixels.circuits.netlist import Circuit
 from talbot.pixels.circuits.support import SupportSpec, bias
 from talbot.platforms.analog import AnalogMasks
 
+from .beside import Pair
 from .extract import Nets, unit_farad
 from .row import Row
 
@@ -47,15 +48,14 @@ def measure(
     )
 
 
-def rows(spec: AmplifierSpec, corner: str, schematic: Amplified, layout: Amplified) -> Iterator[Row]:
+def rows(spec: AmplifierSpec, found: Pair[Amplified]) -> Iterator[Row]:
     """Layout beside schematic, with the limits of `make analog`."""
-    before, after = schematic.amplifier, layout.amplifier
+    amplifier, pair = found.of(lambda one: one.amplifier), found.of(lambda one: one.bias).row
 
     def row(name: str, unit: str, field: str, most: float | None = None, scale: float = 1.0) -> Row:
-        first, second = (scale * float(getattr(one, field)) for one in (before, after))
-        return Row(f"amplifier: {name}", unit, first, second, corner, most)
+        return amplifier.row(f"amplifier: {name}", unit, lambda one: scale * getattr(one, field), most)
 
-    yield Row("amplifier: gain, off by", "%", 100 * (before.gain - 1), 100 * (after.gain - 1), corner, 100 * spec.gain)
+    yield amplifier.row("amplifier: gain, off by", "%", lambda one: 100 * (one.gain - 1), 100 * spec.gain)
     yield row("offset, systematic", "LSB", "offset")
     yield row("INL", "LSB", "inl", spec.inl)
     yield row("settling to half an LSB", "ns", "settling", 1e9 * spec.hold, 1e9)
@@ -65,13 +65,9 @@ def rows(spec: AmplifierSpec, corner: str, schematic: Amplified, layout: Amplifi
     yield row("energy of a sample", "pJ", "energy", 1e12 * spec.energy, 1e12)
     yield row("current while off", "uA", "off", None, 1e6)
     limits = SupportSpec()
-
-    def pair(name: str, unit: str, value: Callable[[BiasResult], float], most: float | None = None) -> Row:
-        return Row(f"bias: {name}", unit, value(schematic.bias), value(layout.bias), corner, most)
-
-    yield pair("current, off by", "%", lambda one: 100 * (one.current / BIAS - 1), 100 * limits.bias)
-    yield pair("start", "us", lambda one: 1e6 * one.start, 1e6 * limits.start)
-    yield pair("current of the whole", "uA", lambda one: 1e6 * one.idle)
+    yield pair("bias: current, off by", "%", lambda one: 100 * (one.current / BIAS - 1), 100 * limits.bias)
+    yield pair("bias: start", "us", lambda one: 1e6 * one.start, 1e6 * limits.start)
+    yield pair("bias: current of the whole", "uA", lambda one: 1e6 * one.idle)
 
 
 def capacitors(made: Cell, nets: Nets, masks: AnalogMasks, spec: AmplifierSpec) -> Iterator[Row]:

@@ -1,7 +1,7 @@
 """Cells drawn, written, checked, extracted and measured -> GDS, SPICE, pictures, page, summary.json."""
 
 import json
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from time import perf_counter
@@ -11,14 +11,12 @@ import numpy as np
 
 from talbot.base.files import check_folder, staged
 from talbot.base.gds import write_gds
-from talbot.base.jobs import Job, run
-from talbot.base.paths import BUILD
-from talbot.base.records import from_json
-from talbot.cells.corner import Corner
 from talbot.flow.analog.deck import Setup, process_of
 from talbot.flow.analog.job import amplifier_of, setup_of
-from talbot.flow.analog.lane import LaneResult, inl
+from talbot.flow.analog.lane import inl
 from talbot.flow.analog.linearity import inl_dnl, levels
+from talbot.flow.analog.row_driver import RowDriverResult
+from talbot.flow.analog.row_driver import measure as measure_row
 from talbot.models.parameters import ArrayParameters, ChipParameters
 from talbot.pixels.analog_layout.amplifier import amplifier_cell
 from talbot.pixels.analog_layout.bias import bias_cell
@@ -33,20 +31,23 @@ from talbot.pixels.blocks import AnalogSizes
 from talbot.pixels.circuits.amplifier import AmplifierSizes, AmplifierSpec
 from talbot.pixels.circuits.dac import BITS
 from talbot.pixels.circuits.lane import LaneSizes
+from talbot.pixels.circuits.row_driver import RowDriverSpec
 from talbot.pixels.circuits.specification import LaneSpec
+from talbot.pixels.circuits.support import SupportSpec
 from talbot.platforms.analog import AnalogMasks, analog_masks
 from talbot.platforms.coriolis import coriolis_platform
 from talbot.platforms.wires import wire_corner
 
 from . import amplifier, row_driver, switch
 from .amplifier import Amplified
+from .beside import Pair, beside
 from .checks import drc, lvs
 from .extract import Extracted, Nets, extract
 from .measure import Measured, measure
 from .row import Row
+from .switch import Gaps
 
 STEPS = "draw", "drc", "lvs", "extract", "measure", "report"
-STORE = BUILD / "analog-layout" / "measured"
 KINDS = "gds", "spice", "extracted.spice", "lyrdb", "lvsdb"
 
 
@@ -99,11 +100,9 @@ def make(
         note("measure")
         rows = list(_array(typical["sar_lane"][1], masks, sizes, setup.spec))
         rows += amplifier.capacitors(made["amplifier"], typical["amplifier"][1], masks, spec)
-        rows += _measured(setup, sizes, corners, found, workers)
-        for name, of in (("row", row_driver.rows), ("non_overlap", switch.rows)):
-            drawn_at = {corner: found[wire_corner(corner)][name][0] for corner in corners}
-            rows += of(setup, drawn_at, workers)
-        rows += _amplified(setup, (spec, own, sizes), corners, found, workers)
+        rows += _measured(
+            setup, sizes, (spec, own), {corner: found[wire_corner(corner)] for corner in corners}, workers
+        )
         summary = {
             "process": pdk,
             "corners": list(corners),
@@ -163,72 +162,39 @@ def _array(nets: Nets, masks: AnalogMasks, sizes: LaneSizes, spec: LaneSpec) -> 
 def _measured(
     setup: Setup,
     sizes: LaneSizes,
-    corners: Sequence[str],
-    found: dict[str, dict[str, tuple[Extracted, Nets]]],
+    amplifiers: tuple[AmplifierSpec, AmplifierSizes],
+    drawn: Mapping[str, Mapping[str, tuple[Extracted, Nets]]],
     workers: int,
-) -> list[Row]:
-    """Rows of every corner; what an earlier run measured of the same circuits is read."""
-    jobs = []
-    for name in corners:
-        drawn = found[wire_corner(name)]
-        circuits = drawn["comparator"][0], drawn["sar_lane"][0]
-        given = (repr((setup, sizes)), name)
-        jobs.append(Job(f"schematic-{name}", measure, (setup, sizes, Corner.parse(name)), given))
-        given = *given, *_text(circuits)
-        jobs.append(Job(f"layout-{name}", measure, (setup, sizes, Corner.parse(name), *circuits), given))
-    results = [from_json(Measured, one) for one in run(jobs, STORE, "measure", workers)]
-    rows = []
-    for name, schematic, layout in zip(corners, results[::2], results[1::2], strict=True):
-        rows += list(_rows(setup.spec, name, schematic, layout))
-    return rows
+) -> Iterator[Row]:
+    """Rows of all circuits at every corner."""
+
+    def circuits(*names: str) -> dict[str, list[Extracted]]:
+        return {corner: [cells[name][0] for name in names] for corner, cells in drawn.items()}
+
+    driven, support = RowDriverSpec.of(), SupportSpec()
+    for lane in beside("lane", measure, Measured, (setup, sizes), circuits("comparator", "sar_lane"), workers):
+        yield from _rows(setup.spec, lane)
+    for row in beside("row driver", measure_row, RowDriverResult, (setup, driven), circuits("row"), workers):
+        yield from row_driver.rows(driven, row)
+    for gaps in beside("switch drivers", switch.measure, Gaps, (setup, support), circuits("non_overlap"), workers):
+        yield from switch.rows(support, gaps)
+    given = setup, *amplifiers, sizes
+    for both in beside("amplifier", amplifier.measure, Amplified, given, circuits("amplifier", "bias"), workers):
+        yield from amplifier.rows(amplifiers[0], both)
 
 
-def _amplified(
-    setup: Setup,
-    sizes: tuple[AmplifierSpec, AmplifierSizes, LaneSizes],
-    corners: Sequence[str],
-    found: dict[str, dict[str, tuple[Extracted, Nets]]],
-    workers: int,
-) -> list[Row]:
-    """Rows of amplifier and bias at every corner."""
-    jobs = []
-    for name in corners:
-        drawn = found[wire_corner(name)]
-        circuits = [drawn[kind][0] for kind in ("amplifier", "bias")]
-        given = repr((setup, sizes)), name
-        call = (setup, *sizes, Corner.parse(name))
-        jobs.append(Job(f"amplifier-schematic-{name}", amplifier.measure, call, given))
-        jobs.append(Job(f"amplifier-layout-{name}", amplifier.measure, (*call, *circuits), (*given, *_text(circuits))))
-    results = [from_json(Amplified, one) for one in run(jobs, STORE, "amplifier", workers)]
-    rows = []
-    for name, schematic, layout in zip(corners, results[::2], results[1::2], strict=True):
-        rows += list(amplifier.rows(sizes[0], name, schematic, layout))
-    return rows
-
-
-def _text(circuits: Iterable[Extracted]) -> list[str]:
-    return [repr((one.transistors, one.capacitors, one.resistors, sorted(one.drawn.items()))) for one in circuits]
-
-
-def _rows(spec: LaneSpec, corner: str, schematic: Measured, layout: Measured) -> Iterator[Row]:
-    half, share = 1e9 * spec.half_cycle, 1e12 * spec.decision_energy
-
-    def row(name: str, unit: str, value: Callable[[Measured], float], most: float | None = None) -> Row:
-        return Row(name, unit, float(value(schematic)), float(value(layout)), corner, most)
-
+def _rows(spec: LaneSpec, found: Pair[Measured]) -> Iterator[Row]:
+    half, share, row = 1e9 * spec.half_cycle, 1e12 * spec.decision_energy, found.row
     yield row("comparator: decision, half an LSB", "ns", lambda m: 1e9 * m.decisions.delay, half)
     yield row("comparator: wrong decisions", "", lambda m: not m.decisions.right, 0.0)
     yield row(
         "comparator: energy of a decision", "pJ", lambda m: 1e12 * m.decisions.energy, share * spec.comparator_share
     )
     yield row("comparator: offset, systematic", "LSB", lambda m: m.offset, spec.offset)
-    if schematic.lane is None or layout.lane is None:
+    before, after = found.schematic.lane, found.layout.lane
+    if before is None or after is None:
         return
-    before, after = schematic.lane, layout.lane
-
-    def lane(name: str, unit: str, value: Callable[[LaneResult], float], most: float | None = None) -> Row:
-        return Row(name, unit, float(value(before)), float(value(after)), corner, most)
-
+    lane = Pair(found.corner, before, after).row
     yield lane("DAC: settling to half an LSB", "ns", lambda one: 1e9 * one.settling, half)
     yield lane("DAC: INL of seven levels", "LSB", lambda one: inl(one.levels)[2], spec.inl)
     yield lane("lane: offset, systematic", "LSB", lambda one: inl(one.levels)[0], spec.offset)

@@ -17,6 +17,7 @@ from talbot.base.steps import StepError
 from talbot.flow.analog_layout.amplifier import capacitors
 from talbot.flow.analog_layout.checks import drc, lvs
 from talbot.flow.analog_layout.extract import extract
+from talbot.flow.analog_layout.test.planted import changed
 from talbot.flow.layout.parasitics.capacitance import capacitances
 from talbot.flow.layout.parasitics.shapes import shapes
 from talbot.pixels.analog_layout.amplifier import amplifier_cell
@@ -33,14 +34,6 @@ MASKS = analog_masks("sky130")
 SPEC = AmplifierSpec()
 SIZES = size(SPEC, 4.7e-12, analog)
 FRINGE = "11p5x11p7", "08p6x07p8", "04p4x04p6"  # cap_vpp_*_m1m2_noshield
-
-
-def changed(path, out, change):
-    """``path`` once ``change`` was made to its top cell."""
-    layout = read_gds(path)
-    change(layout, layout.top_cell())
-    layout.write(str(out))
-    return out
 
 
 def test_the_bias_keeps_the_rules_is_its_circuit_and_faults_are_found(tmp_path):

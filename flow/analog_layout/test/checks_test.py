@@ -13,6 +13,7 @@ if not shutil.which("klayout"):
 from talbot.base.gds import db, read_gds, write_gds
 from talbot.base.lef.read import read_macro
 from talbot.flow.analog_layout.checks import decks, drc, lvs
+from talbot.flow.analog_layout.test.planted import changed
 from talbot.flow.layout.sensor.analog import check
 from talbot.models.parameters import ChipParameters, ParameterError
 from talbot.pixels.analog_layout.cells import comparator_cell
@@ -37,14 +38,6 @@ def cell(tmp_path_factory):
     made = comparator_cell(MASKS, SMALL)
     made.write(path)
     return made, path
-
-
-def changed(path, out, change):
-    """``path`` once ``change`` was made to its top cell."""
-    layout = read_gds(path)
-    change(layout, layout.top_cell())
-    layout.write(str(out))
-    return out
 
 
 def test_the_comparator_keeps_the_rules_and_a_broken_one_is_found(cell, tmp_path):

