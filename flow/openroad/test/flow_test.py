@@ -86,6 +86,16 @@ def openroad(tmp_path, monkeypatch):
     monkeypatch.setenv("PATH", str(tmp_path), prepend=":")
 
 
+@pytest.fixture
+def written(tmp_path, monkeypatch):
+    """The divider's files, and a netlist in place of Yosys's stage."""
+    monkeypatch.setattr("talbot.flow.openroad.stages.stages", lambda tech, wires: stages(tech, wires)[1:])
+    chosen = design("quad_divider")
+    write(chosen, KNOWN, tmp_path)
+    (tmp_path / "netlist.v").write_text("")
+    return chosen
+
+
 def unchecked(design, tech, root, folder, size_um, note):
     """In place of the checks: their inputs alone."""
     runner = Runner(folder / "steps", given(design, tech, root, folder, size_um), note)
@@ -159,15 +169,9 @@ def test_the_stand_in_refuses_what_openroad_does_not_have(line, said, openroad, 
         (OLDER, "-ext_model_file", "set_extraction_rules_file"),
     ],
 )
-def test_older_releases_get_the_options_that_they_want(commands, called, other, pdk, openroad, tmp_path, monkeypatch):
+def test_older_releases_get_the_options_that_they_want(commands, called, other, pdk, openroad, written, tmp_path):
     stub.install(tmp_path, commands)
-    chosen = design("quad_divider")
-    write(chosen, KNOWN, tmp_path)
-    (tmp_path / "netlist.v").write_text("")
-    monkeypatch.setattr(
-        "talbot.flow.openroad.stages.stages", lambda tech, wires: stages(tech, wires)[1:]
-    )  # without Yosys's
-    assert run(tmp_path, chosen.top, KNOWN, pdk, lambda text: None)["router_drc_violations"] == 0
+    assert run(tmp_path, written.top, KNOWN, pdk, lambda text: None)["router_drc_violations"] == 0
     calls = (tmp_path / "calls.txt").read_text()
     assert called in calls and other not in calls and all(f"{pdk}/{path}" in calls for path in RULES)
 
@@ -176,7 +180,7 @@ def test_older_releases_get_the_options_that_they_want(commands, called, other, 
 @needs_cells
 @pytest.mark.parametrize("violations, diodes, routed", [("0", "0", 1), ("1", "0", 1), ("1", "2", 4)])
 def test_routes_are_made_again_while_diodes_help_then_fillers(
-    violations, diodes, routed, pdk, openroad, tmp_path, monkeypatch
+    violations, diodes, routed, pdk, openroad, written, tmp_path
 ):
     stub.install(
         tmp_path,
@@ -186,13 +190,7 @@ def test_routes_are_made_again_while_diodes_help_then_fillers(
             "repair_antennas": replace(COMMANDS["repair_antennas"], says=diodes),
         },
     )
-    chosen = design("quad_divider")
-    write(chosen, KNOWN, tmp_path)
-    (tmp_path / "netlist.v").write_text("")
-    monkeypatch.setattr(
-        "talbot.flow.openroad.stages.stages", lambda tech, wires: stages(tech, wires)[1:]
-    )  # without Yosys's
-    assert run(tmp_path, chosen.top, KNOWN, pdk, lambda text: None)["router_antennas"] == float(violations)
+    assert run(tmp_path, written.top, KNOWN, pdk, lambda text: None)["router_antennas"] == float(violations)
     called = [line.split()[0] for line in (tmp_path / "calls.txt").read_text().splitlines()]
     assert called.count("detailed_route") == routed
     assert called.index("filler_placement") > max(k for k, name in enumerate(called) if name == "detailed_route")
@@ -200,35 +198,23 @@ def test_routes_are_made_again_while_diodes_help_then_fillers(
 
 @needs_tclsh
 @needs_cells
-def test_a_stage_that_fails_is_named(pdk, openroad, tmp_path, monkeypatch):
-    chosen = design("quad_divider")
-    write(chosen, KNOWN, tmp_path)
-    (tmp_path / "netlist.v").write_text("")
+def test_a_stage_that_fails_is_named(pdk, openroad, written, tmp_path):
     (tmp_path / "cts.tcl").write_text("clock_tree\n")
-    monkeypatch.setattr(
-        "talbot.flow.openroad.stages.stages", lambda tech, wires: stages(tech, wires)[1:]
-    )  # without Yosys's
     seen = []
     with pytest.raises(ToolError, match='openroad cts: status 1, cts.odb not written:\ninvalid command name "clock_tr'):
-        run(tmp_path, chosen.top, KNOWN, pdk, seen.append)
+        run(tmp_path, written.top, KNOWN, pdk, seen.append)
     assert seen == ["floorplan", "power", "place", "cts"]
 
 
 @needs_tclsh
 @needs_cells
-def test_a_stage_runs_again_only_where_its_inputs_changed(pdk, openroad, tmp_path, monkeypatch):
-    chosen = design("quad_divider")
-    write(chosen, KNOWN, tmp_path)
-    (tmp_path / "netlist.v").write_text("")
-    monkeypatch.setattr(
-        "talbot.flow.openroad.stages.stages", lambda tech, wires: stages(tech, wires)[1:]
-    )  # without Yosys's
+def test_a_stage_runs_again_only_where_its_inputs_changed(pdk, openroad, written, tmp_path):
     calls = tmp_path / "calls.txt"
 
     def called():
         """Commands of one more run, and its figures."""
         calls.write_text("")
-        found = run(tmp_path, chosen.top, KNOWN, pdk, lambda text: None)
+        found = run(tmp_path, written.top, KNOWN, pdk, lambda text: None)
         return [line.split()[0] for line in calls.read_text().splitlines()], found
 
     every, found = called()
