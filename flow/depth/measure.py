@@ -63,8 +63,7 @@ def read_depth(frames: DepthFrames, prior: FieldPrior, note: Callable[[str], Non
     dead = dead_pixels(diodes.sum(0) / (2 * white))
     over = beside(full(diodes, (0, 1)) | dead, prior.margin)
     estimator = estimator_of(result, prior)
-    estimator.prepare()  # it and the components: what is done once a sensor
-    _ = estimator.components
+    estimator.prepare(mixture=True)  # what is done once a sensor
     start = perf_counter()
     field = depth_field(estimator, diodes / white)
     seconds = perf_counter() - start

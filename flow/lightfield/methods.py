@@ -88,8 +88,8 @@ METHODS: Mapping[str, Method] = {
 PREPARE: Mapping[str, Callable[[FieldEstimator, CaptureOperator], object]] = {
     "linear": lambda estimator, operator: estimator.prepare(),
     "sparse": _coder,
-    "mixture": lambda estimator, operator: (estimator.prepare(), estimator.components),
-    "network": lambda estimator, operator: (estimator.prepare(), estimator.components, Network.shipped()),
+    "mixture": lambda estimator, operator: estimator.prepare(mixture=True),
+    "network": lambda estimator, operator: (estimator.prepare(mixture=True), Network.shipped()),
     **dict.fromkeys(BRANCHES, lambda estimator, operator: Branches.shipped()),
 }
 

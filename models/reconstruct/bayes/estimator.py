@@ -154,9 +154,8 @@ class FieldEstimator:
         made: dict[tuple[int, ...], list[tuple[Floats, Floats, Residuals]]] = {kind: [] for kind in kinds}
         for d in self.prior.grid:
             tables = self.covariances.of(float(d))
-            known: dict[
-                tuple[int, ...], tuple[Floats, Floats]
-            ] = {}  # of windows that begin at the same place in a tile
+            # Of windows that begin at the same place in a tile
+            known: dict[tuple[int, ...], tuple[Floats, Floats]] = {}
             for kind, group in kinds.items():
                 if kind[:2] not in known:
                     shared = self._shared(tables, *group)
@@ -172,9 +171,17 @@ class FieldEstimator:
             ways[kind] = Ways(stack, np.stack(field), list(residuals), max(len(self._own(*group)[1]), 1))
         return [ways[_kind(*group)] for group in self._groups()]
 
-    def prepare(self) -> None:
-        """Make what `linear` needs once a sensor; it does so itself where it has not been done."""
+    def prepare(self, mixture: bool = False) -> None:
+        """Make what `linear` needs once a sensor, or `mixture`; they do so themselves where it has not been done.
+
+        Parameters
+        ----------
+        mixture : bool
+            Also what `mixture` needs.
+        """
         _ = self._ways
+        if mixture:
+            _ = self.components, self._hypotheses
 
     @cached_property
     def components(self) -> list[list[Floats]]:
