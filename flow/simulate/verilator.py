@@ -15,8 +15,7 @@ FRAME = Path(__file__).parent
 READ = FRAME / "read_words.cpp"  # in place of Verilator's VL_FREAD_I, in all that is compiled here
 
 # No fused multiply-add: the front end's arithmetic must round as NumPy's does, on every processor.
-CXX_FLAGS = ("-O2", "-ffp-contract=off")
-READS = ("-DVL_FREAD_I=read_words",)  # $fread of the bench is main.cpp's own
+CXX_FLAGS = ("-O2", "-ffp-contract=off", "-DVL_FREAD_I=read_words")
 PACKED = ("zlib.h", "lz4.h")  # headers of what packs an FST
 VERILATOR_FLAGS = (*FAST, "-fno-split", "--output-split", "0", "-Wno-fatal")
 
@@ -28,7 +27,7 @@ def bench_program(build: Build, note: Callable[[str], None] = lambda text: None)
     """
     options = [*build.parameters("-G"), *([f"--trace-{build.waves}"] if build.waves else [])]
     sources = [PACKAGE / "pixels" / "afe.sv", FRAME / "bench.sv"]
-    return program_of(build, "Bench", options, sources, FRAME / "main.cpp", note, READS)
+    return program_of(build, "Bench", options, sources, FRAME / "main.cpp", note)
 
 
 def bare_program(

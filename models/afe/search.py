@@ -14,7 +14,7 @@ BITS, BIPOLAR = 8, 128
 
 @njit(cache=True, nogil=True)
 def _mix(x: Any) -> Any:
-    """As of models.afe.noise."""
+    """As of models.afe.noise: here, too, since Numba's cache looks at changes of a function's own file alone."""
     x = np.uint32(x ^ (x >> np.uint32(16)))
     x = np.uint32(x * np.uint32(0x7FEB352D))
     x = np.uint32(x ^ (x >> np.uint32(15)))

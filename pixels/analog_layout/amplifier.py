@@ -24,8 +24,8 @@ from . import flat
 from .amplifier_bank import BankPlan, draw_bank, units
 from .cells import MARGIN, Cell, new_canvas
 from .comparator import BETWEEN_STRIPS
-from .device import Device
-from .rows import dummies, row, snap
+from .device import Device, snap
+from .rows import dummies, row
 from .strip import (
     FOURTH,
     RAIL_ENDS,

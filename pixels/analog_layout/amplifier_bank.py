@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 
 from talbot.pixels.layout.canvas import Canvas
 
-from .device import Strap
+from .device import Strap, snap
 from .strip import FIRST, SECOND, THIRD, TRACK, TRACK_PITCH
 
 FINGERS, COLUMNS, CHANNELS = 8, 13, 6  # units of a comb; combs of a row; pairs of rows
@@ -32,7 +32,6 @@ FINGER, PITCH, TIP = 0.14, 0.28, 0.20  # width; from finger to finger; from a fi
 COMMON, SPINE = 0.42, 0.34  # heights of spines
 FIRST_TRACK = 0.45  # of a channel's first track from the spines
 JOIN, JOIN_AWAY = 0.42, 0.60  # what joins the common spines: width, its middle from the last finger
-GRID = 0.005
 
 Names = tuple[tuple[str, ...], ...]
 
@@ -204,8 +203,7 @@ class _Drawing:
                     self.canvas.stack(x, self.y((spine + far) / 2), FIRST, SECOND)
                 # Stubs of facing combs beside each other
                 aside = -2 * up if count == FINGERS else 3 if 2 * count > FINGERS else 0
-                x = (xs[0] + xs[-1]) / 2 + PITCH * aside
-                x = round(x / GRID) * GRID
+                x = snap((xs[0] + xs[-1]) / 2 + PITCH * aside)
                 v = heights[name]
                 self.metal(SECOND, x - 0.16, min(v, spine + up * SPINE / 2), x + 0.16, max(v, spine + up * SPINE / 2))
                 self.canvas.stack(x, self.y(v), SECOND, THIRD)

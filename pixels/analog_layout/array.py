@@ -20,7 +20,7 @@ from talbot.pixels.circuits.dac import DacSizes
 from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.analog import AnalogMasks
 
-from .device import Strap
+from .device import GRID, Strap, snap
 from .flat import Plate, Tap
 from .pattern import SIDE
 from .strip import FOURTH, SECOND, THIRD, TRACK, TRACK_PITCH
@@ -28,15 +28,10 @@ from .strip import FOURTH, SECOND, THIRD, TRACK, TRACK_PITCH
 # um
 AROUND, TAB, APART = 0.14, 0.45, 1.2  # lower plate around the upper one, on the side of its via; between lower plates
 VIA_IN = 0.24  # of that via's middle from the upper plate
-LINE, LINE_PITCH, LINES = (
-    0.14,
-    0.64,
-    6,
-)  # lines below a column; their pitch, less where their vias would leave the plate
+LINE, LINE_PITCH, LINES = 0.14, 0.64, 6  # below a column; the pitch is less where vias would leave the plate
 LANDING = 0.185  # half of a via's metal
 COLUMN = 0.4  # width of the common node's metal
 RING_AWAY = 1.0  # of the bus's first track from the dummies
-GRID = 0.005
 OUT = "half"
 HALF_COLUMN = SIDE // 2 - 1
 
@@ -104,7 +99,7 @@ def edges(sizes: DacSizes, masks: AnalogMasks) -> tuple[float, float]:
 
     def side(farad: float) -> float:
         a, b = masks.mim_area, 4 * masks.mim_edge
-        return round((sqrt(b * b + 4 * a * farad * 1e15) - b) / (2 * a) / GRID) * GRID
+        return snap((sqrt(b * b + 4 * a * farad * 1e15) - b) / (2 * a))
 
     return side(sizes.unit), side(sizes.unit / 2)
 
@@ -112,7 +107,7 @@ def edges(sizes: DacSizes, masks: AnalogMasks) -> tuple[float, float]:
 def draw_array(canvas: Canvas, masks: AnalogMasks, plan: ArrayPlan, y: float, bus_south: bool = True) -> Array:
     """Draw an array in the middle of its bus, its southern edge at ``y``, or in the north with the bus there."""
     width, height = plan.size_um
-    west = round(((plan.left + plan.right - width) / 2) / GRID) * GRID
+    west = snap((plan.left + plan.right - width) / 2)
     return _Drawing(canvas, masks, plan, west, y if bus_south else y + height, 1 if bus_south else -1).draw()
 
 

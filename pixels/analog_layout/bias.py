@@ -15,8 +15,8 @@ from talbot.platforms.analog import AnalogMasks
 from . import flat
 from .cells import MARGIN, Cell, new_canvas
 from .comparator import BETWEEN_STRIPS
-from .device import IMPLANT, Device
-from .rows import dummies, row, snap
+from .device import IMPLANT, Device, snap
+from .rows import dummies, row
 from .strip import FIRST, FOURTH, RAIL_ENDS, RAIL_HALF, THIRD, WELL_ENDS, Plan, draw_strip, join_rails, trunk
 
 # um

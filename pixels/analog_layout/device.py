@@ -27,6 +27,12 @@ CONTACT_PITCH, CONTACT_IN = 0.34, 0.12  # of contacts along a finger; diffusion 
 IMPLANT, WELL_AROUND, LOW_AROUND = 0.125, 0.20, 0.20
 NITRIDE = 0.10
 TALLEST = 5.0  # of a finger that is chosen here
+GRID = 0.005
+
+
+def snap(um: float) -> float:
+    """The nearest length on the grid."""
+    return round(um / GRID) * GRID
 
 
 class Strap(NamedTuple):

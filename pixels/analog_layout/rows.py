@@ -4,10 +4,8 @@ from collections.abc import Iterable, Mapping
 
 from talbot.pixels.circuits.netlist import Transistor
 
-from .device import Device
+from .device import Device, snap
 from .strip import DROP_PITCH, GAP, Placed
-
-GRID = 0.005  # um
 
 
 def dummies(name: str, like: Device) -> dict[str, Device]:
@@ -29,8 +27,3 @@ def row(d: Mapping[str, Device], names: Iterable[str], axis: float, room: float 
         placed.append(Placed(one, snap(x + (wide - one.width_um) / 2), x, x + wide))
         x = snap(x + wide)
     return tuple(placed)
-
-
-def snap(um: float) -> float:
-    """The nearest length on the grid."""
-    return round(um / GRID) * GRID

@@ -89,6 +89,11 @@ class PixelLayout:
         return f"pixel_{self.kind.beta:g}_{gamma}_{round(np.rad2deg(self.kind.alpha)):d}"
 
     @property
+    def axis(self) -> int | None:
+        """Of the modulation: 0 where the lines are upright, 1 where they are level, None of oblique ones."""
+        return next((axis for axis, of in enumerate((np.sin, np.cos)) if abs(of(self.kind.gamma)) < 1e-9), None)
+
+    @property
     def well_um(self) -> tuple[float, float]:
         """Width and height of a diode."""
         pitch = self.geometry.pitch_um
@@ -181,14 +186,12 @@ def openings(made: PixelLayout) -> Iterator[tuple[int, tuple[float, float, float
     Upright and level lines continue in the edges beside them: the space to these is that of two lines, or the least to
     wide metal.
     """
-    grid, pitch = made.process.grid_um, made.geometry.pitch_um
-    upright, flat = (abs(of(made.kind.gamma)) < 1e-9 for of in (np.sin, np.cos))
+    grid, pitch, axis = made.process.grid_um, made.geometry.pitch_um, made.axis
     left, right, bottom, top = OPENING
     nominal = [(BAR, 0.0, pitch - BAR, pitch)]
     nominal += [(x, bottom, y, top) for x, y in ((left, right), (pitch - right, pitch - left))]
     for (level, of, polygons_of), box in zip(_gratings(made), nominal, strict=True):
-        axis = 0 if upright else 1
-        if level == UPPER and upright or level == ROWS_ON and (upright or flat):
+        if level == UPPER and axis == 0 or level == ROWS_ON and axis is not None:
             places = [corner[axis] for corners in polygons_of for corner in corners]
             space = max(of.pitch - of.width, round(BESIDE_WIDE[level] / grid))  # of a direction of length 1
             aligned = list(box)
@@ -201,21 +204,21 @@ def _gratings(made: PixelLayout) -> Iterator[tuple[int, Lines, list[list[Point]]
     """(metal, grating, its lines) of the upper grating and of the analyzer of each half, of one origin."""
     g, grid = made.geometry, made.process.grid_um
     pitch, (upper, lower) = g.pitch_um, made.gratings()
-    upright, flat = (abs(of(made.kind.gamma)) < 1e-9 for of in (np.sin, np.cos))
     origin = round(pitch / 2 / grid), round(sum(GRATING) / 2 / grid)
 
     def within(of: Lines, box: tuple[float, float, float, float], shift: float) -> list[list[Point]]:
         west, south, east, north = (round(edge / grid) for edge in box)
         return [*polygons(of, (west, south, east, north), shift, origin)]
 
-    beside = BAR + (max(grid * (upper.pitch - upper.width), BESIDE_WIDE[UPPER]) if upright else BESIDE_WIDE[UPPER])
+    lines_apart = grid * (upper.pitch - upper.width) if made.axis == 0 else 0.0
+    beside = BAR + max(lines_apart, BESIDE_WIDE[UPPER])
     yield UPPER, upper, within(upper, (beside, GRATING[0], pitch - beside, GRATING[1]), 0.0)
     level, least = made.process.level(g.analyzer or ""), BESIDE_WIDE[ROWS_ON]
     if level != ROWS_ON:
         left, right, bottom, top = BELOW
-    elif upright or flat:
+    elif made.axis is not None:
         space = max(grid * (lower.pitch - lower.width), least)
-        x, y = (space, 0.0) if upright else (0.0, space)
+        x, y = (space, 0.0) if made.axis == 0 else (0.0, space)
         left, right, bottom, top = REACH[0] + x, REACH[1] - x, REACH[2] + y, REACH[3] - y
     else:
         left, right, bottom, top = OPENING[0] + least, OPENING[1] - least, OPENING[2] + least, OPENING[3] - least
