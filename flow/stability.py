@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from talbot.base.cases import write_page
-from talbot.base.files import check_folder, staged
+from talbot.base.files import check_file, staged
 from talbot.base.paths import RESULTS
 from talbot.base.progress import each
 from talbot.flow.frame import job
@@ -45,22 +45,17 @@ FRAMES = (
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot stability`."""
-    parser.add_argument("--out", type=Path, help="folder of the page (default: build/stability)")
+    parser.add_argument("--out", type=Path, default=RESULTS / "stability", help="folder of the page")
     parser.add_argument("--json", type=Path, help="also write the table to this file")
 
 
 def run(options: Namespace) -> int:
     """Print the table of all cases and write it as a page; 1 where a bound is missed."""
     if options.json:
-        check_folder("json", options.json.parent)
+        check_file("json", options.json)
     cases = all_cases()
     print(table(cases))
-    write_page(
-        options.out or RESULTS / "stability",
-        "Stiff and extreme cases",
-        "of the optics and of the chip; make stability",
-        cases,
-    )
+    write_page(options.out, "Stiff and extreme cases", "of the optics and of the chip; make stability", cases)
     if options.json:
         with staged(options.json.parent) as part:
             (part / options.json.name).write_text(json.dumps([vars(case) for case in cases], indent=1) + "\n")

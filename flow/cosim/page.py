@@ -124,7 +124,9 @@ def _tiles(s: Mapping[str, Any]) -> list[Tile]:
 
 def _about(s: Mapping[str, Any]) -> str:
     one = s["rows"][0]
-    return f"{one['columns']} columns, {len(one['lanes'])} lanes in {one['transistors']} transistors of SKY130"
+    counts = (one["columns"], "column"), (len(one["lanes"]), "lane")
+    columns, lanes = (f"{count} {name}{'s' * (count != 1)}" for count, name in counts)
+    return f"{columns}, {lanes} in {one['transistors']} transistors of SKY130"
 
 
 def _waves(row: Row) -> Markup:
@@ -141,5 +143,5 @@ def _waves(row: Row) -> Markup:
         axes.legend(fontsize=8, frameon=False, loc="right")
         axes.set_ylabel("V", fontsize=9)
         axes.tick_params(labelsize=8)
-    below.set_xlabel("us of the circuit", fontsize=9)
+    below.set_xlabel("µs of the circuit", fontsize=9)
     return svg(figure)

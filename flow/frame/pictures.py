@@ -13,7 +13,7 @@ from talbot.models.parameters import TileParameters
 
 Values = npt.NDArray[np.floating]
 
-INK, PAPER, MUTED = (24, 28, 36), (255, 255, 255), (110, 118, 132)
+INK, PAPER = (24, 28, 36), (255, 255, 255)
 COLD, WARM = np.array([33, 102, 172]), np.array([178, 24, 43])
 CONVERTED, ZERO, UNREAD = (250, 204, 92), (44, 52, 66), (205, 210, 218)
 

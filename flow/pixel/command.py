@@ -1,11 +1,26 @@
 """The pixel of a process: gratings of its metals that make the tile's types, what they do to light, and how well."""
 
 from argparse import ArgumentParser, Namespace
+from math import inf
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from talbot.base.progress import Steps
 from talbot.models.parameters import check_choice
+
+if TYPE_CHECKING:
+    from talbot.pixels.optics.geometry import PixelGeometry
+
+# Fields of pixels.optics.geometry.PixelGeometry
+METALS = {"diffraction": "metal of the upper grating", "analyzer": "metal of the lower grating, or the gates"}
+NUMBERS = {
+    "period_um": "period of the gratings",
+    "fill": "share of a period that the upper lines cover",
+    "analyzer_fill": "share of a period that the lower lines cover",
+    "shift": "of the lower lines against the upper ones, in periods",
+    "pitch_um": "pitch of the pixels",
+}
+WAVELENGTH_UM = 0.55
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -13,26 +28,52 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--pdk", default="sky130", help="process, sky130 or ihp-sg13g2")
     parser.add_argument("--heights", help="which published table of heights, where the process has several")
     parser.add_argument("--kind", default="all", help="amplitude, interleaved, photogate, or all: the best one")
-    parser.add_argument("--out", type=Path, help="folder for the results (default: build/pixel/<pdk>)")
+    note = "of one geometry, which is solved in place of the search"
+    for name, said in (METALS | NUMBERS).items():
+        parser.add_argument(f"--{name.replace('_', '-')}", help=f"{said}, {note}")
+    parser.add_argument("--wavelength-um", help=f"of light, 0.35..1, {note} (default: {WAVELENGTH_UM})")
+    parser.add_argument(
+        "--out", type=Path, help="folder for the results (default: build/pixel/<pdk>, or build/pixel/one)"
+    )
 
 
 def run(options: Namespace) -> int:
-    """Search, write the page and print the figures; 1 where no beta of the tile can be made."""
+    """Search, write the page and print the figures; 1 where no beta of the tile can be made. Or solve one geometry."""
     from talbot.base.paths import RESULTS
     from talbot.pixels.optics.geometry import KINDS
     from talbot.platforms.optics import optical_stack
 
+    from . import one
     from .job import STEPS, make
     from .search import offered
 
     check_choice("kind", options.kind, (*KINDS, "all"))
     stack = optical_stack(options.pdk, options.heights)
+    if chosen := _one(options):
+        out = options.out or RESULTS / "pixel" / "one"
+        one.show(one.make(*chosen, out), out)
+        return 0
     kinds = offered(stack, KINDS if options.kind == "all" else (options.kind,))
     out = options.out or RESULTS / "pixel" / options.pdk
     with Steps(STEPS, lines=True) as steps:
         summary = make(stack, kinds, out, steps.note)
     _print(summary, out)
     return 0 if any(row["reached"] for row in summary["betas"]) else 1
+
+
+def _one(options: Namespace) -> "tuple[PixelGeometry, float] | None":
+    """The geometry and the wavelength in um; None where no option names either. Raises ParameterError."""
+    from talbot.flow.frame.arguments import real
+    from talbot.pixels.optics.geometry import PixelGeometry
+
+    given = {name: getattr(options, name) for name in (*METALS, *NUMBERS) if getattr(options, name) is not None}
+    if not given and options.wavelength_um is None:
+        return None
+    kind = "amplitude" if options.kind == "all" else options.kind
+    values: dict[str, Any] = {"analyzer": None} if kind == "interleaved" else {}
+    values |= {name: real(name, text, -inf, inf) if name in NUMBERS else text for name, text in given.items()}
+    geometry = PixelGeometry(options.pdk, kind, heights=options.heights, **values)
+    return geometry, real("wavelength_um", options.wavelength_um or str(WAVELENGTH_UM), 0.35, 1)
 
 
 def _print(s: dict[str, Any], folder: Path) -> None:

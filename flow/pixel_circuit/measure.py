@@ -76,11 +76,6 @@ class PixelFound:
         """Of a read against the next reset: both have reset noise, by the closed form, and the follower's."""
         return sqrt(2) * float(np.hypot(self.reset_closed, self.read_noise))
 
-    @property
-    def dynamic_range_db(self) -> float:
-        """Full well over the noise in the dark."""
-        return 20 * float(np.log10(self.full_well / self.dark_noise))
-
 
 def measure(made: PixelLayout, corner: Corner, bench: Bench) -> PixelFound:
     """Measure the pixel at a corner. Raises ToolError, ParameterError for a pixel without a range."""

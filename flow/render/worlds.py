@@ -15,7 +15,6 @@ from .variant import mitsuba
 Objects = dict[str, Any]
 SEED = 18  # of the textures and the leaves
 LAMP = 7.5  # radiance of the lamps of `spheres`, white = 1
-PANEL = 1.5  # radiance of the lit panel: fills its pixels
 GLOSSY = ("pplastic",)  # of whose highlights polarization tells: a metal's have little
 FOG = 0.9, 1.4  # m, of the scatterer
 DENSITY, ALBEDO = 0.7, 0.95  # 1/m, extinction and what is scattered of it

@@ -1,5 +1,7 @@
 """The pixel by its public name and on the command line, and a chip whose pixels respond as a process's gratings do."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -27,6 +29,16 @@ def test_a_solution_by_the_public_name():
         ("pixel --kind phase", "kind = 'phase': must be one of amplitude, interleaved, photogate, all"),
         ("pixel --heights high", "heights = 'high': must be one of met2-2.006, met2-2.301"),
         ("pixel --pdk ihp-sg13g2 --kind photogate", "kind = photogate: must be one that ihp-sg13g2 can make"),
+        ("pixel --period-um 0.5", "period_um = 0.5: must be at least 0.6, met4's width and space in sky130"),
+        ("pixel --period-um 12", "period_um = 12.0: must be a number in [0.1, 5.0]"),
+        ("pixel --period-um wide", "period_um = 'wide': must be a number"),
+        ("pixel --diffraction met9", "diffraction = 'met9': must be one of met1, met2, met3, met4, met5"),
+        ("pixel --diffraction met1 --analyzer met4", "must be below diffraction = 'met1' (gap -3.490 um)"),
+        ("pixel --fill 0.05 --period-um 0.7", "fill = 0.05: must be in [0.429, 0.571]"),
+        ("pixel --shift 3", "shift = 3.0: must be a number in [-1, 1]"),
+        ("pixel --wavelength-um 550", "wavelength_um = '550': must be a number in [0.35, 1]"),
+        ("pixel --kind interleaved --analyzer met1", "analyzer = 'met1': must be None"),
+        ("pixel --kind photogate --period-um 1", "analyzer = 'met1': must be poly"),
         ("pixel-circuit --pdk ihp-sg13g2", "pdk = 'ihp-sg13g2': must be one of sky130"),
         ("pixel-circuit --corners tt_30", "corners = 'tt_30': must be all, typical, or some of tt_-40"),
         ("pixel-circuit --gate 9", "gate_v = 9.0: must be"),
@@ -38,6 +50,19 @@ def test_refused_in_one_line(words, said, capsys):
     assert main(words.split()) == 2
     error = capsys.readouterr().err
     assert said in error and error.count("\n") == 1
+
+
+def test_one_geometry_on_the_command_line(tmp_path, capsys):
+    """What is written is what the library gives."""
+    words = f"pixel --kind interleaved --diffraction met3 --period-um 1.1 --out {tmp_path / 'one'}"
+    assert main(words.split()) == 0
+    assert "sky130: interleaved pixel, met3, period 1.1 um, at 550 nm" in capsys.readouterr().out
+    geometry = talbot.pixel.PixelGeometry(kind="interleaved", diffraction="met3", analyzer=None, period_um=1.1)
+    with np.load(tmp_path / "one" / "response.npz") as kept:
+        found = talbot.pixel.solve(geometry, kept["angles"][[0, 50]], kept["wavelengths"])
+        np.testing.assert_allclose(kept["response"][:, [0, 50]], found.shares.transpose(2, 3, 0, 1), atol=1e-9)
+    summary = json.loads((tmp_path / "one" / "summary.json").read_text())
+    assert summary["period_um"] == 1.1 and summary["analyzer"] is None and 0 < summary["m"] < 1
 
 
 def test_pixels_by_name_as_on_the_command_line(tmp_path):

@@ -185,6 +185,8 @@ def test_a_decoded_file(photograph, tmp_path, capsys):
         (f"formats --codes {__file__}", "must be an npz file with codes and ideal"),
         ("sensor --out /proc/sensor.toml", "out = '/proc': must be a folder that you may write"),
         *((f"{name} --out {__file__}", "must be a folder") for name in ("layout", "cells", "formats", "coverage")),
+        (f"stability --out {__file__}", "must be a folder"),
+        ("stability --json /tmp", "json = '/tmp': must be a file, not a folder"),
         ("sim --nothing", "unrecognized arguments: --nothing"),
         ("sim --scnee coins", "unrecognized arguments: --scnee coins; did you mean --scene?"),
         ("simm", "invalid choice: 'simm'; did you mean sim?"),

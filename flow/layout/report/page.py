@@ -82,7 +82,7 @@ def closing(summary: dict[str, Any], broken: Sequence[str], report: Path) -> str
     """
     rows = [(tile.label, tile.value) for tile in tiles(summary, broken)]
     rows += [("limits", f"{len(broken)} broken" if broken else "all kept"), ("look at", str(report))]
-    return "\n".join(f"  {label:<24}{value}" for label, value in rows)
+    return "\n".join(f"  {label:<28}{value}" for label, value in rows)
 
 
 def tiles(s: dict[str, Any], broken: Sequence[str]) -> list[Tile]:
@@ -94,10 +94,10 @@ def tiles(s: dict[str, Any], broken: Sequence[str]) -> list[Tile]:
             return Tile("not run", label, "bad" if bad else "none")
         return Tile(str(value), label, "bad" if bad else "good" if rule else "")
 
-    def worst(name: str) -> str | None:
+    def worst(name: str, label: str) -> Tile:
         found = s.get(name) or {}
         corner = min(found, key=lambda one: found[one], default=None)
-        return corner and f"{found[corner]:.3f} ns ({corner})"
+        return tile(f"{found[corner]:.3f} ns", f"{label}, {corner}", name) if corner else tile(None, label, name)
 
     tests = s["gate_tests"] or {}
     return [
@@ -109,8 +109,8 @@ def tiles(s: dict[str, Any], broken: Sequence[str]) -> list[Tile]:
         tile({True: "match", False: "differ"}.get(s["lvs_match"]), "LVS", "lvs_match"),
         tile(s["equivalence"], "equivalence", "equivalence"),
         tile(tests.get("passed"), "netlist tests passed", "gate_tests"),
-        tile(worst("wns_ns"), "setup slack", "wns_ns"),
-        tile(worst("whs_ns"), "hold slack", "whs_ns"),
+        worst("wns_ns", "setup slack"),
+        worst("whs_ns", "hold slack"),
         tile(s["f_max_mhz"] and f"{s['f_max_mhz']:.1f} MHz", "highest clock"),
         tile(s["antenna_violations"], "antennas", "antenna_violations"),
     ]

@@ -140,5 +140,5 @@ def by_block(
         axes.add_collection(PatchCollection(boxes, facecolor=f"C{k % 10}", edgecolor="white", linewidth=0.2))
         axes.plot([], [], "s", color=f"C{k % 10}", label=f"{block} ({len(boxes)})")
     axes.set(xlim=(0, plan["width_um"]), ylim=(0, plan["height_um"]), aspect="equal", xlabel="µm", ylabel="µm")
-    figure.legend(loc="outside right upper", frameon=False)
-    figure.savefig(png, dpi=130, metadata={"Software": None})
+    figure.legend(loc="outside right center", frameon=False)
+    figure.savefig(png, dpi=130, bbox_inches="tight", metadata={"Software": None})

@@ -13,7 +13,7 @@ SUMMARY |= {"gate_tests": {"passed": 3, "failed": 0}, "wns_ns": {"tt": 0.5, "ss"
 def test_closing():
     rules = {"drc_violations": {"is": 0}, "wns_ns": {"least": 0}, "lvs_match": {"is": True}}
     lines = closing(SUMMARY, broken(SUMMARY, rules), Path("out/report.html")).splitlines()
-    found = {line[2:26].strip(): line[26:] for line in lines}
-    assert found["setup slack"] == "-0.250 ns (ss)" and found["hold slack"] == found["equivalence"] == "not run"
+    found = {line[2:30].strip(): line[30:] for line in lines}
+    assert found["setup slack, ss"] == "-0.250 ns" and found["hold slack"] == found["equivalence"] == "not run"
     assert (found["area"], found["LVS"], found["DRC violations"]) == ("1,234 um2", "match", "2")
     assert (found["limits"], found["look at"]) == ("2 broken", "out/report.html")

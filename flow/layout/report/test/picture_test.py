@@ -2,11 +2,13 @@
 
 import numpy as np
 import pytest
+from PIL import Image
 
 pytest.importorskip("klayout.lay", reason="klayout = not installed: make layout")
 
 from talbot.base.gds import db, write_gds
-from talbot.flow.layout.report.picture import BACKGROUND, render
+from talbot.flow.layout.netlist.netlist import Instance, Netlist
+from talbot.flow.layout.report.picture import BACKGROUND, by_block, render
 from talbot.platforms.coriolis import coriolis_platform
 
 TECH = coriolis_platform("sky130")
@@ -55,3 +57,15 @@ def test_the_whole_picture_and_its_layers_have_the_same_colours(files):
     shown = {tuple(layer.rgb.to_bytes(3, "big")) for layer in picture.layers if np.asarray(layer.mask).any()}
     assert colors == shown | {BACKGROUND}
     assert all(layer.src.startswith("data:image/png") for layer in picture.layers)
+
+
+def test_cells_by_block_are_drawn_with_all_their_labels_beside_the_pages_buttons(tmp_path):
+    """Nothing touches the picture's edge, and the corner where the page has its buttons is free."""
+    netlist = Netlist("top", (), (Instance("a", "cell", {"A": "n"}), Instance("b", "cell", {"A": "n"})))
+    placed = [["a", "cell", 0.0, 0.0, "0"], ["b", "cell", 50.0, 50.0, "0"]]
+    plan = {"width_um": 131.0, "height_um": 125.0}
+    found = {"a": "top", "b": "clock tree"}
+    by_block(tmp_path / "blocks.png", netlist, placed, {"cell": 400.0}, TECH, found, plan)
+    ink = np.asarray(Image.open(tmp_path / "blocks.png").convert("L")) < 250
+    assert ink.any() and not (ink[[0, -1]].any() or ink[:, [0, -1]].any())
+    assert not ink[: len(ink) // 10, -ink.shape[1] // 10 :].any()
