@@ -43,7 +43,8 @@ class OpenRoadPlatform:
     -> GDS layer. outline: GDS layer of the die's. pin_datatype, label_datatype: of GDS. lvs: KLayout's deck, a
     template. utilization: area of the synthesized cells over that of the core. density_addon: share of the way from
     the least feasible density of placement to 1. padding: sites kept free on both sides of a cell in placement.
-    setup_margin_ns, hold_margin_ns: slack that repair leaves at estimated parasitics.
+    setup_margin_ns, hold_margin_ns: slack that repair leaves at estimated parasitics. load_margin: share of a slew's or
+    load's limit that it leaves.
     """
 
     name: str
@@ -95,6 +96,7 @@ class OpenRoadPlatform:
     kept_free: float = 0.3
     setup_margin_ns: float = field(default=0.4, metadata={"unit": "ns"})
     hold_margin_ns: float = field(default=0.05, metadata={"unit": "ns"})
+    load_margin: float = 0.2
 
     @property
     def corners(self) -> tuple[str, ...]:

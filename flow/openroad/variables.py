@@ -16,6 +16,7 @@ def variables(design: Design, tech: OpenRoadPlatform) -> str:
         | {"pin_horizontal": tech.pins[0], "pin_vertical": tech.pins[1]}
         | {"signal_layers": "-".join(tech.signal), "clock_layers": "-".join(tech.clock)}
         | {"setup_margin": tech.setup_margin_ns, "hold_margin": tech.hold_margin_ns}
+        | {"load_margin": round(100 * tech.load_margin), "output_buffer": tech.buffer[0]}
         | {name: getattr(tech, name) for name in ("tap", "endcap", "clock_root", "diode", "padding")}
         | {name: getattr(tech, name) for name in ("density_addon", "kept_free")}
     )

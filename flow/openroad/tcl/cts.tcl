@@ -13,6 +13,8 @@ legalize
 shorten
 estimate_parasitics -placement
 repair_timing -setup -setup_margin $setup_margin
+estimate_parasitics -placement
+repair_design -slew_margin $load_margin -cap_margin $load_margin
 repair_timing -hold -hold_margin $hold_margin
 legalize
 write_db cts.odb

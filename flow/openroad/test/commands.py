@@ -102,6 +102,7 @@ COMMANDS = {
     "estimate_parasitics": Command(
         "est and rsz README", _words("-spef_file"), _words("-placement -global_routing"), writes="-spef_file"
     ),
+    "buffer_ports": Command("rsz README", _words("-buffer_cell -max_utilization"), _words("-inputs -outputs -verbose")),
     "repair_design": Command(
         "rsz README",
         _words("-max_wire_length -slew_margin -cap_margin -max_utilization"),
