@@ -51,7 +51,7 @@ def run(options: Namespace) -> int:
     stack = optical_stack(options.pdk, options.heights)
     if chosen := _one(options):
         out = options.out or RESULTS / "pixel" / "one"
-        one.show(one.make(*chosen, out), out)
+        _print_one(one.make(*chosen, out), out)
         return 0
     kinds = offered(stack, KINDS if options.kind == "all" else (options.kind,))
     out = options.out or RESULTS / "pixel" / options.pdk
@@ -76,14 +76,30 @@ def _one(options: Namespace) -> "tuple[PixelGeometry, float] | None":
     return geometry, real("wavelength_um", options.wavelength_um or str(WAVELENGTH_UM), 0.35, 1)
 
 
+def _print_one(s: dict[str, Any], folder: Path) -> None:
+    light = f"{1e3 * s['wavelength_um']:.0f} nm"
+    print(f"{s['process']}: {s['kind']} pixel, {_metals(s)}, period {s['period_um']:g} um, at {light}")
+    print(f"  alpha {s['alpha']:.2f} rad, beta {s['beta']:.1f}, {_figures(s)}")
+    print(f"  {s['wall_s']:.1f} s; look at {folder / 'response.npz'}")
+
+
 def _print(s: dict[str, Any], folder: Path) -> None:
     print(f"{s['process']}: {s['kind']} pixel at {1e3 * s['wavelength_um']:.0f} nm, {s['tried']} gratings tried")
     for row in s["betas"]:
-        metals = row["diffraction"] + (f" over {row['analyzer']}" if row["analyzer"] else "")
         said = "" if row["reached"] else ": not reached, the nearest is"
         print(
-            f"  beta {row['wanted']:g}{said} {row['beta']:.1f}: {metals}, period {row['period_um']:g} um; "
-            f"m {row['m']:.2f}, quantum efficiency {row['quantum_efficiency']:.3f}, "
-            f"extinction ratio {row['extinction_ratio']:.2f}, residual of Eq. 3.1 {row['residual_rms']:.2f} rms"
+            f"  beta {row['wanted']:g}{said} {row['beta']:.1f}: {_metals(row)}, period {row['period_um']:g} um; "
+            f"{_figures(row)}"
         )
     print(f"  {s['wall_s']:.0f} s; look at {folder / 'pixel.html'}")
+
+
+def _metals(of: dict[str, Any]) -> str:
+    return of["diffraction"] + (f" over {of['analyzer']}" if of["analyzer"] else "")
+
+
+def _figures(of: dict[str, Any]) -> str:
+    return (
+        f"m {of['m']:.2f}, quantum efficiency {of['quantum_efficiency']:.3f}, "
+        f"extinction ratio {of['extinction_ratio']:.2f}, residual of Eq. 3.1 {of['residual_rms']:.2f} rms"
+    )

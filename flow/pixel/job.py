@@ -18,7 +18,7 @@ from talbot.pixels.optics.design import Design
 from talbot.platforms.optics import OpticalStack, tables
 
 from .search import Plan, search
-from .types import Measured, at_heights, convergence, measured, nearest, solve_one, stacked, wavelengths_of
+from .types import Measured, at_heights, axes_of, convergence, measured, nearest, solve_one, stacked, wavelengths_of
 
 STEPS = "candidates", "refine", "curves", "report"
 STORE = BUILD / "pixel" / "solved"
@@ -55,15 +55,10 @@ def make(
     }
     with staged(out, page.NAMES) as folder:
         page.write(folder, summary, found, curves, raised)
-        some = curves[betas[0]].response
-        np.savez_compressed(
-            folder / "response.npz",
-            response=stacked(types, plan, curves),
-            types=[name_of(kind) for kind in types],
-            angles=some.angles,
-            wavelengths=1e-6 * some.wavelengths_um,
-            polarizations=["along the lines", "across the lines"],
-        )
+        names = [name_of(kind) for kind in types]
+        axes = axes_of(curves[betas[0]].response)
+        shares = stacked(types, plan, curves)
+        np.savez_compressed(folder / "response.npz", response=shares, types=names, **axes)
         (folder / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n")
     return summary
 

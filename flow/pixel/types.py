@@ -131,3 +131,12 @@ def beside(one: Measured) -> tuple[Fit, float]:
 def at_heights(design: Design, heights: str) -> Design:
     """The design where the process has another table of heights."""
     return measure(replace(design.geometry, heights=heights), design.wavelength_um)
+
+
+def axes_of(response: Response) -> dict[str, Any]:
+    """What response.npz has beside the response: its angles in rad, wavelengths in m, and polarizations."""
+    return {
+        "angles": response.angles,
+        "wavelengths": 1e-6 * response.wavelengths_um,
+        "polarizations": ["along the lines", "across the lines"],
+    }

@@ -37,6 +37,12 @@ proc routing_layers {} {
   set_global_routing_layer_adjustment $signal_layers $kept_free
 }
 
+# Slews and loads, with a share of each limit left.
+proc repair_loads {} {
+  global load_margin
+  repair_design -slew_margin $load_margin -cap_margin $load_margin
+}
+
 proc legalize {} {
   global padding
   set_placement_padding -global -left $padding -right $padding

@@ -13,8 +13,7 @@ legalize
 shorten
 estimate_parasitics -placement
 repair_timing -setup -setup_margin $setup_margin
-estimate_parasitics -placement
-repair_design -slew_margin $load_margin -cap_margin $load_margin
+repair_loads
 repair_timing -hold -hold_margin $hold_margin
 legalize
 write_db cts.odb

@@ -12,7 +12,7 @@ global_placement -density $density {*}$room -timing_driven
 estimate_parasitics -placement
 # A load of the design's outside is a buffer's: repair puts none before a port, and a gate alone cannot drive it
 buffer_ports -outputs -buffer_cell $output_buffer
-repair_design -slew_margin $load_margin -cap_margin $load_margin
+repair_loads
 repair_tie_fanout [join $low /]
 repair_tie_fanout [join $high /]
 legalize

@@ -6,10 +6,10 @@ routing_layers
 estimate_parasitics -placement -spef_file placement.spef
 global_route -allow_congestion -congestion_iterations 50
 estimate_parasitics -global_routing
-repair_design -slew_margin $load_margin -cap_margin $load_margin
+repair_loads
 repair_timing -setup -setup_margin $setup_margin
 # Setup takes buffers away and makes gates larger: their drivers have to bear it
-repair_design -slew_margin $load_margin -cap_margin $load_margin
+repair_loads
 repair_timing -hold -hold_margin $hold_margin
 legalize
 shorten
