@@ -53,13 +53,13 @@ def whole(tmp_path_factory):
     return {path.name for path in out.iterdir()}, time.monotonic() - begin
 
 
-@pytest.mark.parametrize("part", range(12))
+@pytest.mark.parametrize("part", range(6))
 def test_at_a_random_moment(tmp_path, whole, part):
-    """In each twelfth of the run once; which signal, and whether the whole group gets it, is drawn."""
+    """In each sixth of the run once; which signal, and whether the whole group gets it, is drawn."""
     names, seconds = whole
     child = sim(tmp_path)
     begun(child)
-    time.sleep((part + random.random()) / 12 * seconds)
+    time.sleep((part + random.random()) / 6 * seconds)
     sent = random.choice((signal.SIGINT, signal.SIGTERM))
     status, err = end(child, sent, random.random() < 0.5)
     out = tmp_path / "out"
