@@ -108,6 +108,7 @@ VIEWS = np.linspace(0, 1, 3 * 3 * 4 * 6).reshape(3, 3, 4, 6)
     [
         (lambda: talbot.Sensor(rowz=3), r"rowz = 3: must be a parameter of a sensor; did you mean rows\?"),
         (lambda: talbot.Sensor(m=2), r"optics.m = 2: must be a number in \[0, 1\] \(Modulation depth"),
+        (lambda: talbot.PixelType(beta=18, gamma_deg=0, alpha=7), r"alpha = 7: must be .* in .-6.2832, 6.2832. rad"),
         (lambda: talbot.Sensor(converter="good"), "converter = 'good': must be one of typical, ideal"),
         (lambda: talbot.Sensor(tile=[[]]), "tile cols = 0: must be an integer in 1..6"),
         (lambda: talbot.Sensor().golden("coins", treshold=3), r"treshold = 3: must be .*; did you mean threshold\?"),
