@@ -130,19 +130,19 @@ def test_a_capacitor_that_is_missing_or_too_near_is_found(lane, tmp_path):
 
 
 @pytest.mark.slow
-def test_lanes_with_amplifiers_and_bias_keep_the_rules_are_their_circuits_and_swapped_lines_are_found(tmp_path):
+def test_lanes_with_amplifiers_and_bias_keep_the_rules_are_their_circuits_and_swapped_nets_are_found(tmp_path):
     made = draw_converters(MASKS, LANE, AMPLIFIER, ChipParameters(2), AnalogSizes())
     path = tmp_path / "adc_lanes.gds"
     write_gds(made.layout, path, made.cell)
     assert drc(path, "sky130", tmp_path / "good.lyrdb") == {}
     text = made.spice(MASKS)
     assert lvs(path, text, "sky130", tmp_path / "good.lvsdb")
-    inner, head, rest = text.partition(".subckt adc_lanes")
-    ports, _, rest = rest.partition("\n")
-    for one, other in (("dac[3]", "dac[11]"), ("lane_a[1]", "lane_b[1]")):
-        swapped = rest.replace(f" {one} ", " x ").replace(f" {other} ", f" {one} ").replace(" x ", f" {other} ")
-        assert swapped != rest
-        assert not lvs(path, f"{inner}{head}{ports}\n{swapped}", "sky130", tmp_path / "swapped.lvsdb")
+    planted = ("dac[3]", "dac[2]", "adc_lane"), ("out_0", "vref", "adc_lane"), ("reset_0", "reset_1", "adc_amplifier")
+    for one, other, cell in planted:
+        (line,) = (line for line in text.splitlines() if line.startswith(f"X{cell}0 "))
+        swapped = line.replace(f" {one} ", " x ").replace(f" {other} ", f" {one} ").replace(" x ", f" {other} ")
+        assert swapped != line
+        assert not lvs(path, text.replace(line, swapped), "sky130", tmp_path / "swapped.lvsdb")
 
 
 def test_the_blocks_pins_are_the_black_boxes_and_those_of_references_and_wake(tmp_path):
