@@ -5,6 +5,7 @@ one, which takes minutes with a simulator. Where a CI runs the tests, Hypothesis
 whatever --hypothesis-seed says, but with --hypothesis-profile=seeded.
 """
 
+import gc
 import importlib.util
 import os
 import re
@@ -23,6 +24,9 @@ settings.load_profile("first")
 # which reads this, is not imported yet). Results are those of one thread on any machine, too.
 for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"):
     os.environ.setdefault(name, "1")
+
+# Collection makes objects that all stay: to look for cycles among them took a third of its time
+gc.disable()
 
 # These draw and read layouts: KLayout's Python module comes with the environment of cells and layouts
 LAYOUTS = "talbot/cells/extract", "talbot/cells/compact", "talbot/cells/lef", "talbot/cells/test"
@@ -101,6 +105,12 @@ def in_package(argument, folder):
     name, *node = argument.partition("::")
     path = Path(os.path.relpath(folder / name, PACKAGE.parent))
     return f"{PACKAGE / path}{''.join(node)}" if PACKAGE.joinpath(*path.parts[:1]).is_symlink() else argument
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_collection_finish():
+    gc.freeze()
+    gc.enable()
 
 
 def pytest_collection_modifyitems(config, items):

@@ -20,7 +20,7 @@ from matplotlib.transforms import Bbox
 # Of a label beside its point: offset in points, alignment
 PLACES = ((5, 3, "left", "bottom"), (5, -3, "left", "top"), (-5, 3, "right", "bottom"), (-5, -3, "right", "top"))
 PLACES += ((0, 7, "center", "bottom"), (0, -7, "center", "top"))
-BROAD = 8, 1.8  # a chart of this width in inches, and this many times its height, has a row of a page for itself
+BROAD = 8  # inches: a chart of this width has a row of a page for itself
 COLOURS = ("#4878a8", "#e8a33d", "#7aa874", "#b8678f", "#8a8f99", "#c9574b")
 
 
@@ -30,8 +30,7 @@ def svg(figure: Figure) -> Markup:
     out = io.StringIO()
     figure.savefig(out, format="svg", bbox_inches="tight", transparent=True, metadata={"Date": None})
     text = out.getvalue().replace("#000000", "currentColor")
-    width, height = figure.get_size_inches()
-    kind = 'class="broad"' if width >= BROAD[0] and width >= BROAD[1] * height else ""
+    kind = 'class="broad"' if figure.get_figwidth() >= BROAD else ""
     return Markup(re.sub(r'width="[\d.]+pt" height="[\d.]+pt"', kind, text[text.index("<svg") :], count=1))
 
 

@@ -59,8 +59,9 @@ def worker_count(text: str) -> int:
 def run(jobs: Iterable[Job], store: Path | str, title: str, workers: int = -1) -> list[Any]:
     """Return the results of ``jobs`` in their order.
 
-    store: folder of the kept results. title: of the progress bar. workers: processes, -1 for
-    all cores. An exception in a job ends the run; results of earlier jobs are kept. Raises ParameterError.
+    store: folder of the kept results; one that is damaged is computed again. title: of the progress bar. workers:
+    processes, -1 for all cores. An exception in a job ends the run; results of earlier jobs are kept. Raises
+    ParameterError.
     """
     store = Path(store)
     store.mkdir(parents=True, exist_ok=True)
@@ -69,7 +70,7 @@ def run(jobs: Iterable[Job], store: Path | str, title: str, workers: int = -1) -
     if len(set(names)) != len(names):
         raise ParameterError(f"jobs = {title}: two have one name")
     files = [job.file(store) for job in jobs]
-    todo = [(job, file) for job, file in zip(jobs, files, strict=True) if not file.exists()]
+    todo = [(job, file) for job, file in zip(jobs, files, strict=True) if not kept(file)]
     with _backend(workers):
         calls = (joblib.delayed(_keep)(job, file) for job, file in todo)
         with warnings.catch_warnings():  # joblib restarts a process that has grown, and warns
@@ -79,6 +80,14 @@ def run(jobs: Iterable[Job], store: Path | str, title: str, workers: int = -1) -
             for _ in each(parallel(calls), title, str, len(todo)):
                 pass
     return [json.loads(file.read_text()) for file in files]
+
+
+def kept(file: Path) -> list[Any]:
+    """The one value of a JSON file; [] where there is no file, or not the whole of one."""
+    try:
+        return [json.loads(file.read_text())]
+    except (FileNotFoundError, ValueError):
+        return []
 
 
 @contextlib.contextmanager

@@ -30,7 +30,8 @@ class Card(NamedTuple):
 
 def cards(folder: Path) -> list[Card]:
     """Those of the pages below ``folder``, the newest first."""
-    pages = {path: path.stat().st_mtime for pattern in PATTERNS for path in folder.glob(pattern)}
+    paths = [path for pattern in PATTERNS for path in folder.glob(pattern) if path.is_file()]
+    pages = {path: path.stat().st_mtime for path in paths}
     return [found for path in sorted(pages, key=lambda path: -pages[path]) if (found := read(path, folder))]
 
 
@@ -40,7 +41,7 @@ def refresh(folder: Path) -> Path:
     for card in cards(folder):
         groups.setdefault(card.href.partition("/")[0], []).append(card)
     path, text = folder / NAME, render(FOLDER / "index.html", "Talbot: results", listed=False, groups=groups)
-    if groups and not path.is_file() or path.is_file() and path.read_text() != text:
+    if groups and not path.is_file() or path.is_file() and path.read_text(errors="replace") != text:
         write(path, text)
     return path
 

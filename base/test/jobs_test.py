@@ -40,6 +40,16 @@ def test_a_failed_run_keeps_what_was_done(tmp_path):
     assert sorted(map(int, log.read_text().split())) == [1, 2, 3]
 
 
+@pytest.mark.parametrize("damage", [b"", b'{"square": ', bytes(range(256))])
+def test_a_result_that_is_damaged_is_computed_again(tmp_path, damage):
+    log, store = tmp_path / "log", tmp_path / "store"
+    run(jobs_of([1, 2], log), store, "squares", workers=1)
+    jobs_of([2], log)[0].file(store).write_bytes(damage)
+    for _ in range(2):
+        assert [r["square"] for r in run(jobs_of([1, 2], log), store, "squares", workers=1)] == [1, 4]
+    assert log.read_text().split() == ["1", "2", "2"]
+
+
 def result_of(number):
     return {"gain": [1.0, number], "offset": 0.0}
 

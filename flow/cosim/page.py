@@ -52,7 +52,7 @@ def _line(s: Mapping[str, Any]) -> tuple[str, ...]:
     numbers = (s["samples"], s["differing"], s["largest_difference_lsb"], s["decisions"], s["differing_decisions"])
     more = (s["transistors"], s["circuit_cycles"], s["chip_cycles"], s["time_points"], s["attempts"])
     ns = f"{1e9 * s['slowest_decision_s']:.2f}"
-    return (s["mode"], *map(str, numbers), ns, *map(str, more), f"{s['seconds']:.1f}")
+    return (s["mode"], *(f"{n:,}" for n in numbers), ns, *(f"{n:,}" for n in more), f"{s['seconds']:.1f}")
 
 
 def _codes(row: Row) -> Section:
@@ -140,7 +140,7 @@ def _waves(row: Row) -> Markup:
     for axes, pair in ((above, ("top", "other")), (below, ("xcomparator.outp", "xcomparator.outn"))):
         for colour, node in zip(COLOURS, pair, strict=False):
             axes.plot(micro, run.waves[f"xlane{lane}.{node}"][at], color=colour, linewidth=0.9, label=node)
-        axes.legend(fontsize=8, frameon=False, loc="right")
+        axes.legend(fontsize=8, frameon=False, loc="lower right", bbox_to_anchor=(1, 1), ncols=2)
         axes.set_ylabel("V", fontsize=9)
         axes.tick_params(labelsize=8)
     below.set_xlabel("µs of the circuit", fontsize=9)

@@ -7,8 +7,8 @@ from collections.abc import Callable
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
+from talbot.models.compiled import njit
 from talbot.models.digital.stream.payload import encode_segment
 
 from .codes import Codes

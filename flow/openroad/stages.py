@@ -11,6 +11,7 @@ from pathlib import Path
 
 from talbot.base.cache import digest
 from talbot.base.files import staged
+from talbot.base.jobs import kept
 from talbot.base.liberty.read import without
 from talbot.base.steps.alone import alone
 from talbot.base.steps.versions import version
@@ -103,11 +104,15 @@ def run(folder: Path, top: str, tech: OpenRoadPlatform, root: Path, note: Callab
 
 def _kept(folder: Path, stage: Stage, key: str) -> dict[str, float] | None:
     """The figures of ``stage`` as it ran before with the same key; None where it did not, or its result changed."""
-    record, result = folder / f"{stage.label}.json", folder / stage.gives
-    if not record.is_file() or not result.is_file():
+    result = folder / stage.gives
+    if not result.is_file():
         return None
-    before = json.loads(record.read_text())
-    return before["figures"] if before["key"] == key and before["result"] == digest(result) else None
+    found = [
+        before["figures"]
+        for before in kept(folder / f"{stage.label}.json")
+        if before["key"] == key and before["result"] == digest(result)
+    ]
+    return found[0] if found else None
 
 
 def _run(folder: Path, stage: Stage, key: str, top: str, tech: OpenRoadPlatform, root: Path) -> dict[str, float]:
@@ -125,7 +130,7 @@ def _run(folder: Path, stage: Stage, key: str, top: str, tech: OpenRoadPlatform,
         write_synthesized(folder, top, tech)
     figures = {what: float(value) for what, value in re.findall(r"^TALBOT (\S+) (\S+)$", done.stdout, re.M)}
     figures |= {f"seconds.{name}": round(time.perf_counter() - begin, 1), f"mib.{name}": peak}
-    kept = {"key": key, "result": digest(folder / stage.gives), "figures": figures}
+    record = {"key": key, "result": digest(folder / stage.gives), "figures": figures}
     with staged(folder) as part:
-        (part / f"{name}.json").write_text(json.dumps(kept, indent=1) + "\n")
+        (part / f"{name}.json").write_text(json.dumps(record, indent=1) + "\n")
     return figures

@@ -66,11 +66,17 @@ def _deg(value: float | None) -> str:
 
 
 def _headline(s: dict[str, Any]) -> list[Tile]:
-    free = s["baselines"]
+    free, tagged = s["baselines"], "bad" if s["full_tagged"] else "good" if s["full"] else ""
     return [
-        Tile(_deg(s["psi_error_deg"]), f"psi, mean error (one angle for all: {_deg(free['psi_error_constant_deg'])})"),
-        Tile(number(s["f1"], 3), f"F1 of the highlights (brightest pixels: {number(free['f1_bright'], 3)})"),
-        Tile(str(s["full_tagged"]), f"of {s['full']:,} full pixels tagged", "bad" if s["full_tagged"] else "good"),
+        Tile("none", "polarization in the scene")
+        if s["psi_error_deg"] is None
+        else Tile(
+            _deg(s["psi_error_deg"]), f"psi, mean error (one angle for all: {_deg(free['psi_error_constant_deg'])})"
+        ),
+        Tile("none", "highlights in the scene")
+        if s["f1"] is None
+        else Tile(number(s["f1"], 3), f"F1 of the highlights (brightest pixels: {number(free['f1_bright'], 3)})"),
+        Tile(str(s["full_tagged"]), f"of {s['full']:,} full pixels tagged", tagged),
         agreement(s),
         Tile(f"{s['seconds']:.1f} s", "for the polarization"),
     ]

@@ -6,8 +6,10 @@ from argparse import ArgumentParser, Namespace
 from dataclasses import asdict
 from pathlib import Path
 
+from talbot.base.command import Parser
 from talbot.base.files import insert, staged
 from talbot.base.paths import RESULTS
+from talbot.rtl import export
 from talbot.rtl.verilog import export_verilog
 
 from .measure import measure
@@ -28,6 +30,9 @@ def add_arguments(parser: ArgumentParser) -> None:
 def run(options: Namespace) -> int:
     """Synthesize the tops, write and print their table."""
     sensor = [f"--{name.replace('_', '-')}={value}" for name in SENSOR if (value := getattr(options, name))]
+    asked = Parser(prog="talbot sizes")
+    export.add_arguments(asked)
+    export.sensor_of(asked.parse_args([*(f"--top={top}" for top in options.tops), *sensor]))  # bad input: said here
     with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
         sizes = [measure(path, path.stem) for path in export_verilog(Path(folder), options.tops, sensor)]
     with staged(options.out) as part:

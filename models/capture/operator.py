@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
+from talbot.models.compiled import njit
 from talbot.models.parameters import ParameterError, SensorParameters, check_choice
 from talbot.models.pixel.weights import view_weights
 

@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
+from talbot.models.compiled import njit
 from talbot.models.parameters import SensorParameters
 from talbot.models.pixel.weights import FieldWeights, field_weights
 from talbot.models.scene import Scene

@@ -9,7 +9,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit, vectorize
+
+from talbot.models.compiled import njit, vectorize
 
 FEW = 60.0  # electrons
 PHOTONS_MAX = 1e15  # electrons per diode and interval: far beyond any well

@@ -16,9 +16,9 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 from scipy.fft import dctn, idctn
 
+from talbot.models.compiled import njit
 from talbot.models.parameters import ParameterError, SensorParameters, check_int, check_real
 from talbot.models.pixel.weights import view_weights
 

@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
+from talbot.models.compiled import njit
 from talbot.models.parameters import ParameterError, TileParameters, check_int, check_real
 from talbot.models.pixel.polarization import angle, stokes
 

@@ -6,7 +6,8 @@ scenes with edges, occlusions, fine and coarse texture, and of known disparity.
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
+
+from talbot.models.compiled import njit
 
 from . import camera
 from .sampling import Sampling

@@ -6,7 +6,8 @@ at the exact sub-pixel position of that surface in the source, so that splatting
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
+
+from talbot.models.compiled import njit
 
 Floats = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]

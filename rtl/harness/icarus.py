@@ -8,7 +8,7 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from talbot.base.cache import digest
+from talbot.base.cache import cached, digest
 from talbot.base.files import atomic
 from talbot.base.paths import BUILD
 from talbot.base.tools import finish
@@ -16,7 +16,7 @@ from talbot.base.tools import finish
 from .driven import Driven, SimulationError
 from .ports import Port, places, split, total_width
 
-PROGRAMS = BUILD / "icarus"
+PROGRAMS, PROGRAM = BUILD / "icarus", "program.vvp"
 MISSING = "iverilog: not found; install it with: make tools (Debian: apt-get install iverilog)"
 TIMESCALE = "`timescale 1ns/1ps\n"
 
@@ -86,11 +86,9 @@ def compile_program(program: Path, sources: Sequence[Path], top: str, texts: Seq
 
 
 def kept_program(name: str, sources: Sequence[Path], top: str, texts: Sequence[str] = ()) -> Path:
-    """The program of `compile_program` in a file that is kept for the same sources and texts. Raises IcarusError."""
-    program = PROGRAMS / f"{name}.{digest(top, *map(Path, sources), *texts)}.vvp"
-    if not program.exists():
-        compile_program(program, sources, top, texts)
-    return program
+    """The program of `compile_program`, kept for the same sources and texts. Raises IcarusError."""
+    folder = PROGRAMS / f"{name}.{digest(top, *map(Path, sources), *texts)}"
+    return cached(folder, lambda part: compile_program(part / PROGRAM, sources, top, texts)) / PROGRAM
 
 
 def in_icarus(

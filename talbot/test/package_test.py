@@ -44,15 +44,21 @@ def test_every_part_is_a_link():
 @pytest.mark.parametrize(
     "folder, given", [("", TEST), ("", ROOT / TEST), ("", f"talbot/{TEST}"), ("base/test", "records_test.py")]
 )
-def test_a_file_is_one_module_however_pytest_is_asked_for_it(folder, given):
-    words = run("-c", PYTEST, "-p", "no:cacheprovider", given, cwd=ROOT / folder, PYTHONPATH=str(ROOT)).split()
-    assert "talbot." + TEST.removesuffix(".py").replace("/", ".") in words
-    assert not [name for name in words if name.split(".")[0] in PARTS]
+@pytest.mark.parametrize("node", ["", "::test_round_trip"])
+def test_a_file_has_one_name_however_pytest_is_asked_for_it(request, folder, given, node):
+    (conftest,) = (p for p in request.config.pluginmanager.get_plugins() if hasattr(p, "in_package"))
+    found = conftest.in_package(f"{given}{node}", ROOT / folder)
+    assert os.path.join(ROOT / folder, found) == f"{PACKAGE / TEST}{node}"
 
 
-@pytest.mark.parametrize("workers", [[], ["-n", "2"]])
-def test_a_test_by_its_name(workers):
-    shown = run("-m", "pytest", "-vv", "-p", "no:cacheprovider", *workers, f"{TEST}::test_round_trip")
+def test_a_file_is_one_module():
+    words = run("-c", PYTEST, "-p", "no:cacheprovider", "records_test.py", cwd=ROOT / "base/test", PYTHONPATH=str(ROOT))
+    assert "talbot." + TEST.removesuffix(".py").replace("/", ".") in words.split()
+    assert not [name for name in words.split() if name.split(".")[0] in PARTS]
+
+
+def test_a_test_by_its_name():
+    shown = run("-m", "pytest", "-vv", "-p", "no:cacheprovider", "-n", "1", f"{TEST}::test_round_trip")
     assert f"talbot/{TEST}::test_round_trip" in shown and "1 passed" in shown
 
 

@@ -15,6 +15,22 @@ from talbot.base.test.supervise_test import running, started
 from talbot.commands import main
 
 SIZE = ("--rows", "17", "--cols", "26", "--lanes", "2")
+FRAME = "--rows 24 --cols 36 --golden"
+TARGETS = {  # command -> its smallest run
+    "lightfield": f"--scene coins --disparities 3 {FRAME}",
+    "polar": FRAME,
+    "depth": f"--scene tilted --disparities 3 {FRAME}",
+    "pixel": "--kind amplitude --period-um 1",
+    "pixel-layout": "--rows 4 --cols 6",
+    "pixel-circuit": "--corners typical",
+    "analog": "--corners typical --draws 20",
+    "analog-layout": "--corners typical",
+    "cosim": "--modes edge --cols 6 --types 1",
+    "stability": "",
+    "tradeoff": "--only views",
+    "site": "",
+}
+FAST = ("polar",)
 
 
 def sim(folder, *more):
@@ -53,13 +69,13 @@ def whole(tmp_path_factory):
     return {path.name for path in out.iterdir()}, time.monotonic() - begin
 
 
-@pytest.mark.parametrize("part", range(12))
+@pytest.mark.parametrize("part", range(6))
 def test_at_a_random_moment(tmp_path, whole, part):
-    """In each twelfth of the run once; which signal, and whether the whole group gets it, is drawn."""
+    """In each sixth of the run once; which signal, and whether the whole group gets it, is drawn."""
     names, seconds = whole
     child = sim(tmp_path)
     begun(child)
-    time.sleep((part + random.random()) / 12 * seconds)
+    time.sleep((part + random.random()) / 6 * seconds)
     sent = random.choice((signal.SIGINT, signal.SIGTERM))
     status, err = end(child, sent, random.random() < 0.5)
     out = tmp_path / "out"
@@ -69,6 +85,26 @@ def test_at_a_random_moment(tmp_path, whole, part):
     assert {path.name for path in tmp_path.iterdir()} <= {"out"} and not running(f"TEST_MARK={tmp_path}")
     assert not out.exists() or {path.name for path in out.iterdir()} == names
     assert status or out.exists()
+
+
+def ended_at(folder, target, sent, seconds):
+    """Send the signal ``seconds`` after the smallest run of ``target`` began: nothing is left, or the run was whole."""
+    child = started(folder, ["-m", "talbot", target, *TARGETS[target].split(), "--out", str(folder / "out")])
+    begun(child)
+    time.sleep(seconds)
+    status, err = end(child, sent, random.random() < 0.5)
+    assert status in (0, 128 + sent) and sum(line.startswith("talbot: ") for line in err) == int(status > 0), err
+    assert status == 0 or err[-1].endswith("nothing was left half-written")
+    assert {path.name for path in folder.iterdir()} <= {"out"} and not running(f"TEST_MARK={folder}")
+    assert not list(folder.rglob(f"{PART}*")) and (status == 0) == (folder / "out").exists()
+
+
+@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize(
+    "target", [pytest.param(name, marks=() if name in FAST else pytest.mark.slow) for name in TARGETS]
+)
+def test_of_another_target(tmp_path, target, sent):
+    ended_at(tmp_path, target, sent, random.uniform(0, 5))
 
 
 @pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])

@@ -1,7 +1,6 @@
 """The command line as a user meets it: what it writes and what it refuses."""
 
 import json
-import os
 import resource
 import signal
 import subprocess
@@ -231,7 +230,6 @@ def test_no_room_for_the_results(photograph, tmp_path):
         capture_output=True,
         text=True,
         preexec_fn=small_files,
-        env=dict(os.environ, NUMBA_CACHE_DIR=str(tmp_path)),
     )
     assert result.returncode == 2 and "File too large" in result.stderr
     assert result.stderr.splitlines()[-1].startswith("talbot: error: file = ")

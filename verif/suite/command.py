@@ -3,7 +3,6 @@
 A skipped test is an open point: what it checks is not checked.
 """
 
-import json
 import shlex
 import shutil
 from argparse import ArgumentParser, Namespace
@@ -12,7 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 from talbot.base.command import failures
-from talbot.base.jobs import Job
+from talbot.base.jobs import Job, kept
 from talbot.base.jobs import run as run_jobs
 from talbot.base.paths import ROOT
 from talbot.base.records import from_json
@@ -76,8 +75,8 @@ def count(entry: BlockResults, folder: str, case: Case) -> None:
 
 def last_seconds(store: Path) -> dict[str, float]:
     """Return the seconds that each folder took in the newest of the kept runs."""
-    kept = [json.loads(path.read_text()) for path in sorted(store.glob("*.json"), key=lambda p: p.stat().st_mtime)]
-    return {result["folder"]: result["seconds"] for result in kept}
+    paths = sorted(store.glob("*.json"), key=lambda path: path.stat().st_mtime)
+    return {result["folder"]: result["seconds"] for path in paths for result in kept(path)}
 
 
 def add_arguments(parser: ArgumentParser) -> None:

@@ -76,6 +76,15 @@ def test_the_index_lists_pages_that_have_a_card_the_newest_first(tmp_path, capsy
     assert "verify" not in (tmp_path / "index.html").read_text()
 
 
+def test_the_index_beside_what_is_no_page(tmp_path):
+    (tmp_path / "sim" / "a.html").mkdir(parents=True)
+    (tmp_path / "sim" / "b.html").write_text(page()[:100])
+    (tmp_path / "sim" / "c.html").write_text(page())
+    (tmp_path / "index.html").write_bytes(bytes(range(256)))
+    index.refresh(tmp_path)
+    assert re.findall('href="(.*?)"', (tmp_path / "index.html").read_text()) == ["sim/c.html"]
+
+
 def test_a_folder_without_a_page_gets_no_index(tmp_path):
     index.refresh(tmp_path)
     assert not list(tmp_path.iterdir())

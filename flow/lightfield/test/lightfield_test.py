@@ -83,7 +83,8 @@ def test_parallax_of_the_truth_is_one():
 )
 def test_bad_arguments(word, message, capsys, tmp_path):
     assert main(["lightfield", word, f"--out={tmp_path / 'out'}"]) == 2
-    assert re.search(message, capsys.readouterr().err) and not (tmp_path / "out").exists()
+    err = capsys.readouterr().err
+    assert re.search(message, err) and err.count("\n") == 1 and not (tmp_path / "out").exists()
 
 
 def test_a_folder_tells_its_settings_and_what_it_replaced(tmp_path, monkeypatch, capsys):

@@ -54,6 +54,19 @@ def test_missing_yosys(tmp_path, monkeypatch, capsys):
     assert not (tmp_path / "out").exists()
 
 
-def test_bad_option(tmp_path, capsys):
-    assert main(command, ["RegFile", "--out", str(tmp_path / "out"), "--lanes", "3"]) == 2
-    assert "lanes = 3" in capsys.readouterr().err
+@pytest.mark.parametrize(
+    "words, said",
+    [
+        ("RegFile --lanes=3", "error: lanes = 3: must be one of"),
+        ("--rows=-5", "error: rows = -5: must be an integer in 1..1024"),
+        ("--rows=x", "error: argument --rows: invalid int value: 'x'"),
+        ("RegFil", "did you mean RegFile?"),
+    ],
+)
+def test_what_is_wrong_is_said_in_one_line(words, said, tmp_path, capsys):
+    try:
+        status = main(command, [*words.split(), "--out", str(tmp_path / "out")])
+    except SystemExit as stop:
+        status = stop.code
+    err = capsys.readouterr().err
+    assert status == 2 and said in err and err.count("\n") == 1 and "python" not in err

@@ -9,8 +9,8 @@ from typing import cast
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
+from talbot.models.compiled import njit
 from talbot.models.parameters.stream_format import COUNTED_BYTES, COUNTS, MAGIC, TRAILER_BYTES, TRAILER_ROW
 
 from .crc import CRC16_AFTER, CRC16_START, CRC32_BACK, CRC32_TABLE

@@ -3,8 +3,9 @@
 import pytest
 from pymtl3 import Component, InPort, OutPort, connect, update, update_ff
 
+from talbot.rtl.harness import icarus
 from talbot.rtl.harness.driven import SimulationError
-from talbot.rtl.harness.icarus import MISSING, installed
+from talbot.rtl.harness.icarus import MISSING, installed, kept_program
 from talbot.rtl.harness.netlists import Netlists, netlist
 from talbot.rtl.harness.testbench import build, hooked
 
@@ -101,3 +102,12 @@ def test_a_simulation_that_ends_early_is_an_error(tmp_path):
     netlists = Netlists({"Counter": netlist(f"Counter={path}")})
     with pytest.raises(SimulationError, match="ended early"), hooked(substitute=netlists.substitute):
         seen(build(Counter(), "icarus"), STEPS)
+
+
+def test_a_kept_program_that_is_damaged_is_compiled_again(monkeypatch, tmp_path):
+    monkeypatch.setattr(icarus, "PROGRAMS", tmp_path)
+    program = kept_program("Empty", [], "Empty", ["module Empty; endmodule\n"])
+    whole = program.stat().st_size
+    for damage in (lambda: program.write_bytes(program.read_bytes()[:99]), program.unlink):
+        damage()
+        assert kept_program("Empty", [], "Empty", ["module Empty; endmodule\n"]).stat().st_size == whole

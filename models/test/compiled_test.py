@@ -1,0 +1,36 @@
+"""Numba's cache: kept, and a damaged file of it is made again."""
+
+import importlib.util
+
+import pytest
+
+SOURCE = """
+from talbot.models.compiled import njit
+@njit(cache=True)
+def double(x):
+    return 2 * x
+"""
+
+
+@pytest.fixture
+def stats(tmp_path):
+    """What a fresh program that calls the function finds in the cache, and does not."""
+    (tmp_path / "doubled.py").write_text(SOURCE)
+
+    def called():
+        spec = importlib.util.spec_from_file_location("doubled", tmp_path / "doubled.py")
+        module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+        assert module.double(3) == 6
+        return sum(module.double.stats.cache_hits.values()), sum(module.double.stats.cache_misses.values())
+
+    return called
+
+
+@pytest.mark.parametrize("suffix", ["nbi", "nbc"])
+def test_what_is_damaged_is_compiled_again(stats, tmp_path, suffix):
+    assert [stats(), stats()] == [(0, 1), (1, 0)]
+    (file,) = (tmp_path / "__pycache__").glob(f"*.{suffix}")
+    for damaged in (b"", file.read_bytes()[:300], bytes(range(256))):
+        file.write_bytes(damaged)
+        assert [stats(), stats()] == [(0, 1), (1, 0)]
