@@ -1,6 +1,6 @@
 """Depth from the frames of time of flight by every method, beside what costs nothing."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from time import perf_counter
 from typing import Any
@@ -24,6 +24,7 @@ from .capture import DepthFrames
 
 Values = npt.NDArray[np.floating]
 Bools = npt.NDArray[np.bool_]
+Complexes = npt.NDArray[np.complexfloating]
 BEST = "field"
 FAINT = 3.0  # codes: what has a smaller amplitude has no phase
 LOOSE = 0.2  # px per view step: no disparity is surer
@@ -31,6 +32,7 @@ EDGE = 2  # steps of the disparities that are tried from their ends: what is nea
 CODES = 255
 PLANES = 9  # of focus behind an occluder
 CLEAR = (2, 1)  # px from the occluder's rays
+APART = 0.01  # turns, standard deviation between the rays that pass it, from which on they end on two surfaces
 NOISE = 1.0  # codes, of a tap: of the converter and the light, not less
 
 
@@ -191,6 +193,7 @@ def _behind(
     """Depth of what an occluder hides in m, NaN where no ray passes, and its errors; of a scene that has one.
 
     The whole turns are the fewest that put it behind the occluder: its own disparity is not seen through the gaps.
+    Where the rays that pass do not agree they end on two surfaces, and there is no depth either.
     """
     scene = result.exposed.scene
     near = None if scene.behind is None else foreground(field, coarse / ambiguity)
@@ -203,22 +206,23 @@ def _behind(
     ends = camera.disparity(np.quantile(rough, (0.98, 0.02)), sampling)
     # Rays beside the occluder's are mixtures: those farther from it go first
     clear = [~beside(near, width) for width in CLEAR]
-    depth, mixed, off = np.zeros(scene.shape), np.zeros(scene.shape), np.full(scene.shape, np.inf)
-    seen = np.zeros(scene.shape, bool)
-    for disparity in np.linspace(
-        float(ends[0]), float(ends[1]), PLANES
-    ):  # each pixel from where its own depth is in focus
-        passed = refocused(phasors, disparity, clear[0])
-        for rays in clear[1:]:
-            passed = np.where(np.abs(passed) > 0, passed, refocused(phasors, disparity, rays))
+    depth, mixed, apart = np.zeros((3, *scene.shape))
+    off, seen = np.full(scene.shape, np.inf), np.zeros(scene.shape, bool)
+    # Each pixel from where its own depth is in focus
+    for disparity in np.linspace(float(ends[0]), float(ends[1]), PLANES):
+        passed, strength = _passing(phasors, disparity, clear)
         found, all_rays = (
             _beyond(np.angle(p), limit, ambiguity) for p in (passed, refocused(phasors, disparity, None))
         )
         here = np.abs(passed) > 0
+        agreed = np.where(here, np.abs(passed) / np.where(here, strength, 1), 1)
+        between = np.sqrt(-2 * np.log(np.minimum(agreed, 1))) / (2 * np.pi)
         away = np.where(here, np.abs(camera.disparity(found, sampling) - disparity), np.inf)
         better = (away < off) | ~seen
-        depth, mixed, off = (np.where(better, *pair) for pair in ((found, depth), (all_rays, mixed), (away, off)))
+        pairs = (found, depth), (all_rays, mixed), (between, apart), (away, off)
+        depth, mixed, apart, off = (np.where(better, *pair) for pair in pairs)
         seen |= here
+    seen &= apart < APART
     past = {
         "rms_m": rms((depth - scene.behind)[seen]),
         "rms_all_rays_m": rms(mixed - scene.behind),
@@ -228,6 +232,17 @@ def _behind(
         "range_m": float(scene.behind.max() - np.min(np.asarray(scene.depth))),
     }
     return np.where(seen, depth, np.nan), past
+
+
+def _passing(phasors: Complexes, disparity: float, clear: Sequence[Bools]) -> tuple[Complexes, Values]:
+    """Mean phasor of the rays that pass, and mean of their amplitudes: of the first of ``clear`` that has some."""
+    out = []
+    for values in (phasors, np.abs(phasors).astype(complex)):
+        found = refocused(values, disparity, clear[0])
+        for rays in clear[1:]:
+            found = np.where(np.abs(found) > 0, found, refocused(values, disparity, rays))
+        out.append(found)
+    return out[0], np.abs(out[1])
 
 
 def _beyond(phase: Values, limit: float, ambiguity: float) -> Values:

@@ -55,6 +55,13 @@ def test_depth_edges_have_their_own_turns(tmp_path):
     assert best["rms_all_m"] < 0.012 * s["range_m"] < 0.1 * free["rms_all_m"] and best["sure"] > 0.8
 
 
+@pytest.mark.slow
+def test_behind_leaves_the_rim_of_a_ball_has_no_depth(tmp_path):
+    past = measured(tmp_path, "--scene=plant", "--f-mod=25e6", "--golden")["behind"]
+    assert past["occluded"] == pytest.approx(0.5, abs=0.05) and past["seen"] > 0.55
+    assert past["rms_m"] < 0.03 * past["range_m"] < past["rms_constant_m"] < past["rms_all_rays_m"]
+
+
 def test_a_wall_behind_a_fence(tmp_path):
     s = measured(tmp_path, "--scene=fence", "--rows=72", "--cols=72", "--f-mod=25e6", "--golden")
     past = s["behind"]
