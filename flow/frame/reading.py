@@ -31,7 +31,7 @@ HEADROOM = 5.0  # LSB below a full code, for noise and bow of the converters: wh
 # All of a frame is read
 WHOLE = {"threshold": "0", "phase": False, "types": "all", "window": "full", "decimation": "0"}
 WHOLE |= {"waves": None, "waves_format": WAVES[0]}
-Note = Callable[[str], object]
+Note = Callable[[str], None]
 
 
 class Found(Protocol):
