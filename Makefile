@@ -215,6 +215,10 @@ layout-effort: $(TESTS_READY) $(LAYOUT_READY) have-tools  ## a layout's quality 
 layout-energy: $(TESTS_READY) $(LAYOUT_READY) have-tools  ## switching energy of the chip's events, from frames at its layout's gates: build/layout/energy/ (LIBERTY='a.lib b.lib')
 	@$(talbot) layout-energy
 
+.PHONY: layout-timing
+layout-timing: $(LAYOUT_READY) have-tools  ## the cells' timing that is shipped, measured again in ngspice (an hour): build/layout/timing/
+	@$(talbot) layout-timing
+
 layout-hierarchy: KNOWN += DESIGNS
 .PHONY: layout-hierarchy
 layout-hierarchy: $(TESTS_READY) $(LAYOUT_READY) have-tools  ## the chip laid out flat and around two blocks laid out before: build/layout/hierarchy/ (DESIGNS='phase_path phase_path_macros' LIBERTY='a.lib b.lib')

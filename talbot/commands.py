@@ -45,6 +45,7 @@ COMMANDS = {
     "layout": ("talbot.flow.layout.command", "a design's Verilog to a layout with all its checks"),
     "layout-sweep": ("talbot.flow.layout.sweep.command", "layouts of variants, and of the placer's efforts"),
     "layout-energy": ("talbot.flow.layout.energy.command", "switching energy of the chip, event by event"),
+    "layout-timing": ("talbot.flow.layout.measure_cells", "the cells' timing that is shipped, measured again"),
     "layout-compare": ("talbot.flow.layout.report.compare", "finished layouts side by side"),
     "openroad": ("talbot.flow.openroad.command", "a design by OpenROAD: scripts, and a run"),
     "openroad-compare": ("talbot.flow.openroad.compare", "both back ends, design by design"),

@@ -31,7 +31,7 @@ HEADROOM = 5.0  # LSB below a full code, for noise and bow of the converters: wh
 # All of a frame is read
 WHOLE = {"threshold": "0", "phase": False, "types": "all", "window": "full", "decimation": "0"}
 WHOLE |= {"waves": None, "waves_format": WAVES[0]}
-Note = Callable[[str], object]
+Note = Callable[[str], None]
 
 
 class Found(Protocol):
@@ -103,7 +103,13 @@ def run(
     check_folder("out", request.folder)
     before = arguments_of(request.folder)
     with Steps(steps, lines=True) as progress:
-        done = found(lambda text: text != steps[0] and progress.note(text))  # bad input ends the first, which is short
+
+        def note(text: str) -> None:
+            """No line about the first step: bad input ends it, and it is short."""
+            if text != steps[0]:
+                progress.note(text)
+
+        done = found(note)
         progress.note("report")
         summary = done.summary | {"arguments": dict(arguments)}
         with staged(request.folder, page.NAMES) as part:

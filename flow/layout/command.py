@@ -27,7 +27,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     add("--pdk", default=PROCESSES[0], help=f"process, one of {', '.join(PROCESSES)}")
     add("--backend", default="coriolis", help="what places and routes: coriolis (openroad: see talbot openroad)")
     add("--utilization", type=float, help="cells' area by core area where the search begins (default: the design's)")
-    cells = "characterized cells at a corner (again for further corners; default: measured now)"
+    cells = "characterized cells at a corner (again for further corners; default: those shipped)"
     add("--liberty", type=Path, action="append", default=[], help=cells)
     add("--untimed", action="store_true", help="no timing: cells by area alone")
     add("--analog", type=Path, help=f"folder with <block>.lef and .gds in place of {SENSOR}'s black boxes")

@@ -15,8 +15,8 @@ class Options:
     """Choices for one layout.
 
     pdk: process. utilization: cells' area by core area at which the search begins. liberty: characterized cells, a file
-    a corner; () for the process's corners, measured now. untimed: whether there is no timing at all. effort: of the
-    placer, 1..9. decks: pairs (name, path) of the foundry's own checks (`platforms.foundry`).
+    a corner; () for the process's corners, as shipped (`tables`). untimed: whether there is no timing at all. effort:
+    of the placer, 1..9. decks: pairs (name, path) of the foundry's own checks (`platforms.foundry`).
     """
 
     pdk: str = "sky130"
@@ -36,8 +36,7 @@ class Options:
     def __post_init__(self) -> None:
         for path in self.liberty:
             if not path.is_file():
-                place = "build/layout/shared/timing.*/<corner>.lib"
-                without = f"without LIBERTY the cells are measured, once, into {place}"
+                without = "without LIBERTY the shipped ones are taken, in build/layout/shared/timing.* after a layout"
                 raise ParameterError(f"liberty = {path}: no such file; {without}")
             if not is_library(path):
                 raise ParameterError(f"liberty = {path}: must be a Liberty file: it does not begin with library (...)")

@@ -35,7 +35,7 @@ WITH_DELAYS = "stimulus", "sta", "gate_delays", "power"  # what the frame with d
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot layout-energy`."""
     add = parser.add_argument
-    cells = "characterized cells at a corner (again for further corners; default: measured now)"
+    cells = "characterized cells at a corner (again for further corners; default: those shipped)"
     add("--liberty", type=Path, action="append", default=[], help=cells)
     add("--layouts", type=Path, default=RESULTS / "layout", help="folder of the layouts, as of make layout")
     add("--out", type=Path, default=RESULTS / "layout" / "energy", help="folder of the table and the page")
