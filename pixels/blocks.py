@@ -39,7 +39,8 @@ CONTROL_PITCH_UM = 4.0  # of the column amplifiers' control pins
 class AnalogSizes:
     """Room for circuits that this project does not have: assumptions, not measured. um, 20..1000 each.
 
-    row_driver: width. columns: height of the column amplifiers. lane, lanes: width of a converter, height of all.
+    row_driver: width. columns: height of the column amplifiers. lane, lanes: width of a converter with its amplifier,
+    height of all. bias: width of what is east of them, their bias and what rises from the chip to the amplifiers.
     chip: room between the column amplifiers' control pins, in their west, and the converters, where the chip is.
     supply: width of a supply pin.
     """
@@ -47,12 +48,13 @@ class AnalogSizes:
     row_driver_um: float = field(default=200.0, metadata={"unit": "um"})
     columns_um: float = field(default=200.0, metadata={"unit": "um"})
     lane_um: float = field(default=100.0, metadata={"unit": "um"})
-    lanes_um: float = field(default=600.0, metadata={"unit": "um"})
+    lanes_um: float = field(default=720.0, metadata={"unit": "um"})
+    bias_um: float = field(default=140.0, metadata={"unit": "um"})
     chip_um: float = field(default=840.0, metadata={"unit": "um"})
     supply_um: float = field(default=10.0, metadata={"unit": "um"})
 
     def __post_init__(self) -> None:
-        for name in ("row_driver_um", "columns_um", "lane_um", "lanes_um", "chip_um"):
+        for name in ("row_driver_um", "columns_um", "lane_um", "lanes_um", "bias_um", "chip_um"):
             check_real(name, getattr(self, name), 20, 1000)
         check_real("supply_um", self.supply_um, 2, 30)
 
@@ -165,10 +167,9 @@ def _column_amplifiers(array: ArrayParameters, chip: ChipParameters, sizes: Anal
     width, pins = array.cols * array.pitch * 1e6, bits(COLUMNS_IN)
     control = CONTROL_PITCH_UM * (len(pins) - 1) + 2 * MARGIN_UM
     begin = control + sizes.chip_um
-    if begin + chip.lanes * sizes.lane_um > width:
+    if (end := begin + chip.lanes * sizes.lane_um + sizes.bias_um) > width:
         raise ParameterError(
-            f"cols = {array.cols}: {width:g} um must have room for pins, chip and converters, "
-            f"{begin + chip.lanes * sizes.lane_um:g} um"
+            f"cols = {array.cols}: {width:g} um must have room for pins, chip and converters, {end:g} um"
         )
     return Block(
         "column_amplifiers",
@@ -185,7 +186,10 @@ def _column_amplifiers(array: ArrayParameters, chip: ChipParameters, sizes: Anal
 
 
 def _adc_lanes(chip: ChipParameters, sizes: AnalogSizes) -> Block:
-    """Codes and decision of a lane are at its place; the other pins are spread over all lanes."""
+    """Codes and decision of a lane are at its place; the other pins are spread over all lanes.
+
+    In the east the ground is between two pins of the supply, of the lanes and of the amplifiers above these.
+    """
     width = chip.lanes * sizes.lane_um
     own = [
         name
@@ -202,7 +206,7 @@ def _adc_lanes(chip: ChipParameters, sizes: AnalogSizes) -> Block:
     pins = _spread("adc_lanes", [*shared, *own], "input", 0, width)
     return Block(
         "adc_lanes",
-        width,
+        width + sizes.bias_um,
         sizes.lanes_um,
         (
             *(Pin(name, "input", "north", at) for name, at in lane_lines(chip, sizes)),
@@ -210,7 +214,10 @@ def _adc_lanes(chip: ChipParameters, sizes: AnalogSizes) -> Block:
                 Pin(pin.name, "output" if pin.name.startswith("comparator") else "input", "south", pin.at_um)
                 for pin in pins
             ),
-            *_supplies("east", sizes.lanes_um, CIRCUIT_SUPPLIES),
+            *(
+                Pin(name, "inout", "east", sizes.lanes_um * (1 + k) / 4, True)
+                for k, name in enumerate(("vddc", "vssa", "vddc"))
+            ),
         ),
     )
 

@@ -75,7 +75,10 @@ def make(
     spec, own = amplifier_of(setup, sizes)
     made = cells(masks, sizes, own, spec.lanes)
     chip, room = ChipParameters(), AnalogSizes()
-    blocks = {BLOCK: draw_converters(masks, sizes, chip, room), ROWS: draw_row_drivers(masks, ArrayParameters(), room)}
+    blocks = {
+        BLOCK: draw_converters(masks, sizes, own, chip, room),
+        ROWS: draw_row_drivers(masks, ArrayParameters(), room),
+    }
     drawn: dict[str, Cell | Converters | RowDrivers] = {**made, **blocks}
     names = [f"{name}.{kind}" for name in drawn for kind in KINDS if name in made or kind != "extracted.spice"]
     names += [f"{name}.lef" for name in blocks]

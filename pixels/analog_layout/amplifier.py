@@ -80,9 +80,9 @@ def matched_units() -> dict[tuple[str, str], int]:
     return found
 
 
-def devices(sizes: AmplifierSizes) -> dict[str, Device]:
-    """All transistors by name, in fingers; dummies at the ends of rows, too."""
-    found = {t.name: Device.of(t) for t in flat.transistors(amplifier(sizes))}
+def devices(sizes: AmplifierSizes, chip: bool = False) -> dict[str, Device]:
+    """All transistors by name, in fingers; dummies at the ends of rows, too. chip: see `amplifier`."""
+    found = {t.name: Device.of(t) for t in flat.transistors(amplifier(sizes, chip))}
     for name, like in (("pair0", "inp_0"), ("pair1", "inp_0"), ("sink0", "sink_p_0"), ("sink1", "sink_p_0")):
         found |= dummies(name, found[f"ota.{like}"])
     return found | dummies("tails", found["ota.tail_0"]) | dummies("load", found["ota.down_p"])
@@ -168,10 +168,10 @@ def amplifier_plan(d: Mapping[str, Device], masks: AnalogMasks, sizes: Amplifier
     return AmplifierPlan(strips, tuple(trim), (banks[0], banks[1]), at)
 
 
-def amplifier_cell(masks: AnalogMasks, sizes: AmplifierSizes) -> Cell:
-    """Draw an amplifier; its south-west corner is at the origin but for the rails' ends."""
-    d = devices(sizes)
-    plan, canvas = amplifier_plan(d, masks, sizes), new_canvas(masks, "amplifier")
+def amplifier_cell(masks: AnalogMasks, sizes: AmplifierSizes, chip: bool = False) -> Cell:
+    """Draw an amplifier; its south-west corner is at the origin but for the rails' ends. chip: see the circuit's."""
+    d = devices(sizes, chip)
+    plan, canvas = amplifier_plan(d, masks, sizes), new_canvas(masks, "adc_amplifier" if chip else "amplifier")
     banks = [draw_bank(canvas, plan.banks[0], MARGIN)]
     y, strips = MARGIN + plan.banks[0].height_um + AWAY, []
     for one in plan.strips:

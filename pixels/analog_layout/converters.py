@@ -1,64 +1,79 @@
-"""All converters in the frame `adc_lanes` of the die: lanes beside each other, a channel to the chip's pins, supplies.
+"""All converters in the frame `adc_lanes` of the die: lanes, their amplifiers above them, a bias for all of these.
 
-    north     lane_a, lane_b of each lane, at the column amplifiers' pins
-              references and vcm across all lanes
-              the lanes
-              channel: a track for each of the chip's nets, between its pin and the lanes
-    south     the chip's pins; refp, refn, vcm, which the die connects to pins of its own
+    north     lane_a, lane_b: of each lane, from the column amplifiers to its amplifier
+              the amplifiers                                               | bias
+              channel: balance, amp_on; of each lane its reset, its current, the amplifier's output
+              references, vcm and vref across all lanes
+              the lanes, whose interface gives the amplifier its reset     | what rises to the amplifiers
+              channel: the chip's nets, between their pins and the lanes   |
+    south     the chip's pins                                              | refp, refn, vcm, vref, amp_on
 
-The channel's tracks are on the third metal, what comes from the south on the fourth, from the lanes on the second: nets
-meet on no metal. Supplies are straps of the top metal over the lanes, the ground's joined in the
-west, the others in the east, where the pins are.
+A lane's own reset rises between it and the next. The pins in the south-east are none of the black box: the die has pins
+for them. Supplies are straps of the top metal over lanes and amplifiers, the ground's joined in the west, the others in
+the east, where the pins are: the ground's line passes between lanes and amplifiers.
 """
 
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from talbot.base.gds import db
 from talbot.models.parameters import ChipParameters, ParameterError
 from talbot.pixels.blocks import DIODES, AnalogSizes, Block, Pin, blocks
+from talbot.pixels.circuits.amplifier import TRIM_BITS, AmplifierSizes
 from talbot.pixels.circuits.dac import BITS
 from talbot.pixels.circuits.lane import LaneSizes
-from talbot.pixels.footprints import draw_pins, lef
+from talbot.pixels.footprints import WIDE_UM, draw_pins, lef
 from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.analog import AnalogMasks
 
+from .amplifier import amplifier_cell
+from .bias import bias_cell
 from .cells import Cell, new_canvas
+from .channel import Channel, up
 from .lane import lane_cell
-from .strip import FOURTH, RAIL_AT, SECOND, THIRD, TRACK, TRACK_PITCH, TRUNK
+from .strip import FOURTH, RAIL_AT, SECOND, THIRD, TRUNK
 
 NAME = "adc_lanes"
 TOP = 5
+REFERENCES, ON = ("refp", "refn", "vcm", "vref"), "amp_on"
 # um
-INSIDE = 4.0  # of a lane's cell from its place's west end
-FIRST_TRACK, APART = 5.0, 1.0  # of the channel from the south; between nets on a track
-DOWN = 0.3  # width of what comes from the lanes
-REFERENCES, REFERENCE_WIDE, REFERENCE_PITCH, REFERENCE_AWAY = ("refp", "refn", "vcm"), 4.0, 6.0, 10.0
-JOGS = 2.0, 3.5  # of lane_a and lane_b above the lanes
+INSIDE = 4.0  # of a cell from its place's west end
+FIRST_TRACK = 5.0  # of the lower channel from the south
+RISE_FIRST, RISE, BALANCE_FIRST, BALANCE = 8.0, 5.0, 36.0, 2.0  # of what rises in the east: references, balance
+RISE_WIDE = 2.0  # of a reference there
+REFERENCE_WIDE, REFERENCE_PITCH, REFERENCE_AWAY = 4.0, 6.0, 8.0
+JOGS = 2.0, 3.5  # of lane_a and lane_b above the amplifiers
+NORTH = 6.0  # from the amplifiers to the block's north
 STRAP, STRAP_PITCH, SPINE = 4.0, 30.0, (2.0, 13.0)  # of the supplies; of what joins straps from the edge
-VIA_PITCH = 1.6
+STRAP_IN = 2.5  # of a strap from its rails' ends
+VIA_PITCH, UNDER = 1.6, 9.0  # of the supplies' vias; of the lines that pass below another, over their vias
 SUPPLIES = {"vdd": "vddc", "vss": "vssa"}
 
 
 @dataclass(frozen=True)
 class Converters:
-    """The drawn block. lane: its cell. nets: of the ports of each lane."""
+    """The drawn block. parts: its cells, each with the nets of the ports of its instances."""
 
     block: Block
     layout: "db.Layout"
     cell: "db.Cell"
-    lane: Cell
-    nets: tuple[tuple[str, ...], ...]
+    parts: tuple[tuple[Cell, tuple[tuple[str, ...], ...]], ...]
 
     @property
     def count(self) -> int:
         """Transistors."""
-        return len(self.nets) * self.lane.count
+        return sum(cell.count * len(nets) for cell, nets in self.parts)
 
     def spice(self, masks: AnalogMasks) -> str:
         """Its text for LVS."""
-        ports = dict.fromkeys(net for nets in self.nets for net in nets)
-        lines = [f"X{k} {' '.join(nets)} {self.lane.cell.name}" for k, nets in enumerate(self.nets)]
-        return self.lane.spice(masks) + "\n".join([f".subckt {NAME} {' '.join(ports)}", *lines, f".ends {NAME}", ""])
+        ports = dict.fromkeys(pin.name for pin in self.block.pins if pin.name != "unsigned_")
+        lines = [
+            f"X{cell.cell.name}{k} {' '.join(own)} {cell.cell.name}"
+            for cell, nets in self.parts
+            for k, own in enumerate(nets)
+        ]
+        top = [f".subckt {NAME} {' '.join(ports)}", *lines, f".ends {NAME}", ""]
+        return "".join(cell.spice(masks) for cell, _ in self.parts) + "\n".join(top)
 
     def lef(self, masks: AnalogMasks) -> str:
         """Its LEF: all metals taken."""
@@ -66,15 +81,20 @@ class Converters:
 
 
 def frame(chip: ChipParameters, sizes: AnalogSizes) -> Block:
-    """The frame, with pins for the references between the chip's in the south."""
+    """The frame, with pins for the references and for what wakes the amplifiers in the south-east."""
     block = next(one for one in blocks(chip=chip, sizes=sizes) if one.name == NAME)
-    south = sorted(pin.at_um for pin in block.pins if pin.side == "south")
-    extra = []
-    for k, name in enumerate(REFERENCES):
-        wanted = (k + 1) * sizes.lane_um if chip.lanes > len(REFERENCES) else (k + 1) * block.width_um / 4
-        at = min(range(len(south) - 1), key=lambda n: abs((south[n] + south[n + 1]) / 2 - wanted))
-        extra.append(Pin(name, "inout", "south", round((south[at] + south[at + 1]) / 2, 2)))
+    extra = (
+        Pin(name, "input" if name == ON else "inout", "south", rise(name, chip, sizes)) for name in (*REFERENCES, ON)
+    )
     return replace(block, pins=(*block.pins, *extra))
+
+
+def rise(net: str, chip: ChipParameters, sizes: AnalogSizes) -> float:
+    """X at which a net rises east of the lanes."""
+    east = chip.lanes * sizes.lane_um
+    if net in (*REFERENCES, ON):
+        return east + RISE_FIRST + RISE * (*REFERENCES, ON).index(net)
+    return east + BALANCE_FIRST + BALANCE * int(net.removeprefix("balance[").removesuffix("]"))
 
 
 def lane_nets(lane: int, chip: ChipParameters, ports: tuple[str, ...]) -> tuple[str, ...]:
@@ -82,188 +102,267 @@ def lane_nets(lane: int, chip: ChipParameters, ports: tuple[str, ...]) -> tuple[
     index = f"[{lane}]" if chip.lanes > 1 else ""
     own = {f"d{bit}": f"dac[{BITS * lane + bit}]" for bit in range(BITS)}
     own |= {"en": f"en{index}", "comparator": f"comparator{index}"} | SUPPLIES
-    own |= {f"lane_{diode}": f"lane_{diode}[{lane}]" for diode in DIODES}
+    own |= {"lane_a": f"out_{lane}", "lane_b": "vref", "reset": f"reset_{lane}"}
     return tuple(own.get(port, port) for port in ports)
 
 
-def draw_converters(masks: AnalogMasks, sizes: LaneSizes, chip: ChipParameters, room: AnalogSizes) -> Converters:
-    """Draw all lanes in their frame. Raises ParameterError where they do not fit."""
-    block, lane = frame(chip, room), lane_cell(masks, sizes, chip=True)
-    box = lane.cell.dbbox()
-    if box.width() > room.lane_um:
-        raise ParameterError(f"lane_um = {room.lane_um:g}: must be {box.width():.2f} at the least, the drawn lane")
+def amplifier_nets(lane: int, ports: tuple[str, ...]) -> tuple[str, ...]:
+    """The block's nets at the ports of the amplifier of a lane."""
+    own = {f"g{bit}": f"balance[{bit}]" for bit in range(TRIM_BITS)}
+    own |= {f"column_{diode}": f"lane_{diode}[{lane}]" for diode in DIODES} | SUPPLIES
+    own |= {"out": f"out_{lane}", "reset": f"reset_{lane}", "ibias": f"ibias_{lane}", "on": ON}
+    return tuple(own.get(port, port) for port in ports)
+
+
+@dataclass(frozen=True)
+class Placed:
+    """An instance: its cell, the block's nets at its ports, its place, um."""
+
+    cell: Cell
+    nets: tuple[str, ...]
+    x: float
+    y: float
+
+    def ends(self) -> Iterator[tuple[str, float]]:
+        """(net, x) of its pins."""
+        at = _ports(self.cell)
+        for port, net in zip(self.cell.ports, self.nets, strict=True):
+            if port not in SUPPLIES:
+                yield net, self.x + at[port]
+
+
+def draw_converters(
+    masks: AnalogMasks, sizes: LaneSizes, amplifier: AmplifierSizes, chip: ChipParameters, room: AnalogSizes
+) -> Converters:
+    """Draw all lanes and amplifiers in their frame. Raises ParameterError where they do not fit."""
+    block = frame(chip, room)
+    lane, above = lane_cell(masks, sizes, chip=True), amplifier_cell(masks, amplifier, chip=True)
+    bias = bias_cell(masks, chip.lanes)
+    for cell, most, name in ((lane, room.lane_um, "lane"), (above, room.lane_um, "lane"), (bias, room.bias_um, "bias")):
+        if (need := cell.cell.dbbox().width()) > most:
+            raise ParameterError(f"{name}_um = {most:g}: must be {need:.2f} at the least, the drawn {cell.cell.name}")
     canvas = new_canvas(masks, NAME)
-    at = _ports(lane)
-    nets = tuple(lane_nets(k, chip, lane.ports) for k in range(chip.lanes))
-    rows = _channel(block, at, nets, lane.ports, room)
-    south = FIRST_TRACK + TRACK_PITCH * len(rows) + 3.0
-    if (need := south + box.height() + REFERENCE_AWAY + REFERENCE_PITCH * 3 + 5) > room.lanes_um:
-        raise ParameterError(f"lanes_um = {room.lanes_um:g}: must be {need:.0f} at the least for the drawn lanes")
-    _instances(canvas, lane, chip, room, south)
-    _draw_channel(canvas, block, rows, at, nets, lane.ports, room, south)
-    _north(canvas, block, at, nets, lane.ports, room, south, south + box.height())
-    _supplies(canvas, block, lane, chip, room, south)
+    ground = next(pin.at_um for pin in block.pins if pin.name == "vssa")
+    top = ground - REFERENCE_AWAY  # of the lanes
+    low = top - lane.cell.dbbox().height()
+    lanes = [Placed(lane, lane_nets(k, chip, lane.ports), _x(k, room), low) for k in range(chip.lanes)]
+    straps = {net: top + REFERENCE_AWAY + REFERENCE_PITCH * k for k, net in enumerate(REFERENCES)}
+    south = _south(block, lanes, chip, room)
+    middle = top + REFERENCE_AWAY + REFERENCE_PITCH * len(REFERENCES)
+    east = chip.lanes * room.lane_um
+    currents = tuple(f"ibias_{k}" for k in range(chip.lanes)) + tuple(SUPPLIES.values())
+    amplifiers = [Placed(above, amplifier_nets(k, above.ports), _x(k, room), 0.0) for k in range(chip.lanes)]
+    biased = Placed(bias, currents, east + INSIDE - bias.cell.dbbox().left, 0.0)
+    channel = _middle(middle, lanes, amplifiers, biased, block, chip, room)
+    amplifiers = [replace(one, y=channel.top) for one in amplifiers]
+    biased = replace(biased, y=channel.top)
+    need = channel.top + above.cell.dbbox().height() + NORTH + max(0.0, south.top - low)
+    if need > room.lanes_um or south.top > low:
+        raise ParameterError(f"lanes_um = {room.lanes_um:g}: must be greater, {need:.0f} or more, for the drawn lanes")
+    _instances(canvas, [*lanes, *amplifiers, biased])
+    south.draw(canvas, 0.0, _rising(south, lanes, low, middle, block, chip, room))
+    channel.draw(canvas, top - 0.1)
+    _references(canvas, lanes, amplifiers, straps, top, channel.top, chip, room)
+    canvas.wire(FOURTH, (x := rise(ON, chip, room)) - WIDE_UM / 2, 0, x + WIDE_UM / 2, middle + 0.1)
+    _north(canvas, block, amplifiers)
+    _supplies(canvas, block, lanes, [*amplifiers, biased], room)
     draw_pins(canvas.layout, canvas.cell, block, masks.base.name, room.supply_um)
     canvas.box(masks.base.outline, 0, 0, block.width_um, block.height_um)
-    return Converters(block, canvas.layout, canvas.cell, lane, nets)
+    parts = ((lane, lanes), (above, amplifiers), (bias, [biased]))
+    return Converters(
+        block, canvas.layout, canvas.cell, tuple((cell, tuple(one.nets for one in placed)) for cell, placed in parts)
+    )
 
 
-def _ports(lane: Cell) -> dict[str, float]:
-    """X of a lane's pins, in its cell, on the fourth metal."""
-    process = lane.layout
+def _ports(cell: Cell) -> dict[str, float]:
+    """X of a cell's pins, on the fourth metal."""
     found = {}
-    for index in process.layer_indexes():
-        for shape in lane.cell.shapes(index).each(db.Shapes.STexts):
-            found[shape.text_string] = shape.text.x * process.dbu
+    for index in cell.layout.layer_indexes():
+        for shape in cell.cell.shapes(index).each(db.Shapes.STexts):
+            found[shape.text_string] = shape.text.x * cell.layout.dbu
     return found
 
 
-def _x(lane: int, at: float, room: AnalogSizes) -> float:
-    return lane * room.lane_um + INSIDE + at
+def _x(lane: int, room: AnalogSizes) -> float:
+    return lane * room.lane_um + INSIDE
 
 
-Row = list[tuple[str, float, float]]
+def _gap(lane: int, room: AnalogSizes) -> float:
+    """X between a lane and what is east of it."""
+    return (lane + 1) * room.lane_um
 
 
-def _channel(
-    block: Block, at: dict[str, float], nets: tuple[tuple[str, ...], ...], ports: tuple[str, ...], room: AnalogSizes
-) -> list[Row]:
-    """(net, left, right) on every track of the channel: of each net between the chip's pin and the lanes."""
-    south = {pin.name: pin.at_um for pin in block.pins if pin.side == "south"}
-    spans = {}
-    for net, pin in south.items():
-        xs = [
-            _x(k, at[port], room)
-            for k, own in enumerate(nets)
-            for port, one in zip(ports, own, strict=True)
-            if one == net and net not in REFERENCES
-        ]
-        if net in REFERENCES:
-            xs = [_gap(net, room)]
-        if xs:
-            spans[net] = min(*xs, pin), max(*xs, pin)
-    rows: list[Row] = []
-    for net in sorted(spans, key=lambda net: spans[net]):
-        left, right = spans[net]
-        row = next((row for row in rows if all(right + APART < a or b + APART < left for _, a, b in row)), None)
-        if row is None:
-            row = []
-            rows.append(row)
-        row.append((net, left, right))
-    return rows
+def _south(block: Block, lanes: list[Placed], chip: ChipParameters, room: AnalogSizes) -> Channel:
+    """Between the chip's pins and the lanes; what rises to the amplifiers."""
+    own = {pin.name: [pin.at_um] for pin in block.pins if pin.side == "south"}
+    above: dict[str, list[float]] = {}
+    for number, one in enumerate(lanes):
+        for net, x in one.ends():
+            if net in own and net not in REFERENCES or net.startswith("reset_"):
+                above.setdefault(net, []).append(x)
+        above[f"reset_{number}"].append(_gap(number, room))
+    above |= {net: [rise(net, chip, room)] for net in own if net.startswith("balance")}
+    return Channel(FIRST_TRACK, {net: xs for net, xs in own.items() if net in above}, above)
 
 
-def _gap(net: str, room: AnalogSizes) -> float:
-    """X between two lanes at which a reference comes down."""
-    return (REFERENCES.index(net) + 1) * room.lane_um
-
-
-def _instances(canvas: Canvas, lane: Cell, chip: ChipParameters, room: AnalogSizes, y: float) -> None:
-    """The lanes, without their pins' names."""
-    copy = canvas.layout.create_cell(lane.cell.name)
-    copy.copy_tree(lane.cell)
-    for index in canvas.layout.layer_indexes():
-        texts = list(copy.shapes(index).each(db.Shapes.STexts))
-        for shape in texts:
-            copy.shapes(index).erase(shape)
-    for k in range(chip.lanes):
-        where = db.Trans(canvas.snap(_x(k, 0.0, room)), canvas.snap(y))
-        canvas.cell.insert(db.CellInstArray(copy.cell_index(), where))
-
-
-def _draw_channel(
-    canvas: Canvas,
+def _rising(
+    south: Channel,
+    lanes: list[Placed],
+    low: float,
+    middle: float,
     block: Block,
-    rows: list[Row],
-    at: dict[str, float],
-    nets: tuple[tuple[str, ...], ...],
-    ports: tuple[str, ...],
+    chip: ChipParameters,
     room: AnalogSizes,
-    top: float,
-) -> None:
-    south = {pin.name: pin.at_um for pin in block.pins if pin.side == "south"}
-    half = TRACK / 2
-    for number, row in enumerate(rows):
-        y = FIRST_TRACK + TRACK_PITCH * (number + 0.5)
-        for net, left, right in row:
-            canvas.wire(THIRD, left - half, y - half, right + half, y + half)
-            canvas.wire(FOURTH, south[net] - half, 0, south[net] + half, y + half)
-            canvas.stack(south[net], y, THIRD, FOURTH)
-            downs = [
-                _x(k, at[port], room)
-                for k, own in enumerate(nets)
-                for port, one in zip(ports, own, strict=True)
-                if one == net and net not in REFERENCES
-            ]
-            for x in [_gap(net, room)] if net in REFERENCES else downs:
-                canvas.wire(SECOND, x - DOWN / 2, y - half, x + DOWN / 2, top - 1.2)
-                canvas.stack(x, y, SECOND, THIRD)
-                canvas.stack(x, top - 1.2, SECOND, FOURTH)
-                canvas.wire(THIRD, x - 0.3, top - 1.5, x + 0.3, top - 0.9)
-                canvas.wire(FOURTH, x - TRUNK / 2, top - 1.5, x + TRUNK / 2, top + 0.1)
+) -> dict[float, float]:
+    """Y up to which what is above the lower channel leads, by x: to the lanes, or to the upper channel."""
+    ends = {x: low + 0.1 for xs in south.above.values() for x in xs}
+    high = [rise(pin.name, chip, room) for pin in block.pins if pin.name.startswith("balance")]
+    return ends | dict.fromkeys([*high, *(_gap(k, room) for k in range(len(lanes)))], middle + 0.1)
 
 
-def _north(
-    canvas: Canvas,
-    block: Block,
-    at: dict[str, float],
-    nets: tuple[tuple[str, ...], ...],
-    ports: tuple[str, ...],
-    room: AnalogSizes,
-    bottom: float,
+def _middle(
     y: float,
+    lanes: list[Placed],
+    amplifiers: list[Placed],
+    bias: Placed,
+    block: Block,
+    chip: ChipParameters,
+    room: AnalogSizes,
+) -> Channel:
+    """Between the lanes and the amplifiers."""
+    below: dict[str, list[float]] = {
+        net: [rise(net, chip, room)]
+        for net in [ON, *(pin.name for pin in block.pins if pin.name.startswith("balance"))]
+    }
+    below |= {f"reset_{k}": [_gap(k, room)] for k in range(len(lanes))}
+    below |= {net: [x] for one in lanes for net, x in one.ends() if net.startswith("out_")}
+    above: dict[str, list[float]] = {}
+    for one in (*amplifiers, bias):
+        for net, x in one.ends():
+            if net in below or net.startswith("ibias_"):
+                above.setdefault(net, []).append(x)
+    return Channel(y, below, above)
+
+
+def _instances(canvas: Canvas, placed: list[Placed]) -> None:
+    """The cells, without their pins' names."""
+    copies: dict[str, db.Cell] = {}
+    for one in placed:
+        name = one.cell.cell.name
+        if name not in copies:
+            copies[name] = canvas.layout.create_cell(name)
+            copies[name].copy_tree(one.cell.cell)
+            for index in canvas.layout.layer_indexes():
+                for shape in list(copies[name].shapes(index).each(db.Shapes.STexts)):
+                    copies[name].shapes(index).erase(shape)
+        where = db.Trans(canvas.snap(one.x), canvas.snap(one.y))
+        canvas.cell.insert(db.CellInstArray(copies[name].cell_index(), where))
+
+
+def _references(
+    canvas: Canvas,
+    lanes: list[Placed],
+    amplifiers: list[Placed],
+    straps: Mapping[str, float],
+    bottom: float,
+    top: float,
+    chip: ChipParameters,
+    room: AnalogSizes,
 ) -> None:
-    """From the lanes' tops to the pins in the north, and the references across."""
-    north = {pin.name: pin.at_um for pin in block.pins if pin.side == "north"}
+    """Straps across all lanes from what rises in the east; the lanes below, the amplifiers' vref above."""
     half = TRUNK / 2
-    for k, own in enumerate(nets):
-        for port, net in zip(ports, own, strict=True):
-            x = _x(k, at.get(port, 0.0), room)
+    for net, y in straps.items():
+        x, wide = rise(net, chip, room), REFERENCE_WIDE / 2
+        canvas.wire(THIRD, 3.0, y - wide, x + wide, y + wide)
+        for step in (-1.2, -0.6, 0.0, 0.6, 1.2):
+            for aside in (-0.6, 0.0, 0.6):
+                canvas.stack(x + aside, y + step, THIRD, FOURTH)
+        canvas.wire(FOURTH, x - RISE_WIDE / 2, 0.0, x + RISE_WIDE / 2, y + wide)
+    for one in lanes:
+        for net, x in one.ends():
+            if net in straps:
+                y = straps[net]
+                canvas.wire(FOURTH, x - half, bottom - 0.1, x + half, y + 1)
+                for step in (-0.6, 0.0, 0.6):
+                    canvas.stack(x, y + step, THIRD, FOURTH)
+    for one in amplifiers:
+        for net, x in one.ends():
+            if net in straps:
+                y, high = straps[net], top - 1.2
+                canvas.wire(SECOND, x - half, y - 1, x + half, high + 0.2)
+                for step in (-0.6, 0.0, 0.6):
+                    canvas.stack(x, y + step, SECOND, THIRD)
+                up(canvas, x, high)
+                canvas.wire(FOURTH, x - half, high - 0.3, x + half, top + 0.1)
+
+
+def _north(canvas: Canvas, block: Block, amplifiers: list[Placed]) -> None:
+    """From the amplifiers' tops to the pins in the north."""
+    north, half = {pin.name: pin.at_um for pin in block.pins if pin.side == "north"}, TRUNK / 2
+    for one in amplifiers:
+        y = one.y + one.cell.cell.dbbox().top
+        for net, x in one.ends():
             if net in north:
-                jog, to = y + JOGS[DIODES.index(port[-1])], north[net]
+                jog, to = y + JOGS[DIODES.index(net[len("lane_")])], north[net]
                 canvas.wire(FOURTH, x - half, y - 0.1, x + half, jog + half)
                 canvas.wire(THIRD, min(x, to) - half, jog - half, max(x, to) + half, jog + half)
                 canvas.wire(FOURTH, to - half, jog - half, to + half, block.height_um)
                 for end in (x, to):
                     canvas.stack(end, jog, THIRD, FOURTH)
-            elif net in REFERENCES:
-                across = y + REFERENCE_AWAY + REFERENCE_PITCH * REFERENCES.index(net)
-                canvas.wire(FOURTH, x - half, y - 0.1, x + half, across + 1)
-                for step in (-0.6, 0.0, 0.6):
-                    canvas.stack(x, across + step, THIRD, FOURTH)
-    for net in REFERENCES:
-        across, x = y + REFERENCE_AWAY + REFERENCE_PITCH * REFERENCES.index(net), _gap(net, room)
-        wide = REFERENCE_WIDE / 2
-        canvas.wire(THIRD, 3.0, across - wide, block.width_um - 3.0, across + wide)
-        for step in (-1.2, -0.6, 0.0, 0.6, 1.2):
-            canvas.stack(x, across + step, THIRD, FOURTH)
-        canvas.wire(FOURTH, x - 0.5, bottom - 1.5, x + 0.5, across + wide)
 
 
-def _supplies(canvas: Canvas, block: Block, lane: Cell, chip: ChipParameters, room: AnalogSizes, y: float) -> None:
-    """Straps over the lanes, joined in the east and in the west."""
+def _rails(one: Placed) -> dict[str, tuple[float, float, float]]:
+    """(x, low, high) of what joins a cell's rails, by supply."""
+    box, found = one.cell.cell.dbbox(), {}
+    metals = [
+        shape.dbbox()
+        for index in one.cell.layout.layer_indexes()
+        for shape in one.cell.cell.shapes(index).each(db.Shapes.SBoxes)
+    ]
+    edge = -box.left  # the cell's ends are as far from the tracks' in the west as in the east
+    for net, x in (("vss", box.left + edge - RAIL_AT), ("vdd", box.right - edge + RAIL_AT)):
+        trunk = max(
+            (shape for shape in metals if abs(shape.center().x - x) < 0.01 and shape.width() < 1.1),
+            key=lambda shape: shape.height(),
+        )
+        found[net] = one.x + x, one.y + trunk.bottom, one.y + trunk.top
+    return found
+
+
+def _supplies(canvas: Canvas, block: Block, lanes: list[Placed], upper: list[Placed], room: AnalogSizes) -> None:
+    """Straps over lanes, amplifiers and bias, joined in the east and in the west."""
     via, half, width = canvas.process.vias[FOURTH].gds, STRAP / 2, block.width_um
-    own = {pin.name: pin.at_um for pin in block.pins if pin.supply}
-    box = lane.cell.dbbox()
-    right = box.right + box.left  # the cell's ends are as far from the tracks' in the west as in the east
-    trunks = {"vss": -RAIL_AT, "vdd": right + RAIL_AT}
-    count = int((box.height() - 20) / STRAP_PITCH)
-    ys: dict[str, list[float]] = {"vss": [], "vdd": []}
-    for n in range(count):
-        net = ("vdd", "vss")[n % 2]
-        ys[net].append(round(y + 12 + STRAP_PITCH * n, 2))
-    for net, heights in ys.items():
-        begin, end = (SPINE[0], width - SPINE[1] - 4) if net == "vss" else (SPINE[1] + 4, width - SPINE[0])
-        for at_y in heights:
-            canvas.wire(TOP, begin, at_y - half, end, at_y + half)
-            for k in range(chip.lanes):
-                x = _x(k, trunks[net], room)
-                canvas.wire(FOURTH, x - 0.6, at_y - half, x + 0.6, at_y + half)
-                for step in (-VIA_PITCH / 2, VIA_PITCH / 2):
-                    canvas.square(via, x, at_y + step, 0.8)
-        pin = own[SUPPLIES[net]]
-        reach = [*heights, pin]
-        wide = room.supply_um / 2
+    heights: dict[str, list[list[float]]] = {"vss": [], "vdd": []}
+    for row in (lanes, upper):
+        rails = [_rails(one) for one in row]
+        low = max(bottom for found in rails[:-1] or rails for _, bottom, _ in found.values()) + STRAP_IN
+        high = min(top for found in rails[:-1] or rails for _, _, top in found.values()) - STRAP_IN
+        ys = [round(low + STRAP_PITCH * n, 2) for n in range(int((high - low) / STRAP_PITCH) + 1)]
+        for k, net in enumerate(("vdd", "vss")):
+            heights[net].append(ys[k::2])
+            begin, end = (SPINE[0], width - SPINE[1] - 4) if net == "vss" else (SPINE[1] + 4, width - SPINE[0])
+            for y in ys[k::2]:
+                canvas.wire(TOP, begin, y - half, end, y + half)
+            for found in rails:
+                x, bottom, top = found[net]
+                near = [y for y in ys[k::2] if bottom < y < top] or [min(ys[k::2], key=lambda y: abs(y - top))]
+                canvas.wire(FOURTH, x - 0.6, min(bottom, near[0] - half), x + 0.6, max(top, near[-1] + half))
+                for y in near:
+                    for step in (-VIA_PITCH / 2, VIA_PITCH / 2):
+                        canvas.square(via, x, y + step, 0.8)
+    pins = [(pin.name, pin.at_um) for pin in block.pins if pin.supply]
+    wide = room.supply_um / 2
+    for net, rows in heights.items():
+        own = [at for name, at in pins if name == SUPPLIES[net]]
         x0, x1 = SPINE if net == "vss" else (width - SPINE[1], width - SPINE[0])
-        canvas.wire(TOP, x0, min(reach) - wide, x1, max(reach) + wide)
-        canvas.wire(TOP, x0, pin - wide, width, pin + wide)
+        joined = [[y for row in rows for y in row]] if net == "vss" else rows
+        for ys, at in zip(joined, own, strict=True):
+            canvas.wire(TOP, x0, min(*ys, at) - wide, x1, max(*ys, at) + wide)
+            canvas.wire(TOP, x0, at - wide, width, at + wide)
+        if net == "vdd":  # below the ground's line
+            ends = max(*rows[0], own[0]) + wide, min(*rows[1], own[1]) - wide
+            canvas.wire(FOURTH, x0 + 1, ends[0] - UNDER, x1 - 1, ends[1] + UNDER)
+            for y in (ends[0] - UNDER / 2, ends[1] + UNDER / 2):
+                for across in range(-2, 3):
+                    for step in range(-2, 3):
+                        canvas.square(via, (x0 + x1) / 2 + VIA_PITCH * across, y + VIA_PITCH * step, 0.8)

@@ -14,9 +14,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from talbot.pixels.circuits.dac import BITS
-from talbot.pixels.circuits.gates import inverter, nand
+from talbot.pixels.circuits.interface import CHIP, SLOW, interface
 from talbot.pixels.circuits.lane import PINS, LaneSizes, sar_lane
-from talbot.pixels.circuits.netlist import Circuit, Instance
 from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.analog import AnalogMasks
 
@@ -40,6 +39,7 @@ from .strip import (
     join_rails,
     trunk,
 )
+from .switch import ORDER
 
 # um
 CHANNEL, CHANNEL_FIRST, CHANNEL_PITCH = 9.0, 0.9, 1.6  # beside the arrays, for what passes them
@@ -52,22 +52,12 @@ JOG = 5.0  # of the common nodes' ways into the comparator from its axis
 Column = tuple[Device | None, Device | None]
 
 
-CHIP = "hold", "en", "clk"  # what the chip gives a lane of several in place of sample and strobe
-CHIP_PINS = tuple(pin for pin in PINS if pin not in ("sample", "strobe")) + CHIP
-
-
-def interface() -> Circuit:
-    """A lane samples where it is enabled and the chip holds; it decides in the second half of the clock's cycle."""
-    supplies = ("vdd", "vss")
-    return Circuit(
-        "interface",
-        (*CHIP, "sample", "strobe", *supplies),
-        instances=(
-            Instance("held", nand(), ("hold", "en", "samplen", *supplies)),
-            Instance("sampled", inverter(2), ("samplen", "sample", *supplies)),
-            Instance("fired", inverter(2), ("clk", "strobe", *supplies)),
-        ),
-    )
+# A lane between the chip and its amplifier
+CHIP_PINS = tuple(pin for pin in PINS if pin not in ("sample", "strobe")) + (*CHIP, "reset")
+INTERFACE = (
+    tuple(f"drivers.{name}" for name in ORDER),
+    ("fired", *(f"slow{k}" for k in range(SLOW)), "held", "over", "sampled"),
+)
 
 
 @dataclass(frozen=True)
@@ -127,7 +117,7 @@ def lane_plan(masks: AnalogMasks, sizes: LaneSizes, d: dict[str, Device]) -> Lan
         reach = {net: (x,) for net, x in at.items() if net in present}
         return Plan(n, p, left, right, reach, quiet=frozenset({*nets.values(), *other.values(), "lane_a", "lane_b"}))
 
-    drivers = [_gates(d, ("held", "sampled", "fired"))] if "fired.n" in d else []
+    drivers = [_gates(d, one) for one in INTERFACE] if "fired.n" in d else []
     drivers.append(
         _gates(d, ("sample_0", "sample_1", "sample_2", "sample_3", "sample_n", "sample_p", "strobe_n", "strobe_p"))
     )
@@ -157,7 +147,7 @@ def lane_plan(masks: AnalogMasks, sizes: LaneSizes, d: dict[str, Device]) -> Lan
 def lane_cell(masks: AnalogMasks, sizes: LaneSizes, chip: bool = False) -> Cell:
     """Draw the lane; its south-west corner is at the origin, its pins are in the south and in the north.
 
-    chip: with the `interface` to the chip, in place of pins sample and strobe.
+    chip: with the `interface` between the chip and the amplifier, in place of pins sample and strobe.
     """
     ports, d = CHIP_PINS if chip else PINS, devices(sar_lane(sizes))
     canvas = new_canvas(masks, "adc_lane" if chip else "sar_lane")
@@ -220,7 +210,7 @@ def _places(left: float, right: float, nets: Mapping[str, str], other: Mapping[s
     over = [*nets.values(), *bits]
     over += ["sample", "strobe", *CHIP]
     first = (left + right) / 2 - STEP * (len(over) - 1) / 2
-    places |= {net: first + STEP * k for k, net in enumerate(over)}
+    places |= {net: first + STEP * k for k, net in enumerate(["track", *over, "reset"], -1)}
     beside = [*other.values(), "lane_b"]
     return places | {net: first + STEP * (3 * k + 1) for k, net in enumerate(beside) if net not in places}
 

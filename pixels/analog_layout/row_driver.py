@@ -46,7 +46,6 @@ ROOM = 0.6  # beside each device, for its drops
 APART = 8.0  # of the level shifters from the logic's tracks: wells of two levels, rails and their joints
 THICK_WELL, THICK_IN, TIP = 0.33, 0.33, 0.185  # hvi well around diffusion and taps; hvi beyond the well; hvntm
 JOG, JOG_FIRST, PIN_END = 0.8, 2.2, 1.5  # of the ways to the lines' places; east of the last
-LEAST_JOG = 0.3  # of one, for the least area
 LOGIC = (
     "amp_n",
     "amp_s",
@@ -193,13 +192,13 @@ def draw_row(canvas: Canvas, masks: AnalogMasks, made: RowPlan) -> Strip:
         if track.net in made.jogs:
             x, to, half = made.jogs[track.net], at[track.net], LINE / 2
             low, high = sorted((track.y, to))
-            more = max(LEAST_JOG - (high - low), 0.0) / 2
-            canvas.wire(FOURTH, x - half, low - half - more, x + half, high + half + more)
+            canvas.wire(THIRD, x - half, to - half, made.right, to + half)
+            if high - low < TRACK + 0.32:  # no notch between both, and no room for two vias
+                canvas.wire(THIRD, x - TRUNK / 2, low, x + TRUNK / 2, high)
+                continue
+            canvas.wire(FOURTH, x - half, low - half, x + half, high + half)
             for end in (track.y, to):
                 canvas.stack(x, end, THIRD, FOURTH)
-            canvas.wire(THIRD, x - half, to - half, made.right, to + half)
-            if high - low < TRACK + 0.32:  # no notch between both
-                canvas.wire(THIRD, x - TRUNK / 2, low, x + TRUNK / 2, high)
     return strip
 
 

@@ -280,8 +280,8 @@ def _selector(width: float) -> Circuit:
     )
 
 
-def amplifier(sizes: AmplifierSizes) -> Circuit:
-    """Pins as PINS."""
+def amplifier(sizes: AmplifierSizes, chip: bool = False) -> Circuit:
+    """Pins as PINS. chip: g9..g0 are the chip's `balance`, whose top bit is inverted."""
     u = sizes.unit
     capacitors = [
         Capacitor("a", "xm", "column_a", UNITS * u, UNITS),
@@ -299,7 +299,8 @@ def amplifier(sizes: AmplifierSizes) -> Circuit:
         capacitors.append(Capacitor(f"b{k}", "xp", f"bottom{k}", units * u, units))
         instances.append(Instance(f"not{k}", inverter(), (f"g{k}", f"g{k}n", "vdd", "vss")))
         chosen = _selector(max(0.5, units / 32))
-        nodes = (f"bottom{k}", "column_b", f"g{k}", f"g{k}n", "vref", "vdd", "vss")
+        on, off = (f"g{k}n", f"g{k}") if chip and k == TRIM_BITS - 1 else (f"g{k}", f"g{k}n")
+        nodes = (f"bottom{k}", "column_b", on, off, "vref", "vdd", "vss")
         instances.append(Instance(f"select{k}", chosen, nodes))
     switches = tuple(
         Transistor(name, a, gate, b, bulk, role, w, length)

@@ -11,15 +11,15 @@ def _name(kind: str, strength: int) -> str:
     return f"{kind}_x{strength}"
 
 
-def inverter(strength: int = 1) -> Circuit:
-    """Pins a y vdd vss."""
+def inverter(strength: int = 1, length: float = LENGTH) -> Circuit:
+    """Pins a y vdd vss. length: um, of both transistors; longer ones are for delay."""
     n, p = UNIT * strength, 2 * UNIT * strength
     return Circuit(
-        _name("inv", strength),
+        _name("inv", strength) + ("" if length == LENGTH else f"_l{round(100 * length)}"),
         ("a", "y", "vdd", "vss"),
         (
-            Transistor("n", "y", "a", "vss", "vss", "n", n, LENGTH),
-            Transistor("p", "y", "a", "vdd", "vdd", "p", p, LENGTH),
+            Transistor("n", "y", "a", "vss", "vss", "n", n, length),
+            Transistor("p", "y", "a", "vdd", "vdd", "p", p, length),
         ),
     )
 

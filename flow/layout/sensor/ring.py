@@ -4,7 +4,8 @@ The ring has four segments. In the south up to the last pin of the host, and in 
 host's pins and the supplies of chip and pads. The pixels' supply is in the north and in the east beside the array, that
 of the analog circuits in the south-east and in the west above the chip. Fillers and corners continue the supplies'
 tracks through a segment; at a border those tracks continue that are of one net on both sides: at the host's segment the
-pads' ground alone, between the analog ones all but the supply.
+pads' ground alone, between the analog ones all but the supply. A supply's line on the top metal with another net's
+track before its own passes through a slot: there is no cell, all tracks continue below that metal. Pads are beside it.
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -29,6 +30,7 @@ CIRCUITS_ON_SIDE = "vddc", "vssa", "vddr", "vssio", "vssa", "vddc"
 PIXELS_ON_SIDE = "vdda", "vssa", "vddr", "vssio", "vssa", "vdda"
 SIDES = "south", "east", "north", "west"
 UM, GAP = 1000, 20_000  # the grid of cells in the ring; between the segments
+BESIDE = 4_000  # of a line in a slot from the next cells' metal
 OUTSIDE = "pad_"  # of the names of pads, and of the nets of their bond pads
 TOP = 5  # level of the bond pads' metal
 CORE_PINS = {"input": "p2c", "output": "c2p", "analog": "padres"}
@@ -42,6 +44,26 @@ class Place(NamedTuple):
     side: str
     at: int
     nets: Mapping[str, str]
+
+
+class Gap(NamedTuple):
+    """Where no cell is. nets: by pin, of the tracks that continue; whole: on the top metal, too."""
+
+    name: str
+    side: str
+    at: int
+    width: int
+    nets: Mapping[str, str]
+    whole: bool = True
+
+
+class Way(NamedTuple):
+    """The ends along a side of a supply's line to its track."""
+
+    net: str
+    side: str
+    low: int
+    high: int
 
 
 @dataclass(frozen=True)
@@ -120,6 +142,13 @@ class Pads:
         left, low, right, high = self.frame.box(side, 0, (0, bottom, 0, top))
         return (left, right) if side in ("west", "east") else (low, high)
 
+    def crossed(self, net: str, side: str, at: int) -> bool:
+        """Whether a supply's line on the top metal has a track of another net before its own."""
+        pins = {pin for pin, own in self.tracks(side, at).items() if own == net}
+        reach = [low for pin in pins for level, _, low, *_ in self.filler[pin] if level < TOP]
+        others = [(level, high) for pin, boxes in self.filler.items() if pin not in pins for level, *_, high in boxes]
+        return any(level == TOP and high > min(reach, default=high) for level, high in others)
+
 
 def function(net: str, driven: bool) -> str:
     """Of the pad of a signal: 'output' of what a block drives, 'input' of the host's others, else 'analog'."""
@@ -139,11 +168,10 @@ def supply(net: str, number: int, side: str, at: int, process: PadProcess, track
     return Place(f"{OUTSIDE}{net}_{number}", process.supplies[track], side, at, dict(tracks))
 
 
-def ring(pads: Pads, signals: Sequence[Place]) -> tuple[list[Place], list[Place]]:
-    """All cells of the ring but its corners, and the gaps between the segments, as places without a cell.
+def ring(pads: Pads, signals: Sequence[Place], ways: Iterable[Way] = ()) -> tuple[list[Place], list[Gap]]:
+    """All cells of the ring but its corners, and the gaps: between the segments, and the slots of the lines ``ways``.
 
-    A gap has the nets of the tracks that continue. signals: pads in the south, digital ones before analog ones. Raises
-    StepError where there is no room.
+    signals: pads in the south, digital ones before analog ones. Raises StepError where there is no room.
     """
     frame, process = pads.frame, pads.process
     digital = [place for place in signals if "vddio" in place.nets.values()]
@@ -151,11 +179,12 @@ def ring(pads: Pads, signals: Sequence[Place]) -> tuple[list[Place], list[Place]
     end = max(place.at for place in digital) + frame.pad
     west, east = pads.borders["west"], pads.borders["east"]
     gaps = [
-        Place("south_border", "", "south", end, _common(DIGITAL, ANALOG)),
-        Place("west_border", "", "west", west, _common(DIGITAL, ANALOG)),
-        Place("east_border", "", "east", east, _common(ANALOG, PIXELS)),
-        Place("north_border", "", "north", frame.span("north")[0], _common(ANALOG, PIXELS)),
+        Gap("south_border", "south", end, GAP, _common(DIGITAL, ANALOG)),
+        Gap("west_border", "west", west, GAP, _common(DIGITAL, ANALOG)),
+        Gap("east_border", "east", east, GAP, _common(ANALOG, PIXELS)),
+        Gap("north_border", "north", frame.span("north")[0], GAP, _common(ANALOG, PIXELS)),
     ]
+    slots = [_slot(way, pads) for way in ways if pads.crossed(way.net, way.side, way.low)]
     parts = [
         ("west", low, west, BESIDE_CHIP, DIGITAL),
         ("east", frame.span("east")[0], east, CIRCUITS_ON_SIDE, ANALOG),
@@ -170,9 +199,26 @@ def ring(pads: Pads, signals: Sequence[Place]) -> tuple[list[Place], list[Place]
             raise StepError(f"ring: no room for {len(nets)} pads in the {side}, from {begin / UM:g} to {to / UM:g} um")
         for place, net in enumerate(nets):
             count[net] = count.get(net, 0) + 1
-            at = begin + room + place * (frame.pad + room)
+            at = _beside(
+                begin + room + place * (frame.pad + room), frame.pad, [one for one in slots if one.side == side]
+            )
             made.append(supply(net, count[net], side, at, process, tracks))
-    return made + list(_fillers(frame, [*made, *gaps], process)), gaps
+    gaps += slots
+    return made + list(_fillers(frame, made, gaps, process)), gaps
+
+
+def _slot(way: Way, pads: Pads) -> Gap:
+    """The slot of a line."""
+    at = (way.low - BESIDE) // UM * UM
+    width = -(-(way.high + BESIDE - at) // UM) * UM
+    return Gap(f"slot of {way.net}", way.side, at, width, pads.tracks(way.side, at), whole=False)
+
+
+def _beside(at: int, pad: int, slots: Sequence[Gap]) -> int:
+    """The place nearest to ``at`` where a pad is over no slot."""
+    places = [at, *(slot.at - pad for slot in slots), *(slot.at + slot.width for slot in slots)]
+    clear = [place for place in places if all(place + pad <= one.at or one.at + one.width <= place for one in slots)]
+    return min(clear, key=lambda place: (abs(place - at), place))
 
 
 def _common(one: Mapping[str, str], other: Mapping[str, str]) -> dict[str, str]:
@@ -180,27 +226,30 @@ def _common(one: Mapping[str, str], other: Mapping[str, str]) -> dict[str, str]:
     return {pin: net for pin, net in one.items() if other[pin] == net}
 
 
-def _fillers(frame: Frame, taken: Iterable[Place], process: PadProcess) -> Iterator[Place]:
-    """Fillers of all that is free between the corners."""
+def _fillers(frame: Frame, places: Iterable[Place], gaps: Iterable[Gap], process: PadProcess) -> Iterator[Place]:
+    """Fillers of all that is free between the corners. Raises StepError for what overlaps."""
+    taken = [(place.side, place.at, frame.pad, place.name) for place in places]
+    taken += [(gap.side, gap.at, gap.width, gap.name) for gap in gaps]
     for side in SIDES:
-        at, end = frame.span(side)
-        here = sorted((place.at, GAP if not place.cell else frame.pad) for place in taken if place.side == side)
-        for begin, width in [*here, (end, 0)]:
+        (at, end), before = frame.span(side), "the corner"
+        here = sorted(own for of, *own in taken if of == side)
+        for begin, width, name in [*here, [end, 0, "the corner"]]:
             if begin < at:
-                raise StepError(f"ring: two pads at {begin / UM:g} um in the {side}")
+                raise StepError(f"ring: {before} and {name} overlap in the {side}, at {begin / UM:g} um")
             for um, cell in process.fillers.items():
                 while begin - at >= um * UM:
                     yield Place(f"{side}_{at // UM}", cell, side, at, {})
                     at += round(um * UM)
-            at = begin + width
+            at, before = begin + width, name
 
 
-def bridges(pads: Pads, gaps: Iterable[Place]) -> Iterator[tuple[str, int, Box]]:
-    """Triples (net, level of metal, box) that continue tracks between the segments."""
+def bridges(pads: Pads, gaps: Iterable[Gap]) -> Iterator[tuple[str, int, Box]]:
+    """Triples (net, level of metal, box) that continue tracks across gaps."""
     for gap in gaps:
         for pin, net in gap.nets.items():
             for level, _, bottom, _, top in pads.filler[pin]:
-                yield net, level, pads.frame.box(gap.side, gap.at, (0, bottom, GAP, top))
+                if level < TOP or gap.whole:
+                    yield net, level, pads.frame.box(gap.side, gap.at, (0, bottom, gap.width, top))
 
 
 def middle(box: Box) -> int:

@@ -10,7 +10,7 @@ from talbot.platforms.die import TopMetal
 from . import shapes
 from .arrange import Arranged
 from .plan import ANALOG, CIRCUITS, CORE, DIGITAL, SUPPLIES, Block, Box, DieParameters, check_way, nm
-from .ring import Pads
+from .ring import Pads, Way
 from .routing import Tracks
 from .shapes import Shape
 
@@ -42,8 +42,7 @@ def supplies(
     in the west and the east, across bars of the metal below, one a net; a line whose net has no track beside it ends at
     the bar. Two lines in the north connect the west with the east.
     """
-    straps = [(net, (box[0] + box[2]) // 2) for net in DIGITAL for _, box in blocks[CORE].pins[net]]
-    lines = [*_over_core(blocks[CORE], straps, die), *_from_blocks(blocks, die, top), *_in_north(die)]
+    straps, lines = _straps(blocks[CORE]), _lines(blocks, die, top)
     found: list[Shape] = []
     for net in SUPPLIES:
         for side in ("west", "east"):
@@ -64,6 +63,11 @@ def supplies(
     return list(dict.fromkeys(found))
 
 
+def ways(blocks: Mapping[str, Block], die: DieParameters, top: TopMetal) -> list[Way]:
+    """Of all lines where they meet the ring."""
+    return [Way(line.net, line.side, line.box[1], line.box[3]) for line in _lines(blocks, die, top)]
+
+
 def to_track(box: Box, side: str, track: tuple[int, int]) -> Box:
     """The box of a line, up to the far end of a track of the ring, or of a bar."""
     return (track[0], *box[1:]) if side == "west" else (box[0], box[1], track[1], box[3])
@@ -73,6 +77,15 @@ def crossing(blocks: Mapping[str, Block], die: DieParameters, top: TopMetal, nam
     """Pairs (net, box) of the lines from a block to the east."""
     east = _from_blocks({name: blocks[name]}, die, top)
     return [(line.net, line.box) for line in east if line.side == "east"]
+
+
+def _straps(core: Block) -> list[tuple[str, int]]:
+    """Pairs (net, x) of the straps over the chip."""
+    return [(net, (box[0] + box[2]) // 2) for net in DIGITAL for _, box in core.pins[net]]
+
+
+def _lines(blocks: Mapping[str, Block], die: DieParameters, top: TopMetal) -> list[Line]:
+    return [*_over_core(blocks[CORE], _straps(blocks[CORE]), die), *_from_blocks(blocks, die, top), *_in_north(die)]
 
 
 def _bar_ends(net: str, side: str, die: DieParameters) -> tuple[int, int]:

@@ -95,3 +95,10 @@ def test_a_missing_capacitor_or_switch_is_named():
     broken = AMPLIFIER.replaced(ota(SIZES.ota).without("cascode_p").without("bias_to_pc"))
     with pytest.raises(ParameterError, match="circuit ota: net vcp at device down_p: must have a driver"):
         broken.check(process)
+
+
+def test_the_chips_trim_has_its_top_bit_inverted():
+    plain, own = ({one.name: one.nodes for one in amplifier(SIZES, chip).instances} for chip in (False, True))
+    (name,) = (name for name in plain if plain[name] != own[name])
+    assert name == "select9"
+    assert own[name][2:4] == plain[name][3:1:-1] == ("g9n", "g9")

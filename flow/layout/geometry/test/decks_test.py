@@ -39,12 +39,21 @@ def test_spaces_of_drawn_layers_are_checked_flat_and_the_rest_as_before():
 
 
 @pytest.mark.skipif(not shutil.which("klayout"), reason="klayout: not found; install it with: make tools")
-@pytest.mark.parametrize("end, found", ((500, {}), (350, {"via3 outside m4": 1}), (200, {"via3 outside m4": 1})))
-def test_a_via_that_sticks_out_of_its_metal_is_found(tmp_path, end, found):
+@pytest.mark.parametrize(
+    "end, vias, found",
+    (
+        (500, [200], {}),
+        (350, [200], {"via3 outside m4": 1}),
+        (200, [200], {"via3 outside m4": 1}),
+        (800, [200, 335], {"via3 size": 2}),  # two that are one of 0.2 um x 0.335 um
+        (800, [200, 600], {}),
+    ),
+)
+def test_a_via_outside_its_metal_or_of_another_size_is_found(tmp_path, end, vias, found):
     tech, layout = coriolis_platform("sky130"), db.Layout()
     top = layout.create_cell("top")
-    shapes = (tech.metals[3].gds, (0, 0, 500, 500)), (tech.metals[4].gds, (0, 0, 500, end))
-    for at, box in (*shapes, (tech.vias[3].gds, (150, 200, 350, 400))):
+    shapes = (tech.metals[3].gds, (0, 0, 500, 800)), (tech.metals[4].gds, (0, 0, 500, end))
+    for at, box in (*shapes, *((tech.vias[3].gds, (150, low, 350, low + 200)) for low in vias)):
         top.shapes(layout.layer(*at)).insert(db.Box(*box))
     write_gds(layout, tmp_path / "top.gds")
     head = f"source('{tmp_path}/top.gds')\nreport('vias', '{tmp_path}/found.lyrdb')"

@@ -70,7 +70,7 @@ class DiePlan(Step[DiePlanParameters]):
         taken = [branch.x for found in made.routes.values() for branch in found]
         field = decoupling.field(made.blocks, taken, p.die)
         metal += decoupling.metal(field, lines, rules, top_metal(p.pdk))
-        places, gaps = ring.ring(pads, signals)
+        places, gaps = ring.ring(pads, signals, supplies.ways(made.blocks, p.die, top_metal(p.pdk)))
         levels = [*tech.metals, top_metal(p.pdk).metal]
         metal += [drawn(levels[level], net, box) for net, level, box in ring.bridges(pads, gaps)]
         plan = as_json(made, metal, places, pads, p.die, tracks, levels[-1]) | {"decoupling": field._asdict()}

@@ -5,6 +5,7 @@ import re
 import shutil
 import subprocess
 import sys
+from dataclasses import replace
 
 import pytest
 
@@ -51,6 +52,14 @@ def test_every_net_is_found_again(made, tmp_path):
     assert made[0]["metrics"]["abutted"] == 16 * 6 + 120 * 2 + 2 * 2
     assert made[0]["metrics"]["nets"] == made[0]["metrics"]["routed"] + made[0]["metrics"]["abutted"] + len(SUPPLIES)
     assert made[0]["metrics"]["pads"] == len(SIGNALS) + 4 + 4 * 6
+
+
+@pytest.mark.parametrize("height", [1770.0, 1800.0, 1990.0])
+def test_no_height_shorts_a_supply(made, tmp_path, height):
+    """At any height pads are at other places beside the lines of the rows' supply."""
+    given = made[0] | {}
+    small.plan(given, tmp_path, replace(small.DIE, height_um=height))
+    assert small.connectivity(given, tmp_path) == {"open_nets": 0, "shorts": 0, "lvs_match": True}
 
 
 @pytest.mark.parametrize("way", ORIENTATIONS)

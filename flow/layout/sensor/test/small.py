@@ -6,6 +6,7 @@ import json
 from talbot.flow.layout.route.ports import LEVELS
 from talbot.flow.layout.sensor.pads import width_um
 from talbot.flow.layout.sensor.plan import BLOCKS, CORE, SIGNALS, DieParameters
+from talbot.flow.layout.sensor.ring import TOP
 from talbot.flow.layout.sensor.steps.die_connectivity import DieConnectivity
 from talbot.flow.layout.sensor.steps.die_gds import DieGds, DieGdsParameters
 from talbot.flow.layout.sensor.steps.die_plan import DiePlan, DiePlanParameters
@@ -89,7 +90,13 @@ def core(folder):
     layout.write(str(folder / "core.gds"))
 
 
-TRACKS = {"iovss": (2, 20), "iovdd": (90, 133), "vdd": (157, 171), "vss": (173, 186)}  # um
+# um: of the two metals below the bond pads' and of these, from what is outside; the ground's innermost is before iovdd
+TRACKS = {
+    "iovss": [(4, 2, 20), (4, 142.6, 151.4), (5, 144, 150)],
+    "iovdd": [(4, 90, 133), (5, 92, 131)],
+    "vdd": [(4, 157, 171)],
+    "vss": [(4, 173, 186)],
+}
 BOND = 4.5, 24.0, 85.5, 86.0
 CORE_PINS = {"IOPadIn": ("p2c", 44.85), "IOPadOut": ("c2p", 44.85), "IOPadAnalog": ("padres", 60.6)}
 
@@ -103,30 +110,37 @@ def pads(folder):
     for name in process.cells:
         cell, own = layout.create_cell(name), found.setdefault(name, {})
 
-        def draw(level, pin, *box, cell=cell, own=own):
+        def metal(level, *box, cell=cell):
+            cell.shapes(layout.layer(*metals[level].gds)).insert(db.DBox(*box))
+
+        def cut(level, x, y, size, cell=cell):
+            box = db.DBox(x - size / 2, y - size / 2, x + size / 2, y + size / 2)
+            cell.shapes(layout.layer(*vias[level].gds)).insert(box)
+
+        def draw(level, pin, *box, cell=cell, own=own, metal=metal):
             shape = db.DBox(*box)
-            cell.shapes(layout.layer(*metals[level].gds)).insert(shape)
+            metal(level, *box)
             cell.shapes(layout.layer(*metals[level].pin)).insert(db.DText(pin, db.DTrans(shape.center() - db.DPoint())))
             own.setdefault(pin, []).append([level, *(round(1000 * size) for size in box)])
 
         left, right = (-188.0, 0.0) if name == process.corner else (0.0, width_um(name, process))
-        for pin, (low, high) in TRACKS.items():
-            draw(4, pin, left + (low if left else 0), low, right, high)
-            if left:
-                draw(4, pin, left + low, low, left + high, 188.0)
+        for pin, pieces in TRACKS.items():
+            for level, low, high in pieces:
+                draw(level, pin, left + (low if left else 0), low, right, high)
+                if left:
+                    draw(level, pin, left + low, low, left + high, 188.0)
+                elif level == TOP and right > 2:
+                    cut(4, right / 2, (low + high) / 2, 0.8)
         if name.startswith("IOPad"):
             pin = next((pin for pin, supply in process.supplies.items() if supply == name), "pad")
-            draw(5, pin, *BOND)
+            draw(TOP, pin, *BOND)
             if pin in TRACKS:
-                y = sum(TRACKS[pin]) / 2
-                low, high = sorted((52.0, y))
-                for gds, *box in (
-                    (metals[4].gds, 40, 50, 44, 54),
-                    (vias[4].gds, 41.6, 51.6, 42.4, 52.4),
-                    (metals[3].gds, 41, low - 0.5, 43, high + 0.5),
-                    *((vias[3].gds, 42, at - 0.1, 42.2, at + 0.1) for at in (52.0, y)),
-                ):
-                    cell.shapes(layout.layer(*gds)).insert(db.DBox(*box))
+                middles = [(low + high) / 2 for level, low, high in TRACKS[pin] if level < TOP]
+                metal(4, 40, 50, 44, 54)
+                cut(4, 42, 52, 0.8)
+                metal(3, 41, min(52, *middles) - 0.5, 43, max(52, *middles) + 0.5)
+                for at in (52, *middles):
+                    cut(3, 42, at, 0.2)
             if name in CORE_PINS:
                 pin, x = CORE_PINS[name]
                 draw(1, pin, x, 172.0, x + 0.3, 188.0)

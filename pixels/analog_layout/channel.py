@@ -1,0 +1,75 @@
+"""A channel: nets on tracks of the third metal, between what comes from below and what leads on above it.
+
+    above    the fourth metal again, from the second by vias in the channel's upper edge
+             ... | ... second metal
+             ----+----- a track: a net each, or several beside each other
+                 ... | ... fourth metal
+    below    the fourth metal
+
+So nets meet on no metal, wherever their ends are.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from talbot.pixels.layout.canvas import Canvas
+
+from .strip import FOURTH, SECOND, THIRD, TRACK, TRACK_PITCH, TRUNK
+
+APART = 1.0  # um, between nets on a track
+DOWN = 0.3  # um, width of what leads from a track to the channel's upper edge
+OVER = 3.0  # um, of the upper edge over the last track
+UP, PAD = 1.2, 0.3  # um, of the vias from the upper edge down; half the third metal there
+Row = list[tuple[str, float, float]]
+
+
+@dataclass(frozen=True)
+class Channel:
+    """Nets and, of each, x of its ends below and above, um. y: of the channel's lower edge, um."""
+
+    y: float
+    below: Mapping[str, Sequence[float]]
+    above: Mapping[str, Sequence[float]]
+
+    @property
+    def rows(self) -> list[Row]:
+        """(net, left, right) on every track, from the lowest."""
+        ends = {net: [*self.below.get(net, ()), *self.above.get(net, ())] for net in {**self.below, **self.above}}
+        spans = {net: (min(xs), max(xs)) for net, xs in ends.items()}
+        rows: list[Row] = []
+        for net in sorted(spans, key=lambda net: (spans[net], net)):
+            left, right = spans[net]
+            row = next((row for row in rows if all(right + APART < a or b + APART < left for _, a, b in row)), None)
+            if row is None:
+                row = []
+                rows.append(row)
+            row.append((net, left, right))
+        return rows
+
+    @property
+    def top(self) -> float:
+        """Y of its upper edge."""
+        return self.y + TRACK_PITCH * len(self.rows) + OVER
+
+    def draw(self, canvas: Canvas, bottom: float, ends: Mapping[float, float] | None = None) -> None:
+        """Draw it. bottom: y at which what comes from below begins. ends: y up to which what is above leads, by x."""
+        half, top = TRACK / 2, self.top
+        for number, row in enumerate(self.rows):
+            y = self.y + TRACK_PITCH * (number + 0.5)
+            for net, left, right in row:
+                canvas.wire(THIRD, left - half, y - half, right + half, y + half)
+                for x in self.below.get(net, ()):
+                    canvas.wire(FOURTH, x - half, bottom, x + half, y + half)
+                    canvas.stack(x, y, THIRD, FOURTH)
+                for x in self.above.get(net, ()):
+                    canvas.wire(SECOND, x - DOWN / 2, y - half, x + DOWN / 2, top - UP)
+                    canvas.stack(x, y, SECOND, THIRD)
+                    up(canvas, x, top - UP)
+                    end = (ends or {}).get(x, top + 0.1)
+                    canvas.wire(FOURTH, x - TRUNK / 2, top - UP - PAD, x + TRUNK / 2, end)
+
+
+def up(canvas: Canvas, x: float, y: float) -> None:
+    """Vias from the second to the fourth metal."""
+    canvas.stack(x, y, SECOND, FOURTH)
+    canvas.wire(THIRD, x - PAD, y - PAD, x + PAD, y + PAD)
