@@ -103,7 +103,13 @@ def run(
     check_folder("out", request.folder)
     before = arguments_of(request.folder)
     with Steps(steps, lines=True) as progress:
-        done = found(lambda text: text != steps[0] and progress.note(text))  # bad input ends the first, which is short
+
+        def note(text: str) -> None:
+            """No line about the first step: bad input ends it, and it is short."""
+            if text != steps[0]:
+                progress.note(text)
+
+        done = found(note)
         progress.note("report")
         summary = done.summary | {"arguments": dict(arguments)}
         with staged(request.folder, page.NAMES) as part:
