@@ -70,7 +70,8 @@ def run(jobs: Iterable[Job], store: Path | str, title: str, workers: int = -1) -
     if len(set(names)) != len(names):
         raise ParameterError(f"jobs = {title}: two have one name")
     files = [job.file(store) for job in jobs]
-    todo = [(job, file) for job, file in zip(jobs, files, strict=True) if not kept(file)]
+    before = [kept(file) for file in files]
+    todo = [(job, file) for job, file, found in zip(jobs, files, before, strict=True) if not found]
     with _backend(workers):
         calls = (joblib.delayed(_keep)(job, file) for job, file in todo)
         with warnings.catch_warnings():  # joblib restarts a process that has grown, and warns
@@ -79,7 +80,7 @@ def run(jobs: Iterable[Job], store: Path | str, title: str, workers: int = -1) -
             parallel = joblib.Parallel(return_as="generator_unordered", batch_size=1)  # pyright: ignore[reportArgumentType]
             for _ in each(parallel(calls), title, str, len(todo)):
                 pass
-    return [json.loads(file.read_text()) for file in files]
+    return [(found or kept(file))[0] for file, found in zip(files, before, strict=True)]
 
 
 def kept(file: Path) -> list[Any]:

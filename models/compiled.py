@@ -11,7 +11,7 @@ __all__ = ["njit", "vectorize"]
 
 class _HealingFile(caching.IndexDataCacheFile):
     def load(self, key: object) -> object:
-        """What is kept under ``key``; where that is damaged, None, and the index is written anew."""
+        """What is kept under ``key``; where that is damaged, None, and the index is written again."""
         try:
             return super().load(key)
         except Exception:  # unpickling raises nearly anything

@@ -105,14 +105,10 @@ def run(folder: Path, top: str, tech: OpenRoadPlatform, root: Path, note: Callab
 def _kept(folder: Path, stage: Stage, key: str) -> dict[str, float] | None:
     """The figures of ``stage`` as it ran before with the same key; None where it did not, or its result changed."""
     result = folder / stage.gives
-    if not result.is_file():
-        return None
-    found = [
-        before["figures"]
-        for before in kept(folder / f"{stage.label}.json")
-        if before["key"] == key and before["result"] == digest(result)
-    ]
-    return found[0] if found else None
+    for before in kept(folder / f"{stage.label}.json"):
+        if before["key"] == key and result.is_file() and before["result"] == digest(result):
+            return before["figures"]
+    return None
 
 
 def _run(folder: Path, stage: Stage, key: str, top: str, tech: OpenRoadPlatform, root: Path) -> dict[str, float]:

@@ -33,7 +33,7 @@ def check_int(field: str, value: object, low: int, high: int) -> None:
         raise ParameterError(f"{field} = {value!r}: must be an integer in {low}..{high}")
 
 
-def check_real(field: str, value: object, low: float, high: float) -> None:
+def check_real(field: str, value: object, low: float, high: float, unit: str = "") -> None:
     """Check that a value is a finite real number in a range.
 
     Parameters
@@ -44,6 +44,8 @@ def check_real(field: str, value: object, low: float, high: float) -> None:
         Checked value; bool is not accepted.
     low, high : float
         Allowed range, both ends included.
+    unit : str
+        Of the value, behind the range in the message; none by default.
 
     Raises
     ------
@@ -57,7 +59,7 @@ def check_real(field: str, value: object, low: float, high: float) -> None:
         or value < low
         or not value <= high
     ):
-        raise ParameterError(f"{field} = {value!r}: must be a number in [{low}, {high}]")
+        raise ParameterError(f"{field} = {value!r}: must be a number in [{low}, {high}]{unit and f' {unit}'}")
 
 
 def check_choice(field: str, value: object, allowed: Collection[object]) -> None:

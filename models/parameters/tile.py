@@ -41,12 +41,9 @@ class PixelType:
     response: Response | None = None
 
     def __post_init__(self) -> None:
-        ranges = ("beta", 0, 50, "rad per rad"), ("gamma_deg", -180, 180, "degrees"), ("alpha", -6.2832, 6.2832, "rad")
-        for name, low, high, unit in ranges:
-            try:
-                check_real(name, getattr(self, name), low, high)
-            except ParameterError as error:
-                raise ParameterError(f"{error} {unit}") from None
+        check_real("beta", self.beta, 0, 50, "rad per rad")
+        check_real("gamma_deg", self.gamma_deg, -180, 180, "degrees")
+        check_real("alpha", self.alpha, -6.2832, 6.2832, "rad")
         if self.m is not None:
             check_real("m", self.m, 0, 1)
         if self.response is not None and not callable(self.response):

@@ -197,11 +197,10 @@ def ring(pads: Pads, signals: Sequence[Place], ways: Iterable[Way] = ()) -> tupl
         room = (to - begin - len(nets) * frame.pad) // (len(nets) + 1) // UM * UM
         if room < 0:
             raise StepError(f"ring: no room for {len(nets)} pads in the {side}, from {begin / UM:g} to {to / UM:g} um")
+        beside = [slot for slot in slots if slot.side == side]
         for place, net in enumerate(nets):
             count[net] = count.get(net, 0) + 1
-            at = _beside(
-                begin + room + place * (frame.pad + room), frame.pad, [one for one in slots if one.side == side]
-            )
+            at = _beside(begin + room + place * (frame.pad + room), frame.pad, beside)
             made.append(supply(net, count[net], side, at, process, tracks))
     gaps += slots
     return made + list(_fillers(frame, made, gaps, process)), gaps

@@ -19,7 +19,7 @@ from talbot.cells.netlist.spice import parse
 from talbot.cells.spice.circuit import circuit
 
 SHIPPED = Path(__file__).parent
-INDEX = "*.json"  # by the name of the process
+INDEX = "*.json"  # by the name of the process; the text tells base.sources that a step's key counts these
 
 
 def key(sources: Iterable[Source], conditions: Sequence[Conditions], models: ModuleType, *constants: Path) -> str:
@@ -39,7 +39,7 @@ def key(sources: Iterable[Source], conditions: Sequence[Conditions], models: Mod
 
 def shipped(pdk: str, wanted: str, folder: Path = SHIPPED) -> tuple[dict[str, str], int] | None:
     """Liberty text by corner and the simulations behind it, if those of ``pdk`` have the key ``wanted``; else None."""
-    file = folder / f"{pdk}.json"
+    file = folder / INDEX.replace("*", pdk)
     if not file.is_file() or (about := json.loads(file.read_text()))["key"] != wanted:
         return None
     texts = {c: lzma.decompress((folder / f"{pdk}.{c}.lib.xz").read_bytes()).decode() for c in about["corners"]}
@@ -54,4 +54,4 @@ def write(folder: Path, pdk: str, made: str, libraries: Mapping[str, Path], simu
             (part / f"{pdk}.{corner}.lib.xz").write_bytes(packed)
         tables = {corner: digest(path) for corner, path in libraries.items()}
         about = {"key": made, "simulations": simulations, "corners": tables}
-        (part / f"{pdk}.json").write_text(json.dumps(about, indent=1) + "\n")
+        (part / INDEX.replace("*", pdk)).write_text(json.dumps(about, indent=1) + "\n")
