@@ -36,7 +36,7 @@ FRAMES = {
 
 @pytest.fixture(scope="module")
 def program():
-    return hardware.program(SENSOR, 4)
+    return hardware.program(SENSOR)
 
 
 def run(program, frame, stall=0):

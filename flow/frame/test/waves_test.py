@@ -22,7 +22,7 @@ FST = pytest.mark.skipif(not has_headers(PACKED), reason=f"no {' and '.join(PACK
 def test_waves(kind, tmp_path):
     asked = request(scene="coins", rows=8, cols=12, waves=ROWS, waves_format=kind)
     exposed = job.expose(asked, *job.see(asked))
-    built = program(asked.sensor, exposed.plan.taps, kind)
+    built = program(asked.sensor, kind)
     result = job.read_out(asked, exposed, built, waves=Waves(tmp_path / "waves", *ROWS))
     assert result.stream == result.golden.stream
     data = (tmp_path / "waves").read_bytes()
