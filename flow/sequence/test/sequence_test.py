@@ -70,7 +70,7 @@ def test_what_the_chip_has_is_not_written_again():
 def test_icarus_runs_on_too(tmp_path):
     if not shutil.which("iverilog"):
         pytest.skip("Icarus Verilog is not installed: make tools")
-    asked = asked_of("tile", threshold=3)
+    asked = asked_of("tile", threshold=3, exposure=1)  # by default 100,000 cycles pass before the first row
     rough = replace(asked.sensor, converter=ConverterParameters(inl=1, noise=1.5, ktc=1, seed=2**32 - 1))
     front_end = front_end_of(rough, [7] * 24)
     with hardware.chip(icarus_program(Build.of(rough), tmp_path), front_end, 1) as chip:
@@ -120,7 +120,7 @@ def test_a_sequence_in_every_mode(mode, phase):
 
 def test_views_are_chosen_again_where_a_picture_needs_more():
     dark, *rest = pictures(3)
-    asked = request(rows=48, cols=72)
+    asked = request(rows=40, cols=48)
     found = frames_of(asked, [0 * dark, dark, *rest])
     views = [frame.exposed.views.most for frame in found]
     assert views[0] < views[1] == views[2]
