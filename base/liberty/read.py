@@ -9,6 +9,7 @@ from talbot.base.liberty.group import Group, Scalar, Table
 from talbot.models.parameters import ParameterError
 
 _TOKEN = re.compile(r'/\*.*?\*/|//[^\n]*|\\\r?\n|"((?:[^"\\]|\\.)*)"|([{}();:,])|([^\s{}();:,"]+)', re.S)
+_END = re.compile(r"\}\s*(?:/\*[^*]*\*/\s*|//[^\n]*\s*)*\Z")
 _LIBRARY = re.compile(r"(?:\s|/\*.*?\*/|//[^\n]*\n)*library\s*\(", re.S)
 Token = tuple[str, bool]  # text, and whether it is quoted
 _CELL = re.compile(r'^[ \t]*cell\s*\(\s*"?([\w.$]+)"?\s*\)\s*\{', re.M)
@@ -36,6 +37,11 @@ def parse(text: str, origin: str = "liberty") -> Group:
 def is_library(path: Path) -> bool:
     """Whether a file begins as a Liberty file does, after comments: library (...)."""
     return bool(_LIBRARY.match(path.read_text(errors="replace")[:10_000]))
+
+
+def is_whole(path: Path) -> bool:
+    """Whether a file ends as a Liberty file does, before comments: with a brace."""
+    return bool(_END.search(path.read_text(errors="replace")[-1_000:]))
 
 
 def areas(path: Path) -> dict[str, float]:

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from talbot.base.liberty.read import is_library
+from talbot.base.liberty.read import is_library, is_whole
 from talbot.models.parameters import ParameterError, check_int, check_real
 from talbot.platforms.coriolis import coriolis_platform
 
@@ -40,6 +40,8 @@ class Options:
                 raise ParameterError(f"liberty = {path}: no such file; {without}")
             if not is_library(path):
                 raise ParameterError(f"liberty = {path}: must be a Liberty file: it does not begin with library (...)")
+            if not is_whole(path):
+                raise ParameterError(f"liberty = {path}: must be a whole Liberty file: it does not end with a brace")
         if len({path.stem for path in self.liberty}) != len(self.liberty):
             raise ParameterError(f"liberty = {', '.join(map(str, self.liberty))}: must be of different corners")
         check_real("utilization", self.utilization, LEAST_UTILIZATION, 0.95)

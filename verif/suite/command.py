@@ -92,7 +92,7 @@ def run(options: Namespace) -> int:
     known = folders()
     for folder in options.folder or ():
         if folder not in known:
-            raise ParameterError(f"folder = {folder!r}: must be one of {', '.join(known)}")
+            raise ParameterError(f"folder = {folder!r}: must be a folder of tests, as {known[0]}")
     planned = jobs(options.folder or known, last_seconds(store) if store.exists() else {}, options.seed)
     done = from_json(list[FolderRun], run_jobs(planned, store, "tests"))
     forget(planned, done, store)

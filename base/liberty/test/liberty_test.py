@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from talbot.base.liberty.group import Group
-from talbot.base.liberty.read import is_library, parse, without
+from talbot.base.liberty.read import is_library, is_whole, parse, without
 from talbot.base.liberty.write import text
 from talbot.models.parameters import ParameterError
 
@@ -74,3 +74,11 @@ def test_repeated_attributes_are_kept():
 def test_a_library_is_known_by_how_it_begins(tmp_path, head, known):
     (tmp_path / "a.lib").write_text(head)
     assert is_library(tmp_path / "a.lib") == known
+
+
+@pytest.mark.parametrize(
+    "tail, whole", [("}\n", True), ("} /* end */ // of it\n", True), ("cell (y) {", False), ("} area : 2;", False)]
+)
+def test_a_library_is_whole_by_how_it_ends(tmp_path, tail, whole):
+    (tmp_path / "a.lib").write_text(f"library (x) {{ cell (y) {{ }} {tail}")
+    assert is_whole(tmp_path / "a.lib") == whole

@@ -128,4 +128,4 @@ def test_failures_are_tried_again(tmp_path):
 
 def test_an_unknown_folder(capsys):
     assert main(command, ["--folder", "nowhere"]) == 2
-    assert capsys.readouterr().err.startswith("verif.suite: error: folder = 'nowhere': must be one of ")
+    assert capsys.readouterr().err.startswith("verif.suite: error: folder = 'nowhere': must be a folder of tests, as ")
