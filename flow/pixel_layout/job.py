@@ -11,7 +11,7 @@ import numpy as np
 
 from talbot.base.files import check_file, check_folder, staged, write
 from talbot.base.gds import db, write_gds
-from talbot.flow.pixel.job import name_of
+from talbot.flow.pixel.types import name_of
 from talbot.models.parameters import PixelType
 from talbot.pixels.designs import gratings
 from talbot.pixels.layout.array import DUMMIES, SOUTH, WEST, draw_array, draw_pixels, draw_tile
