@@ -91,6 +91,8 @@ def _print(s: dict[str, Any], folder: Path) -> None:
             f"  beta {row['wanted']:g}{said} {row['beta']:.1f}: {_metals(row)}, period {row['period_um']:g} um; "
             f"{_figures(row)}"
         )
+    if s["not_drawn"]:
+        print(f"  no tile.gds: {s['not_drawn']}")
     print(f"  {s['wall_s']:.0f} s; look at {folder / 'pixel.html'}")
 
 

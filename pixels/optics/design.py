@@ -85,14 +85,12 @@ def phased(design: Design) -> Design:
     return Design(shifted, design.wavelength_um, replace(design.fit, alpha=float(alpha)))
 
 
-def front(designs: Sequence[Design]) -> list[Design]:
-    """Designs that no other beats in both modulation depth and quantum efficiency."""
-    ranked = sorted(designs, key=lambda d: (-d.fit.m, -d.fit.quantum_efficiency))
-    kept: list[Design] = []
-    for design in ranked:
-        if not kept or design.fit.quantum_efficiency > kept[-1].fit.quantum_efficiency:
-            kept.append(design)
-    return kept
+def front(designs: Sequence[tuple[Design, float]]) -> list[tuple[Design, float]]:
+    """Designs and their bandwidths, those that no other beats in modulation depth, quantum efficiency and bandwidth."""
+    figures = np.array([(design.fit.m, design.fit.quantum_efficiency, wide) for design, wide in designs]).reshape(-1, 3)
+    beaten = [bool(np.any((figures >= own).all(1) & (figures > own).any(1))) for own in figures]
+    kept = [one for one, worse in zip(designs, beaten, strict=True) if not worse]
+    return sorted(kept, key=lambda one: -one[0].fit.m)
 
 
 def _made(base: PixelGeometry | None = None, **changes: object) -> PixelGeometry | None:
