@@ -26,9 +26,7 @@ class HardwareFrame(FrameRun):
     status: dict[str, Any]
 
 
-def program(
-    sensor: SensorParameters, waves: str = "", note: Callable[[str], None] = lambda text: None
-) -> Path:
+def program(sensor: SensorParameters, waves: str = "", note: Callable[[str], None] = lambda text: None) -> Path:
     """The compiled bench for ``sensor``. waves: as of Build. Raises ToolError."""
     return bench_program(Build.of(sensor, waves), note)
 

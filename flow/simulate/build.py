@@ -10,9 +10,10 @@ from talbot.rtl.verilog import export_verilog
 
 @dataclass(frozen=True)
 class Build:
-    """The chip's constants and the size of the front end's memory.
+    """The chip's constants and the array's size.
 
-    order: pixel type of each position in a tile, row by row. waves: format of the waves that the program can write, of frame.WAVES, or "" for none.
+    order: pixel type of each position in a tile, row by row. waves: format of the waves that the program can write, of
+    frame.WAVES, or "" for none.
     """
 
     rows: int

@@ -100,8 +100,8 @@ def running(
 ) -> Iterator[Running]:
     """Start the bench ``program`` (an executable, or .vvp of Icarus); at the end of the context it ends, too.
 
-    converter: file of the analog front end (pixels/README.md). taps: of a frame, 1 or 4. stall: the link is not ready in
-    this many of 256 cycles. max_cycles: of a frame. Raises ToolError where the bench ends before.
+    converter: file of the analog front end (pixels/README.md). taps: of a frame, 1 or 4. stall: the link is not ready
+    in this many of 256 cycles. max_cycles: of a frame. Raises ToolError where the bench ends before.
     """
     with ExitStack() as stack:
         ends = {name: os.pipe() for name in (*INPUTS, *OUTPUTS)}

@@ -86,7 +86,10 @@ def test_a_simulation_that_ends_is_an_error_in_one_line(tmp_path):
     write_converter(tmp_path / "converter", front_end)
     program = hardware.program(asked.sensor)
     for converter, cycles, said in (("converter", 2000, "status 4 .no frame end."), ("none", 10**9, "cannot be read")):
-        with pytest.raises(ToolError, match=said), running(program, tmp_path / converter, 1, max_cycles=cycles) as bench:
+        with (
+            pytest.raises(ToolError, match=said),
+            running(program, tmp_path / converter, 1, max_cycles=cycles) as bench,
+        ):
             chip = hardware.Chip(bench)
             waits = [chip.frame(asked.frame, exposure(asked.sensor, 0)[:1], front_end.trim) for _ in range(3)]
             for wait in waits:
