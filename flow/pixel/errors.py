@@ -39,8 +39,8 @@ def errors(geometry: PixelGeometry, wavelength_um: float) -> list[Kept]:
 
     orders: of a solution at `DEGREES`, against `ORDERS_ALL`. wavelengths: spread evenly over the filter's `BAND_UM`,
     their mean. degrees: step of a table that is cubic between its angles, at all angles `STEP_LEAST` apart. angles in
-    a view: Gaussian nodes in the cell of each of a default lens's views, the mean over the cell. samples: of the field in
-    scalar waves, the share that leaves a pixel (amplitude gratings alone).
+    a view: Gaussian nodes in the cell of each of a default lens's views, the mean over the cell. samples: of the field
+    in scalar waves, the share that leaves a pixel (amplitude gratings alone).
     """
     rows = [_orders, _wavelengths, _angles, *([_samples] if geometry.kind == "amplitude" else [])]
     return [row for each in rows for row in each(geometry, wavelength_um)]

@@ -62,8 +62,8 @@ def write(
             Section(head=HEAD, rows=[_row(beta, plan, one) for beta, one in measured.items()]),
             Section(
                 "The tile's types",
-                f"Both diodes over the azimuth of a ray {RAY_DEGREES:g} degrees off the axis, % of the light on the pixel, "
-                "each type at its place in the tile; Eq. 3.1 dotted. Types are beta/gamma/alpha.",
+                f"Both diodes over the azimuth of a ray {RAY_DEGREES:g} degrees off the axis, % of the light on the "
+                "pixel, each type at its place in the tile; Eq. 3.1 dotted. Types are beta/gamma/alpha.",
                 charts=[svg(turned)],
             ),
             Section(
@@ -173,11 +173,13 @@ def _errors(wrong: dict[float, list[Kept]]) -> Section:
         (f"{same[0].kept:g} {same[0].what}", *(f"{one.error:.1e}, {one.seconds:.2f}" for one in same))
         for same in zip(*wrong.values(), strict=True)
     ]
-    text = f"Greatest error of a diode's share, and seconds. Orders at 0, 7 and 14 degrees, against {ORDERS_ALL}: the "
-    text += f"search keeps {SEARCH_ORDERS}, the curves {CURVE_ORDERS}. Wavelengths over the filter's 20 nm, against "
-    text += f"{BAND_ALL}. Step of a table in degrees that is cubic between its angles, at all angles {STEP_LEAST:g} apart. "
-    text += f"Angles in each of five views at f/1.2, the view's mean, against {NODES_ALL}. Samples of the field of scalar "
-    text += f"waves, the light that leaves a pixel, against {SAMPLES_ALL}."
+    text = (
+        f"Greatest error of a diode's share, and seconds. Orders at 0, 7 and 14 degrees, against {ORDERS_ALL}: the "
+        f"search keeps {SEARCH_ORDERS}, the curves {CURVE_ORDERS}. Wavelengths over the filter's 20 nm, against "
+        f"{BAND_ALL}. Step of a table in degrees that is cubic between its angles, at all angles {STEP_LEAST:g} "
+        f"apart. Angles in each of five views at f/1.2, the view's mean, against {NODES_ALL}. Samples of the field "
+        f"of scalar waves, the light that leaves a pixel, against {SAMPLES_ALL}."
+    )
     return Section("Error against run time", text, head=tuple(head), rows=rows)
 
 

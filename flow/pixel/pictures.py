@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
+from matplotlib.ticker import MaxNLocator
 
 from talbot.base.charts import COLOURS
 from talbot.models.parameters import TileParameters
@@ -60,7 +61,8 @@ def around(
         axes.set_theta_direction(-1)
         axes.set(xticklabels=[], ylim=(0, None))
         axes.set_title(name_of(kind), fontsize=7, pad=2)
-        axes.tick_params(labelsize=5)
+        axes.yaxis.set_major_locator(MaxNLocator(2))
+        axes.tick_params(labelsize=6)
         axes.grid(alpha=0.25)
     return figure
 

@@ -22,7 +22,7 @@ CURVE_ORDERS = 31
 SPAN_UM = 0.08  # on each side of the plan's wavelength
 WAVELENGTHS = 9
 RAY_DEGREES = 10.0  # off the axis, of the rays around it
-AZIMUTHS = np.deg2rad(np.arange(0, 360, 7.5))
+AZIMUTHS = np.deg2rad(np.arange(0, 360, 5.0))
 Floats = npt.NDArray[np.floating]
 
 

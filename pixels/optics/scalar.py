@@ -41,9 +41,7 @@ def scalar_shares(
     return np.array(out)
 
 
-def crosstalk(
-    geometry: PixelGeometry, angles: npt.ArrayLike, wavelength_um: float, samples: int = SAMPLES
-) -> Floats:
+def crosstalk(geometry: PixelGeometry, angles: npt.ArrayLike, wavelength_um: float, samples: int = SAMPLES) -> Floats:
     """Share (A,) of the light through one pixel's gratings that reaches the silicon outside that pixel.
 
     All pixels have the analyzer of ``geometry``; light falls on one alone, its pitch wide. samples: of the field.
