@@ -158,6 +158,8 @@ def read_calibration(path: str | Path) -> Calibration:
         For a file that is missing, no JSON, or out of range.
     """
     try:
+        if Path(path).exists() and not Path(path).is_file():
+            raise ValueError("no file")
         table = json.loads(Path(path).read_text())
         if not isinstance(table, dict):
             raise ParameterError("calibration = a list: must be a table")

@@ -199,7 +199,13 @@ def test_a_decoded_file(edges, tmp_path, capsys):
         (f"sim --rows={'7,' * 2500}", "...': must be an integer in 1..1024"),
         (f"sim --{'x' * 5000}", "..."),
         ("draw", "invalid choice: 'draw'"),
+        *(
+            (f"{name} --document {__file__}", "must have the comments")
+            for name in ("sizes", "formats", "openroad-fit", "openroad-compare", "cells-compact-area")
+        ),
+        ("stuck-at --sample=-1", "sample = -1: must be an integer in 0..1000000000"),
         ("decode nowhere.bin", "file = nowhere.bin: No such file"),
+        ("decode /dev/zero", "file = /dev/zero: must be a file, not a device"),
         (f"decode {__file__}", "a frame starts with b'TLBT'"),
         ("tradeoff --only speed", "only = 'speed': must be one of divider"),
         ("sim --rows 9 --cols 9 --window 3:3,0:0", "window rows = '3': must be an integer in 0..2"),
