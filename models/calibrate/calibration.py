@@ -162,7 +162,7 @@ def read_calibration(path: str | Path) -> Calibration:
         if not isinstance(table, dict):
             raise ParameterError("calibration = a list: must be a table")
         return Calibration.of(table)
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, RecursionError) as error:
         reason = error.strerror if isinstance(error, OSError) else error
         said = f"calibration = {str(path)!r}: must be a calibration.json of talbot calibrate ({reason})"
         raise ParameterError(said) from None

@@ -88,9 +88,10 @@ def test_no_light():
 
 def test_files(tmp_path):
     found = calibrated(swept(size=24), PITCH)[0]
-    (tmp_path / "bad.json").write_text('{"types": []}')
-    with pytest.raises(ParameterError, match="bad.json': must be a calibration.json"):
-        read_calibration(tmp_path / "bad.json")
+    for bad in ('{"types": []}', "[" * 100_000):
+        (tmp_path / "bad.json").write_text(bad)
+        with pytest.raises(ParameterError, match="bad.json': must be a calibration.json"):
+            read_calibration(tmp_path / "bad.json")
     with pytest.raises(ParameterError, match="none.json"):
         read_calibration(tmp_path / "none.json")
     with pytest.raises(ParameterError, match="calibration = 24 pixel types: must be 4"):
