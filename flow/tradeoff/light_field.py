@@ -55,10 +55,9 @@ SETTINGS: Sequence[tuple[str, Mapping[str, Any]]] = (
 
 def points(quick: bool) -> list[Point]:
     """Noise, method, what is changed of its settings, and rows of the array."""
-    if quick:
-        own = ("direct", "linear", "sparse")
-        return [(None, *s, 48) for s in SETTINGS if s[0] in own] + [(0.1, "direct", {}, 48), (0.1, "linear", {}, 48)]
-    return [(n, name, change, 192) for n in NOISES for name, change in SETTINGS if n is None or not change]
+    noises, size = (NOISES[:2], 48) if quick else (NOISES, 192)
+    every = [(n, name, change, size) for n in noises for name, change in SETTINGS if n is None or not change]
+    return [point for point in every if not quick or point[1] in ("direct", "linear", "sparse")]
 
 
 @lru_cache(maxsize=1)
@@ -96,7 +95,8 @@ def measure(point: Point) -> dict[str, Any]:
         field, seconds, plain = found.light_field, times["seconds"], found.plain
     got = methods.figures(field * corners, truth, psnr_db(free, truth))
     setting = " ".join(f"{key} {value:g}" for key, value in change.items())
-    return {"noise": "physical" if noise is None else f"{noise:g}", "method": name, "setting": setting} | got | {"left_out": plain, "seconds": seconds}
+    label = "physical" if noise is None else f"{noise:g}"
+    return {"noise": label, "method": name, "setting": setting} | got | {"left_out": plain, "seconds": seconds}
 
 
 def plot(rows: Sequence[dict[str, Any]]) -> Figure:

@@ -196,7 +196,8 @@ class FieldEstimator:
         tables, groups = self.covariances.mean(), list(self._groups())
         every = [[ways.residuals[number] for ways in self._ways] for number in range(self.prior.disparities)]
         every.append([Residuals.of(whitener(self._shared(tables, *g)), *self._own(*g)) for g in groups])
-        certain = [pooled(self._map(r.certain for r in residuals), self.prior.width) / self._read for residuals in every]
+        width = self.prior.width
+        certain = [pooled(self._map(r.certain for r in residuals), width) / self._read for residuals in every]
         return list(zip(every, certain, strict=True))
 
     @cached_property

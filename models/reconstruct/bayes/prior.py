@@ -79,8 +79,8 @@ class FieldPrior:
 
     @property
     def width(self) -> float:
-        """The pool's standard deviation in px at this noise: it grows with the cube root."""
-        return self.pool * max(self.noise / CLEAR, 1) ** (1 / 3)
+        """The pool's standard deviation in px at this noise: wider where a pixel tells less; by leaves and a room."""
+        return self.pool * max(self.noise / CLEAR, 1) ** (2 / 3)
 
     def covariance(self, dy: Floats, dx: Floats) -> Floats:
         """Covariance of two points of a plane.
