@@ -55,10 +55,11 @@ def run(options: Namespace) -> int:
     camera = camera_of(options, sensor.optics.camera)
     sensor = replace(sensor, optics=replace(sensor.optics, camera=camera), electrical=replace(e, **given))
     asked, typed = reading.asked(options, "depth", add_arguments, sensor)
-    prior, code = prior_asked(options, asked.noise), _code(options, asked.sensor.electrical)
+    prior, code = prior_asked(options), _code(options, asked.sensor.electrical)
 
     def found(note: reading.Note) -> Depth:
-        return read_depth(capture(asked, note, options.golden, code, options.direct), prior, note)
+        frames = capture(asked, note, options.golden, code, options.direct)
+        return read_depth(frames, prior(frames.sums), note)
 
     return reading.run(asked, typed, STEPS, found, page, _print)
 

@@ -1,6 +1,8 @@
 """The light field and the depth of a scene from a raw frame of the chip, every method beside the free baselines."""
 
 from argparse import ArgumentParser, Namespace
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -8,6 +10,7 @@ from talbot.flow.frame import arguments as text
 from talbot.flow.frame import reading
 
 if TYPE_CHECKING:
+    from talbot.flow.frame.result import GoldenResult
     from talbot.models.reconstruct.bayes import FieldPrior
 
 
@@ -25,14 +28,14 @@ def add_prior_arguments(parser: ArgumentParser) -> None:
     add("--disparities", default="21", help="how many are tried, 1..500")
 
 
-def prior_asked(options: Namespace, noise: float, **rest: Any) -> "FieldPrior":
-    """The prior of `add_prior_arguments` for a frame's ``noise``; rest: fields of it. Raises ParameterError."""
+def prior_asked(options: Namespace) -> "Callable[[GoldenResult], FieldPrior]":
+    """From a frame to its prior with the disparities of `add_prior_arguments`. Raises ParameterError."""
     from .fields import prior_of
 
     far = text.real("far", options.far, -20, 20)
     near = text.real("near", options.near, far, 20)
     disparities = text.integer("disparities", options.disparities, 1, 500)
-    return prior_of(noise, far=far, near=near, disparities=disparities, **rest)
+    return partial(prior_of, far=far, near=near, disparities=disparities)
 
 
 def run(options: Namespace) -> int:
@@ -42,10 +45,11 @@ def run(options: Namespace) -> int:
     from .methods import METHODS
 
     asked, typed = reading.asked(options, "lightfield", add_arguments)
-    prior = prior_asked(options, asked.noise)
+    prior = prior_asked(options)
 
     def found(note: reading.Note) -> Fields:
-        return read_back(reading.frame_of(asked, note, options.golden), prior, note)
+        result = reading.frame_of(asked, note, options.golden)
+        return read_back(result, prior(result), note)
 
     steps = "setup", "capture", "build", "rtl", "decode", *METHODS, "report"
     return reading.run(asked, typed, steps, found, page, _print)

@@ -12,7 +12,7 @@ from talbot.flow.frame.reading import about, full, rms
 from talbot.flow.frame.result import GoldenResult
 from talbot.models.capture import CaptureOperator, cells
 from talbot.models.parameters import ParameterError, SensorParameters
-from talbot.models.reconstruct import psnr_db, white_sum
+from talbot.models.reconstruct import diode_noise, psnr_db, white_sum
 from talbot.models.reconstruct.bad_pixels import dead_pixels, repaired
 from talbot.models.reconstruct.bayes import Estimate, FieldEstimator, FieldPrior
 from talbot.models.scene import Sampling
@@ -23,7 +23,6 @@ from .methods import Found, applicable, figures, measure
 Values = npt.NDArray[np.floating]
 BEST = "mixture"  # the method whose pictures and disparity are shown
 PUPIL = 7  # points across the pupil at which the estimators take a scene that can be seen from anywhere
-QUIET = 0.5  # of the physical noise: what rounding to codes leaves without any other
 SURE = 0.5  # px per view step: a disparity of a larger standard deviation is none
 
 
@@ -78,20 +77,24 @@ def _by_truth(result: GoldenResult, prior: FieldPrior, seen: Values, sent: Value
 
 
 def estimate(result: GoldenResult, method: str = BEST, prior: FieldPrior | None = None) -> Found:
-    """The light field of a raw frame by an `applicable` method. prior: by default `prior_of` the frame's noise.
+    """The light field of a raw frame by an `applicable` method. prior: by default `prior_of` the frame.
 
     Raises ParameterError as `read_back`.
     """
-    prior = prior or prior_of(result.request.noise)
+    prior = prior or prior_of(result)
     sent, bad = sent_pair(result)
     estimator = estimator_of(result, prior)
     found = _unsure(measure(method, estimator, CaptureOperator(result.sensor), sent)[0], bad, estimator)
     return found._replace(light_field=found.light_field * reached(result))
 
 
-def prior_of(noise: float, **rest: Any) -> FieldPrior:
-    """The prior of frames with ``noise`` times the physical one. rest: fields of FieldPrior."""
-    return FieldPrior(noise=FieldPrior.noise * max(noise, QUIET), **rest)
+def prior_of(result: GoldenResult, **rest: Any) -> FieldPrior:
+    """The prior of a frame, with the noise of its sensor in its mean light. rest: other fields of FieldPrior."""
+    asked = result.request
+    timing = asked.frame.exposing
+    light = result.decoded.samples.mean() / white_sum(asked.lit, timing)
+    noise = float(diode_noise(light, asked.lit, timing, asked.noise))
+    return FieldPrior(noise=max(noise, FieldPrior.noise), **rest)  # a scene is never as even as the prior's planes
 
 
 def estimator_of(result: GoldenResult, prior: FieldPrior) -> FieldEstimator:

@@ -105,7 +105,7 @@ def measure(point: Point) -> dict[str, Any]:
         samples, share = gated(result, int(value))
         spread = int(value) / result.exposed.front_end.gain / np.sqrt(3)
     white = white_sum(result.request.lit, result.request.frame.exposing)
-    prior = prior_of(1.0, disparities=DISPARITIES)
+    prior = prior_of(result, disparities=DISPARITIES)
     prior = replace(prior, noise=float(np.hypot(prior.noise, spread / white)))
     pair, corners = pair_of(result, samples), reached(result)
     truth = result.exposed.scene.full_light_field * corners

@@ -60,6 +60,37 @@ def sum_noise(
     return np.sqrt(light + still + pattern + e.lsb_electrons**2 / 12) / white
 
 
+def diode_noise(
+    light: npt.ArrayLike, sensor: SensorParameters, timing: AmpTiming = AmpTiming(), noise: float = 1.0
+) -> npt.NDArray[np.floating]:
+    """Standard deviation of a diode's code in a raw frame.
+
+    Parameters
+    ----------
+    light : array
+        On the diode, 1 = the average diode in a flat white scene.
+    sensor : SensorParameters
+        The sensor.
+    timing : AmpTiming
+        Integration time, without common-mode resets.
+    noise : float
+        Factor on shot, read and fixed-pattern noise, 0..100; rounding and the converter's own errors have none.
+
+    Returns
+    -------
+    array
+        In the unit of ``light``.
+    """
+    e, c = sensor.electrical, sensor.converter
+    white = white_sum(sensor, timing) * e.lsb_electrons / 2
+    electrons = np.maximum(light, 0) * white
+    still = e.read_noise**2 + e.offset_fpn**2 + e.column_fpn**2 + e.flicker_noise**2
+    analog = electrons + still + (e.gain_fpn * electrons) ** 2
+    code = e.lsb_electrons / 2  # raw codes are of twice a diode
+    codes = 1 / 12 + c.noise**2 + c.ktc**2 + c.offset**2 + c.dnl**2 + c.inl**2 / 2  # a bow's mean square is half
+    return np.sqrt(noise**2 * analog + codes * code**2) / white
+
+
 def sum_image(
     sums: npt.NDArray[Any],
     sensor: SensorParameters,

@@ -96,7 +96,7 @@ def depth_of(result: GoldenResult, near: float, far: float, disparities: int) ->
     check_int("disparities", disparities, 1, 500)
     request = result.request
     frames = capture(request, golden=not isinstance(result, FrameResult))
-    found = read_depth(frames, prior_of(request.noise, near=near, far=far, disparities=disparities))
+    found = read_depth(frames, prior_of(frames.sums, near=near, far=far, disparities=disparities))
     light = np.clip(found.field.taps.mean(0), 0, RADIANCE_MAX)
     disparity = found.field.disparity
     return DepthResult(

@@ -11,9 +11,10 @@ from talbot.commands import main
 from talbot.flow.frame.job import golden_result
 from talbot.flow.frame.request import request
 from talbot.flow.lightfield import page
-from talbot.flow.lightfield.fields import estimate, prior_of, read_back
+from talbot.flow.lightfield.fields import estimate, pair_of, prior_of, read_back
 from talbot.flow.lightfield.methods import figures, parallax
 from talbot.models.parameters import ParameterError
+from talbot.models.reconstruct import diode_noise
 from talbot.models.reconstruct.bayes import FieldPrior
 
 
@@ -61,6 +62,19 @@ def test_a_scene_without_parallax_has_no_slope():
     assert s["methods"]["mixture"]["psnr_db"] > 35
 
 
+@pytest.mark.parametrize(
+    "converter, noise, within",  # one draw of eight lanes' offsets is not their RMS
+    [("ideal", 0.0, 0.05), ("ideal", 1.0, 0.05), ("ideal", 33.3, 0.05), ("typical", 1.0, 0.4)],
+)
+def test_the_noise_of_a_frame_is_as_its_sensor_has_it(converter, noise, within):
+    result = golden_result(request(rows=48, cols=48, mode="raw", noise=noise, converter=converter))
+    ideal, asked = pair_of(result, result.exposed.ideal), result.request
+    found = np.sqrt(np.mean((pair_of(result, result.decoded.samples) - ideal) ** 2))
+    told = np.sqrt(np.mean(diode_noise(ideal, asked.lit, asked.frame.exposing, noise) ** 2))
+    assert found == pytest.approx(told, rel=within)
+    assert prior_of(result).noise == pytest.approx(max(told, FieldPrior.noise), rel=0.05)
+
+
 def test_a_part_of_the_array_is_refused():
     with pytest.raises(ParameterError, match="window, types, decimation"):
         read_back(golden_result(request(scene="flat", rows=8, cols=12, mode="raw", mask=0xFF)), FieldPrior())
@@ -101,6 +115,6 @@ def test_a_folder_tells_its_settings_and_what_it_replaced(tmp_path, monkeypatch,
 
 def test_an_estimate_alone_is_that_of_the_page():
     result = golden_result(request(scene="tilted", rows=24, cols=24, mode="raw"))
-    fields = read_back(result, prior_of(1.0))
+    fields = read_back(result, prior_of(result))
     for name, found in fields.found.items():
         np.testing.assert_array_equal(estimate(result, name).light_field, found.light_field)

@@ -127,7 +127,7 @@ class FieldEstimator:
     def _shares(self, groups: Windows) -> Floats:
         """Shares of the disparities in every window, (disparities, block rows, block cols)."""
         blocks = len(self.y.blocks), len(self.x.blocks)
-        count, pool = self.prior.disparities, self.prior.pool
+        count, pool = self.prior.disparities, self.prior.width
         squares, certain = np.zeros((2, count, *blocks), np.float32)
         contrast = np.zeros(blocks)
         for (down, across, samples), ways in zip(groups, self._ways, strict=True):
@@ -196,14 +196,15 @@ class FieldEstimator:
         tables, groups = self.covariances.mean(), list(self._groups())
         every = [[ways.residuals[number] for ways in self._ways] for number in range(self.prior.disparities)]
         every.append([Residuals.of(whitener(self._shared(tables, *g)), *self._own(*g)) for g in groups])
-        certain = [pooled(self._map(r.certain for r in residuals), self.prior.pool) / self._read for residuals in every]
+        width = self.prior.width
+        certain = [pooled(self._map(r.certain for r in residuals), width) / self._read for residuals in every]
         return list(zip(every, certain, strict=True))
 
     @cached_property
     def _read(self) -> Floats:
         """Share of the pixels around each that are read."""
         kinds = self.tile.type_map(*self.shape)
-        return np.maximum(pooled(self.measured[kinds].astype(np.float32), self.prior.pool), np.float32(1e-6))
+        return np.maximum(pooled(self.measured[kinds].astype(np.float32), self.prior.width), np.float32(1e-6))
 
     def told_by(self, pixels: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
         """Where the mixture's disparity is from any of some pixels.
@@ -220,7 +221,7 @@ class FieldEstimator:
         """
         windows = sliding_window_view(pixels, (self.y.window, self.x.window))[np.ix_(self.y.firsts, self.x.firsts)]
         told = np.asarray(self.y.spread() @ windows.any((2, 3)) @ self.x.spread().T > 0)
-        return np.asarray(maximum_filter(told, 2 * math.ceil(REACH * self.prior.pool) + 1), bool)
+        return np.asarray(maximum_filter(told, 2 * math.ceil(REACH * self.prior.width) + 1), bool)
 
     def condition(self, disparity: float | None = None) -> float:
         """Condition of the covariance of the samples in a window, noise included.
@@ -301,7 +302,7 @@ class FieldEstimator:
 
     def _scores(self, groups: Windows) -> Floats:
         """What trust leaves of -2 log p of every disparity, and of any, (disparities + 1, rows, cols)."""
-        pool, scores = self.prior.pool, []
+        pool, scores = self.prior.width, []
         for residuals, certain in self._hypotheses:
             errors = [residual.matrix @ samples for (*_, samples), residual in zip(groups, residuals, strict=True)]
             squares = pooled(self._map(np.square(e) for e in errors), pool) / self._read

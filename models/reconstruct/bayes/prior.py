@@ -8,6 +8,7 @@ import numpy.typing as npt
 from talbot.models.parameters import ParameterError, check_int, check_real
 
 Floats = npt.NDArray[np.float64]
+CLEAR = 0.006  # of white: noise beyond which evidence is pooled more widely
 
 
 @dataclass(frozen=True)
@@ -33,7 +34,8 @@ class FieldPrior:
     trust : float
         Share of the evidence for a disparity that counts, 0.001..1: a scene is not the prior's texture.
     pool : float
-        Standard deviation of the weights around a pixel with which its neighbours' evidence counts, 0.1..100 px.
+        Standard deviation of the weights around a pixel with which its neighbours' evidence counts, 0.1..100 px, up to
+        a noise of `CLEAR`.
     plain : float
         Windows that differ from a uniform one by less than this, times the noise's variance, take the linear estimate,
         0..1000: no disparity shows in them.
@@ -46,7 +48,7 @@ class FieldPrior:
     level: float = 0.5
     contrast: float = 0.25
     length: float = 30.0
-    noise: float = 0.006
+    noise: float = CLEAR
     far: float = -2.5
     near: float = 2.5
     disparities: int = 21
@@ -74,6 +76,11 @@ class FieldPrior:
     def grid(self) -> Floats:
         """The disparities that are tried, (disparities,), from far to near."""
         return np.linspace(self.far, self.near, self.disparities)
+
+    @property
+    def width(self) -> float:
+        """The pool's standard deviation in px at this noise: wider where a pixel tells less; by leaves and a room."""
+        return self.pool * max(self.noise / CLEAR, 1) ** (2 / 3)
 
     def covariance(self, dy: Floats, dx: Floats) -> Floats:
         """Covariance of two points of a plane.
