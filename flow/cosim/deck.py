@@ -2,16 +2,18 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import partial
 
 from talbot.cells.corner import Corner
 from talbot.models.parameters import check_real
 from talbot.pixels.circuits import lane as lanes_of
+from talbot.pixels.circuits.amplifier import AmplifierSizes, AmplifierSpec
 from talbot.pixels.circuits.gates import LENGTH, inverter
 from talbot.pixels.circuits.netlist import Circuit, Instance, Transistor
 from talbot.pixels.circuits.specification import CODES, LaneSpec
 from talbot.platforms.sky130 import analog
 
-from . import pixels
+from . import amplified, pixels
 from .accuracy import Accuracy
 from .faults import Fault
 
@@ -26,31 +28,38 @@ Values = Mapping[tuple[int, int], float]
 
 @dataclass(frozen=True)
 class RowOfPixels:
-    """Pixels of a row. diodes: (a, b) in LSB of each column and tap; cols: of the array; integration: s."""
+    """Pixels of a row.
+
+    diodes: (a, b) in LSB of each column and tap; cols: of the array; integration: s. amplified: both diodes' samples go
+    to the lanes' amplifiers, else their difference or sum to the lanes.
+    """
 
     diodes: Mapping[int, Mapping[int, tuple[float, float]]]
     cols: int
     gain: float
     integration: float
     sizes: pixels.PixelSizes = pixels.PixelSizes()
+    amplified: bool = False
 
 
 @dataclass(frozen=True)
 class Timing:
-    """Clock period (1e-9..1), length of every ramp (1e-12..1e-9), and time from the strobe to sampling, all in s.
+    """Clock period (1e-9..1), its time high (1e-9..period), length of every ramp (1e-12..1e-9), all in s.
 
     The chip lets a lane hold the next value in the cycle of its last decision: a lane whose DAC samples must decide
-    first. `sample` is thus high in the second half of hold's cycle, from ``after`` (0..1e-8) on.
+    first. `sample` is thus high while clk is low in hold's cycle, from ``after`` (s from the strobe, 0..1e-8) on.
     """
 
     period: float = 100e-9
     edge: float = 100e-12
     after: float = 5e-9
+    high: float = 50e-9
 
     def __post_init__(self) -> None:
         check_real("period", self.period, 1e-9, 1.0)
         check_real("edge", self.edge, 1e-12, 1e-9)
         check_real("after", self.after, 0.0, 1e-8)
+        check_real("high", self.high, 1e-9, self.period)
 
 
 @dataclass
@@ -93,51 +102,62 @@ def build(
     used = {column // tile_cols % lanes for column in columns}
     served = tuple(sorted(range(lanes) if everything else used))
     deck = Deck([f"q{i}" if i in served else "-" for i in range(lanes)], served, columns, supply=spec.supply)
-    sound = lanes_of.sar_lane(lanes_of.size(spec, analog))
+    sizes = lanes_of.size(spec, analog)
+    sound = lanes_of.sar_lane(sizes)
     body, own = [], []
     circuits = {"selector": _selector()}
+    amplifier = amplified.sized("sky130", spec, sizes) if row and row.amplified else None
+    if amplifier:
+        circuits |= {one.name: one for one in amplified.circuits(amplifier[1])}
+        body.append(f"Vdark column_dark 0 {amplifier[0].reset_level:g}")
     for i in served:
         one = fault.of_lane(sound, i) if fault else sound
         circuits[one.name] = one
-        bits = [_source(deck, f"d{i}_{k}", lanes + BITS * i + k, spec.supply) for k in range(BITS)]
+        bits = [_source(deck, f"d{i}_{k}", spec.supply, lanes + BITS * i + k) for k in range(BITS)]
         pins = [
-            *(f"in{i}", "ref", _source(deck, f"sample{i}", i, spec.supply, half=True, rise=timing.after)),
-            _source(deck, f"strobe{i}", 9 * lanes + i, spec.supply, half=True),
+            *(f"in{i}", "ref", _source(deck, f"sample{i}", spec.supply, i, half=True, rise=timing.after)),
+            _source(deck, f"strobe{i}", spec.supply, 9 * lanes + i, half=True),
             *(*reversed(bits), f"q{i}", "refp", "refn", "vcm", "vdd", "0"),
         ]
         body += [f"Xlane{i} {' '.join(pins)} {one.name}", f"Cin{i} in{i} 0 50f"]
         deck.saved += [f"q{i}", f"in{i}", *(f"xlane{i}.{node}" for node in LANE_NODES)]
+        if amplifier:
+            body += amplified.lane_lines(i, partial(_source, deck, bit=i), spec.supply)
+            deck.saved += [f"cola{i}", f"colb{i}"]
     level = 0.5 * (spec.refp + spec.refn)
     for (column, sub), value in sorted(values.items()):
         name, into = f"{column}_{sub}", column // tile_cols % lanes
-        on = _source(deck, f"select{name}", 10 * lanes + SUBS * column + sub, spec.supply)
-        body.append(f"Xselect{name} column{name} in{into} {on} vdd 0 selector")
+        rise, fall = (amplified.COLUMNS, amplified.AFTER) if amplifier else (0.0, 0.0)
+        on = _source(deck, f"select{name}", spec.supply, 10 * lanes + SUBS * column + sub, rise=rise, fall=fall)
+        ways = [(f"{d}{name}", f"col{d}{into}") for d in "ab"] if amplifier else [(name, f"in{into}")]
+        body += [f"Xselect{one} column{one} {to} {on} vdd 0 selector" for one, to in ways]
         if row is None:
             body.append(f"Vcolumn{name} column{name} 0 {level + (value - MIDDLE * unsigned) * spec.lsb:.9g}")
     if row is not None:
         circuits |= {one.name: one for one in (pixels.pixel(row.sizes), pixels.clear(), pixels.sampler())}
         own = pixels.amplifier(row.sizes)
-        body += _row(deck, row, unsigned, spec, level, fault)
-        deck.saved += [f"out_{d}{c}" for c in columns for d in "ab"] + [f"value{c}" for c in columns]
+        body += _row(deck, row, unsigned, spec, level, amplifier, fault)
+        deck.saved += [f"out_{d}{c}" for c in columns for d in "ab"]
         first = 10 * lanes + SUBS * row.cols
         for i, line in enumerate((*pixels.LINES, "clear")):
-            _source(deck, f"{line}_row", first + i, spec.supply)
+            _source(deck, f"{line}_row", spec.supply, first + i)
         for tap in range(SUBS):
-            _source(deck, f"tap{tap}", first + 3 + tap, spec.supply)
-            _source(deck, f"light{tap}", -1, 1.0)
+            _source(deck, f"tap{tap}", spec.supply, first + 3 + tap)
+            _source(deck, f"light{tap}", 1.0, -1)
     if not fault:
         for circuit in circuits.values():
             circuit.check(analog)
-    sizes = set().union(*(circuit.sizes() for circuit in circuits.values()))
+    drawn = set().union(*(circuit.sizes() for circuit in circuits.values()))
     called = [line.split()[-1] for line in body if line[0] == "X"]
     deck.transistors = sum(_count(circuits["charge_clear" if name == "charge" else name]) for name in called)
     supplies = {"refp": spec.refp, "refn": spec.refn, "vcm": spec.vcm, "ref": level}
+    deck.saved.append("ref")
     deck.lines = [
         "* one row of a sensor",
         *accuracy.options,
         f".temp {CORNER.temperature:g}",
-        *analog.cards(CORNER.process, sizes),
-        ".param cscale=1",
+        *analog.cards(CORNER.process, drawn),
+        ".param cscale=1 rscale=1",
         *dict.fromkeys(text for circuit in circuits.values() for text in _subcircuits(circuit)),
         *own,
         f"Vdd vdd 0 {spec.supply:g}",
@@ -152,13 +172,27 @@ def build(
     return deck
 
 
-def _row(deck: Deck, row: RowOfPixels, unsigned: bool, spec: LaneSpec, level: float, fault: Fault | None) -> list[str]:
+def _row(
+    deck: Deck,
+    row: RowOfPixels,
+    unsigned: bool,
+    spec: LaneSpec,
+    level: float,
+    amplifier: tuple[AmplifierSpec, AmplifierSizes] | None,
+    fault: Fault | None,
+) -> list[str]:
     """Lines of the pixels and columns."""
     columns = {c: row.diodes[c] for c in deck.columns}
     middle = level - MIDDLE * unsigned * spec.lsb
+    if amplifier:
+        volts = amplified.column_volts(spec, amplifier[1], row.gain)
+        forms = {d: (amplifier[0].reset_level, {d: -volts}) for d in "ab"}
+    else:
+        a, b = (row.gain, -row.gain) if not unsigned else (1.0, 1.0)
+        forms = {"": (middle, {"a": a * spec.lsb, "b": b * spec.lsb})}
     swapped = frozenset(fault.where if fault and fault.kind == "diodes" else ())
     cut = fault.where[0] if fault and fault.kind == "row" else None
-    return pixels.lines(columns, not unsigned, row.gain, spec.lsb, middle, row.integration, row.sizes, swapped, cut)
+    return pixels.lines(columns, forms, row.integration, row.sizes, swapped, cut)
 
 
 def _subcircuits(circuit: Circuit) -> list[str]:
@@ -179,13 +213,25 @@ def _count(circuit: Circuit) -> int:
 def _breaks(timing: Timing) -> str:
     """A source without a load whose corners are those of clock and strobe: ngspice lowers its order there."""
     t = timing
-    return f"Vbreak break 0 PULSE(0 1 0 {t.edge:.9g} {t.edge:.9g} {0.5 * t.period - t.edge:.9g} {t.period:.9g})"
+    return f"Vbreak break 0 PULSE(0 1 0 {t.edge:.9g} {t.edge:.9g} {t.high - t.edge:.9g} {t.period:.9g})"
 
 
-def _source(deck: Deck, name: str, bit: int, high: float, half: bool = False, rise: float = 0.0) -> str:
-    """A control of ``high`` V that rises ``rise`` s late; returns its node. half: in a cycle's second half."""
+def _source(
+    deck: Deck,
+    name: str,
+    high: float,
+    bit: int,
+    half: bool = False,
+    rise: float = 0.0,
+    fall: float = 0.0,
+    low: float = 0.0,
+) -> str:
+    """A control, ``low`` or ``high`` V where its bit is 0 or 1; returns its node.
+
+    half: while clk is low alone. rise, fall: s by which its changes to 1 and to 0 are late.
+    """
     deck.sources.append(f"V{name} {name} 0 external")
-    deck.drive.append(f"v{name} {bit} 0 {high:g} {int(half)} {rise:.9g} 0")
+    deck.drive.append(f"v{name} {bit} {low:g} {high:g} {int(half)} {rise:.9g} {fall:.9g}")
     return name
 
 

@@ -5,7 +5,7 @@
 //   controls   LANES                  lane l samples (hold and en)
 //              8 LANES                its DAC's code
 //              LANES                  lane l decides in this cycle: its comparator is strobed
-//              SUBS x COLS            column c, sub-sample s at the lane's input (bit SUBS c + s)
+//              SUBS x COLS            column c, sub-sample s at the lane's input while it samples (bit SUBS c + s)
 //              1, 1, 1                the row's reset line, its read line, the columns' amplifiers cleared
 //              SUBS                   the amplifiers' outputs are sampled, of each tap
 `default_nettype none
@@ -88,7 +88,7 @@ module Afe #(
 
   for (genvar c = 0; c < COLS; c++) begin : column      // column c is at position k of the tile column of its lane
     for (genvar s = 0; s < SUBS; s++) begin : sub_sample
-      assign controls[10*LANES+SUBS*c+s] = en[c/TILE_COLS%LANES] && int'(k) == c % TILE_COLS
+      assign controls[10*LANES+SUBS*c+s] = hold && en[c/TILE_COLS%LANES] && int'(k) == c % TILE_COLS
           && int'(group) == c / TILE_COLS / LANES && int'(sub) == s;
     end
   end

@@ -6,8 +6,8 @@
 // no time of the circuit. At the end of the frame the process ends from within the transient.
 //
 //   +deck=FILE     the netlist; its last line is .end
-//   +drive=FILE    head: period edge step stop (s); then lines "source bit low high half rise fall": volts at 0 and 1 of a
-//                  bit of `controls`, delays (s) of its edges; with half = 1 it is high in the second half of the cycle
+//   +drive=FILE    head: period edge step stop high (s): clk is high for so long; then lines "source bit low high half rise fall": volts at 0 and 1 of a
+//                  bit of `controls`, delays (s) of its edges; with half = 1 it is high while clk is low
 //                  the bit of vlight0 .. vlight3, the light of each tap, is -1
 //   +whole=1       with light: every cycle of an integration is simulated
 //   +answers=NODES the comparators' outputs, of each lane in order, separated by commas; "-" of a lane without a circuit
@@ -47,7 +47,7 @@ VerilatedContext* context;
 VBench* top;
 std::vector<Source> sources;
 std::unordered_map<std::string, Source*> by_name;
-double period, edge, step, stop, threshold = 0.9;
+double period, edge, step, stop, high, threshold = 0.9;
 std::vector<double> corners;     // of a cycle, s after its clock edge
 std::uint64_t ticks = 0, analog = 0, period_number = 0, limit = 1000000000, rejected = 0, accepted = 0;
 std::size_t corner = 0;          // the next one
@@ -176,7 +176,7 @@ double due() { return static_cast<double>(period_number) * period + corners[corn
 
 void happen() {
   if (corner == 0) clock_edge(due());
-  else if (corners[corner] == 0.5 * period)
+  else if (corners[corner] == high)
     for (Source& s : sources)
       if (s.half) turn(s, bit_of(AFE(controls), s.bit), due());
   if (corners[corner] == 0.5 * period && pixels && !whole)
@@ -240,14 +240,14 @@ int ended(int, NG_BOOL, NG_BOOL, int, void*) { std::_Exit(5); }
 
 bool read_drive(const std::string& name) {
   std::FILE* file = std::fopen(name.c_str(), "r");
-  if (!file || std::fscanf(file, "%lf %lf %lf %lf", &period, &edge, &step, &stop) != 4) return false;
+  if (!file || std::fscanf(file, "%lf %lf %lf %lf %lf", &period, &edge, &step, &stop, &high) != 5) return false;
   char text[256];
   int bit, half;
-  double low, high, rise, fall;
-  std::set<double> at = {0.0, 0.5 * period};
-  while (std::fscanf(file, "%255s %d %lf %lf %d %lf %lf", text, &bit, &low, &high, &half, &rise, &fall) == 7) {
-    sources.push_back({text, static_cast<unsigned>(bit), low, high, half != 0, rise, fall, low, low, -1.0});
-    for (const double begin : {(half ? 0.5 * period : 0.0) + rise, fall}) at.insert({begin, begin + edge});
+  double zero, one, rise, fall;
+  std::set<double> at = {0.0, high, 0.5 * period, 0.5 * period + edge};  // light ends in the middle
+  while (std::fscanf(file, "%255s %d %lf %lf %d %lf %lf", text, &bit, &zero, &one, &half, &rise, &fall) == 7) {
+    sources.push_back({text, static_cast<unsigned>(bit), zero, one, half != 0, rise, fall, zero, zero, -1.0});
+    for (const double begin : {(half ? high : 0.0) + rise, fall}) at.insert({begin, begin + edge});
   }
   std::fclose(file);
   for (Source& s : sources) by_name[s.name] = &s;

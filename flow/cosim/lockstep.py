@@ -118,7 +118,8 @@ def _run(
         write_samples(folder / "samples", samples)
         write_converter(folder / "converter", front_end)
         (folder / "deck").write_text("\n".join([*deck.lines, ""]))
-        head = f"{timing.period:.9g} {timing.edge:.9g} {accuracy.step:.9g} {max_cycles * timing.period:.9g}"
+        seconds = timing.period, timing.edge, accuracy.step, max_cycles * timing.period, timing.high
+        head = " ".join(f"{one:.9g}" for one in seconds)
         (folder / "drive").write_text("\n".join([head, *deck.drive, ""]))
         more = [f"+{file}={folder / file}" for file in ("deck", "drive", "cycles", "points", "lockstep")]
         done = run_frame(

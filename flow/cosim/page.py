@@ -39,8 +39,8 @@ def write(folder: Path, rows: Sequence[Row], s: Mapping[str, Any]) -> None:
     (folder / PAGE).write_text(text)
 
 
-HEAD = ("", "samples", "codes that differ", "largest, LSB", "decisions", "that differ", "slowest, ns")
-HEAD += ("transistors", "cycles of the circuit", "of the chip", "time points", "attempts", "s")
+HEAD = ("", "samples", "codes that differ", "largest, LSB", "at the lane, LSB", "decisions", "that differ")
+HEAD += ("slowest, ns", "transistors", "cycles of the circuit", "of the chip", "time points", "attempts", "s")
 ABOUT = (
     "Each row leaves the chip as its stream; the codes are decoded from it. The real-number front end is asked the "
     "same questions as the circuit in the same cycle: decisions that differ are counted one by one."
@@ -49,10 +49,13 @@ WAVES = "Both sides are in <mode>.vcd; here, voltages between the comparator's i
 
 
 def _line(s: Mapping[str, Any]) -> tuple[str, ...]:
-    numbers = (s["samples"], s["differing"], s["largest_difference_lsb"], s["decisions"], s["differing_decisions"])
+    codes = (f"{s['samples']:,}", f"{s['differing']:,}", f"{s['largest_difference_lsb']:,}")
+    numbers = (s["decisions"], s["differing_decisions"])
     more = (s["transistors"], s["circuit_cycles"], s["chip_cycles"], s["time_points"], s["attempts"])
     ns = f"{1e9 * s['slowest_decision_s']:.2f}"
-    return (s["mode"], *(f"{n:,}" for n in numbers), ns, *(f"{n:,}" for n in more), f"{s['seconds']:.1f}")
+    name = f"{s['mode']}, with amplifiers" if s["amplifier"] else s["mode"]
+    at_lane = f"{s['largest_error_at_lane_lsb']:.3f}"
+    return (name, *codes, at_lane, *(f"{n:,}" for n in numbers), ns, *(f"{n:,}" for n in more), f"{s['seconds']:.1f}")
 
 
 def _codes(row: Row) -> Section:
@@ -110,13 +113,15 @@ def _why(x: Sample) -> str:
 
 def _tiles(s: Mapping[str, Any]) -> list[Tile]:
     rows = s["rows"]
-    worst, count = max(r["largest_difference_lsb"] for r in rows), sum(r["samples"] for r in rows)
+    beyond, count = sum(r["beyond"] for r in rows), sum(r["samples"] for r in rows)
     differing = sum(r["differing"] for r in rows)
     return [
         Tile(
-            f"{worst} LSB", "largest difference of a code from the real-number model's", "good" if worst <= 1 else "bad"
+            f"{beyond} of {count}",
+            "codes farther from the real-number model's value than half an LSB and the stated noise",
+            "bad" if beyond else "good",
         ),
-        Tile(f"{differing} of {count}", "codes differ"),
+        Tile(f"{differing} of {count}", "codes differ from the real-number model's"),
         Tile(f"{1e9 * max(r['slowest_decision_s'] for r in rows):.2f} ns", "slowest decision"),
         Tile(f"{min(r['circuit_cycles_per_s'] for r in rows):.2f}", "cycles of the circuit a second"),
     ]

@@ -135,10 +135,7 @@ def sampler() -> Circuit:
 
 def lines(
     diodes: Mapping[int, Mapping[int, tuple[float, float]]],
-    edge: bool,
-    gain: float,
-    lsb: float,
-    middle: float,
+    forms: Mapping[str, tuple[float, Mapping[str, float]]],
     integration: float,
     sizes: PixelSizes,
     swapped: frozenset[int] = frozenset(),
@@ -146,9 +143,9 @@ def lines(
 ) -> list[str]:
     """Lines of the deck. Their drive: nodes reset_row, read_row, clear_row, light0..3, tap0..3.
 
-    diodes: (a, b) in LSB of each column and tap. edge: gain (a - b), else a + b. lsb, middle: V of a code, and V at
-    the column of the value 0. integration: s. swapped: columns whose diodes are on each other's line. cut: column from
-    which on the row's read line is open.
+    diodes: (a, b) in LSB of each column and tap. forms: what a column samples, by name: V of the value 0, and V for
+    each LSB of its diodes a and b. integration: s. swapped: columns whose diodes are on each other's line. cut: column
+    from which on the row's read line is open.
     """
     deck = [*_line("reset", diodes, sizes, None), *_line("read", diodes, sizes, cut)]
     deck += [f"Vlevel level 0 {sizes.level:g}", *_column(DARK, ("a", "b"))]
@@ -160,15 +157,16 @@ def lines(
             for diode, value in zip("ab", pair, strict=True):
                 ampere = value / FULL * sizes.full_well * ELEMENTARY_CHARGE / integration
                 deck.append(f"Gphoto{diode}{column}_{tap} well_{diode}{column} 0 light{tap} 0 {ampere:.9g}")
-        a, b = (f"{unit:.9g}*(v(out_{d}{column})-v(out_{d}{DARK}))" for d in "ab")
-        value = f"{gain:g}*({a}-{b})" if edge else f"{a}+{b}"
-        deck.append(f"Bvalue{column} value{column} 0 v={middle:.9g}+{lsb:.9g}*({value})")
-        for tap in taps:
-            deck += [
-                f"Xsampler{column}_{tap} value{column} held{column}_{tap} tap{tap} vdd 0 sampler",
-                f"Chold{column}_{tap} held{column}_{tap} 0 {sizes.hold:g}",
-                f"Ebuffer{column}_{tap} column{column}_{tap} 0 held{column}_{tap} 0 1",
-            ]
+        for form, (zero, volts) in forms.items():
+            own = f"{form}{column}"
+            parts = (f"{v * unit:+.9g}*(v(out_{d}{column})-v(out_{d}{DARK}))" for d, v in volts.items())
+            deck.append(f"Bvalue{own} value{own} 0 v={zero:.9g}{''.join(parts)}")
+            for tap in taps:
+                deck += [
+                    f"Xsampler{own}_{tap} value{own} held{own}_{tap} tap{tap} vdd 0 sampler",
+                    f"Chold{own}_{tap} held{own}_{tap} 0 {sizes.hold:g}",
+                    f"Ebuffer{own}_{tap} column{own}_{tap} 0 held{own}_{tap} 0 1",
+                ]
     return deck
 
 

@@ -37,7 +37,8 @@ def controls(deck: Deck, cycles: Cycle, lanes: int, tile_cols: int) -> dict[str,
         elif match["kind"] == "d":
             found[name] = (cycles.asked[:, a] >> b & 1) != 0
         else:
-            found[name] = (cycles.k == a % tile_cols) & (cycles.group == a // tile_cols // lanes) & (cycles.sub == b)
+            here = (cycles.k == a % tile_cols) & (cycles.group == a // tile_cols // lanes) & (cycles.sub == b)
+            found[name] = cycles.hold & here
     return found
 
 
@@ -49,7 +50,7 @@ def corners(line: str, bits: npt.NDArray[np.bool_], timing: Timing) -> list[tupl
         begin = i * timing.period
         changes = [(begin + float(fall), float(low))] if half == "1" or not bit else []
         if bit:
-            changes.append((begin + 0.5 * timing.period * (half == "1") + float(rise), float(high)))
+            changes.append((begin + timing.high * (half == "1") + float(rise), float(high)))
         for start, target in changes:
             if target != volts:
                 points += [(start, volts)] * (start > points[-1][0])

@@ -12,7 +12,17 @@ from talbot.flow.frame.request import request
 from talbot.models.afe import Converter, FrontEnd
 from talbot.models.chip import golden_frame
 from talbot.models.digital.stream import decode_stream
-from talbot.models.parameters import SHORT_TIMING, FrameParameters, SensorParameters, check_choice, check_int
+from talbot.models.parameters import (
+    SHORT_TIMING,
+    FrameParameters,
+    ParameterError,
+    SensorParameters,
+    check_choice,
+    check_int,
+    circuit_converter,
+)
+from talbot.models.parameters.electrical import AMPLIFIER
+from talbot.pixels.circuits.amplifier import AmplifierSpec
 from talbot.pixels.circuits.specification import LaneSpec
 
 from . import lockstep
@@ -52,6 +62,9 @@ class RowRequest:
         Cycles of integration, 1..65535.
     whole : bool
         Every cycle of the integration is simulated, not one in place of all.
+    amplifier : bool
+        The lanes' difference amplifiers are in the circuit: edge mode with its pixels, a clock that is high for what
+        the amplifier asks.
     """
 
     mode: str = "image"
@@ -65,6 +78,7 @@ class RowRequest:
     pixels: bool = True
     t_int: int = 20000
     whole: bool = False
+    amplifier: bool = False
     timing: Timing = Timing()
     accuracy: Accuracy = Accuracy()
     spec: LaneSpec = LaneSpec()
@@ -77,6 +91,13 @@ class RowRequest:
         check_int("threshold", self.threshold, 0, 127)
         check_int("t_int", self.t_int, 1, 65535)
         check_int("seed", self.seed, 0, 2**32 - 1)
+        if self.amplifier and (self.mode != "edge" or not self.pixels):
+            raise ParameterError("amplifier = True: must be False but in mode edge with pixels")
+
+    @cached_property
+    def clock(self) -> Timing:
+        """The circuit's timing."""
+        return replace(self.timing, high=AmplifierSpec().high) if self.amplifier else self.timing
 
     @cached_property
     def frame(self) -> tuple[SensorParameters, FrameParameters]:
@@ -97,10 +118,13 @@ class RowRequest:
 
     @cached_property
     def front_end(self) -> FrontEnd:
-        """The real-number front end: ideal converters."""
+        """The real-number front end: ideal converters, the amplifier's curve as fitted to `make analog`."""
         sensor, _ = self.frame
-        none = (0,) * sensor.tile.n_types
-        return FrontEnd(GAIN, none, self.lanes, Converter.ideal(self.lanes), sensor.tile)
+        none, converter = (0,) * sensor.tile.n_types, Converter.ideal(self.lanes)
+        if self.amplifier:
+            curve = tuple(getattr(circuit_converter(), name) for name in AMPLIFIER)
+            converter = replace(converter, amplifier=curve)
+        return FrontEnd(GAIN, none, self.lanes, converter, sensor.tile)
 
     @cached_property
     def samples(self) -> npt.NDArray[np.float64]:
@@ -117,6 +141,8 @@ class RowRequest:
         sensor, frame = self.frame
         read = golden_frame(self.samples, sensor, frame, self.front_end).read
         values = self.front_end.values(self.samples, self.mode)
+        if self.front_end.converter:
+            values = self.front_end.converter.amplified(values, self.mode != "edge")
         return {(int(c), s): float(values[s, 0, c]) for c in np.flatnonzero(read[0]) for s in range(len(values))}
 
     def deck(self, accuracy: Accuracy | None = None) -> Deck:
@@ -128,7 +154,7 @@ class RowRequest:
             tile_cols,
             self.mode != "edge",
             self.spec,
-            self.timing,
+            self.clock,
             accuracy or self.accuracy,
             self.fault,
             self.everything,
@@ -141,7 +167,7 @@ class RowRequest:
             c: {tap: (float(row[0, c, 0]), float(row[0, c, 1])) for tap, row in enumerate(self.samples)}
             for c in range(self.cols)
         }
-        return RowOfPixels(diodes, self.cols, GAIN, self.t_int * self.timing.period)
+        return RowOfPixels(diodes, self.cols, GAIN, self.t_int * self.timing.period, amplified=self.amplifier)
 
 
 @dataclass(frozen=True)
@@ -171,6 +197,28 @@ class Row:
     decision: npt.NDArray[np.float64]
 
     @property
+    def at_lane(self) -> npt.NDArray[np.float64]:
+        """LSB at the lane's input as its sample ends, of each sample, less the real-number model's."""
+        run, zero = self.run, 128 * (self.request.mode != "edge")
+        off = []
+        for s in self.samples:
+            c = run.cycles
+            width = self.request.frame[0].tile.cols
+            place = c.hold & (c.group == s.column // (width * self.request.lanes)) & (c.k == s.column % width)
+            end = (np.flatnonzero(place & (c.sub == s.sub))[0] + 1) * self.request.timing.period
+            ends = (np.interp(end, run.time, run.waves[node]) for node in (f"in{s.lane}", "ref"))
+            volts = next(ends) - next(ends)
+            off.append(volts / self.request.spec.lsb + zero - s.value)
+        return np.array(off)
+
+    @property
+    def beyond(self) -> npt.NDArray[np.bool_]:
+        """Whether a code is not the model's, and farther from the model's value than half an LSB and the noise."""
+        stated = circuit_converter()
+        far = 0.5 + float(np.hypot(stated.noise, stated.ktc))
+        return np.array([s.code != s.expected and abs(s.code - s.value) > far for s in self.samples])
+
+    @property
     def differences(self) -> npt.NDArray[np.int64]:
         """Codes of the circuit less those of the real-number model."""
         return np.array([s.code - s.expected for s in self.samples])
@@ -181,7 +229,7 @@ def read_row(asked: RowRequest, note: Callable[[str], None] = lambda text: None,
     sensor, frame = asked.frame
     binary = program or lockstep.program(sensor, note)
     run = lockstep.run(
-        binary, asked.deck, frame, asked.samples, asked.front_end, asked.timing, asked.accuracy, asked.whole
+        binary, asked.deck, frame, asked.samples, asked.front_end, asked.clock, asked.accuracy, asked.whole
     )
     codes = decode_stream(run.stream, sensor.tile)[0].samples[0]
     expected = golden_frame(asked.samples, sensor, frame, asked.front_end).codes[0]
@@ -191,7 +239,7 @@ def read_row(asked: RowRequest, note: Callable[[str], None] = lambda text: None,
         lane = column // sensor.tile.cols % asked.lanes
         why = _first_difference(run.cycles, lane, column, sub, sensor.tile.cols * asked.lanes, sensor.tile.cols)
         found.append(Sample(column, sub, lane, value, int(codes[column, sub]), int(expected[column, sub]), why))
-    return Row(asked, deck, run, found, decision_times(run, deck, asked.timing))
+    return Row(asked, deck, run, found, decision_times(run, deck, asked.clock))
 
 
 def _first_difference(
@@ -216,7 +264,7 @@ def decision_times(run: lockstep.Run, deck: Deck, timing: Timing) -> npt.NDArray
     for lane in deck.lanes:
         apart = np.abs(run.waves[f"xlane{lane}.xcomparator.outp"] - run.waves[f"xlane{lane}.xcomparator.outn"])
         for i in np.flatnonzero(run.cycles.deciding[:, lane]):
-            strobe = (i + 0.5) * timing.period + 0.5 * timing.edge
+            strobe = i * timing.period + timing.high + 0.5 * timing.edge
             first, last = np.searchsorted(run.time, (strobe, (i + 1) * timing.period))
             over = np.flatnonzero(apart[first:last] >= half)
             if over.size:

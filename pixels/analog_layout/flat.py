@@ -82,8 +82,8 @@ def spice(
     ]
     side = masks.fringe_side_um
     lines += [
-        f"Cfringe.{a}.{b} {a} {b} {1e-15 * n * side**2:.6g} {masks.deck_fringe} A={n * side**2:.6g}P P={4 * n * side:.6g}U"
-        for (a, b), n in (fringes or {}).items()
+        f"Cfringe.{a}.{b} {a} {b} {1e-15 * area:.6g} {masks.deck_fringe} A={area:.6g}P P={4 * area / side:.6g}U"
+        for (a, b), area in ((nets, n * side**2) for nets, n in (fringes or {}).items())
     ]
     lines += [f"R{r.name} {r.a} {r.b} {r.value:.6g} {masks.deck_resistor}" for r in resistors]
     return "\n".join([*lines, f".ends {name}", ""])

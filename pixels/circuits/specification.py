@@ -26,7 +26,7 @@ class LaneSpec:
     """A converter lane: what converts ``lane_a - lane_b`` into a code, and its parts.
 
     Code d is reached from (d - 128 - 0.5) LSB on: value + 128 in edge mode, the value itself in the others, whose zero
-    the amplifier puts 128 LSB below its reference level.
+    is 128 LSB below the reference level.
 
     Attributes
     ----------

@@ -1,6 +1,7 @@
 """Co-simulation: the chip's Verilog against the lane in transistors."""
 
 import ctypes.util
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from talbot.flow.cosim.faults import Fault
 from talbot.flow.cosim.row import Row, RowRequest, read_row
 from talbot.flow.cosim.waves import write_vcd
 from talbot.models.parameters import ParameterError
+from talbot.pixels.circuits.amplifier import AmplifierSpec
 from talbot.pixels.circuits.lane import sar_lane, size
 from talbot.pixels.circuits.specification import LaneSpec
 from talbot.platforms.sky130 import analog
@@ -78,6 +80,27 @@ def test_waves_hold_both_sides(row: Row, tmp_path):
     assert "$var real 64" in head and "dac" in head and "xlane0_top" in head
     times = [int(line[1:]) for line in body.splitlines() if line.startswith("#")]
     assert times == sorted(times) and times[-1] <= row.run.time[-1] / 1e-14 + 1
+
+
+@library
+@pytest.mark.slow
+def test_the_amplifier_of_a_lane_is_in_the_loop():
+    """Pixel, amplifier and converter together give the model's value with the amplifier's fitted curve."""
+    row = read_row(replace(SMALL, mode="edge", amplifier=True))
+    (sample,) = row.samples
+    assert not row.beyond.any() and abs(sample.value) > 10
+    assert abs(row.at_lane[0]) < 0.002 * abs(sample.value)  # 0.0008 of the columns' amplifiers, 1e-3 of ngspice
+    timing, ends = row.request.timing, np.arange(1, row.run.stats["circuit_cycles"])
+    for corner in (0.5 * timing.period, 0.5 * timing.period + timing.edge):  # light ends; clk fell before
+        nearest = np.abs(row.run.time[:, None] - (ends * timing.period + corner)).min(0)
+        assert nearest.max() < 1e-15
+
+
+def test_an_amplifier_needs_a_difference_and_a_clock_that_is_low_for_longer():
+    assert replace(SMALL, mode="edge", amplifier=True).clock.high == AmplifierSpec().high < SMALL.clock.high
+    for wrong in (SMALL, replace(SMALL, mode="edge", pixels=False)):
+        with pytest.raises(ParameterError, match="amplifier = True: must be False"):
+            replace(wrong, amplifier=True)
 
 
 def test_only_lanes_that_the_row_reads_are_built():

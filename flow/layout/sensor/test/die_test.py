@@ -178,6 +178,19 @@ def test_an_abutting_block_out_of_its_place(made, tmp_path):
     assert metrics["open_nets"] > 16 * 6 and "read_row[3]" in report["open"]
 
 
+def test_the_diode_lines_of_a_lane_swapped(made, tmp_path):
+    """The converters' block has them at each other's places."""
+    layout, other = read_gds(made[0]["adc_lanes.gds"]), {"lane_a[1]": "lane_b[1]", "lane_b[1]": "lane_a[1]"}
+    for index in layout.layer_indexes():
+        for shape in layout.top_cell().shapes(index).each():
+            if shape.is_text() and shape.text_string in other:
+                shape.text_string = other[shape.text_string]
+    layout.write(str(tmp_path / "lanes.gds"))
+    metrics = small.connectivity(made[0] | {"adc_lanes.gds": tmp_path / "lanes.gds"}, tmp_path)
+    report = json.loads((tmp_path / "connectivity.json").read_text())
+    assert not metrics["lvs_match"] and list(report["short"]) == ["lane_a[1], lane_b[1]"]
+
+
 def test_a_row_line_cut(made, tmp_path):
     """The line's metal at the row driver's edge is gone; its name is left."""
     layout = read_gds(made[0]["row_driver.gds"])
