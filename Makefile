@@ -84,7 +84,7 @@ lightfield: $(READY)  ## a raw frame's light field, refocused pictures and depth
 	@$(talbot) lightfield
 
 .PHONY: pixel
-pixel: $(TESTS_READY)  ## the pixel in a process's metal: search, angular responses, Eq. 3.1 against them: build/pixel/<pdk>/pixel.html (PDK=)
+pixel: $(TESTS_READY) $(LAYOUT_READY)  ## the pixel in a process's metal: search, angular responses, Eq. 3.1 against them, the tile's GDS: build/pixel/<pdk>/pixel.html (PDK=)
 	@$(talbot) pixel
 
 .PHONY: cosim

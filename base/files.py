@@ -139,7 +139,10 @@ def insert(document: Path | str, mark: str, text: str) -> None:
 def marked(document: Path | str, mark: str) -> tuple[str, str, str, str]:
     """The text before such a place, both comments, the text after. Raises ParameterError as `insert`, OSError."""
     first, last = f"<!-- {mark} -->\n", f"<!-- end of {mark} -->"
-    before, found, rest = Path(document).read_text().partition(first)
+    try:
+        before, found, rest = Path(document).read_text().partition(first)
+    except UnicodeDecodeError:
+        raise ParameterError(f"document = {document}: must be a text file") from None
     _, ends, after = rest.partition(last)
     if not (found and ends):
         raise ParameterError(f"document = {document}: must have the comments {mark!r} and 'end of {mark}'")

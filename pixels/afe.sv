@@ -2,6 +2,7 @@
 // lane sample-and-hold, DAC and comparator. The twin of models/afe, sample for sample; see README.md.
 //
 //   +samples=FILE     diode values of every pixel (models/afe/files.py, write_samples), one exposure after another
+//   +taps=N           taps of each exposure, 1..4; without it the file is one exposure
 //   +converter=FILE   gain and imperfections (write_converter)
 /* verilator lint_off DECLFILENAME */      // the module is spelt as the chip's are
 /* verilator lint_off UNUSEDPARAM */        // TILE_ROWS belongs to the geometry that every module is given
@@ -15,7 +16,7 @@
 `endif
 
 module `AFE #(
-    parameter int ROWS = 384, COLS = 384, LANES = 8, TILE_ROWS = 4, TILE_COLS = 6, TAPS = 1
+    parameter int ROWS = 384, COLS = 384, LANES = 8, TILE_ROWS = 4, TILE_COLS = 6
 ) (
     input  wire                            clk,
     input  wire        [1:0]               mode,        // 0 edge, 1 image, 2 raw, 3 tof
@@ -31,6 +32,7 @@ module `AFE #(
     output wire        [LANES-1:0]         comparator
 );
   localparam int FRAME = ROWS * COLS * 2;               // words of one tap
+  localparam int TAPS = 4;                              // most of an exposure
   localparam int HEAD = 8, LEVELS = HEAD + LANES, WORDS = LEVELS + 512 * LANES;
   localparam bit [3:0] KTC = 15;                        // decision number of the kT/C draw
 
@@ -42,13 +44,14 @@ module `AFE #(
   reg [31:0] key;
   reg noisy;
   reg [31:0] exposures;                                 // before this one: each has noise of its own
-  integer file, samples_file, bytes;
+  integer file, samples_file, bytes, taps;
   reg [8*512-1:0] name;
   initial begin
     if (!$value$plusargs("samples=%s", name)) $fatal(1, "+samples=FILE is missing");
     samples_file = $fopen(name, "rb");
     if (samples_file == 0) $fatal(1, "+samples: cannot be read");
-    bytes = $fread(samples, samples_file);
+    if (!$value$plusargs("taps=%d", taps)) taps = TAPS;
+    bytes = $fread(samples, samples_file, 0, taps * FRAME);
     if (bytes == 0 || bytes % (8 * FRAME) != 0) $fatal(1, "+samples: not whole taps of ROWS x COLS x 2 words");
     if (!$value$plusargs("converter=%s", name)) $fatal(1, "+converter=FILE is missing");
     file = $fopen(name, "rb");
@@ -69,8 +72,8 @@ module `AFE #(
   // The next exposure, between two frames: all taps of it
   task next_exposure;
     begin
-      bytes = $fread(samples, samples_file);
-      if (bytes != 8 * TAPS * FRAME) $fatal(1, "+samples: no further TAPS x ROWS x COLS x 2 words");
+      bytes = $fread(samples, samples_file, 0, taps * FRAME);
+      if (bytes != 8 * taps * FRAME) $fatal(1, "+samples: no further +taps x ROWS x COLS x 2 words");
       exposures = exposures + 32'd1;
       key = mix(words[3][31:0] + exposures);
     end

@@ -18,9 +18,9 @@ class AnalogMasks:
 
     base: what pixels are drawn with. low_threshold: mask over the gates of the roles in ``low``. models: name of the
     device in LVS by role. mim: mask of the capacitor's upper plate, over metal ``mim_metal`` of ``base.metals``.
-    mim_area, mim_edge: fF/um2, fF/um. fringe_um: fF for a um of a finger of the two lowest metals between two others,
-    typical. fringe_end: fF of its end. fringe_share: what such fingers have, of what rays give. deck_mim: its device in
-    LVS. resistor: mask over the body of a resistor of n+ diffusion of ``sheet_ohm``, typical. deck_resistor: its device
+    mim_area, mim_edge: fF/um2, fF/um. fringe: mark at the tip of a finger of the two lowest metals between two others.
+    fringe_side_um: of the square that LVS counts as a unit. fringe_um: fF for a um of it, typical. fringe_end: fF of its end. fringe_share: what such fingers have, of what rays
+    give. deck_mim, deck_fringe: these capacitors in LVS. resistor: mask over the body of a resistor of n+ diffusion of ``sheet_ohm``, typical. deck_resistor: its device
     in LVS. rules, thick (of thick oxide), lvs: what the decks of PDKMaster lack.
     contradicted: rules of its deck that are left out. connections: lines of its deck of LVS and what replaces them.
     """
@@ -33,10 +33,13 @@ class AnalogMasks:
     mim_metal: int
     mim_area: float
     mim_edge: float
+    fringe: GdsLayer
+    fringe_side_um: float
     fringe_um: float
     fringe_end: float
     fringe_share: float
     deck_mim: str
+    deck_fringe: str
     resistor: GdsLayer
     sheet_ohm: float
     deck_resistor: str

@@ -25,8 +25,9 @@ CARD = (480, 340)  # px, of the picture on a card, at most
 CARD_TILES = 4
 # As people write them; in files, terminals and names they are ASCII
 UNITS = (
-    (r"^-(0\.?0*)$", r"\1"),
+    (r"^-(0\.?0*)(?=$| )", r"\1"),
     (r"\bum2\b", "µm²"),
+    (r"\bW/m2\b", "W/m²"),
     (r"\bu(?=[mWJAV]\b)", "µ"),
     (r"(^|(?<=\d ))us\b", "µs"),
     (r"(?<=\d) x (?=\d)", " × "),

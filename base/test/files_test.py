@@ -42,6 +42,9 @@ def test_a_place_in_a_document_is_found_or_refused(tmp_path):
     assert path.read_text() == "head\n<!-- table -->\n\nnew\n\n<!-- end of table -->\ntail\n"
     with pytest.raises(ParameterError, match="must have the comments 'tables' and 'end of tables'"):
         marked(path, "tables")
+    path.write_bytes(b"\xff\xfe")
+    with pytest.raises(ParameterError, match="a.md: must be a text file"):
+        marked(path, "table")
 
 
 def test_a_folder_in_the_place_of_a_file_is_refused_before_anything_is_written(tmp_path):

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TypedDict
 
 from talbot.base import jobs, tools
-from talbot.base.files import insert
+from talbot.base.files import insert, marked
 from talbot.base.liberty.read import areas
 from talbot.models.parameters import ParameterError
 
@@ -72,6 +72,8 @@ def run(options: Namespace) -> int:
     """Print the areas of both; 1 where ours is larger than the limit allows."""
     from talbot.platforms.sky130.functions import liberty
 
+    if options.document:
+        marked(options.document, "area")
     if not (ours := options.liberty).exists():
         raise ParameterError(f"liberty = {ours}: must be a file (talbot cells-compact)")
     STORE.mkdir(parents=True, exist_ok=True)

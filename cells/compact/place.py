@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numba import njit
 
 from talbot.cells.compact.grid import Flags, Ints
 from talbot.cells.compact.transistors import Schematic, Switch
+from talbot.models.compiled import njit
 
 BREAK = 10.0  # cost of a break of the diffusions; that of a net is the columns that it spans
 

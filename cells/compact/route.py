@@ -10,10 +10,10 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 
 import numpy as np
-from numba import njit
 
 from talbot.cells.compact.canvas import Canvas
 from talbot.cells.compact.grid import Arrays, Flags, Floats, Grid, Ints, Vertex
+from talbot.models.compiled import njit
 
 Edges = list[tuple[int, int, int]]  # net, vertex, vertex
 Terminals = tuple[Ints, Ints, Ints]  # start of each net's sets, start of each set's members, and the members

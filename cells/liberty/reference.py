@@ -32,7 +32,7 @@ def cell(path: str | Path) -> Group:
     """The group 'cell' of one file. Raises ParameterError."""
     try:
         return _group("cell", (_short(Path(path).name),), json.loads(Path(path).read_text()))
-    except (ValueError, AttributeError) as error:
+    except (ValueError, AttributeError, RecursionError) as error:
         raise ParameterError(f"reference = {path}: is not a cell in SkyWater's JSON ({error})") from None
 
 

@@ -2,10 +2,13 @@
 
 from pathlib import Path
 
+from talbot.base.gds import db
 from talbot.base.steps import StepError
 from talbot.flow.layout.geometry.decks import broken_rules, is_circuit, without_rules
 from talbot.flow.pixel_layout.checks import common_decks
 from talbot.platforms.analog import analog_masks
+
+COMPARE = "\nok = compare\n"
 
 
 def decks(pdk: str) -> tuple[str, str]:
@@ -31,5 +34,29 @@ def drc(gds: Path, pdk: str, report: Path) -> dict[str, int]:
 
 
 def lvs(gds: Path, spice: str, pdk: str, report: Path) -> bool:
-    """Whether the top cell of ``gds`` is the circuit ``spice``, text. Raises StepError."""
-    return is_circuit(decks(pdk)[1], gds, spice, report)
+    """Whether the top cell of ``gds`` is the circuit that ``spice``, text, has last, port by port. Raises StepError.
+
+    Without ports of the same name given as matching, two that are swapped at symmetrical places match.
+    """
+    _, name, *ports = next(line for line in reversed(spice.splitlines()) if line.startswith(".subckt ")).split()
+    named = "".join(f'same_nets!("{name}", "{port}", "{port}")\n' for port in ports)
+    deck = decks(pdk)[1]
+    if deck.count(COMPARE) != 1:
+        raise StepError(f"lvs: the deck has no single line {COMPARE.strip()!r}")
+    return is_circuit(deck.replace(COMPARE, f"\n{named}{COMPARE[1:]}"), gds, spice, report)
+
+
+def differences(report: Path) -> list[str]:
+    """What `lvs` found to differ, nets first, by the circuit's names, or the layout's for what it lacks."""
+    found = db.LayoutVsSchematic()
+    found.read(str(report))
+    compared, texts = found.xref(), []
+    good, paired = db.NetlistCrossReference.Match, db.NetlistCrossReference.MatchWithWarning
+    for pair in compared.each_circuit_pair():
+        name = (pair.second() or pair.first()).name
+        kinds = ("net", compared.each_net_pair), ("device", compared.each_device_pair)
+        for kind, each in (*kinds, ("circuit", compared.each_subcircuit_pair)):
+            for one in each(pair):
+                if one.status() != good and (kind == "device" or one.status() != paired):  # paired, but of other sizes
+                    texts.append(f"{name}: {kind} {(one.second() or one.first()).expanded_name()}".lower())
+    return texts

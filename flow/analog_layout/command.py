@@ -7,6 +7,8 @@ from typing import Any
 from talbot.base.jobs import worker_count
 from talbot.base.progress import Steps
 
+SHOWN = 10  # differences of a cell
+
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot analog-layout`."""
@@ -38,6 +40,8 @@ def _print(s: dict[str, Any], folder: Path) -> None:
             f"  {name:12} {cell['width_um']:g} x {cell['height_um']:g} um, {cell['transistors']} transistors, "
             f"{rules} violations, LVS {'matches' if cell['lvs_match'] else 'DIFFERS'}"
         )
+        for difference in cell["lvs_differs"][:SHOWN]:
+            print(f"    {difference}")
     print(f"  {'':46} {'schematic':>9} {'layout':>9} {'limit':>9}")
     for row in s["rows"]:
         least = row["most"] if row["least"] is None else row["least"]

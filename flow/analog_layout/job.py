@@ -41,7 +41,7 @@ from talbot.platforms.wires import wire_corner
 from . import amplifier, row_driver, switch
 from .amplifier import Amplified
 from .beside import Pair, beside
-from .checks import drc, lvs
+from .checks import differences, drc, lvs
 from .extract import Extracted, Nets, extract
 from .measure import Measured, measure
 from .row import Row
@@ -95,6 +95,7 @@ def make(
             name: lvs(folder / f"{name}.gds", cell.spice(masks), pdk, folder / f"{name}.lvsdb")
             for name, cell in drawn.items()
         }
+        differ = {name: differences(folder / f"{name}.lvsdb") for name, match in same.items() if not match}
         note("extract")
         found = {name: _extracted(made, masks, name) for name in dict.fromkeys(wire_corner(c) for c in corners)}
         typical = found[wire_corner(corners[0])]
@@ -109,7 +110,10 @@ def make(
         summary = {
             "process": pdk,
             "corners": list(corners),
-            "cells": {name: _cell(cell, rules[name], same[name], typical.get(name)) for name, cell in drawn.items()},
+            "cells": {
+                name: _cell(cell, rules[name], same[name], typical.get(name)) | {"lvs_differs": differ.get(name, [])}
+                for name, cell in drawn.items()
+            },
             "rows": [asdict(row) | {"passes": row.passes} for row in rows],
             "passed": not any(sum(one.values()) for one in rules.values())
             and all(same.values())

@@ -14,7 +14,7 @@
 `endif
 
 module Afe #(
-    parameter int ROWS = 384, COLS = 384, LANES = 8, TILE_ROWS = 4, TILE_COLS = 6, TAPS = 1
+    parameter int ROWS = 384, COLS = 384, LANES = 8, TILE_ROWS = 4, TILE_COLS = 6
 ) (
     input  wire                            clk,
     input  wire        [1:0]               mode,
@@ -64,7 +64,7 @@ module Afe #(
   end
   assign place = {6'd0, hold, unsigned_, 1'b0, row, sub, k, group};
 
-  RealAfe #(.ROWS(ROWS), .COLS(COLS), .LANES(LANES), .TILE_ROWS(TILE_ROWS), .TILE_COLS(TILE_COLS), .TAPS(TAPS)) twin (
+  RealAfe #(.ROWS(ROWS), .COLS(COLS), .LANES(LANES), .TILE_ROWS(TILE_ROWS), .TILE_COLS(TILE_COLS)) twin (
       .clk(clk), .mode(mode), .row(row), .group(group), .k(k), .sub(sub), .en(en), .balance(balance),
       .hold(hold), .dac(dac), .unsigned_(unsigned_), .comparator(expected)
   );

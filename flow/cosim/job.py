@@ -20,12 +20,12 @@ def rows(asked: Sequence[RowRequest], note: Callable[[str], None]) -> list[Row]:
     programs = {}
     for one in asked:
         sensor, _ = one.frame
-        key = one.cols, one.lanes, len(one.samples)
-        programs[key] = programs.get(key) or lockstep.program(sensor, len(one.samples), note)
+        key = one.cols, one.lanes
+        programs[key] = programs.get(key) or lockstep.program(sensor, note)
     note("rows")
     done = []
     for one in asked:
-        row = read_row(one, note, programs[one.cols, one.lanes, len(one.samples)])
+        row = read_row(one, note, programs[one.cols, one.lanes])
         seconds, cycles = row.run.stats["seconds"], row.run.stats["circuit_cycles"]
         note(f"{one.mode}: {len(row.samples)} samples, {cycles} cycles of the circuit in {seconds:.1f} s")
         done.append(row)
@@ -67,5 +67,5 @@ def summary(row: Row) -> dict[str, Any]:
 def model_alone(asked: RowRequest) -> dict[str, float]:
     """Speed of the same frame with the real-number front end. Raises ToolError."""
     sensor, frame = asked.frame
-    done = simulate(bench(sensor, len(asked.samples)), sensor, frame, asked.samples, asked.front_end)
+    done = simulate(bench(sensor), sensor, frame, asked.samples, asked.front_end)
     return {"cycles": done.cycles, "seconds": done.seconds, "cycles_per_s": done.cycles / done.seconds}

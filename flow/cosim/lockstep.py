@@ -64,12 +64,12 @@ class Run:
     attempts: int
 
 
-def program(sensor: SensorParameters, taps: int, note: Callable[[str], None] = lambda text: None) -> Path:
+def program(sensor: SensorParameters, note: Callable[[str], None] = lambda text: None) -> Path:
     """The compiled lock-step for ``sensor``. Raises ToolError, also where libngspice is missing."""
     if not ctypes.util.find_library(LIBRARY) or not has_headers(["ngspice/sharedspice.h"]):
         raise ToolError("libngspice: not found; install it (Debian: apt-get install libngspice0-dev)")
     sources = [PACKAGE / "pixels" / "afe.sv", HERE / "front_end.sv", FRAME / "bench.sv"]
-    build = Build.of(sensor, taps)
+    build = Build.of(sensor)
     options = [*build.parameters("-G"), "-DAFE=RealAfe"]
     return program_of(build, "Bench", options, sources, HERE / "lockstep.cpp", note, ["-O1", "-lngspice"])
 

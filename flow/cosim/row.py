@@ -179,7 +179,7 @@ class Row:
 def read_row(asked: RowRequest, note: Callable[[str], None] = lambda text: None, program: Path | None = None) -> Row:
     """Read one row with the circuit in the loop. Raises ParameterError, ToolError."""
     sensor, frame = asked.frame
-    binary = program or lockstep.program(sensor, len(asked.samples), note)
+    binary = program or lockstep.program(sensor, note)
     run = lockstep.run(
         binary, asked.deck, frame, asked.samples, asked.front_end, asked.timing, asked.accuracy, asked.whole
     )

@@ -95,8 +95,8 @@ def capture(
             read = [read_golden(*each) for each in asked]
     else:
         with clock.step("build"):
-            programs = {taps: hardware.program(request.sensor, taps, note=note) for taps in (TAPS, 1)}
-        read = [read_out(each, part, programs[len(part.samples)], clock) for each, part in asked]
+            program = hardware.program(request.sensor, note=note)
+        read = [read_out(each, part, program, clock) for each, part in asked]
     still = None if straight is None else np.moveaxis(straight, 2, 0)
     return DepthFrames(read[0], read[1], tuple(read[2:count]), tuple(read[count:]), still)
 

@@ -74,7 +74,9 @@ def _headline(s: dict[str, Any]) -> list[Tile]:
     free, best = s["baselines"], s["methods"][BEST]
     _, share, sure, whole = _row(best, s["range_m"])
     return [
-        Tile(
+        Tile("none", "of the pixels has a depth that is sure")
+        if best["rms_m"] is None
+        else Tile(
             number(best["rms_m"], 4, " m"), f"{share} of the range (one depth: {number(free['constant']['rms_m'])} m)"
         ),
         Tile(sure, f"of the pixels are sure; over all {whole}"),

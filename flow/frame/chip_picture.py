@@ -7,6 +7,7 @@ from talbot.models.parameters import FrameParameters, SensorParameters
 DIE = 5e-3  # m, side of the thesis's die [Jayasuriya2017, Sec. 3.5.1]
 BETA_COLOURS = {12.0: "#7fb3d5", 18.0: "#f5b971", 24.0: "#c39bd3"}
 GRAY = "#b0b0b0"
+LABEL = 110  # width that a label takes
 
 
 def chip_svg(sensor: SensorParameters, frame: FrameParameters, width: float = 360) -> str:
@@ -19,12 +20,16 @@ def chip_svg(sensor: SensorParameters, frame: FrameParameters, width: float = 36
     parts = [_rect(0, 0, width, width, "#20262f", rx=6), _rect(x, y, w, h, "#3b4656")]
     parts += _window(sensor, frame, x, y, w, h)
     parts += _lanes(sensor, x, y + h + 5, w)
-    parts += [_rect(x - 20, y, 14, h, "#5f8f6a"), _text(x - 13, y + h / 2, "rows", 9, -90)]
-    parts += [_rect(x, y + h + 32, w, 12, "#6b7b8d"), _text(x + w / 2, y + h + 41, "encoder, registers, SPI", 9)]
+    parts.append(_rect(x - 20, y, 14, h, "#5f8f6a"))
+    if h > LABEL / 3:
+        parts.append(_text(x - 13, y + h / 2, "rows", 9, -90))
+    below = max(w, LABEL)
+    parts.append(_rect(x + (w - below) / 2, y + h + 32, below, 12, "#6b7b8d"))
+    parts.append(_text(x + w / 2, y + h + 41, "encoder, registers, SPI", 9))
     parts.append(_text(width / 2, 14, f"die {side * 1e3:.3g} mm, pitch {pitch * 1e6:g} µm", 10))
     tile = _tile(sensor, frame, width + 24, 24, 46)
     view = f'viewBox="0 0 {width + 320} {width}" font-family="sans-serif"'
-    return f'<svg xmlns="http://www.w3.org/2000/svg" {view}>{"".join(parts + tile)}</svg>'
+    return f'<svg class="broad" xmlns="http://www.w3.org/2000/svg" {view}>{"".join(parts + tile)}</svg>'
 
 
 def _rect(x: float, y: float, w: float, h: float, fill: str, rx: float = 1, extra: str = "") -> str:
@@ -44,10 +49,12 @@ def _window(sensor: SensorParameters, frame: FrameParameters, x: float, y: float
     x0, x1 = win.col0 * tile.cols, min(sensor.array.cols, (win.col1 + 1) * tile.cols)
     y0, y1 = win.row0 * tile.rows, min(sensor.array.rows, (win.row1 + 1) * tile.rows)
     sx, sy = w / sensor.array.cols, h / sensor.array.rows
-    return [
-        _rect(x + x0 * sx, y + y0 * sy, (x1 - x0) * sx, (y1 - y0) * sy, "#e8c15a"),
-        _text(x + (x0 + x1) / 2 * sx, y + (y0 + y1) / 2 * sy, f"{y1 - y0} x {x1 - x0} pixels read", 12, fill="#222"),
-    ]
+    wide, high, label = (x1 - x0) * sx, (y1 - y0) * sy, f"{y1 - y0} x {x1 - x0} pixels read"
+    if wide > LABEL and high > LABEL / 6:
+        text = _text(x + x0 * sx + wide / 2, y + y0 * sy + high / 2, label, 12, fill="#222")
+    else:
+        text = _text(x + w / 2, y - 8, label, 12)
+    return [_rect(x + x0 * sx, y + y0 * sy, wide, high, "#e8c15a"), text]
 
 
 def _lanes(sensor: SensorParameters, x: float, y: float, w: float) -> list[str]:

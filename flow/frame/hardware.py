@@ -26,14 +26,9 @@ class HardwareFrame(FrameRun):
     status: dict[str, Any]
 
 
-def program(
-    sensor: SensorParameters, taps: int, waves: str = "", note: Callable[[str], None] = lambda text: None
-) -> Path:
-    """The compiled bench for ``sensor`` and frames of ``taps`` sub-frames, 1 or 4. Raises ToolError.
-
-    waves: as of Build.
-    """
-    return bench_program(Build.of(sensor, taps, waves), note)
+def program(sensor: SensorParameters, waves: str = "", note: Callable[[str], None] = lambda text: None) -> Path:
+    """The compiled bench for ``sensor``. waves: as of Build. Raises ToolError."""
+    return bench_program(Build.of(sensor, waves), note)
 
 
 def simulate(
@@ -73,7 +68,7 @@ class Chip:
     ) -> Callable[[], HardwareFrame]:
         """Send the next frame; of its configuration what the chip does not have yet is written.
 
-        samples: (taps, rows, cols, 2), of as many taps as the simulator has. Returns what waits for the frame's end,
+        samples: (taps, rows, cols, 2), of as many taps as `chip` was given. Returns what waits for the frame's end,
         which raises ToolError where the simulator ends before.
         """
         wanted = dict(frame_writes(frame, trims))
@@ -84,15 +79,15 @@ class Chip:
 
 
 @contextmanager
-def chip(program: Path, front_end: FrontEnd, stall: int = 0) -> Iterator[Chip]:
+def chip(program: Path, front_end: FrontEnd, taps: int, stall: int = 0) -> Iterator[Chip]:
     """Start the bench ``program`` with the converters of ``front_end``; frame n has the noise of their seed + n.
 
-    Raises ToolError.
+    taps: of every frame, 1 or 4. Raises ToolError.
     """
     with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
         converter = Path(folder) / "converter"
         write_converter(converter, front_end)
-        with running(program, converter, stall) as bench:
+        with running(program, converter, taps, stall) as bench:
             yield Chip(bench)
 
 

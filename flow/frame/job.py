@@ -138,7 +138,7 @@ def simulate_frame(request: FrameRequest, note: Callable[[str], None] = lambda t
     clock = Clock(note=note)
     exposed = _exposed(request, clock)
     with clock.step("build"):
-        program = hardware.program(request.sensor, exposed.plan.taps, note=note)
+        program = hardware.program(request.sensor, note=note)
     return read_out(request, exposed, program, clock)
 
 
@@ -180,7 +180,7 @@ def run(
     exposed = _exposed(request, clock)
     with clock.step("build"):
         kind = request.waves_format if request.waves else ""
-        program = hardware.program(request.sensor, exposed.plan.taps, kind, note)
+        program = hardware.program(request.sensor, kind, note)
     with staged(request.folder, outputs.NAMES) as folder:
         waves = Waves(folder / f"waves.{request.waves_format}", *request.waves) if request.waves else None
         result = read_out(request, exposed, program, clock, waves)

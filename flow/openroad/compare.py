@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from talbot.base.files import insert
+from talbot.base.files import insert, marked
 from talbot.base.paths import RESULTS
 from talbot.flow.layout.design import design
 from talbot.flow.layout.report.metrics import broken as broken_of_layout
@@ -32,7 +32,7 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Print the table of the designs' summaries; a back end that has not run has none of the figures."""
-    before = options.document.read_text() if options.document else ""
+    before = "".join(marked(options.document, "back ends")) if options.document else ""
     text = table([design(name).name for name in options.designs], options.out, before)
     if options.document:
         insert(options.document, "back ends", text)

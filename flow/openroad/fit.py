@@ -12,7 +12,7 @@ from pathlib import Path
 
 from talbot.base import tools
 from talbot.base.command import failures
-from talbot.base.files import insert
+from talbot.base.files import insert, marked
 from talbot.flow.layout.design import design
 from talbot.platforms.sky130 import cells as sky130_hd
 from talbot.platforms.sky130 import functions
@@ -91,6 +91,8 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Synthesize every project, write and print the table; 1 where one is too large for its tiles."""
+    if options.document:
+        marked(options.document, "fit")
     fits = []
     for name in PROJECTS:
         with tempfile.TemporaryDirectory(prefix="talbot-") as folder:

@@ -1,7 +1,6 @@
 """The pixel of a process: gratings of its metals that make the tile's types, what they do to light, and how well."""
 
 from argparse import ArgumentParser, Namespace
-from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,11 +13,11 @@ if TYPE_CHECKING:
 # Fields of pixels.optics.geometry.PixelGeometry
 METALS = {"diffraction": "metal of the upper grating", "analyzer": "metal of the lower grating, or the gates"}
 NUMBERS = {
-    "period_um": "period of the gratings",
-    "fill": "share of a period that the upper lines cover",
-    "analyzer_fill": "share of a period that the lower lines cover",
-    "shift": "of the lower lines against the upper ones, in periods",
-    "pitch_um": "pitch of the pixels",
+    "period_um": ("period of the gratings", 0.1, 50),
+    "fill": ("share of a period that the upper lines cover", 0, 1),
+    "analyzer_fill": ("share of a period that the lower lines cover", 0, 1),
+    "shift": ("of the lower lines against the upper ones, in periods", -1, 1),
+    "pitch_um": ("pitch of the pixels", 1, 100),
 }
 WAVELENGTH_UM = 0.55
 
@@ -29,7 +28,8 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--heights", help="which published table of heights, where the process has several")
     parser.add_argument("--kind", default="all", help="amplitude, interleaved, photogate, or all: the best one")
     note = "of one geometry, which is solved in place of the search"
-    for name, said in (METALS | NUMBERS).items():
+    numbers = {name: f"{said}, {low:g}..{high:g}" for name, (said, low, high) in NUMBERS.items()}
+    for name, said in (METALS | numbers).items():
         parser.add_argument(f"--{name.replace('_', '-')}", help=f"{said}, {note}")
     parser.add_argument("--wavelength-um", help=f"of light, 0.35..1, {note} (default: {WAVELENGTH_UM})")
     parser.add_argument(
@@ -71,7 +71,7 @@ def _one(options: Namespace) -> "tuple[PixelGeometry, float] | None":
         return None
     kind = "amplitude" if options.kind == "all" else options.kind
     values: dict[str, Any] = {"analyzer": None} if kind == "interleaved" else {}
-    values |= {name: real(name, text, -inf, inf) if name in NUMBERS else text for name, text in given.items()}
+    values |= {name: real(name, text, *NUMBERS[name][1:]) if name in NUMBERS else text for name, text in given.items()}
     geometry = PixelGeometry(options.pdk, kind, heights=options.heights, **values)
     return geometry, real("wavelength_um", options.wavelength_um or str(WAVELENGTH_UM), 0.35, 1)
 
@@ -91,6 +91,8 @@ def _print(s: dict[str, Any], folder: Path) -> None:
             f"  beta {row['wanted']:g}{said} {row['beta']:.1f}: {_metals(row)}, period {row['period_um']:g} um; "
             f"{_figures(row)}"
         )
+    if s["not_drawn"]:
+        print(f"  no tile.gds: {s['not_drawn']}")
     print(f"  {s['wall_s']:.0f} s; look at {folder / 'pixel.html'}")
 
 

@@ -1,8 +1,8 @@
-"""Search, curves, comparison of orders and heights -> response.npz, page, pictures, summary.json."""
+"""Search, curves, errors, other heights -> response.npz, tile.gds, page, pictures, summary.json."""
 
 import json
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 from time import perf_counter
 from typing import Any
@@ -15,10 +15,24 @@ from talbot.base.paths import BUILD
 from talbot.base.records import from_json
 from talbot.models.parameters import PixelType, TileParameters
 from talbot.pixels.optics.design import Design
+from talbot.pixels.optics.solve import Floats
 from talbot.platforms.optics import OpticalStack, tables
 
+from .drawn import write_tile
+from .errors import Kept, errors
 from .search import Plan, search
-from .types import Measured, at_heights, axes_of, convergence, measured, nearest, solve_one, stacked, wavelengths_of
+from .types import (
+    Measured,
+    at_heights,
+    axes_of,
+    measured,
+    name_of,
+    nearest,
+    solve_around,
+    solve_one,
+    stacked,
+    wavelengths_of,
+)
 
 STEPS = "candidates", "refine", "curves", "report"
 STORE = BUILD / "pixel" / "solved"
@@ -40,7 +54,7 @@ def make(
     plan = replace(found.plans[0], designs={beta: one.exact for beta, one in curves.items()})
     found = replace(found, plans=(plan, *found.plans[1:]))
     others = [name for name in tables(stack.process) if name != stack.heights]
-    orders, raised = _compared(plan, others)
+    wrong, rays, raised = _compared(plan, others)
     note("report")
     summary = {
         "process": stack.process,
@@ -50,22 +64,18 @@ def make(
         "betas": [_beta(plan, beta, curves[beta]) for beta in betas],
         "types": [_type(kind, plan, curves) for kind in types],
         "tried": len(found.tried),
-        "orders": [dict(zip(("orders", "error", "seconds"), row, strict=True)) for row in orders],
+        "errors": {f"{beta:g}": [asdict(row) for row in rows] for beta, rows in wrong.items()},
         "wall_s": perf_counter() - start,
     }
     with staged(out, page.NAMES) as folder:
-        page.write(folder, summary, found, curves, raised)
+        summary["not_drawn"] = write_tile(plan, TileParameters(), folder / "tile.gds")
+        page.write(folder, summary, found, curves, raised, wrong, rays)
         names = [name_of(kind) for kind in types]
         axes = axes_of(curves[betas[0]].response)
         shares = stacked(types, plan, curves)
         np.savez_compressed(folder / "response.npz", response=shares, types=names, **axes)
         (folder / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n")
     return summary
-
-
-def name_of(kind: PixelType) -> str:
-    """A type's name: beta, then gamma and alpha in degrees."""
-    return f"{kind.beta:g}/{kind.gamma_deg:g}/{np.rad2deg(kind.alpha):g}"
 
 
 def _curves(plan: Plan) -> dict[float, Measured]:
@@ -80,20 +90,24 @@ def _curves(plan: Plan) -> dict[float, Measured]:
     }
 
 
-def _compared(plan: Plan, others: Sequence[str]) -> tuple[list[list[float]], dict[str, dict[float, Design]]]:
-    """Convergence of the finest design, and every design with the other tables of heights."""
-    last = max(plan.designs)
+def _compared(
+    plan: Plan, others: Sequence[str]
+) -> tuple[dict[float, list[Kept]], dict[float, Floats], dict[str, dict[float, Design]]]:
+    """Of every design: errors against run time, rays around the axis, and the other tables of heights."""
+    chosen = [(beta, (design.geometry, plan.wavelength_um)) for beta, design in plan.designs.items()]
+    jobs = [Job(f"errors-{beta:g}", errors, arguments, arguments) for beta, arguments in chosen]
+    jobs += [Job(f"around-{beta:g}", solve_around, arguments, arguments) for beta, arguments in chosen]
     points = [(name, beta, design) for name in others for beta, design in plan.designs.items()]
-    arguments = plan.designs[last].geometry, plan.wavelength_um
-    jobs = [Job(f"orders-{last:g}", convergence, arguments, arguments)]
     jobs += [
         Job(f"heights-{name}-{beta:g}", at_heights, (design, name), (design, name)) for name, beta, design in points
     ]
-    orders, *raised = run(jobs, STORE, "orders and heights")
-    out: dict[str, dict[float, Design]] = {name: {} for name in others}
-    for (name, beta, _), result in zip(points, raised, strict=True):
-        out[name][beta] = from_json(Design, result)
-    return orders, out
+    results = iter(run(jobs, STORE, "errors, rays, heights"))
+    wrong = {beta: from_json(list[Kept], next(results)) for beta in plan.designs}
+    rays = {beta: np.array(next(results)) for beta in plan.designs}
+    raised: dict[str, dict[float, Design]] = {name: {} for name in others}
+    for name, beta, _ in points:
+        raised[name][beta] = from_json(Design, next(results))
+    return wrong, rays, raised
 
 
 def _beta(plan: Plan, beta: float, one: Measured) -> dict[str, Any]:

@@ -5,28 +5,28 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Rectangle
 from PIL import Image
 
 from talbot.base import page
-from talbot.base.charts import COLOURS, curves, save, svg
+from talbot.base.charts import curves, save, svg
 from talbot.base.page import TABLES, Section, Tile
+from talbot.models.parameters import TileParameters
 from talbot.pixels.optics.closed_form import angular_frequency, talbot_depth
 from talbot.pixels.optics.design import SEARCH_ORDERS, Design
-from talbot.pixels.optics.field import field_between
 from talbot.pixels.optics.geometry import PixelGeometry
 from talbot.pixels.optics.scalar import crosstalk
+from talbot.pixels.optics.solve import Floats
 from talbot.platforms.materials import refractive_index
 
+from .errors import BAND_ALL, NODES_ALL, ORDERS_ALL, SAMPLES_ALL, STEP_LEAST, Kept
+from .pictures import around, cross_section, responses
 from .search import Found, Plan
-from .types import CURVE_ORDERS, REFERENCE, Measured, beside
+from .types import CURVE_ORDERS, RAY_DEGREES, Measured, beside
 
-NAMES = ("pixel.html", "summary.json", "response.npz", "cross_section.png", "response.png")
-MATERIALS = {"silica": "#dfe6ee", "nitride": "#b9d3b0", "aluminium": "#8a8f99", "silicon": "#a8664f"}
+NAMES = ("pixel.html", "summary.json", "response.npz", "cross_section.png", "response.png", "types.png", "tile.gds")
 CROSSING = 0, 10, 20  # degrees
-WIDTH_UM = 2.4  # of the cross-section
+NARROW_NM, WIDE_NM = 50, 100  # classes of bandwidth
 
 
 def write(
@@ -35,11 +35,14 @@ def write(
     found: Found,
     measured: dict[float, Measured],
     raised: dict[str, dict[float, Design]],
+    wrong: dict[float, list[Kept]],
+    rays: dict[float, Floats],
 ) -> None:
-    """Write the page and its pictures into ``folder``, which exists."""
-    plan = found.plans[0]
+    """Write the page and its pictures into ``folder``, which exists. rays: of `types.solve_around`, by beta."""
+    plan, tile = found.plans[0], TileParameters()
     section, shown = cross_section(plan), responses(measured)
-    for figure, name in ((section, "cross_section"), (shown, "response")):
+    turned = around(tile, plan, measured, rays)
+    for figure, name in ((section, "cross_section"), (shown, "response"), (turned, "types")):
         save(figure, folder / f"{name}.png")
     picture = Image.open(io.BytesIO((folder / "response.png").read_bytes()))
     text = page.render(
@@ -54,15 +57,28 @@ def write(
                 "Eq. 3.1 fitted to the rigorous response over -20..20 degrees, light without polarization. Residual: "
                 "of four diodes against the formula, relative to their mean; unexplained: share of the differences' "
                 "variance. Quantum efficiency: share of the light on the pixel that enters the silicon of both diodes.",
-                charts=[svg(section), svg(shown), svg(polar(measured))],
+                charts=[svg(section), svg(shown)],
             ),
             Section(head=HEAD, rows=[_row(beta, plan, one) for beta, one in measured.items()]),
             Section(
+                "The tile's types",
+                f"Both diodes over the azimuth of a ray {RAY_DEGREES:g} degrees off the axis, % of the light on the "
+                "pixel, each type at its place in the tile; Eq. 3.1 dotted. Types are beta/gamma/alpha.",
+                charts=[svg(turned)],
+            ),
+            Section(
                 "Every kind at the wavelength that is best for it",
-                "Interleaved diodes are taken as collecting all light on their fingers and nothing else.",
+                "Interleaved diodes are taken as collecting all light on their fingers and nothing else. Bandwidth: of "
+                "the wavelengths around at which m is at least half, in steps of those of the search.",
+                head=(*KIND_HEAD, "residual"),
+                rows=[_kind_row(found, p, beta) for p in found.plans for beta in p.designs],
+            ),
+            Section(
+                "What nothing beats",
+                "Designs that no other beats in modulation depth, quantum efficiency and bandwidth, of any beta.",
                 charts=[svg(_pareto(found))],
-                head=("kind", "nm", "beta", "is", "metals", "period um", "m", "quantum efficiency", "residual"),
-                rows=[_kind_row(p, beta) for p in found.plans for beta in p.designs],
+                head=KIND_HEAD,
+                rows=[(d.geometry.kind, *_figures(d, wide)) for d, wide in found.front],
             ),
             Section("Over wavelength", charts=[svg(figure) for figure in _spectra(measured)]),
             Section(
@@ -74,15 +90,7 @@ def write(
             ),
             *([_finite(measured)] if plan.kind == "amplitude" else []),
             *[_heights(name, designs, measured) for name, designs in raised.items()],
-            Section(
-                "Error against run time",
-                f"Greatest error of a diode's share at 0, 7 and 14 degrees against {REFERENCE} orders, and seconds for "
-                f"them, of the finest type. The search keeps {SEARCH_ORDERS}, the curves {CURVE_ORDERS}.",
-                head=("orders", "error", "seconds"),
-                rows=[
-                    (str(row["orders"]), f"{row['error']:.1e}", f"{row['seconds']:.2f}") for row in summary["orders"]
-                ],
-            ),
+            _errors(wrong),
         ],
     )
     (folder / "pixel.html").write_text(text)
@@ -105,13 +113,19 @@ def _row(beta: float, plan: Plan, one: Measured) -> tuple[str, ...]:
     )
 
 
-def _kind_row(plan: Plan, beta: float) -> tuple[str, ...]:
+KIND_HEAD = ("kind", "nm", "beta", "metals", "period um", "m", "quantum efficiency", "bandwidth nm")
+
+
+def _figures(d: Design, bandwidth_um: float, said: str = "") -> tuple[str, ...]:
+    figures = f"{d.fit.m:.2f}", f"{d.fit.quantum_efficiency:.3f}", f"{1e3 * bandwidth_um:.0f}"
+    made = f"{d.fit.beta:.1f}{said}", _metals(d.geometry), f"{d.geometry.period_um:g}"
+    return (f"{1e3 * d.wavelength_um:.0f}", *made, *figures)
+
+
+def _kind_row(found: Found, plan: Plan, beta: float) -> tuple[str, ...]:
     d = plan.designs[beta]
-    f, g = d.fit, d.geometry
-    figures = f"{f.m:.2f}", f"{f.quantum_efficiency:.3f}", f"{f.residual_rms:.2f}"
-    said = "" if plan.reached(beta) else " (not reached)"
-    light = f"{1e3 * plan.wavelength_um:.0f}"
-    return (plan.kind, light, f"{beta:g}", f"{f.beta:.1f}{said}", _metals(g), f"{g.period_um:g}", *figures)
+    said = "" if plan.reached(beta) else f" ({beta:g} not reached)"
+    return plan.kind, *_figures(d, found.bandwidth_um(d), said), f"{d.fit.residual_rms:.2f}"
 
 
 def _metals(geometry: PixelGeometry) -> str:
@@ -152,6 +166,23 @@ def _finite(measured: dict[float, Measured]) -> Section:
     return Section("Scalar waves, and the pixel's edge", text, head=head, rows=rows)
 
 
+def _errors(wrong: dict[float, list[Kept]]) -> Section:
+    """Rows of all betas side by side."""
+    head = ["kept", *(f"beta {beta:g}: error, s" for beta in wrong)]
+    rows = [
+        (f"{same[0].kept:g} {same[0].what}", *(f"{one.error:.1e}, {one.seconds:.2f}" for one in same))
+        for same in zip(*wrong.values(), strict=True)
+    ]
+    text = (
+        f"Greatest error of a diode's share, and seconds. Orders at 0, 7 and 14 degrees, against {ORDERS_ALL}: the "
+        f"search keeps {SEARCH_ORDERS}, the curves {CURVE_ORDERS}. Wavelengths over the filter's 20 nm, against "
+        f"{BAND_ALL}. Step of a table in degrees that is cubic between its angles, at all angles {STEP_LEAST:g} "
+        f"apart. Angles in each of five views at f/1.2, the view's mean, against {NODES_ALL}. Samples of the field "
+        f"of scalar waves, the light that leaves a pixel, against {SAMPLES_ALL}."
+    )
+    return Section("Error against run time", text, head=tuple(head), rows=rows)
+
+
 def _heights(name: str, designs: dict[float, Design], measured: dict[float, Measured]) -> Section:
     rows = []
     for beta, design in designs.items():
@@ -163,103 +194,22 @@ def _heights(name: str, designs: dict[float, Design], measured: dict[float, Meas
     )
 
 
-def responses(measured: dict[float, Measured]) -> Figure:
-    """The four diodes of each design over angle, and the formula fitted to them, dotted."""
-    figure = Figure(figsize=(4 * len(measured), 3.2), layout="constrained")
-    for axes, (beta, one) in zip(figure.subplots(1, len(measured), squeeze=False)[0], measured.items(), strict=True):
-        middle = len(one.fits) // 2
-        shares, angles = one.response.unpolarized[middle], one.response.angles
-        form = one.fit.curve(angles)
-        form *= shares.mean() / form.mean()
-        for k, colour in enumerate(COLOURS[:4]):
-            axes.plot(np.rad2deg(angles), 100 * shares[k], color=colour, linewidth=1.4)
-            axes.plot(np.rad2deg(angles), 100 * form[k], ":", color=colour, linewidth=1)
-        axes.set_title(f"beta {beta:g}: {one.fit.beta:.1f}, m {one.fit.m:.2f}", fontsize=10, loc="left")
-        axes.set_xlabel("angle, degrees", fontsize=9)
-        axes.set_ylabel("light in a diode, % of the pixel's", fontsize=9)
-        axes.tick_params(labelsize=8)
-        axes.grid(alpha=0.25)
-    return figure
-
-
-def polar(measured: dict[float, Measured]) -> Figure:
-    """A pair of diodes of each design as antennas are drawn, along the ray's direction; the formula dotted."""
-    figure = Figure(figsize=(4 * len(measured), 2.6), layout="constrained")
-    panels = figure.subplots(1, len(measured), squeeze=False, subplot_kw={"projection": "polar"})[0]
-    for axes, (beta, one) in zip(panels, measured.items(), strict=True):
-        shares, angles = one.response.unpolarized[len(one.fits) // 2], one.response.angles
-        form = one.fit.curve(angles)
-        form *= shares.mean() / form.mean()
-        for diode, colour in zip((0, 2), COLOURS, strict=False):
-            axes.plot(angles, 100 * shares[diode], color=colour, linewidth=1.4)
-            axes.plot(angles, 100 * form[diode], ":", color=colour, linewidth=1)
-        axes.set_theta_zero_location("N")
-        axes.set_thetalim(float(angles.min()), float(angles.max()))
-        axes.set_title(f"beta {beta:g}: a pair of diodes, %", fontsize=9, loc="left")
-        axes.tick_params(labelsize=7)
-    return figure
-
-
-def cross_section(plan: Plan) -> Figure:
-    """Lines, films and silicon of each design, to scale; with an analyzer also the light between the gratings.
-
-    That of a wave on the axis, which the first diode passes, and at the angle at which the second has its place.
-    """
-    panels: list[tuple[Design, float, float]] = []
-    for beta, design in plan.designs.items():
-        angles = (0.0, np.pi / design.fit.beta) if plan.kind == "amplitude" else (0.0,)
-        panels += [(design, beta, angle) for angle in angles]
-    figure = Figure(figsize=(1.9 * len(panels), 4.2), layout="constrained")
-    for axes, (design, beta, angle) in zip(figure.subplots(1, len(panels), sharey=True, squeeze=False)[0], panels):
-        g = design.geometry
-        bottom = g.stack.surface_um
-        for film in g.stack.films:
-            axes.add_patch(Rectangle((0, bottom), WIDTH_UM, film.top_um - bottom, color=MATERIALS[film.material]))
-            bottom = film.top_um
-        axes.add_patch(Rectangle((0, 0), WIDTH_UM, g.stack.surface_um, color="#6a5f7a"))
-        if plan.kind == "amplitude":
-            _light(axes, design, angle)
-        gratings = [("diffraction", g.diffraction, g.fill, 0.0, 1)]
-        gratings += [("analyzer", g.analyzer, g.analyzer_fill, g.shift, g.lines)] if g.analyzer else []
-        for field, name, fill, shift, lines in gratings:
-            metal = g.stack.metal(field, name)
-            for k in range(-lines, int(lines * (WIDTH_UM / g.period_um + 1))):
-                left = max(0.0, (k / lines + 0.5 + shift - fill / lines / 2) * g.period_um)
-                right = min(WIDTH_UM, (k / lines + 0.5 + shift + fill / lines / 2) * g.period_um)
-                if right > left:
-                    place = (left, metal.bottom_um)
-                    axes.add_patch(Rectangle(place, right - left, metal.thickness_um, color=MATERIALS[metal.material]))
-        axes.set(xlim=(0, WIDTH_UM), ylim=(0, g.stack.films[-1].top_um + 0.3), aspect="equal")
-        axes.set_title(f"beta {beta:g}, {np.rad2deg(angle):.1f}°", fontsize=9, loc="left")
-        axes.set_xlabel("µm", fontsize=8)
-        axes.tick_params(labelsize=7)
-    return figure
-
-
-def _light(axes: Axes, design: Design, angle: float) -> None:
-    """Draw the field between the gratings."""
-    g = design.geometry
-    lower = g.stack.metal("analyzer", str(g.analyzer)).top_um
-    x, up = np.linspace(0, WIDTH_UM, 240), np.linspace(0, g.gap_um, 240)
-    # Lines of the picture stand half a period from its edge
-    field = field_between(g, angle, design.wavelength_um, x - g.period_um / 2, up)
-    place = (0, WIDTH_UM, lower, lower + g.gap_um)
-    axes.imshow(
-        field, cmap="inferno", extent=place, origin="lower", vmin=0, vmax=float(np.quantile(field, 0.995)), zorder=2
-    )
-
-
 def _pareto(found: Found) -> Figure:
+    """m against quantum efficiency, a series for each class of bandwidth, and what was chosen of each kind."""
     ends: dict[str, list[tuple[float, float, str]]] = {}
-    for design in found.front:
-        label = f"{design.fit.beta:.0f}"
-        ends.setdefault(f"{design.geometry.kind}: none better", []).append(
-            (design.fit.quantum_efficiency, design.fit.m, label)
-        )
+    for low, high, name in (
+        (0, NARROW_NM, f"below {NARROW_NM} nm"),
+        (NARROW_NM, WIDE_NM, f"{NARROW_NM} to {WIDE_NM} nm"),
+        (WIDE_NM, np.inf, f"{WIDE_NM} nm and more"),
+    ):
+        ends[name] = [_point(design) for design, wide in found.front if low <= round(1e3 * wide) < high]
     for plan in found.plans:
-        points = [(d.fit.quantum_efficiency, d.fit.m, f"{d.fit.beta:.0f}") for d in plan.designs.values()]
-        ends[f"{plan.kind}: chosen"] = sorted(points)
-    return curves(ends, "quantum efficiency", "modulation depth m", "What can be made; numbers: beta")
+        ends[f"{plan.kind}: chosen"] = sorted(_point(design) for design in plan.designs.values())
+    return curves(ends, "quantum efficiency", "modulation depth m", "None better, by bandwidth; numbers: beta")
+
+
+def _point(design: Design) -> tuple[float, float, str]:
+    return design.fit.quantum_efficiency, design.fit.m, f"{design.fit.beta:.0f}"
 
 
 def _spectra(measured: dict[float, Measured]) -> list[Figure]:

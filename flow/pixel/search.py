@@ -5,7 +5,8 @@ worst of them is best.
 """
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 
 from talbot.base.jobs import Job, run
@@ -13,14 +14,11 @@ from talbot.base.records import from_json
 from talbot.models.parameters import ParameterError
 from talbot.pixels.optics.design import REACHED, WAVELENGTHS_UM, Design, candidates, front, measure, neighbours, phased
 from talbot.pixels.optics.geometry import PixelGeometry
-from talbot.pixels.optics.solve import SolverError
+from talbot.pixels.optics.solve import Floats, SolverError
 from talbot.platforms.optics import OpticalStack
 
-STARTS, LIGHTS, ROUNDS = (
-    2,
-    2,
-    2,
-)  # refined: designs for a beta, wavelengths of a kind; how often, each with half the steps
+# Refined: designs for a beta, wavelengths of a kind; how often, each with half the steps
+STARTS, LIGHTS, ROUNDS = 2, 2, 2
 CLEAR = 0.5  # of the differences' variance that the formula may leave in a design for the front
 Point = tuple[PixelGeometry, float]  # with a wavelength in um
 
@@ -60,10 +58,52 @@ class Found:
     tried: tuple[Design, ...]
     plans: tuple[Plan, ...]
 
-    @property
-    def front(self) -> list[Design]:
-        """Designs of any beta that no other beats in both modulation depth and quantum efficiency."""
-        return front([design for design in self.tried if design.fit.unexplained < CLEAR])
+    @cached_property
+    def front(self) -> list[tuple[Design, float]]:
+        """Designs of any beta that no other beats in modulation depth, quantum efficiency and bandwidth; that in um.
+
+        Of gratings that were solved at most of the search's wavelengths.
+        """
+        found = [
+            (design, wide)
+            for same in self._lights.values()
+            if len(same) > len(WAVELENGTHS_UM) // 2  # others were solved at their own wavelength alone
+            for design, wide in same
+        ]
+        return front([(design, wide) for design, wide in found if design.fit.unexplained < CLEAR])
+
+    def bandwidth_um(self, design: Design) -> float:
+        """Bandwidth of a design that was tried, in steps of the wavelengths at which its gratings were."""
+        return next(wide for one, wide in self._lights[_gratings(design)] if one.wavelength_um == design.wavelength_um)
+
+    @cached_property
+    def _lights(self) -> dict[PixelGeometry, list[tuple[Design, float]]]:
+        """Designs of the same gratings by wavelength, and the bandwidth of each."""
+        lights: dict[PixelGeometry, list[Design]] = {}
+        for design in sorted(self.tried, key=lambda d: d.wavelength_um):
+            lights.setdefault(_gratings(design), []).append(design)
+        return {geometry: [*zip(same, _bandwidths(same), strict=True)] for geometry, same in lights.items()}
+
+
+def _gratings(design: Design) -> PixelGeometry:
+    """What designs have in common whose analyzers are at different places."""
+    return replace(design.geometry, shift=0.0)
+
+
+def _bandwidths(same: Sequence[Design]) -> list[float]:
+    wavelengths, depths = [d.wavelength_um for d in same], [d.fit.m for d in same]
+    return [bandwidth(wavelengths, depths, at) for at in range(len(same))]
+
+
+def bandwidth(wavelengths_um: Sequence[float] | Floats, depths: Sequence[float], at: int) -> float:
+    """Width in um of the wavelengths around that of place ``at`` at which m, ``depths``, is at least half as great."""
+    ends = []
+    for step in (-1, 1):
+        end = at
+        while 0 <= end + step < len(depths) and depths[end + step] >= depths[at] / 2:
+            end += step
+        ends.append(wavelengths_um[end])
+    return float(ends[1] - ends[0])
 
 
 def offered(stack: OpticalStack, kinds: Sequence[str]) -> list[str]:
@@ -90,6 +130,10 @@ def search(
         )
         tried += _solve((point for point in fresh if point not in known), 4, store)
     plans = [max(_plans(tried, kind, betas), key=lambda plan: plan.score) for kind in kinds]
+    chosen = {_gratings(design): None for plan in plans for design in plan.designs.values()}
+    known = {(_gratings(design), design.wavelength_um) for design in tried}
+    rest = [(geometry, w) for geometry in chosen for w in WAVELENGTHS_UM if (geometry, w) not in known]
+    tried += _solve(rest, len(WAVELENGTHS_UM), store)
     return Found(tuple(tried), tuple(sorted(plans, key=Plan.rank, reverse=True)))
 
 

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -16,14 +15,14 @@ from talbot.pixels.optics.response import Response, respond
 from talbot.pixels.optics.scalar import scalar_shares
 from talbot.pixels.tabled import rows
 
-from .search import Plan
+from .search import Plan, bandwidth
 
 DEGREES = np.arange(-20, 20.01, 0.5)
 CURVE_ORDERS = 31
 SPAN_UM = 0.08  # on each side of the plan's wavelength
 WAVELENGTHS = 9
-COMPARED = 11, 15, 21, 31, 41, 61  # orders, against REFERENCE
-REFERENCE = 101
+RAY_DEGREES = 10.0  # off the axis, of the rays around it
+AZIMUTHS = np.deg2rad(np.arange(0, 360, 5.0))
 Floats = npt.NDArray[np.floating]
 
 
@@ -46,17 +45,15 @@ class Measured:
         return replace(self.design, fit=self.fit)
 
     @property
+    def level(self) -> float:
+        """What the formula of mean 1 (`Fit.curve`) is to be multiplied by to be shares."""
+        shares = at(self.response, len(self.fits) // 2).unpolarized
+        return float(shares.mean() / self.fit.curve(self.response.angles).mean())
+
+    @property
     def bandwidth_um(self) -> float:
         """Width of the wavelengths around the design's own at which m is at least half as great."""
-        half, middle = self.fit.m / 2, len(self.fits) // 2
-        wavelengths = self.response.wavelengths_um
-        ends = []
-        for step in (-1, 1):
-            at = middle
-            while 0 <= at + step < len(self.fits) and self.fits[at + step].m >= half:
-                at += step
-            ends.append(wavelengths[at])
-        return float(ends[1] - ends[0])
+        return bandwidth(self.response.wavelengths_um, [one.m for one in self.fits], len(self.fits) // 2)
 
 
 def wavelengths_of(plan: Plan) -> Floats:
@@ -68,6 +65,22 @@ def solve_one(geometry: PixelGeometry, wavelength_um: float) -> dict[str, Any]:
     """Shares and reflected light at one wavelength, as lists: a job."""
     found = respond(geometry, np.deg2rad(DEGREES), wavelength_um, orders=CURVE_ORDERS)
     return {"shares": found.shares[0].tolist(), "reflected": found.reflected[0].tolist()}
+
+
+def across_lines(azimuths: Floats) -> Floats:
+    """Angles in rad, in the plane across the lines, of rays `RAY_DEGREES` off the axis. azimuths: from that plane."""
+    return np.arctan(np.tan(np.deg2rad(RAY_DEGREES)) * np.cos(azimuths))
+
+
+def solve_around(geometry: PixelGeometry, wavelength_um: float) -> list[list[float]]:
+    """Shares (4, azimuths) of the light of rays at `AZIMUTHS`, without polarization: a job."""
+    angles, across = across_lines(AZIMUTHS), across_lines(AZIMUTHS - np.pi / 2)
+    return respond(geometry, angles, wavelength_um, across, CURVE_ORDERS).unpolarized[0].tolist()
+
+
+def name_of(kind: PixelType) -> str:
+    """A type's name: beta, then gamma and alpha in degrees."""
+    return f"{kind.beta:g}/{kind.gamma_deg:g}/{np.rad2deg(kind.alpha):g}"
 
 
 def measured(design: Design, wavelengths_um: Sequence[float] | Floats, solved: Sequence[dict[str, Any]]) -> Measured:
@@ -101,18 +114,6 @@ def stacked(kinds: Sequence[PixelType], plan: Plan, found: dict[float, Measured]
         chosen = one.response.shares[:, :, list(rows(kind.alpha, one.fit))]  # wavelength, polarization, diode, angle
         out.append(chosen.transpose(2, 3, 0, 1))
     return np.array(out)
-
-
-def convergence(geometry: PixelGeometry, wavelength_um: float) -> list[list[float]]:
-    """Orders kept, greatest error of a share against `REFERENCE` orders, seconds: a job."""
-    angles = np.deg2rad([0.0, 7.0, 14.0])
-    truth = respond(geometry, angles, wavelength_um, orders=REFERENCE).shares
-    out = []
-    for orders in COMPARED:
-        start = perf_counter()
-        found = respond(geometry, angles, wavelength_um, orders=orders).shares
-        out.append([orders, float(np.abs(found - truth).max()), perf_counter() - start])
-    return out
 
 
 def beside(one: Measured) -> tuple[Fit, float]:

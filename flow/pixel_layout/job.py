@@ -11,7 +11,7 @@ import numpy as np
 
 from talbot.base.files import check_file, check_folder, staged, write
 from talbot.base.gds import db, write_gds
-from talbot.flow.pixel.job import name_of
+from talbot.flow.pixel.types import name_of
 from talbot.models.parameters import PixelType
 from talbot.pixels.designs import gratings
 from talbot.pixels.layout.array import DUMMIES, SOUTH, WEST, draw_array, draw_pixels, draw_tile
@@ -30,7 +30,7 @@ from .made import SMALL, Made
 
 STEPS = "optics", "draw", "count", "drc", "foundry", "lvs", "lines", "curves", "report"
 FILES = "pixel_array.gds", "pixel_array.lef", "tile.gds", "pixel.gds", "small_array.gds", "pixel.spice", "summary.json"
-REPORTS = "drc.lyrdb", "pixel.lvsdb", "small_array.lvsdb", *foundry.REPORTS
+REPORTS = "drc.lyrdb", "pixel.lvsdb", "tile.lvsdb", "small_array.lvsdb", *foundry.REPORTS
 MOST_SECONDS, MOST_BYTES = 30.0, 20e6  # of the array's GDS
 
 
@@ -157,11 +157,12 @@ def _spice(made: Made) -> list[tuple[str, str]]:
     """(file, circuit) of what is compared."""
     process, pixel = made.array.pixels[0].process, made.shown
     names = process.deck_model, process.deck_diode
-    ring = Diode("ring", "vdda", *made.small.well_ring_um)
+    ring, tile = Diode("ring", "vdda", *made.small.well_ring_um), made.array.tile
     one = spice("pixel", pixel.circuit, *names)
     made.path("pixel.spice").write_text(one)
     return [
         ("pixel", spice(pixel.name, pixel.circuit, *names)),
+        ("tile", one + spice_array("tile", "pixel", tile.rows, tile.cols, 0, None, process.deck_diode)),
         ("small_array", one + spice_array("pixel_array", "pixel", *SMALL, DUMMIES, ring, process.deck_diode)),
     ]
 

@@ -68,7 +68,7 @@ def _deg(value: float | None) -> str:
 def _headline(s: dict[str, Any]) -> list[Tile]:
     free, tagged = s["baselines"], "bad" if s["full_tagged"] else "good" if s["full"] else ""
     return [
-        Tile("none", "polarization in the scene")
+        Tile("none", "polarization seen")
         if s["psi_error_deg"] is None
         else Tile(
             _deg(s["psi_error_deg"]), f"psi, mean error (one angle for all: {_deg(free['psi_error_constant_deg'])})"

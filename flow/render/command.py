@@ -49,8 +49,10 @@ def run(options: Namespace) -> int:
     out = Path(options.out)
     check_folder("out", out)
     from .trace import Tracer
+    from .variant import mitsuba
     from .worlds import WORLDS
 
+    mitsuba()  # is missed before a scene begins
     known = _manifest(out)
     with Steps(names, lines=True) as progress:
         for name in names:

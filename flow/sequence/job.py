@@ -69,8 +69,8 @@ def results(
                 exposed = expose(asked, scene, todo, front_end, views, number)
             if chip is None or program is None:
                 with clock.step("build"):
-                    program = hardware.program(sensor, todo.taps, note=note)
-                    chip = stack.enter_context(hardware.chip(program, exposed.front_end))
+                    program = hardware.program(sensor, note=note)
+                    chip = stack.enter_context(hardware.chip(program, exposed.front_end, todo.taps))
             with clock.step("send"):
                 coming = chip.frame(asked.frame, exposed.samples, exposed.front_end.trim)
             with clock.step("golden"):

@@ -12,11 +12,11 @@
 //   +activity=FILE how many cycles each pin of the front end was high, and in all: since the line before, at 04 and 00;
 //                  how many each row integrated
 //   +stall=P       the link is not ready in P of 256 cycles, pseudo-random
-//   +samples=FILE, +converter=FILE   see pixels/afe.sv
+//   +samples=FILE, +taps=N, +converter=FILE   see pixels/afe.sv
 `default_nettype none
 
 module Bench #(
-    parameter int ROWS = 384, COLS = 384, LANES = 8, TILE_ROWS = 4, TILE_COLS = 6, TAPS = 1
+    parameter int ROWS = 384, COLS = 384, LANES = 8, TILE_ROWS = 4, TILE_COLS = 6
 ) (
     input  wire        clk,
     input  wire        reset,
@@ -54,7 +54,7 @@ module Bench #(
       /* verilator lint_on PINCONNECTEMPTY */
   );
 
-  Afe #(.ROWS(ROWS), .COLS(COLS), .LANES(LANES), .TILE_ROWS(TILE_ROWS), .TILE_COLS(TILE_COLS), .TAPS(TAPS)) afe (
+  Afe #(.ROWS(ROWS), .COLS(COLS), .LANES(LANES), .TILE_ROWS(TILE_ROWS), .TILE_COLS(TILE_COLS)) afe (
       .clk(clk), .mode(mode), .row(row), .group(group), .k(k), .sub(sub), .en(en), .balance(balance),
       .hold(hold), .dac(dac), .unsigned_(unsigned_), .comparator(comparator)
   );

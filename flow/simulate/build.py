@@ -10,10 +10,10 @@ from talbot.rtl.verilog import export_verilog
 
 @dataclass(frozen=True)
 class Build:
-    """The chip's constants and the size of the front end's memory.
+    """The chip's constants and the array's size.
 
-    order: pixel type of each position in a tile, row by row. taps: sub-frames of a frame, 1 or 4.
-    waves: format of the waves that the program can write, of frame.WAVES, or "" for none.
+    order: pixel type of each position in a tile, row by row. waves: format of the waves that the program can write, of
+    frame.WAVES, or "" for none.
     """
 
     rows: int
@@ -25,20 +25,19 @@ class Build:
     tile_rows: int
     tile_cols: int
     order: tuple[int, ...]
-    taps: int
     waves: str
 
     @classmethod
-    def of(cls, sensor: SensorParameters, taps: int = 1, waves: str = "") -> "Build":
+    def of(cls, sensor: SensorParameters, waves: str = "") -> "Build":
         """The Build of a sensor."""
         array, chip, tile = sensor.array, sensor.chip, sensor.tile
         iterations = chip.cordic_iterations
         sizes = array.rows, array.cols, chip.lanes, chip.divider, chip.n_frac, iterations, tile.rows, tile.cols
-        return cls(*sizes, tile.order, taps, waves)
+        return cls(*sizes, tile.order, waves)
 
     def parameters(self, option: str) -> list[str]:
         """Each parameter of the module Bench as ``option``NAME=value."""
-        names = "rows", "cols", "lanes", "tile_rows", "tile_cols", "taps"
+        names = "rows", "cols", "lanes", "tile_rows", "tile_cols"
         return [f"{option}{name.upper()}={getattr(self, name)}" for name in names]
 
     def chip_verilog(self, folder: Path) -> Path:

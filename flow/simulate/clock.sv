@@ -1,12 +1,12 @@
 // Clock and reset for Bench in an event-driven simulator (Icarus).
 module Clock #(
-    parameter int ROWS = 384, COLS = 384, LANES = 8, TILE_ROWS = 4, TILE_COLS = 6, TAPS = 1
+    parameter int ROWS = 384, COLS = 384, LANES = 8, TILE_ROWS = 4, TILE_COLS = 6
 );
   reg clk = 0, reset = 1;
   wire done;
   wire [9:0] row;
   wire [31:0] cycles;
-  Bench #(.ROWS(ROWS), .COLS(COLS), .LANES(LANES), .TILE_ROWS(TILE_ROWS), .TILE_COLS(TILE_COLS), .TAPS(TAPS))
+  Bench #(.ROWS(ROWS), .COLS(COLS), .LANES(LANES), .TILE_ROWS(TILE_ROWS), .TILE_COLS(TILE_COLS))
       bench (.clk(clk), .reset(reset), .done(done), .row(row), .cycles(cycles));
   always #5 clk = ~clk;
   initial #42 reset = 0;

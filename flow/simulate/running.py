@@ -38,7 +38,7 @@ class Running:
     def frame(self, samples: bytes | memoryview, before: Sequence[bytes], after: Sequence[bytes]) -> "Future[FrameRun]":
         """One frame: SPI transfers ``before`` it, the last of which starts it, and ``after`` it.
 
-        samples: of every tap that the program has, as `models.afe.sample_words` makes them. `seconds` of the result is
+        samples: of every tap, as `models.afe.sample_words` makes them. `seconds` of the result is
         the wall clock since the frame was sent, or the one before was done. Raises ToolError when the bench ends.
         """
         script = transfers(before) + WAIT + transfers(after) + REPORT
@@ -95,11 +95,13 @@ class _Ended(Exception):
 
 
 @contextmanager
-def running(program: Path, converter: Path, stall: int = 0, max_cycles: int = 1_000_000_000) -> Iterator[Running]:
+def running(
+    program: Path, converter: Path, taps: int, stall: int = 0, max_cycles: int = 1_000_000_000
+) -> Iterator[Running]:
     """Start the bench ``program`` (an executable, or .vvp of Icarus); at the end of the context it ends, too.
 
-    converter: file of the analog front end (pixels/README.md). stall: the link is not ready in this many of 256 cycles.
-    max_cycles: of a frame. Raises ToolError where the bench ends before.
+    converter: file of the analog front end (pixels/README.md). taps: of a frame, 1 or 4. stall: the link is not ready
+    in this many of 256 cycles. max_cycles: of a frame. Raises ToolError where the bench ends before.
     """
     with ExitStack() as stack:
         ends = {name: os.pipe() for name in (*INPUTS, *OUTPUTS)}
@@ -114,7 +116,7 @@ def running(program: Path, converter: Path, stall: int = 0, max_cycles: int = 1_
         stack.callback(bench.close)
         log = stack.enter_context(tempfile.TemporaryFile())
         words = [f"+{name}=/dev/fd/{file}" for name, file in theirs.items()]
-        words += [f"+converter={converter}", f"+stall={stall}", f"+max_cycles={max_cycles}"]
+        words += [f"+converter={converter}", f"+taps={taps}", f"+stall={stall}", f"+max_cycles={max_cycles}"]
         try:
             child = stack.enter_context(started([*simulator(program), *words], log, list(theirs.values())))
         finally:

@@ -7,7 +7,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 from talbot.base.command import Parser
-from talbot.base.files import insert, staged
+from talbot.base.files import insert, marked, staged
 from talbot.base.paths import RESULTS
 from talbot.rtl import export
 from talbot.rtl.verilog import export_verilog
@@ -29,6 +29,8 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Synthesize the tops, write and print their table."""
+    if options.document:
+        marked(options.document, "sizes")
     sensor = [f"--{name.replace('_', '-')}={value}" for name in SENSOR if (value := getattr(options, name))]
     asked = Parser(prog="talbot sizes")
     export.add_arguments(asked)

@@ -35,7 +35,7 @@ def measure(point: tuple[float, float, int]) -> dict[str, Any]:
     scene, todo = job.see(asked)
     exposed = job.expose(asked, scene, todo)
     seconds = perf_counter() - start
-    result = job.read_out(asked, exposed, hardware.program(asked.sensor, todo.taps))
+    result = job.read_out(asked, exposed, hardware.program(asked.sensor))
     summary = summarize(result)
     return {
         "f_number": f_number,

@@ -29,7 +29,7 @@ def _exposure(size: int) -> tuple[FrameRequest, Exposed, Path]:
     """Request, exposure and simulator of the default scene."""
     asked = request(rows=size, cols=size)
     scene, todo = job.see(asked)
-    return asked, job.expose(asked, scene, todo), hardware.program(asked.sensor, todo.taps)
+    return asked, job.expose(asked, scene, todo), hardware.program(asked.sensor)
 
 
 def measure(point: tuple[int, int]) -> dict[str, Any]:

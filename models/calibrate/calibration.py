@@ -158,11 +158,13 @@ def read_calibration(path: str | Path) -> Calibration:
         For a file that is missing, no JSON, or out of range.
     """
     try:
+        if Path(path).exists() and not Path(path).is_file():
+            raise ValueError("no file")
         table = json.loads(Path(path).read_text())
         if not isinstance(table, dict):
             raise ParameterError("calibration = a list: must be a table")
         return Calibration.of(table)
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, RecursionError) as error:
         reason = error.strerror if isinstance(error, OSError) else error
         said = f"calibration = {str(path)!r}: must be a calibration.json of talbot calibrate ({reason})"
         raise ParameterError(said) from None

@@ -172,14 +172,14 @@ def amplifier_cell(masks: AnalogMasks, sizes: AmplifierSizes, chip: bool = False
     """Draw an amplifier; its south-west corner is at the origin but for the rails' ends. chip: see the circuit's."""
     d = devices(sizes, chip)
     plan, canvas = amplifier_plan(d, masks, sizes), new_canvas(masks, "adc_amplifier" if chip else "amplifier")
-    banks = [draw_bank(canvas, plan.banks[0], MARGIN)]
+    banks = [draw_bank(canvas, plan.banks[0], masks.fringe, MARGIN)]
     y, strips = MARGIN + plan.banks[0].height_um + AWAY, []
     for one in plan.strips:
         strips.append(draw_strip(canvas, masks, one, y))
         y += one.height_um + BETWEEN_STRIPS
     inner = tuple(strips)
     y += AWAY - BETWEEN_STRIPS
-    banks.append(draw_bank(canvas, plan.banks[1], y, upright=False))
+    banks.append(draw_bank(canvas, plan.banks[1], masks.fringe, y, upright=False))
     y += plan.banks[1].height_um + AWAY
     for one in plan.trim:
         strips.append(draw_strip(canvas, masks, one, y))

@@ -13,6 +13,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from talbot.pixels.layout.canvas import Canvas
+from talbot.platforms.layers import GdsLayer
 
 from .device import Strap, snap
 from .strip import FIRST, SECOND, THIRD, TRACK, TRACK_PITCH
@@ -30,6 +31,7 @@ PARTS = {"low": (("b2", 4), ("b1", 2), ("b0", 1), ("unit", 1)), "part": (("rest"
 # um
 FINGER, PITCH, TIP = 0.14, 0.28, 0.20  # width; from finger to finger; from a finger's end to the other spine
 COMMON, SPINE = 0.42, 0.34  # heights of spines
+MARK = 0.06, 0.04  # of a unit's mark: over its finger, from the common spine
 FIRST_TRACK = 0.45  # of a channel's first track from the spines
 JOIN, JOIN_AWAY = 0.42, 0.60  # what joins the common spines: width, its middle from the last finger
 
@@ -120,15 +122,16 @@ class Bank:
     ends: tuple[float, float] = (0.0, 0.0)
 
 
-def draw_bank(canvas: Canvas, plan: BankPlan, y: float, upright: bool = True) -> Bank:
-    """Draw a bank, its lower edge at ``y``; upside down it is the mirror image."""
-    return _Drawing(canvas, plan, y if upright else y + plan.height_um, 1 if upright else -1).draw()
+def draw_bank(canvas: Canvas, plan: BankPlan, mark: GdsLayer, y: float, upright: bool = True) -> Bank:
+    """Draw a bank, its lower edge at ``y``; upside down it is the mirror image. mark: of its units, for LVS."""
+    return _Drawing(canvas, plan, mark, y if upright else y + plan.height_um, 1 if upright else -1).draw()
 
 
 @dataclass
 class _Drawing:
     canvas: Canvas
     plan: BankPlan
+    mark: GdsLayer
     origin: float
     way: int
 
@@ -173,6 +176,12 @@ class _Drawing:
         for k in range(0, count + 1, 2):
             self.canvas.stack(self.plan.west + 2 * PITCH * k, self.y(v), FIRST, SECOND)
 
+    def _unit(self, x: float, tip: float, up: int) -> None:
+        """The mark of a capacitor, for LVS, where a finger's tip is before the common spine."""
+        over, away = MARK
+        ends = self.y(tip + up * over), self.y(tip - up * (TIP - away))
+        self.canvas.box(self.mark, x - FINGER / 2, min(ends), x + FINGER / 2, max(ends))
+
     def _row(
         self,
         names: Sequence[str],
@@ -197,6 +206,7 @@ class _Drawing:
                 inner = common + up * (COMMON / 2 + TIP)
                 for x in xs:
                     self.both(x - FINGER / 2, min(inner, spine), x + FINGER / 2, max(inner, spine))
+                    self._unit(x, inner, up)
                 far = spine + up * SPINE
                 self.both(xs[0] - FINGER / 2, min(spine, far), xs[-1] + FINGER / 2, max(spine, far))
                 for x in xs[:: 2 if count > 2 else 1]:

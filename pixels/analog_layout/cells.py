@@ -53,7 +53,7 @@ class Cell:
 
     def spice(self, masks: AnalogMasks) -> str:
         """Its text for LVS."""
-        return flat.spice(self.cell.name, self.ports, self.transistors, masks, self.plates, self.resistors)
+        return flat.spice(self.cell.name, self.ports, self.transistors, masks, self.plates, self.resistors, self.matched)
 
     def write(self, path: Path) -> None:
         """Write its GDS."""

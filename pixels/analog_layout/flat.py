@@ -68,8 +68,9 @@ def spice(
     masks: AnalogMasks,
     plates: Iterable[Plate] = (),
     resistors: Iterable[Resistor] = (),
+    fringes: Mapping[tuple[str, str], int] | None = None,
 ) -> str:
-    """The text for LVS. plates: of its capacitors."""
+    """The text for LVS. plates: of its capacitors. fringes: units between two nets."""
     lines = [f".subckt {name} {' '.join(ports)}"]
     lines += [
         f"M{t.name} {t.drain} {t.gate} {t.source} {t.bulk} {masks.models[t.role]} W={t.w:.6g}U L={t.l:.6g}U"
@@ -78,6 +79,11 @@ def spice(
     lines += [
         f"C{c} {upper} {lower} {2e-15 * area:.6g} {masks.deck_mim} A={area:.6g}P P={edge:.6g}U"
         for c, upper, lower, area, edge in plates
+    ]
+    side = masks.fringe_side_um
+    lines += [
+        f"Cfringe.{a}.{b} {a} {b} {1e-15 * n * side**2:.6g} {masks.deck_fringe} A={n * side**2:.6g}P P={4 * n * side:.6g}U"
+        for (a, b), n in (fringes or {}).items()
     ]
     lines += [f"R{r.name} {r.a} {r.b} {r.value:.6g} {masks.deck_resistor}" for r in resistors]
     return "\n".join([*lines, f".ends {name}", ""])

@@ -14,7 +14,7 @@ from .response import respond
 
 WAVELENGTHS_UM = tuple(round(0.45 + 0.025 * k, 3) for k in range(11))
 PERIODS_UM = 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.2
-SEARCH_ORDERS = 21  # transmission within 0.006 of that of 121 orders: flow/pixel/README.md
+SEARCH_ORDERS = 21  # shares of light within 0.007 to 0.021 of those of 101 orders: flow/pixel/README.md
 SEARCH_DEGREES = np.arange(-20, 20.1, 1.0)  # resonances between the gratings are a degree wide
 STEPS = {"period_um": 0.04, "fill": 0.07, "analyzer_fill": 0.07}
 GATES = 0.45  # share of gates: the space between two is wider than they must be
@@ -85,14 +85,12 @@ def phased(design: Design) -> Design:
     return Design(shifted, design.wavelength_um, replace(design.fit, alpha=float(alpha)))
 
 
-def front(designs: Sequence[Design]) -> list[Design]:
-    """Designs that no other beats in both modulation depth and quantum efficiency."""
-    ranked = sorted(designs, key=lambda d: (-d.fit.m, -d.fit.quantum_efficiency))
-    kept: list[Design] = []
-    for design in ranked:
-        if not kept or design.fit.quantum_efficiency > kept[-1].fit.quantum_efficiency:
-            kept.append(design)
-    return kept
+def front(designs: Sequence[tuple[Design, float]]) -> list[tuple[Design, float]]:
+    """Designs and their bandwidths, those that no other beats in modulation depth, quantum efficiency and bandwidth."""
+    figures = np.array([(design.fit.m, design.fit.quantum_efficiency, wide) for design, wide in designs]).reshape(-1, 3)
+    beaten = [bool(np.any((figures >= own).all(1) & (figures > own).any(1))) for own in figures]
+    kept = [one for one, worse in zip(designs, beaten, strict=True) if not worse]
+    return sorted(kept, key=lambda one: -one[0].fit.m)
 
 
 def _made(base: PixelGeometry | None = None, **changes: object) -> PixelGeometry | None:

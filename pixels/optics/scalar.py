@@ -41,18 +41,18 @@ def scalar_shares(
     return np.array(out)
 
 
-def crosstalk(geometry: PixelGeometry, angles: npt.ArrayLike, wavelength_um: float) -> Floats:
+def crosstalk(geometry: PixelGeometry, angles: npt.ArrayLike, wavelength_um: float, samples: int = SAMPLES) -> Floats:
     """Share (A,) of the light through one pixel's gratings that reaches the silicon outside that pixel.
 
-    All pixels have the analyzer of ``geometry``; light falls on one alone, its pitch wide.
+    All pixels have the analyzer of ``geometry``; light falls on one alone, its pitch wide. samples: of the field.
     """
     stack, wave = geometry.stack, 2 * np.pi / wavelength_um
     index = float(refractive_index("silica", wavelength_um).real)
     width = WINDOW * geometry.pitch_um
-    x = (np.arange(SAMPLES) + 0.5) / SAMPLES * width - width / 2
+    x = (np.arange(samples) + 0.5) / samples * width - width / 2
     inside = np.abs(x) <= geometry.pitch_um / 2
     rest = stack.metal("analyzer", geometry.analyzer).bottom_um - stack.surface_um if geometry.analyzer else 0.0
-    k = 2 * np.pi * np.fft.fftfreq(SAMPLES, width / SAMPLES)
+    k = 2 * np.pi * np.fft.fftfreq(samples, width / samples)
     out = []
     for angle in np.atleast_1d(angles):
         tilt = wave * np.sin(angle)

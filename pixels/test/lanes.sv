@@ -3,7 +3,7 @@
 //   +mode=N +threshold=T +trim=FILE (24 values, $readmemh)
 `default_nettype none
 module Lanes #(
-    parameter int ROWS = 9, COLS = 20, LANES = 2, TAPS = 4
+    parameter int ROWS = 9, COLS = 20, LANES = 2
 ) (
     input  wire clk,
     output reg  done
@@ -19,7 +19,7 @@ module Lanes #(
   wire window = mode == 0 && threshold != 0;
   localparam int GROUPS = (COLS + 6 * LANES - 1) / (6 * LANES);
 
-  Afe #(.ROWS(ROWS), .COLS(COLS), .LANES(LANES), .TAPS(TAPS)) afe (
+  Afe #(.ROWS(ROWS), .COLS(COLS), .LANES(LANES)) afe (
       .clk(clk), .mode(mode[1:0]), .row(row[9:0]), .group(group[7:0]), .k(k[2:0]), .sub(sub[1:0]), .en(en),
       .balance(trim[(row % 4) * 6 + k]), .hold(hold), .dac(dac), .unsigned_(unsigned_), .comparator(comparator));
 

@@ -4,7 +4,7 @@ The capacitor is cap_mim_m3_1: capm over met3, contacted by via3 from met4; 2 fF
 (SkyWater's card, typical), as in `analog.unit_cells`. Fringe capacitors of met1 and met2: the cards of three of
 SkyWater's (cap_vpp_11p5x11p7, 08p6x07p8, 04p4x04p6, m1m2_noshield: 74.6, 35.0, 7.81 fF) have 0.72 to 0.83 of what the
 rays of flow/layout/parasitics find in their layouts, of the wheel; of fingers of minimum width and space these find
-0.457 fF/um.
+0.457 fF/um. Their mark is no mask of SkyWater's: its own mark of capacitors, (82, 64), has rules of 1.43 um and more.
 
 PDKMaster's deck forbids low-threshold implants over n+ and p+, where its own deck of LVS and SkyWater's layouts have
 these transistors' gates; and it takes a via on an upper plate for one to the lower plate, too.
@@ -27,10 +27,13 @@ MASKS = AnalogMasks(
     mim_metal=3,
     mim_area=2.0,
     mim_edge=0.19,
+    fringe=(82, 65),
+    fringe_side_um=0.14,
     fringe_um=0.3656,
     fringe_end=0.054,
     fringe_share=0.8,
     deck_mim="sky130_fd_pr__cap_mim_m3_1",
+    deck_fringe="fringe",
     resistor=(65, 13),
     sheet_ohm=RESISTOR_TYPICAL,
     deck_resistor="sky130_fd_pr__res_generic_nd",

@@ -19,8 +19,8 @@ def _box(x: float, y: float, width: float, height: float, fill: str = SOFT) -> s
     return f'<rect {place} rx="4" fill="{fill}" stroke="{INK}" stroke-opacity=".4"/>'
 
 
-def _text(x: float, y: float, text: object, anchor: str = "middle", size: int = 12) -> str:
-    place = f'x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}" font-size="{size}" dominant-baseline="central"'
+def _text(x: float, y: float, text: object, anchor: str = "middle", size: float = 12) -> str:
+    place = f'x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}" font-size="{size:.3g}" dominant-baseline="central"'
     return f"<text {place}>{escape(str(text))}</text>"
 
 
@@ -44,7 +44,8 @@ def matrix(blocks: Mapping[str, str], bits: Mapping[tuple[str, str], int], cell:
             _box(i * cell + 1, i * high + 1, cell - 2, high - 2, f"{ACCENT}66"),
             _text((i + 0.5) * cell, (i + 0.36) * high, name, size=10 if len(name) < 11 else 8),
         ]
-        parts.append(_text((i + 0.5) * cell, (i + 0.7) * high, blocks[name], size=7))
+        small = min(7.0, 1.6 * (cell - 4) / len(blocks[name]))  # a letter is 0.6 of the size wide
+        parts.append(_text((i + 0.5) * cell, (i + 0.7) * high, blocks[name], size=small))
         for k, other in enumerate(names):
             if count := bits.get((name, other)):
                 title = f"<title>{escape(name)} to {escape(other)}: {count} bits</title>"

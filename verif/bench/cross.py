@@ -125,7 +125,7 @@ def run(lanes: int, stall: int, planned: Sequence[FrameParameters]) -> str | Non
         host_script([*write_transfers(frame_writes(frame, TRIMS)), command("start")], []).removesuffix(STOP)
         for frame in planned
     )
-    program = bench_program(Build.of(sensor, TAPS))
+    program = bench_program(Build.of(sensor))
     with tempfile.TemporaryDirectory(prefix="talbot-") as temporary:
         folder = Path(temporary)
         write_samples(folder / "samples", samples)

@@ -78,7 +78,7 @@ DESIGNS = {
 
 
 AFE = """
-  Afe #(.ROWS({rows}), .COLS({cols}), .LANES({lanes}), .TAPS({taps})) afe (
+  Afe #(.ROWS({rows}), .COLS({cols}), .LANES({lanes})) afe (
       .clk(clk), .mode(mode), .row(row), .group(group), .k(k), .sub(sub), .en(en), .balance(balance),
       .hold(hold), .dac(dac), .unsigned_(unsigned_), .comparator(comparator));
 """
@@ -95,7 +95,7 @@ def flat(design: Design) -> str:
     ]
     wires = [f"  wire [{p.width - 1}:0] {p.name};\n" for p in ports if p.name in inside]
     pins = ", ".join(f".{name}({name})" for name in ("clk", *(p.name for p in ports)))
-    afe = AFE.format(rows=sensor.array.rows, cols=sensor.array.cols, lanes=sensor.chip.lanes, taps=exposure.TAPS)
+    afe = AFE.format(rows=sensor.array.rows, cols=sensor.array.cols, lanes=sensor.chip.lanes)
     return (
         f"module {TOP} (\n  input wire clk,\n  "
         + ",\n  ".join(heads)

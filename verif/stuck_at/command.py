@@ -16,7 +16,7 @@ from talbot.base.jobs import run as run_jobs
 from talbot.base.records import from_json
 from talbot.models.chip import golden_frame
 from talbot.models.digital.pattern import PatternEnd
-from talbot.models.parameters import ArrayParameters, ChipParameters, SensorParameters
+from talbot.models.parameters import ArrayParameters, ChipParameters, SensorParameters, check_int
 from talbot.rtl.export import translate
 from talbot.verif.formal.engine import version
 from talbot.verif.results import OUT, SEED, BlockResults, StuckAt, write_step
@@ -91,6 +91,8 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Print the coverage by block; the kept result has every fault of the sample."""
+    check_int("sample", options.sample, 0, 10**9)
+    check_int("seed", options.seed, 0, 2**32 - 1)
     inputs = options.sample, options.seed, version("yosys")
     job = Job("stuck-at", measure, (options.sample, options.seed), inputs)
     measured = from_json(Measured, run_jobs([job], options.out / "stuck_at", "stuck-at", 1)[0])

@@ -26,7 +26,7 @@ def page(**more):
     "text, written",
     [
         ("54.1 to 56 uJ", "54.1 to 56 µJ"),
-        ("9,378 um2 on 12 um", "9,378 µm² on 12 µm"),
+        ("9,378 um2 on 12 um, 0.3 W/m2", "9,378 µm² on 12 µm, 0.3 W/m²"),
         ("37 x 50 pixels", "37 × 50 pixels"),
         ("use us, sum uml", "use us, sum uml"),
         ("<= 3.5 us", "≤ 3.5 µs"),
@@ -34,6 +34,7 @@ def page(**more):
         ("x >= y", "x >= y"),
         (0.5, "0.5"),
         ("-0.00", "0.00"),
+        ("-0.0 dB", "0.0 dB"),
         ("-0.01", "-0.01"),
     ],
 )

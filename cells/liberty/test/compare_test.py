@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from talbot.base.liberty.group import Group
+from talbot.cells.liberty import reference
 from talbot.cells.liberty.compare import Difference, differences, errors, summary
 from talbot.cells.liberty.reference import files
 from talbot.models.parameters import ParameterError
@@ -114,6 +115,13 @@ def test_a_reference_is_taken_at_its_corner(tmp_path):
     assert list(files(tmp_path, "ff_n40C_1v95")) == ["nand2_1"]
     with pytest.raises(ParameterError, match="of sf_025C_1v80"):
         files(tmp_path, "sf_025C_1v80")
+
+
+@pytest.mark.parametrize("text", ["", "[]", "[" * 100_000])
+def test_a_reference_that_is_no_cell_is_refused(text, tmp_path):
+    (tmp_path / "inv_1.lib.json").write_text(text)
+    with pytest.raises(ParameterError, match="inv_1.lib.json: is not a cell in SkyWater's JSON"):
+        reference.cell(tmp_path / "inv_1.lib.json")
 
 
 def test_constraints_that_are_too_short_are_told_from_long_ones():

@@ -15,9 +15,9 @@ if not shutil.which("klayout"):
 from talbot.base.gds import db, read_gds
 from talbot.base.steps import StepError
 from talbot.flow.analog_layout.amplifier import capacitors
-from talbot.flow.analog_layout.checks import drc, lvs
+from talbot.flow.analog_layout.checks import differences, drc, lvs
 from talbot.flow.analog_layout.extract import extract
-from talbot.flow.analog_layout.test.planted import changed
+from talbot.flow.analog_layout.test.planted import changed, swapped
 from talbot.flow.layout.parasitics.capacitance import capacitances
 from talbot.flow.layout.parasitics.shapes import shapes
 from talbot.pixels.analog_layout.amplifier import amplifier_cell
@@ -87,8 +87,22 @@ def test_the_amplifier_keeps_the_rules_is_its_circuit_and_has_its_capacitors(tmp
     text = made.spice(MASKS)
     assert drc(path, "sky130", tmp_path / "good.lyrdb") == {}
     assert lvs(path, text, "sky130", tmp_path / "good.lvsdb")
-    swapped = text.replace(" bottom3 ", " x ").replace(" bottom4 ", " bottom3 ").replace(" x ", " bottom4 ")
-    assert not lvs(path, swapped, "sky130", tmp_path / "swapped.lvsdb")
+    for one, other, names in (("column_a", "column_b", {"net column_a"}), ("g0", "g1", {"net g0n", "net g1n"})):
+        report = tmp_path / "swapped.lvsdb"
+        assert not lvs(path, swapped(text, one, other), "sky130", report)
+        assert {f"amplifier: {name}" for name in names} <= set(differences(report))
+
+    def lost(layout, top):
+        """The tip of a finger."""
+        metal = layout.layer(*MASKS.base.metals[2].gds)
+        units = db.Region(top.shapes(layout.layer(*MASKS.fringe)))
+        shapes = db.Region(top.shapes(metal))
+        top.clear(metal)
+        top.shapes(metal).insert(shapes - db.Region(next(units.each()).bbox()))
+
+    report = tmp_path / "lost.lvsdb"
+    assert not lvs(changed(path, tmp_path / "lost.gds", lost), text, "sky130", report)
+    assert any("device fringe." in difference for difference in differences(report))
     _, nets = extract(made, MASKS, WIRES["typ"])
     for row in capacitors(made, nets, MASKS, SPEC):
         assert row.passes, row

@@ -12,8 +12,8 @@ if not shutil.which("klayout"):
 
 from talbot.base.gds import db, read_gds, write_gds
 from talbot.base.lef.read import read_macro
-from talbot.flow.analog_layout.checks import decks, drc, lvs
-from talbot.flow.analog_layout.test.planted import changed
+from talbot.flow.analog_layout.checks import decks, differences, drc, lvs
+from talbot.flow.analog_layout.test.planted import changed, swapped
 from talbot.flow.layout.sensor.analog import check
 from talbot.models.parameters import ChipParameters, ParameterError
 from talbot.pixels.analog_layout.cells import comparator_cell
@@ -63,9 +63,9 @@ def test_the_comparator_keeps_the_rules_and_a_broken_one_is_found(cell, tmp_path
 def test_the_comparator_is_its_circuit_and_faults_are_found(cell, tmp_path):
     made, path = cell
     assert lvs(path, made.spice(MASKS), "sky130", tmp_path / "good.lvsdb")
-    swapped = made.spice(MASKS).replace(" inp ", " x ").replace(" inn ", " inp ").replace(" x ", " inn ")
-    pins = made.spice(MASKS).splitlines()[0]
-    assert not lvs(path, swapped.replace(swapped.splitlines()[0], pins), "sky130", tmp_path / "swapped.lvsdb")
+    assert not lvs(path, swapped(made.spice(MASKS), "inp", "inn"), "sky130", tmp_path / "swapped.lvsdb")
+    found = [f"comparator: device arm.{name}" for name in ("inn", "inp")]
+    assert sorted(differences(tmp_path / "swapped.lvsdb")) == found
     fewer = made.spice(MASKS).replace("W=8U", "W=6U")
     assert not lvs(path, fewer, "sky130", tmp_path / "finger.lvsdb")
 
@@ -137,12 +137,20 @@ def test_lanes_with_amplifiers_and_bias_keep_the_rules_are_their_circuits_and_sw
     assert drc(path, "sky130", tmp_path / "good.lyrdb") == {}
     text = made.spice(MASKS)
     assert lvs(path, text, "sky130", tmp_path / "good.lvsdb")
-    planted = ("dac[3]", "dac[2]", "adc_lane"), ("out_0", "vref", "adc_lane"), ("reset_0", "reset_1", "adc_amplifier")
+    planted = (
+        ("dac[3]", "dac[2]", "adc_lane"),
+        ("out_0", "vref", "adc_lane"),
+        ("reset_0", "reset_1", "adc_amplifier"),
+        ("lane_a[0]", "lane_b[0]", "adc_amplifier"),
+        ("balance[0]", "balance[1]", "adc_amplifier"),
+    )
     for one, other, cell in planted:
         (line,) = (line for line in text.splitlines() if line.startswith(f"X{cell}0 "))
-        swapped = line.replace(f" {one} ", " x ").replace(f" {other} ", f" {one} ").replace(" x ", f" {other} ")
-        assert swapped != line
-        assert not lvs(path, text.replace(line, swapped), "sky130", tmp_path / "swapped.lvsdb")
+        wrong = line.replace(f" {one} ", " x ").replace(f" {other} ", f" {one} ").replace(" x ", f" {other} ")
+        assert wrong != line
+        report = tmp_path / "swapped.lvsdb"
+        assert not lvs(path, text.replace(line, wrong), "sky130", report)
+        assert any(one in name or f"{cell}0" in name for name in differences(report)), one
 
 
 def test_the_blocks_pins_are_the_black_boxes_and_those_of_references_and_wake(tmp_path):

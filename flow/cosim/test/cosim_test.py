@@ -121,7 +121,7 @@ def test_ngspice_that_gives_up_is_an_error_after_the_whole_ladder(monkeypatch):
     monkeypatch.setattr(lockstep, "_run", gives_up)
     sensor, frame = SMALL.frame
     deck = SMALL.deck()
-    given = lockstep.program(sensor, 1), lambda accuracy: deck, frame, SMALL.samples, SMALL.front_end, SMALL.timing
+    given = lockstep.program(sensor), lambda accuracy: deck, frame, SMALL.samples, SMALL.front_end, SMALL.timing
     with pytest.raises(ToolError, match="gave up with every setting"):
         lockstep.run(*given, Accuracy())
     assert tried == list(Accuracy().ladder)

@@ -21,7 +21,7 @@ from talbot.models.parameters import (
 )
 from talbot.models.plan.exposure import fitting
 
-SENSOR = SensorParameters(array=ArrayParameters(9, 13), chip=ChipParameters(lanes=2))
+SENSOR = SensorParameters(array=ArrayParameters(13, 50), chip=ChipParameters(lanes=4))
 SHORT = AmpTiming(t_reset=2, t_int=3, t_cm=2, t_settle=2, t_read=2, t_guard=1, n_cm=2)
 FRAMES = {
     "edge": FrameParameters(SENSOR.full_window, threshold=9),
@@ -36,7 +36,7 @@ FRAMES = {
 
 @pytest.fixture(scope="module")
 def program():
-    return hardware.program(SENSOR, 4)
+    return hardware.program(SENSOR)
 
 
 def run(program, frame, stall=0):

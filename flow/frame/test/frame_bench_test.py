@@ -23,7 +23,7 @@ def test_default_frame(benchmark, tmp_path):
     asked = request()
     scene, todo = job.see(asked)
     exposed = job.expose(asked, scene, todo)
-    program = hardware.program(asked.sensor, todo.taps)
+    program = hardware.program(asked.sensor)
 
     def frame():
         run = hardware.simulate(program, asked.sensor, asked.frame, exposed.samples, exposed.front_end)

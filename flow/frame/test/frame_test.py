@@ -49,7 +49,7 @@ MODE_CASES = [*((mode, False) for mode in MODES), ("tof", True)]
 
 @pytest.fixture(scope="module")
 def programs():
-    return {name: hardware.program(asked_of(name).sensor, TAPS) for name in SIZES}
+    return {name: hardware.program(asked_of(name).sensor) for name in SIZES}
 
 
 @pytest.mark.parametrize("mode, phase", MODE_CASES)
@@ -111,6 +111,6 @@ def test_icarus_sends_the_same_bytes(programs, tmp_path):
         pytest.skip("Icarus Verilog is not installed: make tools")
     asked = asked_of("odd", threshold=9, exposure=5)
     front_end, samples = front_end_of(asked.sensor, [7] * 24), exposure(asked.sensor, 2)
-    program = icarus_program(Build.of(asked.sensor, TAPS), tmp_path)
+    program = icarus_program(Build.of(asked.sensor), tmp_path)
     chip = check(program, asked, front_end, samples)
     assert chip.status["cycles"] == check(programs["odd"], asked, front_end, samples).status["cycles"]

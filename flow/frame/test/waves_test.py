@@ -1,7 +1,6 @@
-"""Waves of some rows, in every format that this machine can compile."""
+"""Waves of some rows as FST, and formats that are refused; as VCD: talbot/test/sim_test.py."""
 
 import math
-import re
 import struct
 
 import pytest
@@ -15,26 +14,18 @@ from talbot.flow.simulate.verilator import PACKED
 from talbot.models.parameters import ParameterError
 
 ROWS = 1, 2
-FST = pytest.mark.skipif(not has_headers(PACKED), reason=f"no {' and '.join(PACKED)}")
 
 
-@pytest.mark.parametrize("kind", ["vcd", pytest.param("fst", marks=FST)])
-def test_waves(kind, tmp_path):
-    asked = request(scene="coins", rows=8, cols=12, waves=ROWS, waves_format=kind)
+@pytest.mark.skipif(not has_headers(PACKED), reason=f"no {' and '.join(PACKED)}")
+def test_waves(tmp_path):
+    asked = request(scene="coins", rows=8, cols=12, waves=ROWS, waves_format="fst")
     exposed = job.expose(asked, *job.see(asked))
-    built = program(asked.sensor, exposed.plan.taps, kind)
+    built = program(asked.sensor, "fst")
     result = job.read_out(asked, exposed, built, waves=Waves(tmp_path / "waves", *ROWS))
     assert result.stream == result.golden.stream
-    data = (tmp_path / "waves").read_bytes()
-    if kind == "fst":
-        _, _, first, last, mark = struct.unpack(">BQQQ8s", data[:33])  # the header's block
-        assert struct.unpack("<d", mark)[0] == pytest.approx(math.e) and 0 < first < last
-        return
-    text = data.decode()
-    name = re.search(r"\$var wire +10 (\S+) row ", text)
-    assert name
-    rows = {int(value, 2) for value in re.findall(rf"^b([01]+) {re.escape(name[1])}$", text, re.MULTILINE)}
-    assert rows == {1, 2, 3}  # the clock edge that ends the last row is there
+    header = (tmp_path / "waves").read_bytes()[:33]
+    _, _, first, last, mark = struct.unpack(">BQQQ8s", header)
+    assert struct.unpack("<d", mark)[0] == pytest.approx(math.e) and 0 < first < last
 
 
 def test_headers_that_are_missing():

@@ -6,25 +6,31 @@ from xml.etree import ElementTree
 from talbot.base.paths import ROOT
 from talbot.base.tools import run
 from talbot.commands import main
-from talbot.flow.host.document.command import HEADER
+from talbot.flow.host.document.command import DOCUMENTS, HEADER
 from talbot.flow.host.document.exports import HEADER as HEADER_OF_STRUCTS
 from talbot.flow.host.document.exports import IPXACT, export
 from talbot.flow.host.document.tables import TABLES
 from talbot.models.parameters.registers import register_map
 
-TABLED = "host.md", "chip.md", "stream.md"
-WRITTEN = "registers.md", "registers.html", *TABLED
+WRITTEN = "registers.md", "registers.html", *DOCUMENTS
 
 
 def test_the_committed_documents_are_current(tmp_path):
     """If this fails: make document."""
-    for name in TABLED:
+    for name in DOCUMENTS:
         (tmp_path / name).write_text((ROOT / "docs" / name).read_text())
     words = ["--out", tmp_path, "--header", tmp_path / HEADER.name, "--exports", tmp_path / "exports"]
     assert main(["document", *map(str, words)]) == 0
     for name in WRITTEN:
         assert (tmp_path / name).read_text() == (ROOT / "docs" / name).read_text(), name
     assert (tmp_path / HEADER.name).read_text() == HEADER.read_text()
+
+
+def test_a_wrong_place_is_refused_before_anything_is_written(tmp_path, capsys):
+    for words, said in ((["--header", tmp_path], "must be a file"), ([], "must be a folder with host.md")):
+        assert main(["document", "--out", str(tmp_path), "--exports", str(tmp_path / "exports"), *map(str, words)]) == 2
+        err = capsys.readouterr().err
+        assert said in err and err.count("\n") == 1 and not list(tmp_path.iterdir())
 
 
 def test_the_map_for_other_tools_has_every_field(tmp_path):

@@ -20,11 +20,10 @@ from ..design import Design, design, folder_name
 from ..options import Options
 from ..search import lay_out_smallest
 from ..steps.extraction import Extraction
-from ..steps.gate_frames import TAPS
 from ..steps.parameters import PdkParameters
 from ..steps.power import PowerParameters
 from .frames import EVERY, HELD_BACK, RECORDED, frame_named
-from .measure import BenchParameters, CountingBench, FrameParameters, Light, Measure, Slews, Transitions
+from .measure import CountingBench, FrameParameters, Light, Measure, Slews, Transitions
 from .report import page, text
 from .result import WORST, Frame, evaluate
 
@@ -70,7 +69,7 @@ def energy_steps(parameters: PowerParameters) -> list[Step]:
     """The steps after those of the layout, at the corner of ``parameters``."""
     lit = [frame_named(name) for name in dict.fromkeys(frame.lit_as for frame in EVERY)]
     return [
-        *(CountingBench(BenchParameters(taps)) for taps in (1, TAPS)),
+        CountingBench(),
         *(Light(FrameParameters(frame)) for frame in lit),
         *(Transitions(FrameParameters(frame)) for frame in EVERY),
         Slews(parameters),

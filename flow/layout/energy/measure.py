@@ -12,6 +12,7 @@ import numpy as np
 
 from talbot.base.liberty.read import read
 from talbot.base.steps import Files, Step, StepError
+from talbot.base.steps.step import NoParameters
 from talbot.flow.frame.hardware import simulate
 from talbot.flow.frame.request import FrameRequest
 from talbot.flow.simulate.build import Build
@@ -20,29 +21,18 @@ from talbot.flow.simulate.icarus import icarus_program
 from talbot.models.afe import FrontEnd, write_converter, write_samples
 from talbot.models.chip import golden_frame
 from talbot.models.digital.host import command, frame_writes, write_transfers
-from talbot.models.parameters import SensorParameters, check_choice
+from talbot.models.parameters import SensorParameters
 from talbot.models.parameters.registers import array_resets, register_map
 
 from ..netlist.netlist import Netlist
 from ..power.energy import Cells, Energy, blocks, powers
 from ..steps.corner import CornerStep
-from ..steps.gate_frames import TAPS
 from ..steps.power import Power as PowerStep
 from ..steps.power import PowerParameters, wire_pf
 from .count import PARTS, counted_verilog, nets_of, read_counts
 from .frames import EVERY, EnergyFrame, Values, frame_named
 
 UNIT_NS = 1000.0  # a "cycle" of `powers` in which uW are pJ
-
-
-@dataclass(frozen=True)
-class BenchParameters:
-    """How many exposures (taps) the front end holds, 1 or 4."""
-
-    taps: int = 1
-
-    def __post_init__(self) -> None:
-        check_choice("taps", self.taps, (1, TAPS))
 
 
 @dataclass(frozen=True)
@@ -73,7 +63,7 @@ class Light(Step[FrameParameters]):
         return {"taps": samples.shape[0]}
 
 
-class CountingBench(Step[BenchParameters]):
+class CountingBench(Step[NoParameters]):
     """The netlist with a counter at every net in the bench of frames, compiled by Icarus."""
 
     name = "counting_bench"
@@ -82,16 +72,12 @@ class CountingBench(Step[BenchParameters]):
     metrics = {"nets": ""}
     tools = ("iverilog",)
 
-    def __init__(self, parameters: BenchParameters) -> None:
-        super().__init__(parameters)
-        self.name = f"{self.name}_{parameters.taps}"
-
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         netlist = Netlist.read(inputs["netlist"])
         with tempfile.TemporaryDirectory(prefix="talbot-") as name:
             chip = Path(name) / "chip.v"
             chip.write_text(counted_verilog(netlist))
-            build = Build.of(SensorParameters(), self.parameters.taps)
+            build = Build.of(SensorParameters())
             shutil.copyfile(icarus_program(build, Path(name), [chip, inputs["cells"]], ("Meter",)), outputs["program"])
         return {"nets": len(nets_of(netlist))}
 
@@ -103,7 +89,7 @@ class Transitions(Step[FrameParameters]):
     """
 
     name = "transitions"
-    inputs = {"netlist": "repair.netlist"}
+    inputs = {"netlist": "repair.netlist", "program": "counting_bench.program"}
     outputs = {"counts": "counts.json"}
     metrics = {"cycles": "", "transitions": "", "bytes": "", "events": ""}
     tools = ("iverilog",)
@@ -112,9 +98,7 @@ class Transitions(Step[FrameParameters]):
         super().__init__(parameters)
         frame = parameters.frame
         self.name = f"{self.name}_{frame.name}"
-        taps = TAPS if frame.recorded or frame.mode == "tof" else 1
-        own = {"light": f"light_{frame.lit_as}.light", "program": f"counting_bench_{taps}.program"}
-        self.inputs = {**self.inputs, **own}
+        self.inputs = {**self.inputs, "light": f"light_{frame.lit_as}.light"}
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         frame, netlist, light = self.parameters.frame, Netlist.read(inputs["netlist"]), np.load(inputs["light"])

@@ -4,7 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
+
+from talbot.models.compiled import njit
 
 Ints = npt.NDArray[np.int32]
 

@@ -19,9 +19,10 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit, types
+from numba import types
 from numba.typed import Dict
 
+from talbot.models.compiled import njit
 from talbot.platforms.layers import Crossing
 from talbot.platforms.wires import Wires
 

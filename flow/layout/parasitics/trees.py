@@ -11,10 +11,10 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 
+from talbot.models.compiled import njit
 from talbot.platforms.wires import Wires
 
 from .capacitance import Floats, Numbers

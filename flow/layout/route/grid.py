@@ -5,7 +5,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
+
+from talbot.models.compiled import njit
 
 from ..geometry.boxes import Box
 from .route import Place, Point

@@ -2,7 +2,8 @@
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
+
+from talbot.models.compiled import njit
 
 from ..geometry.boxes import Box
 

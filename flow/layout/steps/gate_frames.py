@@ -37,7 +37,7 @@ class GateFrames(Step[NoParameters]):
         front_end, samples = front_end_of(sensor, [7] * 24), exposure(sensor)
         lines, cycles, sent = [], 0, 0
         with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
-            program = icarus_program(Build.of(sensor, TAPS), Path(folder), [inputs["verilog"], inputs["cells"]])
+            program = icarus_program(Build.of(sensor), Path(folder), [inputs["verilog"], inputs["cells"]])
             for mode, phase in MODES:
                 frame = FrameParameters(Window(3, 4, 5, 8), mode, phase=phase)
                 chip = simulate(program, sensor, frame, samples, front_end)

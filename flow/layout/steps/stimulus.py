@@ -22,7 +22,6 @@ from talbot.rtl.tinytapeout.host import simulate as simulate_host
 from talbot.rtl.verilog import export_verilog
 
 from ..netlist.verilog import modules
-from .gate_frames import TAPS
 
 if TYPE_CHECKING:
     from talbot.models.parameters import Window
@@ -118,7 +117,7 @@ def in_frame(parameters: StimulusParameters, folder: Path, trace: Path) -> dict[
     chip = replace(asked.sensor.chip, divider=parameters.divider, n_frac=parameters.n_frac)
     asked = replace(asked, sensor=replace(asked.sensor, chip=chip))
     exposed = expose(asked, *see(asked))
-    program = icarus_program(Build.of(asked.sensor, TAPS), folder, [folder / f"{CHIP}.sv", folder / "tap.v"], ("Tap",))
+    program = icarus_program(Build.of(asked.sensor), folder, [folder / f"{CHIP}.sv", folder / "tap.v"], ("Tap",))
     more = (f"+tap={folder / 'tap.trace'}",)
     seen = simulate(program, asked.sensor, asked.frame, exposed.samples, exposed.front_end, more=more)
     if seen.stream != golden_frame(exposed.samples, asked.sensor, asked.frame, exposed.front_end).stream:

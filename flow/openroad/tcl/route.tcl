@@ -1,6 +1,6 @@
 # Routes, with diodes where a gate's wire is too long an antenna; fillers last, since a diode wants a free site.
 source common.tcl
-open_stage repair
+open_stage loads
 set_propagated_clock [all_clocks]
 routing_layers
 

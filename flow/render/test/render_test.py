@@ -1,6 +1,7 @@
 """Views of a lens as Mitsuba's frusta, what the command writes and refuses, small scenes by Mitsuba itself."""
 
 import json
+import sys
 from importlib.util import find_spec
 
 import numpy as np
@@ -44,6 +45,13 @@ def test_what_is_kept_is_finer_than_the_noise():
 def test_bad_arguments(word, message, capsys, tmp_path):
     assert main(["render", word, f"--out={tmp_path / 'out'}"]) == 2
     assert message in capsys.readouterr().err and not (tmp_path / "out").exists()
+
+
+def test_without_mitsuba(capsys, tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "mitsuba", None)
+    assert main(["render", f"--out={tmp_path / 'out'}"]) == 2
+    err = capsys.readouterr().err
+    assert err.count("\n") == 1 and "mitsuba = not installed" in err and not (tmp_path / "out").exists()
 
 
 @pytest.fixture(scope="module")

@@ -46,8 +46,8 @@ def numbered(front_end, number):
 def test_every_frame_is_the_golden_chips(mode, phase, stall):
     asked = asked_of("odd", mode=mode, phase=phase, threshold=3)
     front_end = front_end_of(asked.sensor, [7] * 24)
-    program = hardware.program(asked.sensor, 4)
-    with hardware.chip(program, front_end, stall) as chip:
+    program = hardware.program(asked.sensor)
+    with hardware.chip(program, front_end, 4, stall) as chip:
         frames = [replace(asked.frame, frame_number=n, threshold=3 + n) for n in range(4)]
         several = [exposure(asked.sensor, n) for n in range(4)]
         sent = [chip.frame(frame, samples, front_end.trim) for frame, samples in zip(frames, several, strict=True)]
@@ -61,7 +61,7 @@ def test_every_frame_is_the_golden_chips(mode, phase, stall):
 def test_what_the_chip_has_is_not_written_again():
     asked = asked_of("odd", threshold=3)
     front_end = front_end_of(asked.sensor, [7] * 24)
-    with hardware.chip(hardware.program(asked.sensor, 1), front_end) as chip:
+    with hardware.chip(hardware.program(asked.sensor), front_end, 1) as chip:
         runs = [chip.frame(asked.frame, exposure(asked.sensor, 0)[:1], front_end.trim)() for _ in range(2)]
     assert len(runs[0].miso) - len(runs[1].miso) > 70  # bytes of the configuration
     assert runs[0].stream[:20] == runs[1].stream[:20] and runs[0].activity["busy"] == runs[1].activity["busy"]
@@ -70,10 +70,10 @@ def test_what_the_chip_has_is_not_written_again():
 def test_icarus_runs_on_too(tmp_path):
     if not shutil.which("iverilog"):
         pytest.skip("Icarus Verilog is not installed: make tools")
-    asked = asked_of("tile", threshold=3)
+    asked = asked_of("tile", threshold=3, exposure=1)  # by default 100,000 cycles pass before the first row
     rough = replace(asked.sensor, converter=ConverterParameters(inl=1, noise=1.5, ktc=1, seed=2**32 - 1))
     front_end = front_end_of(rough, [7] * 24)
-    with hardware.chip(icarus_program(Build.of(rough, 1), tmp_path), front_end) as chip:
+    with hardware.chip(icarus_program(Build.of(rough), tmp_path), front_end, 1) as chip:
         for n in range(3):
             samples = exposure(rough, n)[:1]
             golden = golden_frame(samples, rough, asked.frame, numbered(front_end, n))
@@ -84,9 +84,12 @@ def test_a_simulation_that_ends_is_an_error_in_one_line(tmp_path):
     asked = asked_of("odd")
     front_end = front_end_of(asked.sensor, [7] * 24)
     write_converter(tmp_path / "converter", front_end)
-    program = hardware.program(asked.sensor, 1)
+    program = hardware.program(asked.sensor)
     for converter, cycles, said in (("converter", 2000, "status 4 .no frame end."), ("none", 10**9, "cannot be read")):
-        with pytest.raises(ToolError, match=said), running(program, tmp_path / converter, max_cycles=cycles) as bench:
+        with (
+            pytest.raises(ToolError, match=said),
+            running(program, tmp_path / converter, 1, max_cycles=cycles) as bench,
+        ):
             chip = hardware.Chip(bench)
             waits = [chip.frame(asked.frame, exposure(asked.sensor, 0)[:1], front_end.trim) for _ in range(3)]
             for wait in waits:
@@ -120,7 +123,7 @@ def test_a_sequence_in_every_mode(mode, phase):
 
 def test_views_are_chosen_again_where_a_picture_needs_more():
     dark, *rest = pictures(3)
-    asked = request(rows=48, cols=72)
+    asked = request(rows=40, cols=48)
     found = frames_of(asked, [0 * dark, dark, *rest])
     views = [frame.exposed.views.most for frame in found]
     assert views[0] < views[1] == views[2]

@@ -88,11 +88,13 @@ def test_no_light():
 
 def test_files(tmp_path):
     found = calibrated(swept(size=24), PITCH)[0]
-    (tmp_path / "bad.json").write_text('{"types": []}')
-    with pytest.raises(ParameterError, match="bad.json': must be a calibration.json"):
-        read_calibration(tmp_path / "bad.json")
-    with pytest.raises(ParameterError, match="none.json"):
-        read_calibration(tmp_path / "none.json")
+    for bad in ('{"types": []}', "[" * 100_000):
+        (tmp_path / "bad.json").write_text(bad)
+        with pytest.raises(ParameterError, match="bad.json': must be a calibration.json"):
+            read_calibration(tmp_path / "bad.json")
+    for name in ("none.json", "", "/dev/zero"):
+        with pytest.raises(ParameterError, match=f"{name}': must be a calibration.json"):
+            read_calibration(tmp_path / name)
     with pytest.raises(ParameterError, match="calibration = 24 pixel types: must be 4"):
         found.applied(SensorParameters(tile=TileParameters.small(2, 2)))
     with pytest.raises(ParameterError, match="sigma = 0: must be"):

@@ -31,6 +31,8 @@ def decode_file(path: str | Path, tile: TileParameters = TileParameters()) -> li
     OSError
         If the file cannot be read.
     """
+    if Path(path).is_char_device():  # some never end
+        raise StreamError(f"file = {path}: must be a file, not a device")
     with open(path, "rb") as file:
         try:
             return decode_stream(file.read(), tile)

@@ -88,9 +88,10 @@ def test_candidates_keep_the_rules(pdk):
 
 def test_the_front_is_what_nothing_beats():
     base = fit(formula(0.0, 12.0, 0.3, 0.5, 1))
-    pairs = [(0.5, 0.1), (0.4, 0.2), (0.4, 0.1), (0.1, 0.3), (0.3, 0.15)]
-    designs = [Design(PixelGeometry(), 0.5, replace(base, m=m, quantum_efficiency=q)) for m, q in pairs]
-    assert [(d.fit.m, d.fit.quantum_efficiency) for d in front(designs)] == [(0.5, 0.1), (0.4, 0.2), (0.1, 0.3)]
+    rows = [(0.5, 0.1, 0.1), (0.4, 0.2, 0.1), (0.4, 0.1, 0.1), (0.1, 0.3, 0.1), (0.3, 0.15, 0.1), (0.1, 0.1, 0.2)]
+    designs = [(Design(PixelGeometry(), 0.5, replace(base, m=m, quantum_efficiency=q)), wide) for m, q, wide in rows]
+    assert front(designs) == [designs[k] for k in (0, 1, 3, 5)]
+    assert front([]) == []
 
 
 @pytest.mark.parametrize(

@@ -102,6 +102,7 @@ def test_fingers_share_all_that_enters():
         ([Slab(GLASS, 0.3, ALUMINIUM, 0.5)], 0.53 / 1.46, 0.0, 0.53),  # and in the glass
         ([Slab(GLASS, 0.3, ALUMINIUM, 0.0)], 0.7, 0.0, 0.53),
         ([Slab(GLASS, 0.0, ALUMINIUM, 0.5)], 0.7, 0.2, 0.53),
+        ([Slab(GLASS, 0.3, ALUMINIUM, 0.5), Slab(GLASS, 0.3, ALUMINIUM, 0.4)], 0.7, 0.2, 0.53),  # no gap
         ([Slab(GLASS, 0.3, -50.0, 0.5)], 0.7, 0.2, 0.53),  # metal without loss
         ([Slab(GLASS, 0.3, ALUMINIUM, 0.5)], 0.7, 0.2, 500.0),  # far longer than all else
         ([Slab(GLASS, 0.3, ALUMINIUM, 0.5)], 0.7, 0.2, 0.01),  # X rays: more orders than are kept

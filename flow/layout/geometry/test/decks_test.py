@@ -40,21 +40,20 @@ def test_spaces_of_drawn_layers_are_checked_flat_and_the_rest_as_before():
 
 @pytest.mark.skipif(not shutil.which("klayout"), reason="klayout: not found; install it with: make tools")
 @pytest.mark.parametrize(
-    "end, vias, found",
+    "cases, found",
     (
-        (500, [200], {}),
-        (350, [200], {"via3 outside m4": 1}),
-        (200, [200], {"via3 outside m4": 1}),
-        (800, [200, 335], {"via3 size": 2}),  # two that are one of 0.2 um x 0.335 um
-        (800, [200, 600], {}),
+        ([(500, [200]), (800, [200, 600])], {}),
+        ([(350, [200]), (200, [200]), (800, [200, 335])], {"via3 outside m4": 2, "via3 size": 2}),  # two vias are one
     ),
 )
-def test_a_via_outside_its_metal_or_of_another_size_is_found(tmp_path, end, vias, found):
+def test_a_via_outside_its_metal_or_of_another_size_is_found(tmp_path, cases, found):
+    """Cases, side by side: height of the upper metal, and where vias begin."""
     tech, layout = coriolis_platform("sky130"), db.Layout()
     top = layout.create_cell("top")
-    shapes = (tech.metals[3].gds, (0, 0, 500, 800)), (tech.metals[4].gds, (0, 0, 500, end))
-    for at, box in (*shapes, *((tech.vias[3].gds, (150, low, 350, low + 200)) for low in vias)):
-        top.shapes(layout.layer(*at)).insert(db.Box(*box))
+    for x, (end, vias) in enumerate(cases):
+        shapes = (tech.metals[3].gds, (0, 0, 500, 800)), (tech.metals[4].gds, (0, 0, 500, end))
+        for at, box in (*shapes, *((tech.vias[3].gds, (150, low, 350, low + 200)) for low in vias)):
+            top.shapes(layout.layer(*at)).insert(db.Box(*box).moved(5000 * x, 0))
     write_gds(layout, tmp_path / "top.gds")
     head = f"source('{tmp_path}/top.gds')\nreport('vias', '{tmp_path}/found.lyrdb')"
     (tmp_path / "vias.drc").write_text("\n".join([head, *via_rules(tech), ""]))
