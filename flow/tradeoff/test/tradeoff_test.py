@@ -94,7 +94,8 @@ def test_noise_is_what_its_label_says(tables):
     rows = {(r["noise"], r["method"]): r for r in tables[1]["light_field"] if not r["setting"]}
     noises = "physical", "0.1"
     clean, free = (10 ** -((r["psnr_db"] - r["gain_db"]) / 10) for r in (rows[n, "linear"] for n in noises))
-    assert free - clean == pytest.approx(reached(result).mean() * 0.1**2 / 2, rel=0.1)
+    share = (free - clean) / (reached(result).mean() * 0.1**2 / 2)
+    assert 0.7 < share < 1.05  # sums below 0 are clipped, which takes noise from dark pixels
     assert rows["0.1", "linear"]["gain_db"] > 1
 
 
