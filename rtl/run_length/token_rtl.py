@@ -46,8 +46,8 @@ class TokenCoder(Component):
         s.q = Wire(Bits4)
         s.r = Wire(Bits2)  # the order of the values' code, less 1
         s.dense = Wire()
-        s.single = Wire()  # tokens are single samples
         s.power = Wire(Bits13)  # 2**q
+        s.single = Wire()  # tokens are single samples, q = 0
         s.span = Wire(Bits12)  # 2**(q - 1), or 0
         s.full = Wire()
         s.distance = Wire(Bits9)  # of the magnitude from the smallest one coded
@@ -63,6 +63,7 @@ class TokenCoder(Component):
 
         # Connections
         s.q //= s.k[2:6]
+        s.single //= s.power[0]
         s.span //= s.power[1:13]
         s.r //= s.r2[1:3]
 
@@ -71,7 +72,6 @@ class TokenCoder(Component):
         def classify():
             s.open @= s.run != 0
             s.dense @= s.threshold[2:7] == 0
-            s.single @= s.q == 0
             s.power @= Bits13(1) << zext(s.q, 13)
             s.full @= (zext(s.run, 12) + 1) == s.span
             s.literal @= ~s.coded | (~s.open & (s.credit[2:8] < concat(Bits2(1), s.q)))
