@@ -291,7 +291,7 @@ class TestRunLengthFL:
 
     @pytest.mark.parametrize("place, order", [*((place, 1) for place in range(8)), (7, 2), (7, 3), (7, 4)])
     def test_the_longest_tokens(self, place, order):
-        """After runs of 2^11 zeros the value of most bits, at every place in a byte: to the gathering register's end."""
+        """After runs of 2^11 zeros the value of most bits, at every place in a byte."""
         pick, header = random.Random(8 * place + order), header_of(threshold=4)
         while True:
             codes, state, sent = [], start(header.threshold), 0
