@@ -114,8 +114,8 @@ def start(base: int) -> tuple[int, int, int, int]:
 
     Returns
     -------
-    k, r2, run, credit : int
-        See docs/stream.md, Payload.
+    tuple of int
+        k, r2, run, credit: see docs/stream.md, Payload.
     """
     return 8 if base < DENSE else 16, 2, 0, 128
 
