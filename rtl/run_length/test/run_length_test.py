@@ -303,8 +303,8 @@ class TestRunLengthFL:
             if (sent % 8, state[1] // 2 + 1, state[2]) == (place, order, 0):
                 break
         run = pick.choice((0, 682, 1365, 2047))
-        rows = [(0, [*codes, *[0] * run, -128, 127])]
-        assert code_sample(-128, header.threshold, *state)[1] == TOKEN_MAX + 1 - order
+        rows = [(0, [*codes, *[0] * run, 127, -128])]  # a token that ends in ones: all bits of the register
+        assert code_sample(127, header.threshold, *state)[1] == TOKEN_MAX + 1 - order
         assert self.bench(header).run(scan_of(rows)) == stream_of(header, rows, 0, 0)
 
     def test_segments(self):
@@ -326,6 +326,10 @@ class TestRunLengthFL:
         rows = [*zeros, (20, [0, 0, 77]), *zeros[:3]]
         got = self.bench(header).run(scan_of(rows))
         assert got == stream_of(header, rows, 0, 0) and len(got) < HEADER_BYTES + TRAILER_BYTES + 8
+
+    def test_the_largest_order_of_the_runs_stays(self):
+        header, rows = header_of(threshold=4), [(0, [*[0] * 9000, 5])]
+        assert self.bench(header).run(scan_of(rows)) == stream_of(header, rows, 0, 0)
 
     def test_the_largest_order_of_the_values_stays(self):
         """Values that raise their order half a bit at a time to its end and go on."""
