@@ -109,7 +109,7 @@ def adaptive_rice(codes: Codes, base: int, out: Bytes) -> int:
 
 
 def payload(codes: Codes, base: int, out: Bytes) -> int:
-    """The stream's payload: adaptive runs, exp-Golomb codes of adaptive order, literals that bound its growth."""
+    """The stream's payload: adaptive runs or single samples, gamma codes, literals that bound its growth."""
     return encode_segment(codes, True, base, out)[0]
 
 
@@ -119,6 +119,6 @@ FORMATS: dict[str, tuple[Encoder, str]] = {
     "nibbles": (nibbles, "NibblePacker"),
     "Golomb-Rice, fixed": (fixed_rice, "FixedRicePacker"),
     "Golomb-Rice, adaptive": (adaptive_rice, "AdaptiveRicePacker"),
-    "adaptive run, exp-Golomb": (payload, "PayloadPacker"),
+    "adaptive run, Elias gamma": (payload, "PayloadPacker"),
 }
-CHOSEN = "adaptive run, exp-Golomb"
+CHOSEN = "adaptive run, Elias gamma"

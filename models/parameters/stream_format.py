@@ -3,7 +3,7 @@
 import struct
 
 MAGIC = b"TLBT"
-VERSION = 2
+VERSION = 3
 
 HEADER_FIELDS = struct.Struct(">4sBBBBBHHBBBB3sHHBHB")
 CRC = struct.Struct(">I")

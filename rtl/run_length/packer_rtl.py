@@ -1,6 +1,6 @@
 """PayloadPacker at RTL: a segment's samples in, the bytes of its payload out."""
 
-from pymtl3 import Bits6, Bits7, Bits8, Bits35, Component, InPort, OutPort, Wire, concat, update, update_ff, zext
+from pymtl3 import Bits6, Bits7, Bits8, Bits34, Component, InPort, OutPort, Wire, concat, update, update_ff, zext
 
 from .token_rtl import TokenCoder
 
@@ -20,7 +20,7 @@ def declare_packer_ports(s) -> None:
 
 
 class PayloadPacker(Component):
-    """A register of 35 bits gathers tokens, from the top: up to 7 bits that wait, and a token of 28 at most.
+    """A register of 34 bits gathers tokens, from the top: up to 7 bits that wait, and a token of 27 at most.
 
     Eight bits or more are a byte to send."""
 
@@ -33,11 +33,11 @@ class PayloadPacker(Component):
 
         # Components
         s.coder = s.new_coder()
-        s.gathered = Wire(Bits35)
+        s.gathered = Wire(Bits34)
         s.count = Wire(Bits6)
 
         s.take = Wire()
-        s.moved = Wire(Bits35)  # `gathered` after the byte is taken, and with the next token
+        s.moved = Wire(Bits34)  # `gathered` after the byte is taken, and with the next token
         s.behind = Wire(Bits6)  # bits after the next token; at most 7 of them are before it
 
         # Connections
@@ -46,7 +46,7 @@ class PayloadPacker(Component):
         s.coder.coded //= s.coded
         s.coder.threshold //= s.threshold
         s.coder.code //= s.code
-        s.octet //= s.gathered[27:35]
+        s.octet //= s.gathered[26:34]
 
         # Logic
         @update
@@ -57,9 +57,9 @@ class PayloadPacker(Component):
             s.behind @= zext(s.count[0:3], 6) + zext(s.coder.length, 6)
             s.moved @= s.gathered
             if s.take:
-                s.moved @= concat(s.gathered[0:27], Bits8(0))
+                s.moved @= concat(s.gathered[0:26], Bits8(0))
             if s.push:
-                s.moved @= s.moved | (zext(s.coder.bits, 35) << zext(Bits6(35) - s.behind, 35))
+                s.moved @= s.moved | (zext(s.coder.bits, 34) << zext(Bits6(34) - s.behind, 34))
 
         @update_ff
         def gather():

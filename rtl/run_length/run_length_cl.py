@@ -4,7 +4,7 @@ from collections import deque
 
 from pymtl3 import Component, update_ff
 
-from talbot.models.digital.stream.payload import START, base_of, code_sample
+from talbot.models.digital.stream.payload import base_of, code_sample, start
 from talbot.models.digital.stream.trailer import row_mark, trailer
 from talbot.rtl.messages import END, FRAME, ROW, SAMPLE
 
@@ -94,7 +94,7 @@ class RunLengthCL(Component):
         s.bits += f"{bits:0{length}b}" if length else ""
 
     def start_segment(s, row):
-        s.state, s.row, s.coder, s.payload = ROWS, row, START, []
+        s.state, s.row, s.coder, s.payload = ROWS, row, start(base_of(s.header.threshold)), []
 
     def end_segment(s):
         if s.bits or s.coder[2]:

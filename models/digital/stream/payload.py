@@ -15,11 +15,11 @@ from talbot.models.parameters.stream_format import COUNTED_BYTES, COUNTS, MAGIC,
 
 from .crc import CRC16_AFTER, CRC16_START, CRC32_BACK, CRC32_TABLE
 
-START = (3, 4, 0, 128)  # k, r2, run, credit at the start of a segment
-K_MAX, R2_MAX, CREDIT_MAX = 11, 12, 255
-TOKEN_MAX = 28  # bits of the longest token
+DENSE = 4  # a smaller threshold is under the noise, where a zero is about as frequent as the values next to it
+K_MAX, R2_MAX, CREDIT_MAX = 48, 7, 255
+TOKEN_MAX = 27  # bits of the longest token
 
-# Change of r2 by the number of zeros before a value's leading one; that number by the value's top byte.
+# Change of r2 by the number of zeros before a value; that number by the value's top byte.
 R2_STEP = np.array([-1, 0] + [1] * 7)
 PREFIX = np.array([8 - byte.bit_length() for byte in range(256)])
 
@@ -104,6 +104,31 @@ def crc16_span(data: Bytes, start: int, stop: int) -> int:
 
 
 @njit(cache=True)
+def start(base: int) -> tuple[int, int, int, int]:
+    """State of the coder at the start of a segment.
+
+    Parameters
+    ----------
+    base : int
+        See `base_of`.
+
+    Returns
+    -------
+    tuple of int
+        k, r2, run, credit: see docs/stream.md, Payload.
+    """
+    return 8 if base < DENSE else 16, 2, 0, 128
+
+
+@njit(cache=True)
+def _stepped(k: int, zeros: bool, base: int) -> int:
+    """State k after a token of zeros alone, or of a value."""
+    if zeros:
+        return k if k >= K_MAX else k + (1 if base < DENSE else 4)
+    return max(k - 1, 0) if base < DENSE else max(k - 8, 4)
+
+
+@njit(cache=True)
 def code_sample(code: int, base: int, k: int, r2: int, run: int, credit: int) -> tuple[int, int, int, int, int, int]:
     """Encode one sample of edge mode.
 
@@ -116,35 +141,33 @@ def code_sample(code: int, base: int, k: int, r2: int, run: int, credit: int) ->
     base : int
         See `base_of`.
     k, r2, run, credit : int
-        State of the coder, see `START`.
+        State of the coder, see `start`.
 
     Returns
     -------
     bits, length : int
-        Token, 0..28 bits.
+        Token, 0..27 bits.
     k, r2, run, credit : int
         State after it.
     """
-    magnitude = abs(code)
-    if run == 0 and (credit >> 2) + (r2 >> 1) < k + 17:
-        literal = code & 0xFF if magnitude >= base else 0
-        return literal, 8, k, r2, 0, min(credit + 1, CREDIT_MAX)
-    if magnitude < base:
+    q, magnitude = k >> 2, abs(code)
+    zero = magnitude < base
+    if run == 0 and credit >> 2 < q + 16:
+        return 0 if zero else code & 0xFF, 8, k, r2, 0, min(credit + 1, CREDIT_MAX)
+    if zero and q:
         run += 1
-        if run < 1 << k:
+        if run < 1 << q >> 1:
             return 0, 0, k, r2, run, credit
-        return 0, 1, min(k + 1, K_MAX), r2, 0, min(credit + 29, CREDIT_MAX)
-    r = r2 >> 1
-    value = magnitude - base + (1 << r)
-    prefix = 0
-    while value >> (r + 1 + prefix):
+        return 0, 1, _stepped(k, True, base), r2, 0, min(credit + 29, CREDIT_MAX)
+    value = 0 if zero else 2 * (magnitude - base) + (code > 0) + (q == 0)
+    order, prefix = (r2 >> 1) + 1, 0
+    while value >> (order + prefix):
         prefix += 1
-    length = 2 * prefix + r + 1
-    sign = 1 if code < 0 else 0
-    bits = ((1 << k | run) << 1 | sign) << length | value
-    length += k + 2
+    length = order + max(2 * prefix, 1)
+    bits = (1 << q >> 1 | run) << length | (prefix == 0) << order | value
+    length += q
     r2 = min(max(r2 + R2_STEP[prefix], 0), R2_MAX)
-    return bits, length, max(k - 2, 0), r2, 0, min(credit + 33 - 4 * length, CREDIT_MAX)
+    return bits, length, _stepped(k, zero, base), r2, 0, min(credit + 33 - 4 * length, CREDIT_MAX)
 
 
 @njit(cache=True)
@@ -182,7 +205,9 @@ def _close(out: Bytes, at: int, state: tuple[int, int, int, int, int, int]) -> i
     return at
 
 
-_FRESH = (*START, 0, 0)
+@njit(cache=True)
+def _fresh(base: int) -> tuple[int, int, int, int, int, int]:
+    return (*start(base), 0, 0)
 
 
 @njit(cache=True)
@@ -207,7 +232,7 @@ def encode_segment(codes: Codes, edge: bool, base: int, out: Bytes) -> tuple[int
     whole : int
         Those that are complete before the segment is closed.
     """
-    whole, state = _append(codes, edge, base, out, 0, _FRESH)
+    whole, state = _append(codes, edge, base, out, 0, _fresh(base))
     return _close(out, whole, state), whole
 
 
@@ -235,16 +260,16 @@ def encode_rows(codes: Codes, rows: Ints, counts: Ints, edge: bool, base: int, s
     int
         Bytes written.
     """
-    at, start, first, row, state = 0, 0, 0, 0, _FRESH
+    at, begin, first, row, state = 0, 0, 0, 0, _fresh(base)
     for i in range(rows.size):
         at, state = _append(codes[first : first + counts[i]], edge, base, out, at, state)
         first += counts[i]
-        if at - start >= segment or i == rows.size - 1:
+        if at - begin >= segment or i == rows.size - 1:
             at = _close(out, at, state)
-            mark = crc16_span(out, start, at) ^ rows[row]
+            mark = crc16_span(out, begin, at) ^ rows[row]
             out[at], out[at + 1] = mark >> 8, mark & 0xFF
             at += 2
-            start, row, state = at, i + 1, _FRESH
+            begin, row, state = at, i + 1, _fresh(base)
     return at
 
 
@@ -302,7 +327,7 @@ def decode_segment(
             row_end += counts[row]
         end = at + row_end
         return end if end <= stop else -1, row + 1 - ordinal, 0, row + 1 - ordinal
-    k, r2, run, credit = START
+    k, r2, _, credit = start(base)
     hold, held = np.uint64(0), 0  # the next bits, from the top
     here, found, i, work, frame_end = at, 0, 0, 0, int64(0)
     for count in counts[ordinal:]:
@@ -328,43 +353,40 @@ def decode_segment(
             hold |= np.uint64(data[here]) << np.uint64(56 - held)
             held += 8
             here += 1
-        r = r2 >> 1
-        if (credit >> 2) + r < k + 17:
+        q = k >> 2
+        if credit >> 2 < q + 16:
             code = int64(hold >> np.uint64(56))
             code -= (code & 0x80) << 1
             length = 8
             credit = min(credit + 1, CREDIT_MAX)
-            if code != 0:
-                if abs(code) < base:
-                    return -1, 0, 0, work
-                where[found] = i
-                value[found] = code
-                found += 1
-            i += 1
-        elif int64(hold) >= 0:
-            length = 1
-            i = min(i + (1 << k), top)
-            k = min(k + 1, K_MAX)
+        elif q and int64(hold) >= 0:
+            code, length = 0, 1
+            i = min(i + (1 << q >> 1), top) - 1
+            k = _stepped(k, True, base)
             credit = min(credit + 29, CREDIT_MAX)
         else:
-            left = TOKEN_MAX - 2 - k
+            left = TOKEN_MAX - q
             token = int64(hold >> np.uint64(64 - TOKEN_MAX))
-            i += token >> (left + 1) & ((1 << k) - 1)
-            sign = -(token >> left & 1)
+            i += token >> left & ((1 << q >> 1) - 1)
             token &= (1 << left) - 1
-            prefix = PREFIX[token >> (left - 8)]
-            size = 2 * prefix + r + 1
-            magnitude = (token >> max(left - size, 0)) - (1 << r) + base
-            if prefix > 7 - r or i >= top or magnitude > 127 - sign:
+            order, prefix = (r2 >> 1) + 1, PREFIX[token >> (left - 8)]
+            size = order + max(2 * prefix, 1)
+            index = (token >> max(left - size, 0)) - ((prefix == 0) << order) + (q > 0)
+            code = ((index + 1) >> 1) + base - 1
+            if prefix > 8 - order or i >= top or code > 127 + (index & 1):
                 return -1, 0, 0, work
-            where[found] = i
-            value[found] = (magnitude ^ sign) - sign
-            found += 1
-            i += 1
-            length = k + 2 + size
-            k = max(k - 2, 0)
+            code = 0 if index == 0 else -code if index & 1 else code
+            length = q + size
+            k = _stepped(k, index == 0, base)
             r2 = min(max(r2 + R2_STEP[prefix], 0), R2_MAX)
             credit = min(credit + 33 - 4 * length, CREDIT_MAX)
+        if code != 0:
+            if abs(code) < base:
+                return -1, 0, 0, work
+            where[found] = i
+            value[found] = code
+            found += 1
+        i += 1
         held -= length
         if held < 0:
             return -1, 0, 0, work

@@ -8,7 +8,7 @@ from pymtl3 import (
     Bits8,
     Bits9,
     Bits15,
-    Bits28,
+    Bits27,
     Component,
     InPort,
     OutPort,
@@ -32,7 +32,7 @@ class RiceCoder(Component):
         s.coded = InPort()
         s.threshold = InPort(Bits7)
         s.code = InPort(Bits8)
-        s.bits = OutPort(Bits28)
+        s.bits = OutPort(Bits27)
         s.length = OutPort(Bits5)
         s.open = OutPort()
 
@@ -49,7 +49,7 @@ class RiceCoder(Component):
         s.escape = Wire()
         s.ones = Wire(Bits8)
         s.value = Wire(Bits15)
-        s.token = Wire(Bits28)
+        s.token = Wire(Bits27)
         s.width = Wire(Bits4)
 
         # Logic
@@ -76,19 +76,19 @@ class RiceCoder(Component):
                     s.distance[0:7] - (s.quotient << zext(s.r, 7)), 15
                 )
                 s.width @= s.quotient[0:4] + zext(s.r, 4) + 1
-            s.token @= zext(concat(s.span | zext(s.run, 8), s.code[7]), 28) << zext(s.width, 28)
+            s.token @= zext(concat(s.span | zext(s.run, 8), s.code[7]), 27) << zext(s.width, 27)
 
         @update
         def choose():
             s.bits @= 0
             s.length @= 0
             if ~s.coded:
-                s.bits @= zext(s.code, 28)
+                s.bits @= zext(s.code, 27)
                 s.length @= 8
             elif s.zero:
                 s.length @= zext(s.full, 5)
             else:
-                s.bits @= s.token | zext(s.value, 28)
+                s.bits @= s.token | zext(s.value, 27)
                 s.length @= zext(s.width, 5) + zext(s.k, 5) + 2
 
         @update_ff

@@ -10,22 +10,21 @@ module PayloadProof (
   wire [7:0] octet;
   PayloadPacker dut (.*);
   (* hierconn *) wire [5:0] \dut.count ;
-  (* hierconn *) wire [34:0] \dut.gathered ;
-  (* hierconn *) wire [27:0] \dut.coder.bits ;
+  (* hierconn *) wire [33:0] \dut.gathered ;
+  (* hierconn *) wire [26:0] \dut.coder.bits ;
   (* hierconn *) wire [4:0] \dut.coder.length ;
   (* hierconn *) wire \dut.coder.open ;
-  (* hierconn *) wire [3:0] \dut.coder.k ;
-  (* hierconn *) wire [3:0] \dut.coder.r2 ;
+  (* hierconn *) wire [5:0] \dut.coder.k ;
   (* hierconn *) wire [10:0] \dut.coder.run ;
-  wire [27:0] token = \dut.coder.bits ;
+  wire [26:0] token = \dut.coder.bits ;
   wire [4:0] length = \dut.coder.length ;
-  wire [34:0] gathered = \dut.gathered ;
+  wire [33:0] gathered = \dut.gathered ;
 
   // Bits inside, the tracked bit and how many are before it
   reg [5:0] inside = 0, before;
   reg following = 0, followed;
   wire take = val && rdy;
-  wire [34:0] padding = gathered << inside;
+  wire [33:0] padding = gathered << inside;
   wire [5:0] left = inside - (take ? 8 : 0);
   reg first = 1, was_reset, was_val, was_rdy;
   reg [7:0] was_octet;
@@ -56,9 +55,10 @@ module PayloadProof (
       p_stable: assert (!was_val || was_rdy || val && octet == was_octet);
     end
     if (!first) begin
-      inv_coder: assert (\dut.coder.r2 <= 12 && \dut.coder.k <= 11 && \dut.coder.run < 13'd1 << \dut.coder.k );
-      inv_inside: assert (\dut.count == inside && inside < 36);
-      inv_bit: assert (!following || before < inside && gathered[34 - before] == followed);
+      inv_coder: assert (\dut.coder.k [5:2] <= 12 && (\dut.coder.run == 0
+              || \dut.coder.run < (13'd1 << \dut.coder.k [5:2]) >> 1));
+      inv_inside: assert (\dut.count == inside && inside < 35);
+      inv_bit: assert (!following || before < inside && gathered[33 - before] == followed);
     end
   end
 

@@ -44,24 +44,24 @@ module RowProof (input clk);
   // The decoder: `at` bits are read, `have` samples are known
   reg [7:0] at;
   reg [3:0] have;
-  reg [3:0] k;
-  reg [3:0] r2;
+  reg [5:0] k;
+  reg [2:0] r2;
   reg [7:0] credit;
   wire [8 * TAKEN - 1:0] rest = bytes << at;
   wire literal, zeros_only, valid;
   wire [11:0] zeros;
   wire [7:0] value, credit_next;
   wire [4:0] length;
-  wire [3:0] k_next;
-  wire [3:0] r2_next;
-  TokenDecoder decoder (.window(rest[8 * TAKEN - 1 -: 28]), .k(k), .r2(r2), .credit(credit), .threshold(threshold),
+  wire [5:0] k_next;
+  wire [2:0] r2_next;
+  TokenDecoder decoder (.window(rest[8 * TAKEN - 1 -: 27]), .k(k), .r2(r2), .credit(credit), .threshold(threshold),
                         .literal(literal), .zeros_only(zeros_only), .zeros(zeros), .value(value), .length(length),
                         .k_next(k_next), .r2_next(r2_next), .credit_next(credit_next), .valid(valid));
-  wire decodes = have < `SAMPLES && came >= HEADER + 4 && 8 * (came - HEADER) >= at + 28;
+  wire decodes = have < `SAMPLES && came >= HEADER + 4 && 8 * (came - HEADER) >= at + 27;
   wire [12:0] reaches = have + zeros + !zeros_only;
   always @(posedge clk) begin
     if (reset) begin
-      at <= 0; have <= 0; k <= 3; r2 <= 4; credit <= 128;
+      at <= 0; have <= 0; k <= threshold < 4 ? 8 : 16; r2 <= 2; credit <= 128;
     end else if (decodes) begin
       at <= at + length; have <= reaches > `SAMPLES ? `SAMPLES : reaches[3:0];
       k <= k_next; r2 <= r2_next; credit <= credit_next;

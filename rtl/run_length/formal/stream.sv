@@ -74,7 +74,7 @@ module StreamProof (
   wire taken = recv__val && recv__rdy;
   wire [1:0] kind = recv__msg[11:10];
   wire in_rows = taken && part == ROWS;
-  wire [223:0] header = {"TLBT", 8'd2, resync, decimation, 1'b0, phase, mode, 1'b0, threshold, CHIP, row0, row1, col0,
+  wire [223:0] header = {"TLBT", 8'd3, resync, decimation, 1'b0, phase, mode, 1'b0, threshold, CHIP, row0, row1, col0,
                          col1, mask, frame_number, 6'b0, exposure, n_cm, t_int, calibration};
   wire [31:0] long_value = ~long_crc;
   wire [255:0] header_bytes = {header, long_value};

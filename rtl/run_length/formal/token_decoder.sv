@@ -2,38 +2,44 @@
 // in the decoder's state, and the state after them.
 
 module TokenDecoder (
-  input [27:0] window, input [3:0] k, input [3:0] r2, input [7:0] credit, input [6:0] threshold,
+  input [26:0] window, input [5:0] k, input [2:0] r2, input [7:0] credit, input [6:0] threshold,
   output literal, output zeros_only, output [11:0] zeros, output [7:0] value, output [4:0] length,
-  output [3:0] k_next, output [3:0] r2_next, output [7:0] credit_next, output valid
+  output [5:0] k_next, output [2:0] r2_next, output [7:0] credit_next, output valid
 );
-  wire [2:0] r = r2[3:1];
-  assign literal = {1'b0, credit[7:2]} + r < k + 7'd17;
-  assign zeros_only = !literal && !window[27];
+  wire dense = threshold < 4;
+  wire [3:0] q = k[5:2];
+  wire [2:0] order = r2[2:1] + 3'd1;
+  wire [11:0] span = q == 0 ? 0 : 12'd1 << (q - 4'd1);
+  assign literal = credit[7:2] < q + 6'd16;
+  assign zeros_only = !literal && q != 0 && !window[26];
 
-  // 1, n in k bits, the sign, p zero bits and the value from its leading one on: 2 p + r + 1 bits of it
-  wire [26:0] behind_one = window[26:0];
-  wire [10:0] n = behind_one[26:16] >> (11 - k);
-  wire [26:0] at_sign = behind_one << k;
-  wire sign = at_sign[26];
-  wire [25:0] number = at_sign[25:0];
+  // A single sample (q = 0); or 1, n in q - 1 bits, a value. Of a value p zero bits, a one, and the bits behind it
+  wire [10:0] n = q == 0 ? 11'd0 : window[25:15] >> (4'd12 - q);
+  wire [26:0] number = window << q;
   reg [4:0] p;
   integer i;
   always @* begin
-    p = 26;
-    for (i = 0; i < 26; i = i + 1) if (number[i]) p = 25 - i;
+    p = 27;
+    for (i = 0; i < 27; i = i + 1) if (number[i]) p = 26 - i;
   end
-  wire [4:0] bits = 2 * p + r + 1;
-  wire [25:0] x = number >> (26 - bits);
+  wire [5:0] bits = p == 0 ? order + 1 : order + 2 * p;
+  wire [26:0] whole = number >> (27 - bits);
+  wire [8:0] x = p == 0 ? whole[8:0] - (9'd1 << order) : whole[8:0];
   wire [7:0] base = threshold == 0 ? 1 : threshold;
-  wire [8:0] magnitude = x[8:0] + base - (9'd1 << r);
 
-  assign valid = literal || zeros_only || p + r <= 7 && magnitude <= 127 + sign;
-  assign zeros = literal ? 0 : zeros_only ? 12'd1 << k : n;
-  assign value = literal ? window[27:20] : sign ? -magnitude[7:0] : magnitude[7:0];
-  assign length = literal ? 8 : zeros_only ? 1 : 2 + k + bits;
+  // 0, -base, base, -base - 1, base + 1, ...; behind zeros without the 0
+  wire [8:0] place = q == 0 ? x : x + 1;
+  wire [8:0] magnitude = place == 0 ? 0 : ((place + 9'd1) >> 1) + base - 1;
+
+  assign valid = literal || zeros_only || p + order <= 8 && magnitude <= 127 + place[0];
+  assign zeros = literal ? 0 : zeros_only ? span : n;
+  assign value = literal ? window[26:19] : place[0] ? -magnitude[7:0] : magnitude[7:0];
+  assign length = literal ? 8 : zeros_only ? 1 : q + bits;
 
   wire [9:0] spent = credit + 10'd33 - 4 * length;
-  assign k_next = literal ? k : zeros_only ? (k == 11 ? 11 : k + 1) : k < 2 ? 0 : k - 2;
-  assign r2_next = literal || zeros_only ? r2 : p == 0 ? (r2 == 0 ? 0 : r2 - 1) : p > 1 && r2 != 12 ? r2 + 1 : r2;
+  wire none = zeros_only || place == 0;
+  assign k_next = literal ? k : none ? (k >= 48 ? k : k + (dense ? 1 : 4))
+                  : dense ? (k == 0 ? 0 : k - 1) : k < 12 ? 4 : k - 8;
+  assign r2_next = literal || zeros_only ? r2 : p == 0 ? (r2 == 0 ? 0 : r2 - 1) : p > 1 && r2 != 7 ? r2 + 1 : r2;
   assign credit_next = spent > 255 ? 255 : spent[7:0];
 endmodule

@@ -3,28 +3,28 @@
 
 module TokensProof (
   input clk, input reset, input restart, input push, input coded, input [6:0] threshold, input [7:0] code,
-  input [27:0] tail
+  input [26:0] tail
 );
-  wire [27:0] bits;
+  wire [26:0] bits;
   wire [4:0] length;
   wire open;
   TokenCoder dut (.*);
-  (* hierconn *) wire [3:0] \dut.k ;
-  (* hierconn *) wire [3:0] \dut.r2 ;
+  (* hierconn *) wire [5:0] \dut.k ;
+  (* hierconn *) wire [2:0] \dut.r2 ;
   (* hierconn *) wire [10:0] \dut.run ;
   (* hierconn *) wire [7:0] \dut.credit ;
 
   // The decoder
-  reg [3:0] k;
-  reg [3:0] r2;
+  reg [5:0] k;
+  reg [2:0] r2;
   reg [7:0] credit;
-  wire [27:0] window = bits << (28 - length) | tail >> length;
+  wire [26:0] window = bits << (27 - length) | tail >> length;
   wire literal, zeros_only, valid;
   wire [11:0] zeros;
   wire [7:0] value, credit_next;
   wire [4:0] decoded_length;
-  wire [3:0] k_next;
-  wire [3:0] r2_next;
+  wire [5:0] k_next;
+  wire [2:0] r2_next;
   TokenDecoder decoder (.window(window), .k(k), .r2(r2), .credit(credit), .threshold(threshold), .literal(literal),
                         .zeros_only(zeros_only), .zeros(zeros), .value(value), .length(decoded_length), .k_next(k_next),
                         .r2_next(r2_next), .credit_next(credit_next), .valid(valid));
@@ -41,7 +41,7 @@ module TokensProof (
   always @(posedge clk) begin
     first <= 0; was_reset <= reset;
     if (reset || restart) begin
-      run <= 0; k <= 3; r2 <= 4; credit <= 128;
+      run <= 0; k <= threshold < 4 ? 8 : 16; r2 <= 2; credit <= 128;
     end else if (makes) begin
       run <= 0; k <= k_next; r2 <= r2_next; credit <= credit_next;
     end else if (push && coded) run <= run + 1;
@@ -53,15 +53,15 @@ module TokensProof (
       p_length: assert (!makes || decoded_length == length && valid);
       p_literal: assert (!(makes && literal) || value == sample && run == 0);
       p_zeros: assert (!(makes && zeros_only) || is_zero && zeros == run + 1);
-      p_value: assert (!(makes && !literal && !zeros_only) || !is_zero && value == sample && zeros == run);
+      p_value: assert (!(makes && !literal && !zeros_only) || (k < 4 || !is_zero) && value == sample && zeros == run);
       p_waits: assert (!(push && coded && length == 0) || is_zero);
       p_plain: assert (!(push && !coded) || length == 8 && bits[7:0] == code);
       p_open: assert (open == (run != 0));
     end
     if (!first) begin
       inv_coder: assert (\dut.k == k && \dut.r2 == r2 && \dut.credit == credit && \dut.run == run
-                         && r2 <= 12 && k <= 11 && run < 13'd1 << k);
-      inv_credit: assert (run == 0 || {1'b0, credit[7:2]} + r2[3:1] >= k + 7'd17);
+                         && k[5:2] <= 12 && (run == 0 || run < (13'd1 << k[5:2]) >> 1));
+      inv_credit: assert (run == 0 || credit[7:2] >= k[5:2] + 6'd16);
     end
   end
 
@@ -69,6 +69,7 @@ module TokensProof (
     c_literal: cover (makes && literal);
     c_zeros: cover (makes && zeros_only);
     c_value: cover (makes && !literal && !zeros_only && run == 2);
+    c_single: cover (makes && !literal && k < 4 && value == 0);
     c_open: cover (open);
   end
 endmodule

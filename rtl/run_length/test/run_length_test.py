@@ -12,7 +12,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from talbot.models.digital.stream import StreamHeader, decode_stream, encode_frame, encode_marked, segments
-from talbot.models.digital.stream.payload import START, code_sample
+from talbot.models.digital.stream.payload import K_MAX, TOKEN_MAX, code_sample, start
 from talbot.models.digital.stream.test.frames import samples_of
 from talbot.models.digital.stream.trailer import trailer
 from talbot.models.parameters import LANES as LANE_COUNTS
@@ -182,7 +182,7 @@ def frames(draw):
         Window(row0, row1, col0, col1),
         phase=mode == "tof" and draw(st.booleans()),
         mask=draw(st.sampled_from([2**24 - 1, 0xF0F, 1, 0x800001])),
-        threshold=draw(st.integers(0, 127)),
+        threshold=draw(st.one_of(st.integers(0, 4), st.integers(0, 127))),
         decimation=draw(st.integers(0, 3)),
         frame_number=draw(st.integers(0, 65535)),
         resync=draw(st.integers(0, 3)),
@@ -289,36 +289,22 @@ class TestRunLengthFL:
         assert got[HEADER_BYTES:-TRAILER_BYTES] == b"".join((0xFFFF ^ row).to_bytes(2, "big") for row in rows)
         assert self.bench(header_of()).run(messages)[HEADER_BYTES:-TRAILER_BYTES] == (0xFFFF ^ 4).to_bytes(2, "big")
 
-    def test_the_longest_tokens(self):
-        """The runs' order rises to its end, then the largest value follows: a token of 22 to 28 bits at every place.
-
-        What a row begins with brings the runs' order to 0, and the token to its place.
-        """
-        begins = (
-            (1, 1, 1),
-            (1, 1, 4, 1, 1),
-            (1, 1, 1, 1, 4),
-            (1, 1, 1, 1),
-            (1, 1, 1, 1, 9),
-            (1, 1, 1, 2),
-            (1, 1, 4, 1),
-            (9, 1, 1, 1),
-            (9, 1),
-            (1, 9, 9),
-            (9, 1, 1),
-            (1, 1),
-            (1, 1, 4),
-            (1, 9, 1),
-            (1, 4, 9, 9),
-            (1, 1, 4, 4),
-        )
-        runs = 2047, 1365, 682, 1032, 119, 64, 1, 100, 85, 42, 21, 3, 127, 85, 42, 90
-        rises = [2047] * 4 + [127] * 12  # zeros that raise the order from 0 to 11, and to 7
-        rows = [
-            (row, [*begin, *[0] * (rise + run), -128])
-            for row, (begin, rise, run) in enumerate(zip(begins, rises, runs))
-        ]
-        header = header_of(threshold=1, resync=0)
+    @pytest.mark.parametrize("place, order", [*((place, 1) for place in range(8)), (7, 2), (7, 3), (7, 4)])
+    def test_the_longest_tokens(self, place, order):
+        """After runs of 2^11 zeros the value of most bits, at every place in a byte."""
+        pick, header = random.Random(8 * place + order), header_of(threshold=4)
+        while True:
+            codes, state, sent = [], start(header.threshold), 0
+            begin = [pick.choice((-40, -9, -4, 4, 5, 9)) for _ in range(pick.randrange(12))]
+            while begin or state[0] < K_MAX:
+                codes.append(begin.pop() if begin else 0)
+                _, length, *state = code_sample(codes[-1], header.threshold, *state)
+                sent += length
+            if (sent % 8, state[1] // 2 + 1, state[2]) == (place, order, 0):
+                break
+        run = pick.choice((0, 682, 1365, 2047))
+        rows = [(0, [*codes, *[0] * run, 127, -128])]  # a token that ends in ones: all bits of the register
+        assert code_sample(127, header.threshold, *state)[1] == TOKEN_MAX + 1 - order
         assert self.bench(header).run(scan_of(rows)) == stream_of(header, rows, 0, 0)
 
     def test_segments(self):
@@ -341,21 +327,8 @@ class TestRunLengthFL:
         got = self.bench(header).run(scan_of(rows))
         assert got == stream_of(header, rows, 0, 0) and len(got) < HEADER_BYTES + TRAILER_BYTES + 8
 
-    @pytest.mark.parametrize("order", [1, 2, 3])
-    def test_the_longest_token_behind_seven_bits(self, order):
-        """It ends at the end of the gathering register: after runs of 2^11 zeros, the value of most bits."""
-        pick, header = random.Random(order), header_of(threshold=1)
-        while True:
-            codes, state, sent = [], START, 0
-            start = [pick.choice((-40, -9, -1, 1, 2, 9)) for _ in range(pick.randrange(12))]
-            while start or state[0] < 11:
-                codes.append(start.pop() if start else 0)
-                _, length, *state = code_sample(codes[-1], header.threshold, *state)
-                sent += length
-            if (sent % 8, state[1] // 2, state[2]) == (7, order, 0):
-                break
-        rows = [(0, [*codes, -128, 127])]
-        assert code_sample(-128, header.threshold, *state)[1] == 28 - order
+    def test_the_largest_order_of_the_runs_stays(self):
+        header, rows = header_of(threshold=4), [(0, [*[0] * 9000, 5])]
         assert self.bench(header).run(scan_of(rows)) == stream_of(header, rows, 0, 0)
 
     def test_the_largest_order_of_the_values_stays(self):
@@ -363,6 +336,15 @@ class TestRunLengthFL:
         codes = [13, -13, 25, 25, -49, 49, 97, -97, 127, -128, 127, 64]
         header, rows = header_of(threshold=1), [(0, codes), (1, codes[::-1])]
         assert self.bench(header).run(scan_of(rows)) == stream_of(header, rows, 0, 0)
+
+    def test_zeros_among_single_samples(self):
+        """Under the noise: samples one by one, runs that begin and end, thresholds on both sides of the limit."""
+        pick = random.Random(7)
+        codes = [pick.choice((0, -1, 1, -2, 5)) for _ in range(60)] + [0] * 40
+        codes += [pick.choice((0, 0, 3, -4)) for _ in range(60)]
+        for threshold in range(6):
+            header, rows = header_of(threshold=threshold), [(3, codes), (4, codes[::-1])]
+            assert self.bench(header).run(scan_of(rows)) == stream_of(header, rows, 0, 0)
 
     def test_frames_back_to_back(self):
         """Each frame is complete, whatever was before: frames of any mode, stray messages, a reset in a frame."""
@@ -492,9 +474,13 @@ class TestRunLengthEveryInput:
                 codes += [0] * pick.choice((0, 0, 1, pick.randint(0, 9), 1 << pick.randint(0, 7)))
                 codes += [max(-128, min(127, round(pick.gauss(0, scale)))) for _ in range(pick.randint(0, 9))]
             rows.append((pick.getrandbits(10), codes))
-        for threshold, mode in ((0, "edge"), (9, "edge"), (60, "edge"), (0, "raw")):
+        for threshold, mode in ((0, "edge"), (3, "edge"), (9, "edge"), (60, "edge"), (0, "raw")):
             plain = [(row, [code & 0xFF for code in codes]) for row, codes in rows]
             self.check(header_of(mode, threshold=threshold), rows if mode == "edge" else plain)
+
+    def test_the_longest_runs_under_the_noise(self):
+        """Their order rises in quarter steps to its end."""
+        self.check(header_of(threshold=3), [(1, [0] * 12_000 + [-128, 9, 0, 0])])
 
     def test_a_stall_in_any_cycle(self):
         """Of the link or the scan, of one cycle or some."""

@@ -3,7 +3,7 @@
 import numpy as np
 
 from talbot.models.digital.stream import StreamHeader, encode_frame, encode_marked
-from talbot.models.digital.stream.payload import START, base_of, code_sample
+from talbot.models.digital.stream.payload import base_of, code_sample, start
 from talbot.models.parameters import FrameParameters, Window
 from talbot.models.parameters.stream_format import FIELD_BYTES, HEADER_BYTES
 
@@ -32,27 +32,31 @@ FIELDS = (
 
 def token_lines(codes, threshold):
     """A line for each token of a row: the state before it, its meaning, its bits."""
-    state, lines = START, []
+    base = base_of(threshold)
+    state, lines = start(base), []
     for code in codes:
         k, r2, run, credit = state
-        bits, length, *state = code_sample(int(code), base_of(threshold), *state)
+        bits, length, *state = code_sample(int(code), base, *state)
         if not length:
             continue
         text = f"{bits:0{length}b}"
-        if run == 0 and credit // 4 + r2 // 2 < k + 17:
+        q = k // 4
+        if run == 0 and credit // 4 < q + 16:
             said = f"literal {code}"
+        elif q == 0:
+            said = f"{code}"
         elif text == "0":
-            said = f"{1 << k} zeros"
+            said = f"{1 << q - 1} zeros"
         else:
             said = f"{run} zeros, then {code}"
-            text = " ".join(filter(None, (text[0], text[1 : 1 + k], text[1 + k], text[2 + k :])))
+            text = " ".join(filter(None, (text[0], text[1:q], text[q:])))
         lines.append(_token(k, r2, credit, said, text))
     k, r2, run, credit = state
     return lines + [_token(k, r2, credit, f"{run} zeros, the end", "0")] * (run > 0)
 
 
 def _token(k, r2, credit, said, text):
-    return f"  k={k} r2={r2} credit={credit:<4} {said:22} {text}"
+    return f"  k={k:<2} r2={r2} credit={credit:<4} {said:22} {text}"
 
 
 def row_example(row, codes, threshold):
@@ -95,6 +99,11 @@ def edges():
     return row_example(5, [0] * 5 + [12, 0, 0, -10, 15, 0, -31] + [0] * 30 + [10] + [0] * 7, 10)
 
 
+def faint():
+    """Under the noise: single samples, zeros among them, until zeros prevail."""
+    return row_example(8, [-1, 1, -2, 0, 1, -1, 3, -1, -2, 1, 0, -1, -3, 0, 0, 1, 0, 0, 0, 0, -1], 1)
+
+
 def noise():
     """Values that do not compress: literals follow when the credit is used up."""
     return row_example(0, [-128, 127, -128, 127, -128, 127, -128, 127, 0, 100], 0)
@@ -109,7 +118,7 @@ def small_frame():
     return frame_example(header, np.arange(24).reshape(2, 6, 2) * 10, 22, 0)
 
 
-EXAMPLES = edges, noise, small_frame
+EXAMPLES = edges, faint, noise, small_frame
 
 if __name__ == "__main__":
     print("\n\n".join("\n".join(example()) for example in EXAMPLES))

@@ -4,7 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from talbot.models.digital.stream import encode_payload
-from talbot.models.digital.stream.payload import START, TOKEN_MAX, base_of, code_sample, decode_segment, row_bytes_max
+from talbot.models.digital.stream.payload import TOKEN_MAX, base_of, code_sample, decode_segment, row_bytes_max, start
 
 CODES = st.lists(st.one_of(st.just(0), st.integers(-128, 127), st.integers(-3, 3)), max_size=300)
 
@@ -56,7 +56,7 @@ def test_incompressible_rows_grow_by_less_than_a_sixteenth(seed):
 
 def test_worst_case_chosen_sample_by_sample():
     """An adversary who knows the coder's state and takes whichever sample costs most bits."""
-    state, codes, bits = START, [], 0
+    state, codes, bits = start(1), [], 0
     for _ in range(2000):
         options = [(code_sample(code, 1, *state), code) for code in (-128, 127, 1, -1, 2, 10, 0)]
         (_, length, *state), code = max(options, key=lambda option: option[0][1])
