@@ -1,8 +1,10 @@
-"""Cells drawn by c4m-flexcell on a busy machine."""
+"""Cells drawn by c4m-flexcell on a busy machine: by a library, and by PDKMaster's processes when they are imported."""
 
 import asyncio
 import contextlib
+import importlib
 from collections.abc import Iterator
+from types import ModuleType
 from typing import Any
 
 
@@ -16,3 +18,9 @@ def patience() -> Iterator[None]:
         yield
     finally:
         library.wait = wait
+
+
+def imported(module: str) -> ModuleType:
+    """Import a module of a PDKMaster process, which may draw cells."""
+    with patience():
+        return importlib.import_module(module)

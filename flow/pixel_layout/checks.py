@@ -1,6 +1,5 @@
 """Design rules and layout against circuit of drawn pixels, by the decks that PDKMaster exports for the process."""
 
-import importlib
 from pathlib import Path
 
 from talbot.base.cache import cached, digest
@@ -11,6 +10,7 @@ from talbot.base.steps import StepError
 from talbot.flow.layout.geometry.decks import broken_rules, hole_rules, is_circuit, via_rules, with_taps
 from talbot.flow.layout.pdkmaster import export_decks
 from talbot.platforms.coriolis import coriolis_platform
+from talbot.platforms.patience import imported
 from talbot.platforms.pixel import pixel_process
 
 STORE = BUILD / "pixel" / "decks"
@@ -27,8 +27,8 @@ def common_decks(pdk: str) -> tuple[list[str], str]:
     tech = coriolis_platform(pdk)
 
     def make(folder: Path) -> None:
-        devices = importlib.import_module(tech.package).prims_spiceparams
-        exported = export_decks(importlib.import_module(f"{tech.package}.pdkmaster"), devices)
+        devices = imported(tech.package).prims_spiceparams
+        exported = export_decks(imported(f"{tech.package}.pdkmaster"), devices)
         for name, text in exported.items():
             (folder / name).write_text(text)
 

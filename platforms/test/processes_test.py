@@ -1,5 +1,6 @@
 """Only platforms/<pdk> describes a process; every process has what the layout flow requires."""
 
+import asyncio
 import importlib.util
 import re
 
@@ -9,7 +10,7 @@ from talbot.base.paths import ROOT
 from talbot.models.parameters import ParameterError
 from talbot.platforms.coriolis import coriolis_platform
 from talbot.platforms.extraction import extraction_platform
-from talbot.platforms.patience import patience
+from talbot.platforms.patience import imported
 from talbot.platforms.processes import PROCESSES
 
 # "sky130" in quotes: a default
@@ -52,8 +53,7 @@ def test_the_wheel_agrees(pdk):
     tech = coriolis_platform(pdk)
     if not importlib.util.find_spec("pdkmaster"):
         pytest.skip("pdkmaster: not installed; make layout installs it")
-    with patience():
-        wheel = importlib.import_module(f"{tech.package}.pdkmaster")
+    wheel = imported(f"{tech.package}.pdkmaster")
     for part in (*tech.metals, *tech.vias):
         assert wheel.gds_layers[part.name] == part.gds
     for metal in tech.metals[1:]:
@@ -63,6 +63,20 @@ def test_the_wheel_agrees(pdk):
     for via in tech.vias:
         rules = wheel.tech.primitives[via.name]
         assert via.size_um == pytest.approx(rules.width) and via.space_um >= rules.min_space
+
+
+def test_a_busy_machine_has_a_minute_for_a_cell(tmp_path, monkeypatch):
+    """A process that draws while it is imported, and takes longer than it allows itself."""
+    (tmp_path / "slow_process.py").write_text(
+        "import asyncio\n"
+        "async def draw():\n"
+        "    return await asyncio.wait([asyncio.create_task(asyncio.sleep(0.05))], timeout=0.01)\n"
+        "done, running = asyncio.run(draw())\n"
+    )
+    monkeypatch.syspath_prepend(tmp_path)
+    wait = asyncio.wait
+    assert not imported("slow_process").running
+    assert asyncio.wait is wait
 
 
 def test_an_unknown_process():

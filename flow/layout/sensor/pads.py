@@ -8,6 +8,7 @@ from typing import Any
 from talbot.base.gds import db
 from talbot.platforms.layers import GdsLayer
 from talbot.platforms.pads import PadProcess
+from talbot.platforms.patience import imported
 from talbot.platforms.pixel import PixelProcess
 
 # SkyWater's periphery rules, nm
@@ -32,7 +33,7 @@ AROUND = (
 
 def library(process: PadProcess) -> tuple[Any, Any]:
     """PDKMaster's libraries with all layouts drawn: of the pads, and of the gates in them."""
-    io = import_module(process.module)
+    io = imported(process.module)
     made = import_module("pdkmaster.design.library").Library(name="IOLib", tech=io.tech)
     factory = getattr(io, process.factory)(lib=made, cktfab=io.cktfab, layoutfab=io.layoutfab)
     assert factory.get_cell("Gallery").circuit  # asked for, it makes all cells

@@ -1,6 +1,5 @@
 """The cells of a process as the other steps need them: for Coriolis, KLayout, Yosys and simulators."""
 
-import importlib
 import json
 from typing import Any
 
@@ -9,6 +8,7 @@ from talbot.base.steps import Files, Step
 from talbot.cells.standard import standard_cells
 from talbot.platforms.coriolis import coriolis_platform
 from talbot.platforms.extraction import device_models, extraction_platform
+from talbot.platforms.patience import imported
 
 from .. import pdkmaster
 from ..netlist.netlist import SUPPLIES
@@ -41,8 +41,8 @@ class Library(Step[PdkParameters]):
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         pdk = self.parameters.pdk
         tech = coriolis_platform(pdk)
-        devices = importlib.import_module(tech.package).prims_spiceparams
-        description = importlib.import_module(f"{tech.package}.pdkmaster")
+        devices = imported(tech.package).prims_spiceparams
+        description = imported(f"{tech.package}.pdkmaster")
         standard = standard_cells(pdk, outputs["gds"].parents[1] / "drawn")
         library = standard.library
         cells = [cell for cell in library.cells if cell.name != "Gallery"]
