@@ -122,7 +122,7 @@ def _characteristics(s: dict[str, Any]) -> Figure:
         right.plot(electrons / 1e3, 1e2 * (volts - _line(electrons, volts)) / np.ptp(volts), linewidth=0.9)
     left.set(xlabel="1000 electrons", ylabel="V at the column")
     right.set(xlabel="1000 electrons", ylabel="off a line, % of the range")
-    left.legend(fontsize=6)
+    left.legend(fontsize=6, frameon=False)
     return figure
 
 

@@ -43,7 +43,7 @@ def pareto_plot(points: Sequence[Point]) -> Figure:
         axes.set_xlabel("routed area, um2")
         axes.margins(0.08)
     left.set(ylabel="highest clock at the slowest corner, MHz")
-    left.legend(title="beside a mark: fraction bits", fontsize=9, title_fontsize=9)
+    left.legend(title="beside a mark: fraction bits", fontsize=9, title_fontsize=9, frameon=False)
     right.set(ylabel="energy a result in a real frame, pJ", yscale="log")
     right.yaxis.set_minor_formatter(LogFormatter(labelOnlyBase=False, minor_thresholds=(3, 1)))
     return figure
@@ -72,7 +72,7 @@ def effort_plot(points: Sequence[Point]) -> Figure:
     marks = [(mark, "0.5", f"effort {effort}") for effort, mark in MARKS.items()]
     marks += [("o", colour[share], f"utilization {share:g}") for share in shares] + [("x", "0.5", "did not close")]
     handles = [Line2D([], [], linestyle="", marker=mark, color=c, label=label) for mark, c, label in marks]
-    figure.legend(handles=handles, loc="outside upper center", ncols=len(handles), fontsize=8)
+    figure.legend(handles=handles, loc="outside upper center", ncols=len(handles), fontsize=8, frameon=False)
     return figure
 
 
