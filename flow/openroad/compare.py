@@ -32,7 +32,10 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Print the table of the designs' summaries; a back end that has not run has none of the figures."""
-    before = "".join(marked(options.document, "back ends")) if options.document else ""
+    before = ""
+    if options.document:
+        marked(options.document, "back ends")  # refused before the work
+        before = options.document.read_text()
     text = table([design(name).name for name in options.designs], options.out, before)
     if options.document:
         insert(options.document, "back ends", text)
