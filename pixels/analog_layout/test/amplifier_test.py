@@ -68,7 +68,7 @@ def test_both_banks_are_drawn_alike():
     for side in "mp":
         canvas = new_canvas(MASKS, side)
         plan = BankPlan(2.0, bank_nets(side), f"x{side}", ends, 3.0)
-        draw_bank(canvas, plan, 0.0, side == "m")
+        draw_bank(canvas, plan, MASKS.fringe, 0.0, side == "m")
         height = round(plan.height_um * 1000)
         turn = db.Trans() if side == "m" else db.Trans(db.Trans.M0, 0, height)
         shapes = [canvas.cell.shapes(canvas.layout.layer(*MASKS.base.metals[level].gds)) for level in (1, 2, 3)]
