@@ -7,7 +7,7 @@ import numpy.typing as npt
 from scipy.ndimage import distance_transform_edt
 
 from talbot.models.digital.exposure import integration_cycles
-from talbot.models.parameters import ELEMENTARY_CHARGE, AmpTiming, SensorParameters
+from talbot.models.parameters import ELEMENTARY_CHARGE, AmpTiming, ElectricalParameters, SensorParameters
 from talbot.models.pixel.weights import view_weights
 
 FULL = 255.0  # LSB: both wells of a pair full
@@ -33,6 +33,11 @@ def white_sum(sensor: SensorParameters, timing: AmpTiming = AmpTiming()) -> floa
     return 2 * e.white_current * seconds / ELEMENTARY_CHARGE / e.lsb_electrons
 
 
+def _still(e: ElectricalParameters) -> float:
+    """Variance of a diode's samples that light does not change, electrons squared."""
+    return e.read_noise**2 + e.offset_fpn**2 + e.column_fpn**2 + e.flicker_noise**2
+
+
 def sum_noise(
     image: npt.NDArray[np.floating], sensor: SensorParameters, timing: AmpTiming = AmpTiming()
 ) -> npt.NDArray[np.floating]:
@@ -54,7 +59,7 @@ def sum_noise(
     """
     e = sensor.electrical
     white = white_sum(sensor, timing) * e.lsb_electrons
-    still = 2 * (e.read_noise**2 + e.offset_fpn**2 + e.column_fpn**2 + e.flicker_noise**2)
+    still = 2 * _still(e)
     light = np.maximum(image, 0) * white
     pattern = (e.gain_fpn * light) ** 2 / 2
     return np.sqrt(light + still + pattern + e.lsb_electrons**2 / 12) / white
@@ -84,7 +89,7 @@ def diode_noise(
     e, c = sensor.electrical, sensor.converter
     white = white_sum(sensor, timing) * e.lsb_electrons / 2
     electrons = np.maximum(light, 0) * white
-    still = e.read_noise**2 + e.offset_fpn**2 + e.column_fpn**2 + e.flicker_noise**2
+    still = _still(e)
     analog = electrons + still + (e.gain_fpn * electrons) ** 2
     code = e.lsb_electrons / 2  # raw codes are of twice a diode
     codes = 1 / 12 + c.noise**2 + c.ktc**2 + c.offset**2 + c.dnl**2 + c.inl**2 / 2  # a bow's mean square is half
