@@ -10,14 +10,21 @@ from typing import Any
 
 @contextlib.contextmanager
 def patience() -> Iterator[None]:
-    """Let c4m-flexcell give up on a cell after 60 s instead of 1 s of wall clock, which a busy machine exceeds."""
+    """Let c4m-flexcell give up on a cell after 60 s instead of 1 s of wall clock, which a busy machine exceeds.
+
+    It leaves its event loop open, so it gets one that is closed here.
+    """
     library: Any = asyncio
     wait = library.wait
     library.wait = lambda tasks, timeout: wait(tasks, timeout=60 * timeout)
+    loop = asyncio.new_event_loop()
+    asyncio.set_event_loop(loop)
     try:
         yield
     finally:
         library.wait = wait
+        asyncio.set_event_loop(None)
+        loop.close()
 
 
 def imported(module: str) -> ModuleType:

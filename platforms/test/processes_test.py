@@ -71,11 +71,13 @@ def test_a_busy_machine_has_a_minute_for_a_cell(tmp_path, monkeypatch):
         "import asyncio\n"
         "async def draw():\n"
         "    return await asyncio.wait([asyncio.create_task(asyncio.sleep(0.05))], timeout=0.01)\n"
-        "done, running = asyncio.run(draw())\n"
+        "loop = asyncio.get_event_loop()\n"
+        "done, running = loop.run_until_complete(draw())\n"
     )
     monkeypatch.syspath_prepend(tmp_path)
     wait = asyncio.wait
-    assert not imported("slow_process").running
+    slow = imported("slow_process")
+    assert not slow.running and slow.loop.is_closed()
     assert asyncio.wait is wait
 
 

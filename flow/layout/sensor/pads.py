@@ -8,7 +8,7 @@ from typing import Any
 from talbot.base.gds import db
 from talbot.platforms.layers import GdsLayer
 from talbot.platforms.pads import PadProcess
-from talbot.platforms.patience import imported
+from talbot.platforms.patience import imported, patience
 from talbot.platforms.pixel import PixelProcess
 
 # SkyWater's periphery rules, nm
@@ -36,8 +36,9 @@ def library(process: PadProcess) -> tuple[Any, Any]:
     io = imported(process.module)
     made = import_module("pdkmaster.design.library").Library(name="IOLib", tech=io.tech)
     factory = getattr(io, process.factory)(lib=made, cktfab=io.cktfab, layoutfab=io.layoutfab)
-    assert factory.get_cell("Gallery").circuit  # asked for, it makes all cells
-    assert all(factory.get_cell(name).layout for name in process.cells)
+    with patience():
+        assert factory.get_cell("Gallery").circuit  # asked for, it makes all cells
+        assert all(factory.get_cell(name).layout for name in process.cells)
     return made, factory.spec.stdcellfab.lib
 
 
