@@ -10,10 +10,10 @@ from coloquinte import CellOrientation, CellRowPolarity, ColoquinteParameters, R
 from ..netlist.placed import MIRRORED
 from .repair import MORE, Plan
 
-FULL = 0.95  # of the rows, at most: cells, and what is kept free beside each
-SEED, TURNS = 1, 2  # the room beside a cell follows from the wires of the turn before
-GAP = 1  # site beside a cell, where there is room: a diode's
-BIN = 8  # rows: side of a square in which wires are counted
+FULL = 0.99  # of the rows, at most: cells, and what is kept free beside each
+SEED, TURNS = 1, 6  # the room beside a cell follows from the wires of the turn before
+GAPS = 2, 1, 0  # sites beside each cell, the first that there is room for: a diode's and one between pins
+BIN = 4  # rows: side of a square in which wires are counted
 Ints = npt.NDArray[np.int64]
 Floats = npt.NDArray[np.float64]
 Ends = list[int | tuple[float, float]]
@@ -53,7 +53,7 @@ def arranged(plan: Plan, fixed: Collection[str], effort: int, spread: float) -> 
     parameters = ColoquinteParameters(effort, SEED)
     room = sum(end - begin for _, begin, end in spans)
     room = widths.sum() + spread * max(0.0, FULL * room - widths.sum())
-    least = widths + GAP if widths.sum() + GAP * len(widths) <= room else widths
+    least = widths + next(gap for gap in GAPS if not gap or widths.sum() + gap * len(widths) <= room)
     wires = np.bincount([end for ends in which for end in ends], minlength=len(middles))[: len(names)].astype(float)
     for _ in range(TURNS):
         circuit.cell_width = [*filled(least, wires, room).tolist(), *zeros]
