@@ -36,7 +36,7 @@ def regrouped(plan: Plan, drives: Drives, sizes: Sequence[ClockCells], most: int
 
     Every group has a gate or a buffer in its middle (see `netlist.gating.drive_registers`), is of ``most`` registers at
     most and no load that is too large for the last of ``sizes``. The tree's leaves get about as many of these each, and
-    the size that these ask for.
+    all of the tree the size that this asks for.
     Raises StepError where a driver has no room.
     """
     gate, buffer = sizes[0].gate, sizes[0].buffer
@@ -64,10 +64,14 @@ def regrouped(plan: Plan, drives: Drives, sizes: Sequence[ClockCells], most: int
         loads.setdefault(ends[number], []).append(end)
     for net, sinks in loads.items():
         plan.connect(sinks, net)
-        if net in nets:  # the port's is driven from outside
-            driver, pin, _ = nets[net]
-            load = plan.load(drives, net, [plan.point(driver)], sinks)
+    branches = {net: nets[net] for net in loads if net in nets}  # the port's is driven from outside
+    while branches:  # the leaves, then what drives them, up to the port
+        above = set[str]()
+        for net, (driver, pin, sinks) in branches.items():
+            load = plan.load(drives, net, [plan.point(driver)], loads.get(net, sinks))
             swap(plan, driver, drives.best(plan.instances[driver].cell, pin, load))
+            above.add(plan.instances[driver].pins[buffer.input])
+        branches = {net: nets[net] for net in sorted(above) if net in nets}
     return len(made) - sum(map(len, groups.values()))
 
 

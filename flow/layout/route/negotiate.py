@@ -24,7 +24,7 @@ from .view import Straight
 from .violations import Violations, find, find_in_file, split_levels
 
 # Evicted nets, at most: for every one that is to be routed; more, and where a net is to get shorter
-PATIENCE, ALLOWED, ALLOWED_SHORTER = 6, 1000, 30
+PATIENCE, ALLOWED, ALLOWED_SHORTER = 6, 1000, 150
 TRIES = 3  # of a net without a path, while others move
 HASTY_TRIES = 3  # of a net, which look for a path nearby alone
 WHOLE = 4  # every such try of a net begins without the legs that nothing is in the way of
@@ -37,7 +37,7 @@ STRAIGHT = tuple(Straight(nm, trunk) for nm in (500, 100) for trunk in (False, T
 PROTECTED = 8  # weight of a net that was straightened
 # Weight, from the start, of a net that may be no longer than so many of its half perimeters: others go around it
 TIGHT, HELD = 1.75, 4
-MOST_EVICTED = 12  # nets in the way of one that is to get shorter
+MOST_EVICTED = 40  # nets in the way of one that is to get shorter
 MOST_BROKEN = 0.2  # share of the nets that a check may find to be rerouted
 
 
