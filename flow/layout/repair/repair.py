@@ -21,6 +21,7 @@ OHM_UM, VIAS_OHM = 0.5, 30.0  # of a net: a um of wire, its vias
 NEAR, HALF = 0.1, 0.5  # of the way from a driver to the middle of its sinks: its only buffer, one of many
 FULL = 0.9  # of what the largest buffer drives, at most, in a group of sinks
 MORE = 0.06  # of a net's length for each pin beyond two: the chip's capacitances as estimated, and as extracted
+DETOUR, LITTLE = 2.0, 1.4  # wire that a larger driver is to bear, and one without a larger form, by the shortest
 OWN, HALFWAY = "_repair", "_halfway"  # end the names of buffers that are inserted here
 FAR_UM = 250.0
 Point = tuple[float, float]  # um
@@ -67,12 +68,15 @@ class Plan:
             was = self.instances[name]
             self.instances[name] = replace(was, pins=was.pins | {pin: net})
 
-    def load(self, drives: Drives, net: str, points: Sequence[Point], sinks: Sinks) -> float:
-        """Load (pF) of a wire over ``points``, the place of the net's port if it is one's, and ``sinks``."""
+    def load(self, drives: Drives, net: str, points: Sequence[Point], sinks: Sinks, detour: float = 1.0) -> float:
+        """Load (pF) of a wire over ``points``, the place of the net's port if it is one's, and ``sinks``.
+
+        detour: how many times as long as it need be the wire is.
+        """
         ends = [*points, *(self.point(name) for name, _ in sinks)]
         ends += [self.ports[net]] if net in self.ports else []
         pins = sum(drives.inputs.get((self.instances[name].cell, pin), 0.0) for name, pin in sinks)
-        return length(ends) * self.femtofarad_um / 1000 + pins + self.outside.get(net, 0.0)
+        return length(ends) * detour * self.femtofarad_um / 1000 + pins + self.outside.get(net, 0.0)
 
     def lengths(self) -> dict[str, float]:
         """Estimated um of every net as it is placed now."""
@@ -173,6 +177,26 @@ def repaired(plan: Plan, drives: Drives, kept: Collection[str], slacks: Slacks |
         if counts == before:
             break
     return counts
+
+
+def eased(plan: Plan, drives: Drives, kept: Collection[str]) -> int:
+    """Let drivers that would not bear a detour of their nets be larger, or a buffer take the sinks; how many.
+
+    A net that may go around others is in no other's way: the router finds more room, and fewer nets are too long.
+    """
+    count = 0
+    for net, (driver, pin, sinks) in connected(plan.instances).items():
+        cell = plan.instances[driver].cell
+        if net in kept or net in plan.outside or (cell, pin) not in drives.limits:
+            continue
+        large, little = (plan.load(drives, net, [plan.point(driver)], sinks, detour) for detour in (DETOUR, LITTLE))
+        if large <= drives.limits[cell, pin]:
+            continue
+        if (larger := drives.best(cell, pin, large)) != cell:
+            count += swap(plan, driver, larger)
+        elif little > drives.limits[cell, pin]:
+            count += split(plan, drives, net, driver, sinks)
+    return count
 
 
 def borne(plan: Plan, drives: Drives) -> dict[str, float]:

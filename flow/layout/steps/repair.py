@@ -18,7 +18,7 @@ from ..geometry.instances import insert
 from ..netlist.netlist import Netlist
 from ..repair.clock import regrouped
 from ..repair.drive import Drives
-from ..repair.repair import OWN, Plan, borne, clock_nets, planned, repaired, shortened
+from ..repair.repair import OWN, Plan, borne, clock_nets, eased, planned, repaired, shortened
 from ..repair.speed import Delays, quickened
 from ..repair.wires import femtofarad_um
 from ..timing.estimate import setup_slacks
@@ -138,6 +138,7 @@ class Repair(Step[RepairParameters]):
                 break
             quickened(plan, short, delays, kept, slacks, best[0] + window)
         worst, plan, _ = best
+        eased(plan, Drives.of(liberty, ROUTED_NS), kept)
         cells = {instance.name: instance.cell for instance in netlist.instances}
         sized = sum(instance.cell != cells.get(name, instance.cell) for name, instance in plan.instances.items())
         counts = {"sized": sized, "halfway": halfway, "buffers": sum(name.endswith(OWN) for name in plan.instances)}

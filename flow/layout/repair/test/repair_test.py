@@ -18,6 +18,7 @@ from talbot.flow.layout.repair.repair import (
     borne,
     clock_nets,
     connected,
+    eased,
     length,
     repaired,
     shortened,
@@ -99,6 +100,27 @@ def check_places(plan):
         assert not sites & taken
         taken |= sites
     assert len(taken) == 4 * 400 / SITE
+
+
+@pytest.mark.parametrize(
+    ("size", "um", "after", "buffers"),
+    [
+        ("inv_x1", 15, "inv_x1", 0),
+        ("inv_x1", 40, "inv_x4", 0),
+        ("inv_x4", 120, "inv_x4", 0),
+        ("inv_x4", 155, "inv_x4", 1),
+    ],
+)
+def test_drivers_bear_a_detour(size, um, after, buffers):
+    """Twice the wire by a larger driver; where none is, 1.4 times, else a buffer takes the sink."""
+    plan, table = chain([5, um]), drives()
+    swap(plan, "first", size)
+    assert eased(plan, table, {"n"}) == 0
+    assert eased(plan, table, set()) == (after != size) + buffers
+    assert plan.instances["first"].cell == after
+    assert sum(name.endswith(OWN) for name in plan.instances) == buffers
+    assert source(plan, plan.instances["u0"].pins["i"]) == "n"
+    check_places(plan)
 
 
 @given(st.lists(st.floats(5, 390), min_size=2, max_size=30))
