@@ -36,7 +36,7 @@ def regrouped(plan: Plan, drives: Drives, sizes: Sequence[ClockCells], most: int
 
     Every group has a gate or a buffer in its middle (see `netlist.gating.drive_registers`), is of ``most`` registers at
     most and no load that is too large for the last of ``sizes``. The tree's leaves get about as many of these each, and
-    all of the tree the size that this asks for.
+    every driver of the tree the size that its load asks for.
     Raises StepError where a driver has no room.
     """
     gate, buffer = sizes[0].gate, sizes[0].buffer
@@ -64,14 +64,13 @@ def regrouped(plan: Plan, drives: Drives, sizes: Sequence[ClockCells], most: int
         loads.setdefault(ends[number], []).append(end)
     for net, sinks in loads.items():
         plan.connect(sinks, net)
-    branches = {net: nets[net] for net in loads if net in nets}  # the port's is driven from outside
-    while branches:  # the leaves, then what drives them, up to the port
-        above = set[str]()
-        for net, (driver, pin, sinks) in branches.items():
+    level = [net for net in loads if net in nets]  # the port's is driven from outside
+    while level:  # the leaves, then what drives them, up to the port
+        for net in level:
+            driver, pin, sinks = nets[net]
             load = plan.load(drives, net, [plan.point(driver)], loads.get(net, sinks))
             swap(plan, driver, drives.best(plan.instances[driver].cell, pin, load))
-            above.add(plan.instances[driver].pins[buffer.input])
-        branches = {net: nets[net] for net in sorted(above) if net in nets}
+        level = sorted({plan.instances[nets[net][0]].pins[buffer.input] for net in level} & nets.keys())
     return len(made) - sum(map(len, groups.values()))
 
 

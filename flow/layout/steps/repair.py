@@ -52,7 +52,7 @@ class Repair(Step[RepairParameters]):
     """Drivers that are too weak at the slowest corner for the wires that a placement implies get larger or a buffer.
 
     lengths: um of nets that their drivers bear when they are routed, {net: um}.
-    estimate_ns: the setup slack that is expected. Without timing nothing changes but that all
+    estimate_ns: the setup slack that is expected before drivers are eased. Without timing nothing changes but that all
     masks of the cells are drawn, which Coriolis does not know.
     """
 
@@ -102,8 +102,7 @@ class Repair(Step[RepairParameters]):
             begin.femtofarad_um = femtofarad_um(tech, wire_corner(p.corner))
             outputs_of = (net for port in netlist.ports if port.direction == "output" for net in port.bits())
             begin.outside = dict.fromkeys(outputs_of, p.load_pf)
-            plan, counts = self.best(begin, netlist, inputs)
-            lengths = borne(plan, Drives.of(read(inputs["liberty"]), ROUTED_NS))
+            plan, lengths, counts = self.best(begin, netlist, inputs)
             netlist, placement["instances"] = plan.listed(netlist, placement["instances"], tech.fill_cells)
         draw(layout, read_gds(inputs["masks"]), areas, placement["instances"])
         write_gds(layout, outputs["gds"])
@@ -113,8 +112,8 @@ class Repair(Step[RepairParameters]):
         cells = [instance.cell for instance in netlist.instances if instance.pins]
         return counts | {"cells": len(cells), "cell_area_um2": round(sum(areas.get(cell, 0) for cell in cells), 2)}
 
-    def best(self, plan: Plan, netlist: Netlist, inputs: Files) -> tuple[Plan, dict[str, float]]:
-        """The plan of most setup slack that ``plan`` leads to, and its metrics."""
+    def best(self, plan: Plan, netlist: Netlist, inputs: Files) -> tuple[Plan, dict[str, float], dict[str, float]]:
+        """The plan of most setup slack that ``plan`` leads to, its drivers eased; the step's lengths and metrics."""
         liberty = read(inputs["liberty"])
         delays, limits, short = (
             Delays.of(liberty), Drives.of(liberty, self.parameters.slew_ns), Drives.of(liberty, BUFFERED_NS)
@@ -138,11 +137,12 @@ class Repair(Step[RepairParameters]):
                 break
             quickened(plan, short, delays, kept, slacks, best[0] + window)
         worst, plan, _ = best
-        eased(plan, Drives.of(liberty, ROUTED_NS), kept)
+        routed = Drives.of(liberty, ROUTED_NS)
+        eased(plan, routed, kept)
         cells = {instance.name: instance.cell for instance in netlist.instances}
         sized = sum(instance.cell != cells.get(name, instance.cell) for name, instance in plan.instances.items())
         counts = {"sized": sized, "halfway": halfway, "buffers": sum(name.endswith(OWN) for name in plan.instances)}
-        return plan, {"clock_drivers": added, "estimate_ns": round(worst, 3), **counts}
+        return plan, borne(plan, routed), {"clock_drivers": added, "estimate_ns": round(worst, 3), **counts}
 
 
 def draw(layout: "db.Layout", library: "db.Layout", cells: dict[str, float], placed: list[list[Any]]) -> None:
