@@ -7,7 +7,7 @@ a simulation's time.
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from pymtl3 import Bits, Component
+from pymtl3 import Bits
 from pymtl3.passes.sim.PrepareSimPass import PrepareSimPass
 
 Block = Callable[[], None]
@@ -27,7 +27,7 @@ def edge():
 """
 
 
-def quicken(top: Component) -> None:
+def quicken(top: Any) -> None:
     """Let the prepared simulation ``top`` skip a block of RTL (a module named _rtl) whose inputs have not changed.
 
     Other blocks may have a state outside the signals, and run always.
@@ -54,7 +54,7 @@ def _indented(lines: Iterable[str], by: int) -> str:
 class _Code:
     """Source of guarded calls, and the scope of what it names. pure: every block so far is of signals alone."""
 
-    def __init__(self, top: Component) -> None:
+    def __init__(self, top: Any) -> None:
         self.reads = {**top.get_all_upblk_metadata()[0], **top._dag.genblk_reads}
         self.nets, self.hosts = top._dag.genblks, top._dsl.all_upblk_hostobj
         self.objects = {signal: kept[-1] for signal, kept in top._sim.signal_object_mapping.items()}
