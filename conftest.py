@@ -170,6 +170,23 @@ def given_verilog(request):
     return files
 
 
+@pytest.fixture
+def on_netlists(request):
+    """on_netlists(configurations): those of them that run on a netlist, by their ``name``; all where none are given.
+
+    The test is skipped where none is left: it would test something else than the netlist.
+    """
+    netlists = request.config.stash.get(NETLISTS, None)
+
+    def chosen(configurations):
+        found = [one for one in configurations if not netlists or one.name in netlists.netlists]
+        if not found:
+            pytest.skip(f"--netlist has none of {', '.join(one.name for one in configurations)}")
+        return found
+
+    return chosen
+
+
 def pytest_sessionfinish(session):
     """Fail for a netlist that no test used (in one process: workers share the tests), and with --complete for a gap."""
     options = session.config.option

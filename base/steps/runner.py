@@ -5,12 +5,13 @@ import json
 import multiprocessing
 import sys
 import time
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import nullcontext
+from collections import ChainMap, defaultdict
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, nullcontext, suppress
 from dataclasses import asdict
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
-from threading import Event, Semaphore
+from threading import Event, Lock, Semaphore, Thread
 from typing import Any
 
 import joblib
@@ -25,6 +26,7 @@ from .step import Step, StepError
 from .versions import version
 
 RECORD = "record.json"
+LOOK_S = 0.1  # how often `Runner.beside` looks for a step that can begin
 Record = dict[str, Any]  # of a step's run, as record.json holds it
 
 
@@ -46,13 +48,21 @@ class Runner:
         self.folder, self.shared, self.note, self.root = Path(folder), Path(shared or folder), note, root
         self.paths = {name: Path(path) for name, path in files.items()}
         self.records: dict[str, Record] = {}
+        self._running: defaultdict[str, Lock] = defaultdict(Lock)  # by the step's name
 
     def run(self, step: Step[Any]) -> Record:
         """Return the record of ``step``, run now or earlier with the same inputs. Raises StepError."""
         missing = sorted(set(step.inputs.values()) - set(self.paths))
         if missing:
             raise StepError(f"{step.name}: nothing gives its input {', '.join(missing)}")
-        inputs = {name: self.paths[source] for name, source in step.inputs.items()}
+        made = self._made(step, self.paths)
+        self.paths |= _outputs(step, made)
+        self.records[step.name] = json.loads((made / RECORD).read_text())
+        return self.records[step.name]
+
+    def _made(self, step: Step[Any], paths: Mapping[str, Path]) -> Path:
+        """The folder of the step's results, run now or earlier. paths: of all inputs, by source."""
+        inputs = {name: paths[source] for name, source in step.inputs.items()}
         hashes = {name: digest(path) for name, path in inputs.items()}
         tools = {tool: version(tool) for tool in step.tools}
         parameters = asdict(step.parameters)
@@ -79,11 +89,42 @@ class Runner:
             (part / RECORD).write_text(json.dumps(record, indent=1, default=str) + "\n")
             self.note(ended(step.name, record["wall_s"]))
 
-        made = cached((self.shared if step.shared else self.folder) / f"{step.name}.{key}", make)
-        for name, file in step.outputs.items():
-            self.paths[f"{step.name}.{name}"] = made / file
-        self.records[step.name] = json.loads((made / RECORD).read_text())
-        return self.records[step.name]
+        with self._running[step.name]:  # a second one that asks for it waits
+            return cached((self.shared if step.shared else self.folder) / f"{step.name}.{key}", make)
+
+    @contextmanager
+    def beside(self, steps: Sequence[Step[Any]]) -> Iterator[None]:
+        """Meanwhile run those of ``steps`` whose inputs are complete, one after another; at the end, end what runs.
+
+        Their results are kept and no more: `run` finds them, and runs what failed again. Who begins something else with
+        other inputs puts another dict in the place of `paths`, without the results that no longer count.
+        """
+        ended = Event()
+
+        def work() -> None:
+            """Look for the first step that can begin and was not tried."""
+            tried, known, own = set[tuple[object, ...]](), self.paths, dict[str, Path]()
+            while not ended.wait(LOOK_S):
+                if known is not self.paths:
+                    tried, known, own = set[tuple[object, ...]](), self.paths, dict[str, Path]()
+                paths = ChainMap(known, own)
+                for step in steps:
+                    asked = step.name, *(paths.get(source) for source in step.inputs.values())
+                    if None not in asked and asked not in tried:
+                        tried.add(asked)
+                        with suppress(Exception):
+                            own |= _outputs(step, self._made(step, paths))
+                        break
+
+        thread = Thread(target=work)
+        thread.start()
+        try:
+            yield
+        finally:
+            ended.set()
+            while thread.is_alive():
+                _end_children()
+                thread.join(LOOK_S)
 
     def run_all(self, steps: Sequence[Step[Any]]) -> list[Record]:
         """Return the records of ``steps`` in their order.
@@ -119,10 +160,20 @@ class Runner:
         try:
             parallel(joblib.delayed(begin)(step) for step in steps)
         except BaseException:
-            for child in multiprocessing.active_children():  # else their threads wait for them to the end
-                child.terminate()
+            _end_children()
             raise
         return [self.records[step.name] for step in steps]
+
+
+def _outputs(step: Step[Any], made: Path) -> dict[str, Path]:
+    """Paths of a step's outputs in the folder ``made``, by the name that other steps' inputs give them."""
+    return {f"{step.name}.{name}": made / file for name, file in step.outputs.items()}
+
+
+def _end_children() -> None:
+    """End all processes of steps: their threads would wait for them to the end."""
+    for child in multiprocessing.active_children():
+        child.terminate()
 
 
 def source_of(step: Step[Any], root: Path = ROOT) -> str:

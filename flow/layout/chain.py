@@ -48,6 +48,8 @@ CHIP_FRAME = {"rows": 384, "cols": 384, "tiles": 1}
 # Inputs of the steps after `assemble` in a design with macros: the flat netlist and placement
 ASSEMBLED = {"repair.netlist": "assemble.netlist"}
 ASSEMBLED |= dict.fromkeys(("repair.placement", "route.placement"), "assemble.placement")
+# The same of others: the final Verilog is known before the routing, so that what reads it alone runs beside it
+BEFORE_ROUTING = {"stream_out.verilog": "repair.verilog"}
 UTILIZATION_STEP = 0.04  # between two rounds of attempts
 PACKED = 0.6  # spread of a round's second attempt
 OBLONG = 1.25  # width by height of a round's second attempt, of the square where the first is not
@@ -134,10 +136,11 @@ def signoff_steps(design: Design, options: Options) -> list[Step]:
         *(step(PdkParameters(options.pdk)) for step in (Lvs, Lef, Extraction)),
         *timing_steps(design, options),
     ]
+    sources = ASSEMBLED if design.macros else BEFORE_ROUTING
+    for step in steps:
+        step.inputs = {name: sources.get(source, source) for name, source in step.inputs.items()}
     if not design.macros:
         return steps
-    for step in steps:
-        step.inputs = {name: ASSEMBLED.get(source, source) for name, source in step.inputs.items()}
     if options.corners:
         steps.append(ExtractionBlocks(PdkParameters(options.pdk)))
     for corner in options.corners:

@@ -17,17 +17,28 @@ def lay_out_smallest(
     """Run all steps with ``runner``; the attempts, of which the last closes if any does.
 
     An attempt closes when every net is routed and no rule of design or antennas is broken. signoff: function
-    (design, options) -> the steps after it. Raises ParameterError where macros find no place in any attempt, ToolError
-    for a missing tool, before anything runs.
+    (design, options) -> the steps after it; those that need no more than there is begin beside the steps before. Raises
+    ParameterError where macros find no place in any attempt, ToolError for a missing tool, before anything runs.
     """
     version(f"python {coriolis_platform(options.pdk).wheel}")
     for step in all_steps(design, options, signoff):
         for tool in step.tools:
             version(tool)
-    for step in synthesis_steps(design, options):
-        runner.run(step)
-    tried, placed, misfit = [], 0, None
+    steps = signoff(design, options)
+    with runner.beside(steps):
+        for step in synthesis_steps(design, options):
+            runner.run(step)
+        tried = _attempted(design, options, runner)
+        if tried[-1].rules_broken == 0:
+            runner.run_all(steps)
+    return tried
+
+
+def _attempted(design: Design, options: Options, runner: Runner) -> list[Attempt]:
+    """Place and route until an attempt closes: the attempts. Raises as `lay_out_smallest`."""
+    tried, placed, misfit, known = [], 0, None, dict(runner.paths)
     for floorplan, place, arrange in attempts(design, options):
+        runner.paths = dict(known)
         shape = floorplan.parameters
         attempt = Attempt(shape.utilization, shape.aspect, arrange.parameters.spread)
         tried.append(attempt)
@@ -49,7 +60,6 @@ def lay_out_smallest(
             pairs = zip(checks, runner.run_all(checks), strict=True)
             attempt.rules_broken = sum(made["metrics"].get(f"{step.name}_violations", 0) for step, made in pairs)
             if not attempt.rules_broken:
-                runner.run_all(signoff(design, options))
                 return tried
     if misfit and not placed:
         raise misfit

@@ -1,5 +1,6 @@
 """Steps: run once for the same inputs, held to what they declare."""
 
+import multiprocessing
 import signal
 import subprocess
 import sys
@@ -106,6 +107,35 @@ def test_steps_that_do_not_need_each_other_run_together(tmp_path, text):
     records = runner.run_all([Meet(), Both(), Greet()])
     assert [record["step"] for record in records] == ["meet", "both", "greet"]
     assert runner.paths["both.text"].read_text() == "TrueTrue"
+
+
+def test_a_step_runs_beside_others(tmp_path, text):
+    runner = Runner(tmp_path / "steps", {"text": text})
+    with runner.beside([Both(), Greet(), Crash()]):
+        runner.run(Meet())
+        assert set(runner.records) == {"meet"} and "greet.text" not in runner.paths
+        assert waited(lambda: list((tmp_path / "steps").glob("both.*/out.txt")))  # from the chain's results and its own
+    assert runner.run(Greet())["metrics"] == {"length": 0}
+    assert runner.paths["greet.text"].read_text() == "True"
+    with pytest.raises(StepError, match="ended with no result"):
+        runner.run(Crash())
+
+
+def test_what_ran_beside_ends_with_it(tmp_path, text):
+    runner = Runner(tmp_path / "steps", {"text": text})
+    with pytest.raises(KeyboardInterrupt), runner.beside([Meet()]):
+        assert waited((tmp_path / "meet").exists)
+        raise KeyboardInterrupt
+    assert not multiprocessing.active_children() and not list((tmp_path / "steps").glob("meet.*"))
+
+
+def test_other_paths_are_other_inputs(tmp_path, text):
+    runner, other = Runner(tmp_path / "steps", {"text": text}), tmp_path / "other"
+    other.write_text("c")
+    with runner.beside([Repeat(Times(2))]):
+        assert waited(lambda: len(list((tmp_path / "steps").glob("repeat.*/out.txt"))) == 1)
+        runner.paths = {"text": other}
+        assert waited(lambda: len(list((tmp_path / "steps").glob("repeat.*/out.txt"))) == 2)
 
 
 class Last(Both):

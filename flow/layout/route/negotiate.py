@@ -30,6 +30,7 @@ HASTY_TRIES = 3  # of a net, which look for a path nearby alone
 WHOLE = 4  # every such try of a net begins without the legs that nothing is in the way of
 EASY = 4  # times that a net is routed before it costs others twice, and so on: those with other ways move
 JOBS = 2  # in which the whole layout is checked
+MANY = 3000  # nets: the processes for fewer take longer to begin than to check
 ROUNDS = 12  # of checks: a net that is evicted for another may get an antenna
 TOLD = 100  # nets in a turn that takes seconds, of which a line is printed
 # What a net that is too long may do, turn by turn: it first goes around others at a small cost, then hardly
@@ -197,10 +198,10 @@ def route(
 
 
 def check(board: Board, tech: CoriolisPlatform) -> Violations:
-    """Violations of the whole layout, found in JOBS processes."""
+    """Violations of the whole layout, one of many nets found in JOBS processes."""
     with tempfile.TemporaryDirectory() as folder:
         gds = Path(folder) / "routed.gds"
         write_gds(board.drawn(), gds)
         tasks = (joblib.delayed(find_in_file)(gds, board.rules, tech, at) for at in split_levels(board.rules, JOBS))
-        found: Any = joblib.Parallel(n_jobs=JOBS)(tasks)
+        found: Any = joblib.Parallel(n_jobs=JOBS if len(board.nets) > MANY else 1)(tasks)
     return sum(found, Violations())

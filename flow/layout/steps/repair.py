@@ -68,6 +68,7 @@ class Repair(Step[RepairParameters]):
     outputs = {
         "gds": "repaired.gds",
         "netlist": "netlist.json",
+        "verilog": "final.v",
         "placement": "placement.json",
         "lengths": "lengths.json",
     }
@@ -107,6 +108,7 @@ class Repair(Step[RepairParameters]):
         draw(layout, read_gds(inputs["masks"]), areas, placement["instances"])
         write_gds(layout, outputs["gds"])
         netlist.write(outputs["netlist"])
+        outputs["verilog"].write_text(netlist.verilog())
         outputs["lengths"].write_text(json.dumps(lengths, indent=0) + "\n")
         outputs["placement"].write_text(json.dumps(placement, indent=0) + "\n")
         cells = [instance.cell for instance in netlist.instances if instance.pins]

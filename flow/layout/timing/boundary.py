@@ -20,56 +20,68 @@ LOAD = (
 create_clock -name {clock} -period {period:g} [get_ports {clock}]
 set_propagated_clock [get_clocks {clock}]
 set sta_report_default_digits 6
-proc slack {{args}} {{
-  set ends [find_timing_paths {{*}}$args]
-  if {{[llength $ends]}} {{ return [get_property [lindex $ends 0] slack] }}
-  return none
+proc name {{path end}} {{ return [get_full_name [get_property $path $end]] }}
+proc named {{sign}} {{ return [expr {{$sign eq "^" ? "rise" : "fall"}}] }}
+proc group {{name args}} {{
+  group_path -name $name {{*}}$args
+  lappend ::groups $name
 }}
+proc worst {{kind}} {{ return [find_timing_paths -path_group $::groups -path_delay $kind] }}
 """
 )
+# A search goes over the whole netlist, and finds the worst path of each group: one for each row of the tables
 OUTPUTS = """
 set_output_delay 0 -clock {clock} [all_outputs]
 set_false_path -from [get_ports {{{inputs}}}]
+set ports [get_ports {{{outputs}}}]
+foreach edge {{rise fall}} {{
+  foreach port $ports {{ group "$edge [get_full_name $port]" -${{edge}}_to $port }}
+}}
 foreach slew {{{slews}}} {{
   set_input_transition $slew [all_inputs]
   foreach load {{{loads}}} {{
     set_load $load [all_outputs]
-    foreach port {{{outputs}}} {{
-      foreach edge {{rise fall}} {{
-        puts "DELAY {clock} $port $edge $slew $load [slack -${{edge}}_to [get_ports $port] -path_delay max]"
-      }}
-      puts "SLEW $slew $load"; report_slews [get_ports $port]
+    foreach path [worst max] {{
+      puts "DELAY {clock} [name $path endpoint] [named [$path end_transition]] $slew $load [get_property $path slack]"
     }}
+    puts "SLEW $slew $load"
+    foreach port $ports {{ report_slews $port }}
   }}
 }}
 """
 THROUGH = """
 set_output_delay 0 -clock {clock} [all_outputs]
 set_input_delay 0 -clock {clock} [get_ports {{{inputs}}}]
+foreach edge {{rise fall}} {{
+  foreach {{from to}} {{{pairs}}} {{
+    group "$edge $from $to" -from [get_ports $from] -${{edge}}_to [get_ports $to]
+  }}
+}}
 foreach slew {{{slews}}} {{
   set_input_transition $slew [all_inputs]
   foreach load {{{loads}}} {{
     set_load $load [all_outputs]
-    foreach {{from to}} {{{pairs}}} {{
-      foreach edge {{rise fall}} {{
-        puts "DELAY $from $to $edge $slew $load \\
-[slack -from [get_ports $from] -${{edge}}_to [get_ports $to] -path_delay max]"
-      }}
+    foreach path [worst max] {{
+      set ends "[name $path startpoint] [name $path endpoint]"
+      puts "DELAY $ends [named [$path end_transition]] $slew $load [get_property $path slack]"
     }}
   }}
 }}
 """
 CONSTRAINTS = """
-set_input_delay 0 -clock {clock} [get_ports {{{inputs}}}]
-foreach slew {{{slews}}} {{
-  set_input_transition $slew [get_ports {{{inputs}}}]
-  foreach clock_slew {{{slews}}} {{
-    set_input_transition $clock_slew [get_ports {clock}]
-    foreach port {{{inputs}}} {{
-      foreach edge {{rise fall}} {{
-        foreach kind {{max min}} {{
-          puts "CHECK $port $kind $edge $clock_slew $slew [slack -${{edge}}_from [get_ports $port] -path_delay $kind]"
-        }}
+set ports [get_ports {{{inputs}}}]
+set_input_delay 0 -clock {clock} $ports
+foreach edge {{rise fall}} {{
+  foreach port $ports {{ group "$edge [get_full_name $port]" -${{edge}}_from $port }}
+}}
+foreach clock_slew {{{slews}}} {{
+  set_input_transition $clock_slew [get_ports {clock}]
+  foreach slew {{{slews}}} {{
+    set_input_transition $slew $ports
+    foreach kind {{max min}} {{
+      foreach path [worst $kind] {{
+        set edge [named [lindex [[lindex [get_property $path points] 0] tag] 1]]
+        puts "CHECK [name $path startpoint] $kind $edge $clock_slew $slew [get_property $path slack]"
       }}
     }}
   }}
@@ -163,10 +175,10 @@ def _boundary(printed: str) -> Boundary:
     found, at, port = Boundary({}, {}, {}, {}), (0.0, 0.0), ""
     for line in printed.splitlines():
         word, *rest = line.split() or [""]
-        if word == "DELAY" and rest[-1] != "none":
+        if word == "DELAY":
             source, output, edge, slew, load, slack = rest
             found.delays.setdefault((source, output, edge), {})[float(slew), float(load)] = FAR_NS - float(slack)
-        elif word == "CHECK" and rest[-1] != "none":
+        elif word == "CHECK":
             source, kind, edge, clock_slew, slew, slack = rest
             table = found.checks.setdefault((source, kind, edge), {})
             table[float(clock_slew), float(slew)] = FAR_NS - float(slack) if kind == "max" else -float(slack)

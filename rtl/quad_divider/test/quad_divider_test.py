@@ -210,6 +210,10 @@ class TestVerilog(TestRTL):
 class TestIcarus(TestVerilog):
     verilog = "icarus"
 
+    @pytest.fixture(autouse=True)
+    def on_netlists_alone(self, on_netlists):
+        self.configs = on_netlists(self.configs)
+
 
 def around_thresholds(n_frac):
     """Vectors on both sides of every step of the phase table: those whose ratio is nearest to a threshold."""
@@ -233,7 +237,8 @@ def around_thresholds(n_frac):
 class TestEverySize:
     verilog = "icarus"
 
-    def test_thresholds_stalls_and_a_reset(self, config):
+    def test_thresholds_stalls_and_a_reset(self, config, on_netlists):
+        on_netlists([config])
         noise = random.Random(1)
 
         def turned(*pair):

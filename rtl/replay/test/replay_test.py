@@ -10,6 +10,8 @@ from talbot.base.command import main
 from talbot.base.paths import ROOT
 from talbot.rtl.harness.icarus import MISSING, installed
 from talbot.rtl.harness.testbench import build, hooked
+from talbot.rtl.harness.translate import translate_component
+from talbot.rtl.quad_divider import quad_divider
 from talbot.rtl.replay import command, load, record, replay, replay_files
 
 LIBRARY = ROOT / "cells" / "gates.lib"
@@ -124,6 +126,17 @@ def test_the_tests_themselves_run_on_gates(gates, folder, simulator):
     assert good.returncode == 0 and "1 passed" in good.stdout, good.stdout
     bad = subprocess.run([*command, planted(cells, folder, "A ^ B", "A | B")], cwd=ROOT, capture_output=True, text=True)
     assert bad.returncode == 1 and "1 failed" in bad.stdout, bad.stdout
+
+
+def test_of_several_sizes_those_run_that_have_a_netlist(folder):
+    """Of a divider's tests, all of whose sizes are tested together, on the netlist of one."""
+    netlist = folder / "divider.v"
+    netlist.write_text(translate_component(quad_divider("radix4", 7), "QuadDividerRadix4"))
+    command = [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", "rtl/quad_divider", "-k"]
+    tests = "test_edges or (EverySize and (radix4_7 or radix4_8))"
+    given = f"--netlist=QuadDivider_radix4_7_10={netlist}:QuadDividerRadix4"
+    done = subprocess.run([*command, tests, given], cwd=ROOT, capture_output=True, text=True)
+    assert done.returncode == 0 and "2 passed, 1 skipped" in done.stdout, done.stdout
 
 
 def test_traces_of_several_simulators_are_joined():

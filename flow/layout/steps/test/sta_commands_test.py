@@ -35,7 +35,8 @@ def commands(script):
 
 
 def test_every_command_is_known(tmp_path):
-    names = sorted({name for script in SCRIPTS.values() for name in commands(script)} - {"slack"})  # a proc of ours
+    ours = set(re.findall(r"(?m)^proc (\w+)", "\n".join(SCRIPTS.values())))
+    names = sorted({name for script in SCRIPTS.values() for name in commands(script)} - ours)
     assert {"read_spef", "set_output_delay", "find_timing_paths", "report_net", "write_sdf"} <= set(names)
     (tmp_path / "ask.tcl").write_text(
         "".join(f'if {{[info commands {name}] eq ""}} {{ puts "UNKNOWN {name}" }}\n' for name in names) + "exit\n"
