@@ -10,6 +10,8 @@ TESTS_READY := $(VENV)/.tests-ready
 RENDER_READY := $(VENV)/.render-ready
 LAYOUT_READY := $(VENV)/.layout-ready
 LINT_READY := $(VENV)/.lint-ready
+# Images of containers set it; each of the tests' many processes would compile every module again
+unexport PYTHONDONTWRITEBYTECODE
 
 # A variable of the command line is an option of the target's command, which takes it as it was typed and refuses what it
 # does not know (talbot/make.py). KNOWN: make's own, and those that go into the environment. PLAIN: targets without a

@@ -66,8 +66,8 @@ def table(cases: Iterable[Case]) -> str:
         Aligned columns with a header.
     """
     rows = [
-        ("case", "expected", "measured", ""),
-        *((c.name, c.bound, c.measured, "ok" if c.ok else "FAILED") for c in cases),
+        ("", "case", "expected", "measured"),  # the verdict first: a message is longer than a line
+        *(("ok" if c.ok else "FAILED", c.name, c.bound, c.measured) for c in cases),
     ]
     widths = [max(len(str(r[i])) for r in rows) for i in range(4)]
     return "\n".join("  ".join(str(v).ljust(w) for v, w in zip(r, widths, strict=True)).rstrip() for r in rows)

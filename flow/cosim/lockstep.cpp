@@ -272,6 +272,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "+points, +cycles or +drive: cannot be opened\n");
     return 3;
   }
+  std::setvbuf(cycles, nullptr, _IOLBF, 1 << 12);  // who waits reads how far it is
   ngSpice_Init(said, nullptr, ended, data, first_data, nullptr, nullptr);
   ngSpice_Init_Sync(volts, nullptr, sync, nullptr, nullptr);
   char alone[] = "set num_threads=1";  // more wait for each other longer than they work

@@ -1,9 +1,11 @@
 """The lock-step program, compiled and run: one row through the chip's Verilog and a circuit."""
 
+import contextlib
 import ctypes.util
 import json
 import tempfile
-from collections.abc import Callable, Sequence
+import threading
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -26,6 +28,7 @@ from .deck import Deck, Timing
 
 HERE = Path(__file__).parent
 GAVE_UP = 5  # exit status where ngspice gives up
+INTERVAL = 10.0  # s between two lines on how far a row is
 LIBRARY = "ngspice"
 
 
@@ -84,15 +87,16 @@ def run(
     accuracy: Accuracy,
     whole: bool = False,
     max_cycles: int = 1_000_000,
+    note: Callable[[str], None] = lambda text: None,
 ) -> Run:
     """One frame; where ngspice gives up, again with the next of ``accuracy.ladder``.
 
-    whole: see `RowRequest`. Raises ToolError after the last.
+    whole: see `RowRequest`. note: called now and then with how far it is. Raises ToolError after the last.
     """
     why = ""
     for attempt, tried in enumerate(accuracy.ladder, 1):
         try:
-            return _run(binary, deck(tried), frame, samples, front_end, timing, tried, attempt, whole, max_cycles)
+            return _run(binary, deck(tried), frame, samples, front_end, timing, tried, attempt, whole, max_cycles, note)
         except ToolError as error:
             if f"status {GAVE_UP}" not in str(error):
                 raise
@@ -111,6 +115,7 @@ def _run(
     attempt: int,
     whole: bool,
     max_cycles: int,
+    note: Callable[[str], None],
 ) -> Run:
     script = host_script([*write_transfers(frame_writes(frame, front_end.trim)), command("start")], [])
     with tempfile.TemporaryDirectory(prefix="talbot-") as name:
@@ -122,17 +127,38 @@ def _run(
         head = " ".join(f"{one:.9g}" for one in seconds)
         (folder / "drive").write_text("\n".join([head, *deck.drive, ""]))
         more = [f"+{file}={folder / file}" for file in ("deck", "drive", "cycles", "points", "lockstep")]
-        done = run_frame(
-            binary,
-            folder / "samples",
-            folder / "converter",
-            script,
-            max_cycles=max_cycles,
-            more=[*more, f"+answers={','.join(deck.answers)}", *(["+whole=1"] if whole else [])],
-        )
+        with _watched(folder / "cycles", note):
+            done = run_frame(
+                binary,
+                folder / "samples",
+                folder / "converter",
+                script,
+                max_cycles=max_cycles,
+                more=[*more, f"+answers={','.join(deck.answers)}", *(["+whole=1"] if whole else [])],
+            )
         time, waves = _points(folder / "points")
         stats = json.loads((folder / "lockstep").read_text())
         return Run(done.stream, _cycles(folder / "cycles", len(deck.answers)), time, waves, stats, attempt)
+
+
+@contextlib.contextmanager
+def _watched(cycles: Path, note: Callable[[str], None]) -> Iterator[None]:
+    """Within it, a line now and then on how many cycles of the circuit the simulation has written."""
+    over = threading.Event()
+
+    def watch() -> None:
+        while not over.wait(INTERVAL):
+            if cycles.exists():
+                done = cycles.read_bytes().count(b"\n")
+                note(f"{done} cycles of the circuit")
+
+    watcher = threading.Thread(target=watch, daemon=True)
+    watcher.start()
+    try:
+        yield
+    finally:
+        over.set()
+        watcher.join()
 
 
 def _points(path: Path) -> tuple[npt.NDArray[np.float64], dict[str, npt.NDArray[np.float64]]]:

@@ -229,7 +229,8 @@ def read_row(asked: RowRequest, note: Callable[[str], None] = lambda text: None,
     sensor, frame = asked.frame
     binary = program or lockstep.program(sensor, note)
     run = lockstep.run(
-        binary, asked.deck, frame, asked.samples, asked.front_end, asked.clock, asked.accuracy, asked.whole
+        *(binary, asked.deck, frame, asked.samples, asked.front_end, asked.clock, asked.accuracy, asked.whole),
+        note=lambda text: note(f"{asked.mode}: {text}"),
     )
     codes = decode_stream(run.stream, sensor.tile)[0].samples[0]
     expected = golden_frame(asked.samples, sensor, frame, asked.front_end).codes[0]

@@ -22,4 +22,4 @@ def test_a_single_tile_through_the_verilog():
 
 def test_table_marks_what_failed():
     lines = table([Case("a", "0", "0", True), Case("b", "0", "1", False)]).splitlines()
-    assert lines[1].endswith("ok") and lines[2].endswith("FAILED")
+    assert lines[1].startswith("ok") and lines[2].startswith("FAILED")

@@ -57,7 +57,8 @@ def points(quick: bool) -> list[Point]:
     """Noise, method, what is changed of its settings, and rows of the array."""
     noises, size = (NOISES[:2], 48) if quick else (NOISES, 192)
     every = [(n, name, change, size) for n in noises for name, change in SETTINGS if n is None or not change]
-    return [point for point in every if not quick or point[1] in ("direct", "linear", "sparse")]
+    short = [point for point in every if point[1] in ("direct", "linear", "sparse") and point[2] != {"stride": 2}]
+    return short if quick else every
 
 
 @lru_cache(maxsize=1)

@@ -19,6 +19,7 @@ def behaviour(s, evaluate, clock):
   @update
   def up_module():
     answer = evaluate({inputs})
+    if answer:
 {outputs}
 
   @update_ff
@@ -81,7 +82,9 @@ class Transactor:
 
     def __init__(self, simulation: Driven, ports: Sequence[Port], kinds: Mapping[str, Any]) -> None:
         inputs, outputs = split(ports)
-        self.simulation, self.cycle, self.edge, self.inputs = simulation, 0, False, None
+        self.simulation, self.cycle, self.edge = simulation, 0, False
+        self.inputs: int | None = None
+        self.answer: int | None = None
         self.low = tuple(places(inputs).values())
         self.take = [
             (low, (1 << port.width) - 1, kinds[port.path] if port.struct else None, mk_bits(port.width))
@@ -94,24 +97,27 @@ class Transactor:
         self.cycle += 1
 
     def evaluate(self, *values: Any) -> tuple[Any, ...]:
-        """Values of the outputs for those of the inputs, each in the order of the ports."""
+        """Values of the outputs for those of the inputs, each in the order of the ports; () where none has changed."""
         inputs = 0
         for value, low in zip(values, self.low):
             inputs |= int(value if hasattr(value, "uint") else value.to_bits()) << low
-        if inputs != self.inputs or self.edge:
-            line = self.simulation.step(self.edge, inputs)
-            self.inputs, self.edge = inputs, False
-            try:
-                answer = int(line, 2)
-            except ValueError:
-                # Registers hold X until the first clock edge of the first reset, and not a cycle longer
-                assert self.cycle == 0, f"cycle {self.cycle}: {', '.join(self.simulation.unknown(line))}"
-                answer = 0
-            self.answer = tuple(
-                kind.from_bits(bits(answer >> low & mask)) if kind else answer >> low & mask
-                for low, mask, kind, bits in self.take
-            )
-        return self.answer
+        if inputs == self.inputs and not self.edge:
+            return ()
+        line = self.simulation.step(self.edge, inputs)
+        self.inputs, self.edge = inputs, False
+        try:
+            answer = int(line, 2)
+        except ValueError:
+            # Registers hold X until the first clock edge of the first reset, and not a cycle longer
+            assert self.cycle == 0, f"cycle {self.cycle}: {', '.join(self.simulation.unknown(line))}"
+            answer = 0
+        if answer == self.answer:
+            return ()
+        self.answer = answer
+        return tuple(
+            kind.from_bits(bits(answer >> low & mask)) if kind else answer >> low & mask
+            for low, mask, kind, bits in self.take
+        )
 
 
 class DrivenLevel(Component):
@@ -131,7 +137,7 @@ class DrivenLevel(Component):
         inputs, outputs = split(ports)
         source = SOURCE.format(
             inputs=", ".join(f"s.{port.path}" for port in inputs),
-            outputs="\n".join(f"    s.{port.path} @= answer[{i}]" for i, port in enumerate(outputs)),
+            outputs="\n".join(f"      s.{port.path} @= answer[{i}]" for i, port in enumerate(outputs)),
         )
         file = f"<ports of {type(dut).__name__} {hash(ports):x}>"
         linecache.cache[file] = len(source), None, source.splitlines(keepends=True), file

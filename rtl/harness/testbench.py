@@ -23,6 +23,7 @@ from pymtl3.passes.backends.verilog import (
 from talbot.base.paths import BUILD
 from talbot.base.verilator import RUNTIME, runtime, verilator_folder
 
+from .activity import quicken
 from .driven import Driven, driven_level
 from .icarus import in_icarus
 from .ports import ports_of
@@ -112,6 +113,7 @@ def build(top: Component, verilog: Level = False, name: str | None = None) -> An
         if each_cycle:
             top.set_metadata(VerilogTBGenPass.vtbgen_hooks, each_cycle)
         top.apply(DefaultPassGroup(linetrace=False))
+        quicken(top)
     top.sim_reset()
     return top
 

@@ -7,6 +7,7 @@ import os
 import re
 import tempfile
 import warnings
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -16,6 +17,7 @@ from pymtl3.passes.backends.verilog import VerilogTranslationPass
 from talbot.base.paths import PACKAGE
 
 COLUMNS = "200"  # PyMTL folds lines at the terminal's width
+WORD = re.compile(r"\w+")
 KEPT = {"Synchronizer": "stages"}  # module -> the register that synthesis may neither merge nor move
 
 
@@ -43,9 +45,11 @@ def module_names(top: Component, name: str) -> dict[Component, str]:
 
 def _without_unused_constants(module: str) -> str:
     """The module without constants that PyMTL declares and does not use: widths of slices."""
-    for name in re.findall(r"(?m)^  localparam .*? (\w+)\s+=", module):
-        if len(re.findall(rf"\b{name}\b", module)) == 1:
-            module = re.sub(rf"(?m)^  localparam .*? {name}\s+=.*\n", "", module)
+    words = Counter(WORD.findall(module))
+    for found in re.finditer(r"(?m)^  localparam .*? (\w+)\s+=.*\n", module):
+        if words[found[1]] == 1:
+            module = module.replace(found[0], "", 1)
+            words -= Counter(WORD.findall(found[0]))
     return module
 
 
@@ -57,16 +61,20 @@ def _with_kept_register(module: str) -> str:
     return module
 
 
+BIT_0 = re.compile(r"(?<![.\w])(\w+)\[0(?::0)?\]")
 VECTOR_OF_ONE = re.compile(r"(?m)^(\s*(?:input +|output |localparam )?)logic \[0:0\] (\w+)((?: +\[\d+:\d+\])?)")
 
 
 def _scalars(part: str, before: str, text: str) -> str:
     """``part`` without [0:0], but where a bit of the name, with ``before`` in front, is selected in ``text``."""
+    selected = {  # with or without a dimension
+        False: set(re.findall(rf"{before}(\w+)(?=\[)", text)),
+        True: set(re.findall(rf"{before}(\w+)(?=\[[^\]]*\]\[)", text)),
+    }
 
     def scalar(declaration: re.Match[str]) -> str:
         start, name, dimension = declaration.groups()
-        selected = before + name + (r"\[[^\]]*\]\[" if dimension else r"\[")
-        return declaration[0] if re.search(selected, text) else f"{start}logic {name}{dimension}"
+        return declaration[0] if name in selected[bool(dimension)] else f"{start}logic {name}{dimension}"
 
     return VECTOR_OF_ONE.sub(scalar, part)
 
@@ -76,9 +84,8 @@ def _without_vectors_of_one(text: str) -> str:
     types, *modules = re.split(r"(?m)^(?=module )", text)
     made = [_scalars(types, r"\.", text)]
     for module in modules:
-        for _, name, dimension in VECTOR_OF_ONE.findall(module):
-            if not dimension:
-                module = re.sub(rf"(?<![.\w]){name}\[0(:0)?\]", name, module)
+        bits = {name for _, name, dimension in VECTOR_OF_ONE.findall(module) if not dimension}
+        module = BIT_0.sub(lambda found, bits=bits: found[1] if found[1] in bits else found[0], module)
         made.append(_scalars(module, r"(?<![.\w])", module))
     return "".join(made)
 

@@ -35,9 +35,11 @@ class RegFileFL(Component):
         counters = [f.name for f in chip.counters]
         names = [f.name for f in chip.configuration if f.name != "trim"]
 
-        def configuration():
+        def configure():
             trims = sum(s.bank.value(f.key) << 8 * f.size * i for i, f in enumerate(chip.trims))
-            return Config(*(s.bank.value(name) for name in names), trims)
+            s.configuration = Config(*(s.bank.value(name) for name in names), trims)
+
+        configure()
 
         def falling():
             if s.bits or s.command is None or s.command & 0x80:
@@ -56,6 +58,7 @@ class RegFileFL(Component):
                     return
                 if s.command & 0x80:
                     s.bank.write(s.command & 0x7F, byte, bool(s.status.busy), bool(s.loop.val))
+                    configure()
                 if s.command & 0x7F != ADDRESS_MAX:
                     s.command += 1
 
@@ -64,6 +67,7 @@ class RegFileFL(Component):
             high = bool(s.sclk)
             if s.reset:
                 s.bank.__init__(resets)
+                configure()
             s.was_free = not s.reset and (s.was_free or bool(s.csn))
             if s.csn or not s.was_free:
                 s.bits, s.command, s.out = [], None, 0
@@ -83,7 +87,7 @@ class RegFileFL(Component):
                 s.loop.msg <<= loop
             elif s.reset or abort or s.loop.rdy:
                 s.loop.val <<= 0
-            s.cfg <<= configuration()
+            s.cfg <<= s.configuration
             s.miso <<= s.out >> 7
 
     def line_trace(s):

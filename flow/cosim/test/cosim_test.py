@@ -25,8 +25,21 @@ SMALL = RowRequest(mode="image", cols=6, lanes=1, types=1, accuracy=COARSE)  # i
 
 
 @pytest.fixture(scope="module")
-def row() -> Row:
-    return read_row(SMALL)
+def told() -> list[str]:
+    return []
+
+
+@pytest.fixture(scope="module")
+def row(told: list[str]) -> Row:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(lockstep, "INTERVAL", 0.1)
+        return read_row(SMALL, told.append)
+
+
+@library
+def test_it_says_how_far_a_row_is(row: Row, told: list[str]):
+    done = [int(text.split()[1]) for text in told if text.endswith("cycles of the circuit")]
+    assert done == sorted(done) and len(set(done)) > 2 and done[-1] <= row.run.stats["circuit_cycles"]
 
 
 @library

@@ -86,14 +86,22 @@ def openroad(tmp_path, monkeypatch):
     monkeypatch.setenv("PATH", str(tmp_path), prepend=":")
 
 
+@pytest.fixture(scope="module")
+def divider(tmp_path_factory):
+    """The divider's files."""
+    folder = tmp_path_factory.mktemp("written")
+    write(design("quad_divider"), KNOWN, folder)
+    return folder
+
+
 @pytest.fixture
-def written(tmp_path, monkeypatch):
-    """The divider's files, and a netlist in place of Yosys's stage."""
+def written(divider, tmp_path, monkeypatch):
+    """The divider's files, a netlist in place of Yosys's stage, and the others in no process of their own."""
+    monkeypatch.setattr("talbot.flow.openroad.stages.alone", lambda call, *arguments: (call(*arguments), 1))
     monkeypatch.setattr("talbot.flow.openroad.stages.stages", lambda tech, wires: stages(tech, wires)[1:])
-    chosen = design("quad_divider")
-    write(chosen, KNOWN, tmp_path)
+    shutil.copytree(divider, tmp_path, dirs_exist_ok=True)
     (tmp_path / "netlist.v").write_text("")
-    return chosen
+    return design("quad_divider")
 
 
 def unchecked(design, tech, root, folder, size_um, note):

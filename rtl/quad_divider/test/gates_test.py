@@ -17,6 +17,8 @@ from talbot.rtl.messages import DivReq, div_resp
 from talbot.rtl.quad_divider import quad_divider, ratio_bits, timing
 
 DEFAULTS = [(variant, 8, 10) for variant in DIVIDERS]
+QUICK = DEFAULTS[:2]  # the others take ten times the gates or cycles
+SOME_FLOORS = [0, 1, 77, 128, 201, 254, 255]
 SIZES = [
     *product(("radix2", "radix4", "pipelined"), range(N_FRAC_MIN, N_FRAC_MAX + 1), (10,)),
     *product(("cordic",), (8,), range(ITERATIONS_MIN, ITERATIONS_MAX + 1)),
@@ -135,10 +137,14 @@ class OneWrong(Component):
                 s.hit <<= (s.recv.msg.x == x) & (s.recv.msg.y == y) & (s.noise_floor == floor)
 
 
+def default(config, slow):
+    return pytest.param(config, id=config[0], marks=[pytest.mark.slow] if slow else [])
+
+
 class TestGates:
     verilog = "gates"  # recorders of the other levels leave it out
 
-    @pytest.mark.parametrize("config", DEFAULTS, ids=lambda c: c[0])
+    @pytest.mark.parametrize("config", [default(config, config not in QUICK) for config in DEFAULTS])
     def test_every_request_at_every_noise_floor(self, config):
         order = np.random.default_rng(5).permutation(FLOORS).tolist()
         assert wrong_requests(Gates(quad_divider(*config), REQUESTS.size), config, order) == []
@@ -149,12 +155,16 @@ class TestGates:
     def test_stalls_and_resets(self, config, seed):
         check_random(Gates(quad_divider(*config), 1 << 12), config, seed)
 
+    @pytest.mark.parametrize("config", [default(config, False) for config in DEFAULTS if config not in QUICK])
+    def test_every_vector_at_some_noise_floors(self, config):
+        assert wrong_requests(Gates(quad_divider(*config), REQUESTS.size), config, SOME_FLOORS) == []
+
     @pytest.mark.slow
     @pytest.mark.parametrize(
         "config", [size for size in SIZES if size not in DEFAULTS], ids=lambda c: "-".join(map(str, c))
     )
     def test_every_vector_at_every_size(self, config):
-        assert wrong_requests(Gates(quad_divider(*config), REQUESTS.size), config, [0, 1, 77, 128, 201, 254, 255]) == []
+        assert wrong_requests(Gates(quad_divider(*config), REQUESTS.size), config, SOME_FLOORS) == []
         check_random(Gates(quad_divider(*config), 1 << 12), config, 1, cycles=150)
 
     def test_finds_one_wrong_request(self):

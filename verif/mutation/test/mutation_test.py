@@ -164,7 +164,9 @@ def test_one_mutant_alone(small, tmp_path):
     subprocess.run(["yosys", "-q", "-p", f"read_verilog {tmp_path}/one.v; hierarchy -check -top Small"], check=True)
 
 
-@pytest.mark.parametrize("block", ["PhasePath", "ReadoutSeq", "RunLength"])
+@pytest.mark.parametrize(
+    "block", [*(pytest.param(block, marks=pytest.mark.slow) for block in ("PhasePath", "ReadoutSeq")), "RunLength"]
+)
 def test_promises_leave_the_block_its_work(block):
     """A promise that no neighbour can keep would make every mutant equivalent."""
     top = build_top(block, SensorParameters())
