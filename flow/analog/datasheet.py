@@ -39,14 +39,14 @@ class Row:
         limit = " ".join(f"{sign} {_text(value)}" for sign, value in limits if value is not None)
         numbers = ("" if v is None else _text(v) for v in (self.low, self.typical, self.high))
         verdict = ("pass" if self.passes else "FAIL") if limit else ""
-        return (f"{self.circuit}: {self.name}", *numbers, limit, self.unit, verdict, self.worst or self.over)
+        return (f"{self.circuit}: {self.name}", verdict, *numbers, limit, self.unit, self.worst or self.over)
 
 
 def _text(value: float) -> str:
     return f"{value:.0f}" if abs(value) >= 999.5 else f"{value:.3g}"
 
 
-HEAD = ("characteristic", "min", "typ", "max", "limit", "unit", "", "worst at, or over")
+HEAD = ("characteristic", "", "min", "typ", "max", "limit", "unit", "worst at, or over")
 
 
 def over_corners(
