@@ -106,7 +106,9 @@ class Runner:
             tried, known, own = set[tuple[object, ...]](), self.paths, dict[str, Path]()
             while not ended.wait(LOOK_S):
                 if known is not self.paths:
-                    tried, known, own = set[tuple[object, ...]](), self.paths, dict[str, Path]()
+                    known = self.paths
+                    tried.clear()
+                    own.clear()
                 paths = ChainMap(known, own)
                 for step in steps:
                     asked = step.name, *(paths.get(source) for source in step.inputs.values())

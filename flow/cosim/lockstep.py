@@ -152,7 +152,7 @@ def _watched(cycles: Path, note: Callable[[str], None]) -> Iterator[None]:
                 done = cycles.read_bytes().count(b"\n")
                 note(f"{done} cycles of the circuit")
 
-    watcher = threading.Thread(target=watch, daemon=True)
+    watcher = threading.Thread(target=watch)
     watcher.start()
     try:
         yield
