@@ -5,7 +5,7 @@ import random
 import cocotb
 
 from talbot.models.digital.stream import StreamHeader, encode_frame
-from talbot.models.digital.stream.test.frames import samples_of
+from talbot.models.digital.stream.test.frames import ports_of, samples_of
 from talbot.models.parameters import MODES, FrameParameters, Window
 from talbot.rtl.messages import END, FRAME, ROW, SAMPLE, ScanMsg
 
@@ -50,27 +50,9 @@ class RunLengthBench(Bench):
 
     async def begin(self, header, made, left_out):
         """Reset with the configuration of a frame at the ports."""
-        w = header.window
-        for name, value in {
-            "mode": MODES.index(header.mode),
-            "phase": header.phase,
-            "row0": w.row0,
-            "row1": w.row1,
-            "col0": w.col0,
-            "col1": w.col1,
-            "decimation": header.decimation,
-            "mask": header.mask,
-            "threshold": header.threshold,
-            "frame_number": header.frame_number,
-            "resync": header.resync,
-            "exposure": header.exposure,
-            "n_cm": header.n_cm,
-            "t_int": header.t_int,
-            "calibration": header.calibration,
-            "made": made,
-            "left_out": left_out,
-        }.items():
-            getattr(self.dut, name).value = int(value)
+        counts = {"made": made, "left_out": left_out}
+        for name, value in (ports_of(header) | counts).items():
+            getattr(self.dut, name).value = value
         self.source.pace, self.sink.pace = (random.choice((0.1, 0.5, 0.9, 1)) for _ in range(2))
         await self.reset()
 

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from talbot.models.digital.stream import StreamHeader, decode_stream, encode_frame, encode_marked, segments
 from talbot.models.digital.stream.payload import K_MAX, TOKEN_MAX, code_sample, start
-from talbot.models.digital.stream.test.frames import samples_of
+from talbot.models.digital.stream.test.frames import ports_of, samples_of
 from talbot.models.digital.stream.trailer import trailer
 from talbot.models.parameters import LANES as LANE_COUNTS
 from talbot.models.parameters import MODES, AmpTiming, FrameParameters, Window
@@ -78,25 +78,7 @@ class Bench:
 
     def configure(self, header, made=0, left_out=0):
         """Another frame's configuration and counts."""
-        w = header.window
-        values = {
-            "mode": MODES.index(header.mode),
-            "phase": header.phase,
-            "row0": w.row0,
-            "row1": w.row1,
-            "col0": w.col0,
-            "col1": w.col1,
-            "decimation": header.decimation,
-            "mask": header.mask,
-            "threshold": header.threshold,
-            "frame_number": header.frame_number,
-            "resync": header.resync,
-            "exposure": header.exposure,
-            "n_cm": header.n_cm,
-            "t_int": header.t_int,
-            "calibration": header.calibration,
-        }
-        for name, value in values.items():
+        for name, value in ports_of(header).items():
             port = getattr(self.sim, name)
             port @= value
         self.counts = made, left_out

@@ -13,6 +13,15 @@ def header_of(rows, cols, lanes=8, **frame):
     return StreamHeader.from_frame(rows, cols, lanes, FrameParameters(window, **frame))
 
 
+def ports_of(header):
+    """RunLength's configuration ports for a frame: name -> value."""
+    w = header.window
+    same = ["phase", "decimation", "mask", "threshold", "frame_number"]
+    same += ["resync", "exposure", "n_cm", "t_int", "calibration"]
+    corners = {"row0": w.row0, "row1": w.row1, "col0": w.col0, "col1": w.col1}
+    return {"mode": MODES.index(header.mode), **corners, **{name: int(getattr(header, name)) for name in same}}
+
+
 def samples_of(header, seed, share=0.2, scale=20):
     """Codes as the converters give them: int64 (rows, cols, subs); zero where nothing is read.
 
