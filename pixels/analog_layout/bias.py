@@ -1,4 +1,4 @@
-"""The bias: a pair of 1 to 4 with its mirror, an output for each amplifier, a resistor of n+ diffusion, the starter.
+"""The bias: a pair of 1 to 16 with its mirror, an output for each amplifier, a resistor of n+ diffusion, the starter.
 
     upper    an output's second half each, mirror of the four; below them the starter
     lower    an output's first half each, mirror of the one; below them the four about the one
@@ -22,7 +22,7 @@ from .strip import FIRST, FOURTH, RAIL_ENDS, RAIL_HALF, THIRD, WELL_ENDS, Plan, 
 
 # um
 WIDE, HEAD, BELOW = 1.0, 1.0, 2.0  # of the resistor: width, length of its ends, middle below the lowest rail
-BAR_PITCH = 2.0  # of the resistor's parts
+BAR_PITCH = 2.0  # from one of the resistor's bars to the next
 ENDS = 1.5  # of the strips beyond their longest row
 PINS_IN = 4.0  # of the outputs from the strips' ends
 
@@ -65,20 +65,18 @@ def bias_cell(masks: AnalogMasks, outputs: int) -> Cell:
         strips.append(draw_strip(canvas, masks, plan, y))
         y += plan.height_um + BETWEEN_STRIPS
     join_rails(canvas, strips)
-    # Bars from the uppermost, every second one turned: the last ends in the west or in the east, beside a rail's trunk
-    high = strips[0].y - BELOW
-    ends = []
+    # Bars from the uppermost, every second one from the east; an even number of them, so that the last ends in the west
+    high, ends = strips[0].y - BELOW, list[flat.Ends]()
     for k, part in enumerate(parts):
         places = _resistor(canvas, masks, west, high - k * BAR_PITCH, length)
-        ends.append(flat.Ends(part.name, *(places if k % 2 == 0 else places[::-1])))
+        ends.append(flat.Ends(part.name, *(places[::-1] if k % 2 else places)))
     for one, after in pairwise(ends):
-        (x, y_one), (_, y_after) = one.last, after.first
-        canvas.wire(FIRST, x - 0.3, y_after - 0.3, x + 0.3, y_one + 0.3)
+        x = one.last[0]
+        canvas.wire(FIRST, x - 0.3, after.first[1] - 0.3, x + 0.3, one.last[1] + 0.3)
     x, low = ends[-1].last
-    beside = west - 2 * HEAD - 0.6 if len(parts) % 2 == 0 else x
-    if len(parts) % 2 == 0:
-        canvas.wire(FIRST, beside - 0.3, low - 0.3, x + 0.3, low + 0.3)
-    canvas.wire(FIRST, beside - 0.3, low - 0.3, beside + 0.3, strips[0].y + RAIL_HALF)
+    away = x - 2 * HEAD
+    canvas.wire(FIRST, away - 0.3, low - 0.3, x + 0.3, low + 0.3)
+    canvas.wire(FIRST, away - 0.3, low - 0.3, away + 0.3, strips[0].y + RAIL_HALF)
     canvas.stack(at["source"], high, FIRST, FOURTH)
     canvas.wire(THIRD, at["source"] - 0.35, high - 0.19, at["source"] + 0.35, high + 0.19)
     tracks = [track for strip in strips for track in strip.tracks]

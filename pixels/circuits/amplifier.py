@@ -40,7 +40,7 @@ RANGE = 192.0  # LSB between the ends of three quarters of the range
 SPLIT = 4  # parts of the pair: one steers the sinks, the others are at the folding
 SINKS = 5  # times its diode, each sink
 AWAKE = 0.18  # of the tail while the amplifier is reset: its load is not at the output then
-LEG = 2  # times BIAS: the leg that drives the tail's gate, which has to be fast; the cascodes' have BIAS
+LEG = 2  # times BIAS: the legs that drive the tail's gate, and after it the n cascodes', which have to be fast
 # Roles and lengths (um): the pair, its tail, the sinks and legs, the cascodes, the mirror
 PAIR, TAIL, SINK, LEGS = ("p_lvt", 0.5), ("p", 0.5), ("n_lvt", 0.5), ("n_lvt", 1.0)
 CASCODE, CASCODE_P, TOP = ("n_lvt", 0.5), ("p_lvt", 0.5), ("p", 0.5)

@@ -1,8 +1,8 @@
 """What the lanes stand on: non-overlapping switch drivers, bias with start-up. Rows have `row_driver`.
 
 `non_overlap`: clk phi1 phi2 vdd vss; phi2 follows clk, phi1 is high while it is low, and both are low in between.
-`bias`: ibias vdd vss; BIAS amperes and 8 % leave ibias (the amplifier's pin) at the typical corner. With several outputs its
-pins are ibias_0, ibias_1 and so on: lanes convert side by side, and each amplifier has a current of its own.
+`bias`: ibias vdd vss; BIAS amperes and 8 % leave ibias (the amplifier's pin) at the typical corner. With several
+outputs its pins are ibias_0, ibias_1 and so on: lanes convert side by side, each amplifier has a current of its own.
 """
 
 from dataclasses import dataclass
@@ -52,11 +52,11 @@ def non_overlap() -> Circuit:
 
 
 def bias(outputs: int = 1) -> Circuit:
-    """The difference of two thresholds, and n kT/q ln 16, over r: a pair of 1 to 16, whose wide one has a low threshold.
+    """The difference of two thresholds, and n kT/q ln 16, over r: a pair of 1 to 16, the wide one of the low threshold.
 
-    The first falls with temperature, the second rises, and so does r: the current is nearly constant. Each of ``outputs``, 1..32, has as much as both branches
-    together, and none where it is open. While no current flows, `start` is high and draws the mirror's gate down; the
-    current then pulls `start` low.
+    The first falls with temperature, the second rises, and so does r: the current is nearly constant. Each of
+    ``outputs``, 1..32, has as much as both branches together, and none where it is open. While no current flows,
+    `start` is high and draws the mirror's gate down; the current then pulls `start` low.
     """
 
     def n(name: str, drain: str, gate: str, source: str, w: float, length: float, role: str = "n") -> Transistor:
