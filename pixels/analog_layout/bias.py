@@ -1,13 +1,14 @@
-"""The bias: a pair of 1 to 4 with its mirror, an output for each amplifier, a resistor of n+ diffusion, the starter.
+"""The bias: a pair of 1 to 16 with its mirror, an output for each amplifier, a resistor of n+ diffusion, the starter.
 
     upper    an output's second half each, mirror of the four; below them the starter
     lower    an output's first half each, mirror of the one; below them the four about the one
-    resistor a straight bar
+    resistor straight bars, one after the other
 
 Both halves of an output are at the same distance from the middle, on opposite sides. Rows end with dummies.
 """
 
-from talbot.pixels.circuits.netlist import Resistor
+from itertools import pairwise
+
 from talbot.pixels.circuits.support import bias
 from talbot.pixels.layout.canvas import CONTACT_UM, Canvas
 from talbot.platforms.analog import AnalogMasks
@@ -21,6 +22,7 @@ from .strip import FIRST, FOURTH, RAIL_ENDS, RAIL_HALF, THIRD, WELL_ENDS, Plan, 
 
 # um
 WIDE, HEAD, BELOW = 1.0, 1.0, 2.0  # of the resistor: width, length of its ends, middle below the lowest rail
+BAR_PITCH = 2.0  # from one of the resistor's bars to the next
 ENDS = 1.5  # of the strips beyond their longest row
 PINS_IN = 4.0  # of the outputs from the strips' ends
 
@@ -43,8 +45,8 @@ def bias_cell(masks: AnalogMasks, outputs: int) -> Cell:
     turned = halves[1][::-1]
     upper = ("upper_west", *turned[: outputs - half], "mirror_four", *turned[outputs - half :], "upper_east", "keep")
     fours = ("four_west", "four_0", "four_1", "one", "four_2", "four_3", "four_east")
-    ohm = circuit.resistors[0]
-    length = resistor_um(ohm.value, masks)
+    parts = circuit.resistors
+    length = resistor_um(parts[0].value, masks)
     long = max(sum(d[name].width_um + 0.5 for name in upper), length + 2 * HEAD) + 2 * ENDS
     right = 2 * snap(long / 2)
     west = snap((right - length) / 2)
@@ -57,35 +59,44 @@ def bias_cell(masks: AnalogMasks, outputs: int) -> Cell:
         rows = row(d, n, right / 2), row(d, p, right / 2)
         present = {net for one in (*rows[0], *rows[1]) for net in one.device.transistor.nodes}
         plans.append(Plan(*rows, 0.0, right, {net: (x,) for net, x in at.items() if net in present}))
-    canvas, y = new_canvas(masks, "bias"), MARGIN + 2 * BELOW
+    canvas, y = new_canvas(masks, "bias"), MARGIN + 2 * BELOW + (len(parts) - 1) * BAR_PITCH
     strips = []
     for plan in plans:
         strips.append(draw_strip(canvas, masks, plan, y))
         y += plan.height_um + BETWEEN_STRIPS
     join_rails(canvas, strips)
-    low = strips[0].y - BELOW
-    ends = _resistor(canvas, masks, west, low, length)
-    canvas.wire(FIRST, ends[1][0] - 0.3, low - 0.3, ends[1][0] + 0.3, strips[0].y + RAIL_HALF)
-    canvas.stack(at["source"], low, FIRST, FOURTH)
-    canvas.wire(THIRD, at["source"] - 0.35, low - 0.19, at["source"] + 0.35, low + 0.19)
+    # Bars from the uppermost, every second one from the east; an even number of them, so that the last ends in the west
+    high, ends = strips[0].y - BELOW, list[flat.Ends]()
+    for k, part in enumerate(parts):
+        places = _resistor(canvas, masks, west, high - k * BAR_PITCH, length)
+        ends.append(flat.Ends(part.name, *(places[::-1] if k % 2 else places)))
+    for one, after in pairwise(ends):
+        x = one.last[0]
+        canvas.wire(FIRST, x - 0.3, after.first[1] - 0.3, x + 0.3, one.last[1] + 0.3)
+    x, low = ends[-1].last
+    away = x - 2 * HEAD
+    canvas.wire(FIRST, away - 0.3, low - 0.3, x + 0.3, low + 0.3)
+    canvas.wire(FIRST, away - 0.3, low - 0.3, away + 0.3, strips[0].y + RAIL_HALF)
+    canvas.stack(at["source"], high, FIRST, FOURTH)
+    canvas.wire(THIRD, at["source"] - 0.35, high - 0.19, at["source"] + 0.35, high + 0.19)
     tracks = [track for strip in strips for track in strip.tracks]
     for net, x in at.items():
-        beyond = [low] if net == "source" else [0.0] if net in pins else []
+        beyond = [high] if net == "source" else [0.0] if net in pins else []
         trunk(canvas, tracks, net, x, *beyond)
         if net in pins:
             canvas.label(FOURTH, net, x, 0.3)
     beside = RAIL_ENDS + WELL_ENDS
     canvas.box(masks.base.outline, -beside, 0, right + beside, y - BETWEEN_STRIPS + MARGIN)
     terminals = tuple(one for strip in strips for one in strip.terminals)
-    drawn = Resistor(ohm.name, ohm.a, ohm.b, length / WIDE * masks.sheet_ohm, True)
+    value = length / WIDE * masks.sheet_ohm
     return Cell(
         canvas.layout,
         canvas.cell,
         circuit.ports,
         tuple(d.values()),
         terminals=terminals,
-        resistors=(drawn,),
-        ends=(flat.Ends(ohm.name, *ends),),
+        resistors=tuple(part._replace(value=value) for part in parts),
+        ends=tuple(ends),
     )
 
 

@@ -39,8 +39,8 @@ PAIR_PARTS = 2  # transistors in each of them
 RANGE = 192.0  # LSB between the ends of three quarters of the range
 SPLIT = 4  # parts of the pair: one steers the sinks, the others are at the folding
 SINKS = 5  # times its diode, each sink
-AWAKE = 0.27  # of the tail while the amplifier is reset: its load is not at the output then
-LEG = 2  # times BIAS: the leg that drives the tail's gate, which has to be fast; the cascodes' have BIAS
+AWAKE = 0.18  # of the tail while the amplifier is reset: its load is not at the output then
+LEG = 2  # times BIAS: the legs that drive the tail's gate, and after it the n cascodes', which have to be fast
 # Roles and lengths (um): the pair, its tail, the sinks and legs, the cascodes, the mirror
 PAIR, TAIL, SINK, LEGS = ("p_lvt", 0.5), ("p", 0.5), ("n_lvt", 0.5), ("n_lvt", 1.0)
 CASCODE, CASCODE_P, TOP = ("n_lvt", 0.5), ("p_lvt", 0.5), ("p", 0.5)
@@ -48,9 +48,9 @@ STACK, TRIODE = 3.0, 8.0  # cascode's gate: parts of the sinks' and cascodes' wi
 STACK_P = (3.0, ("p_lvt", 2.0))  # the diode that makes the p cascodes' gate
 UNIT, CELLS, GAIN = 2.3499e-15, 3, 2.4  # F, of so many fringe cells; a column's volts to the lane's
 # Transconductance over current, 1/V: high where it is what is wanted, low where matching or a drain's level is
-EFFICIENCY = {"pair": 14.0, "tail": 9.0, "sink": 17.0, "cascode": 18.0, "top": 12.0, "cascode_p": 12.0, "leg": 12.0}
+EFFICIENCY = {"pair": 13.6, "tail": 9.0, "sink": 15.3, "cascode": 18.7, "top": 12.0, "cascode_p": 12.0, "leg": 12.0}
 SLEW = 10e-9  # s of the signal's time in which the output's current is at its limit
-LEFT = 0.09  # of the specification's rest, at the typical corner: others are slower
+LEFT = 0.03  # of the specification's rest, at the typical corner: others are slower
 STRAY = 0.3e-12  # F at the output beside the lane's array
 
 
@@ -236,9 +236,9 @@ def ota(sizes: OtaSizes) -> Circuit:
         *_n("bias_n", "vbn vbn vss", s.leg, LEGS),
         *_n("bias_to_p", "vbp vbn vss", s.leg, LEGS, LEG),
         *_p("bias_p", "vbp vbp vdd", s.tail, TAIL),
-        *_p("bias_to_n", "vcn vbp vdd", s.tail / LEG, TAIL),
-        *_n("stack_n", "vcn vcn stack", s.cascode / STACK, CASCODE),
-        *_n("stack_low", "stack vcn vss", max(0.42, s.sink / STACK / TRIODE), SINK),
+        *_p("bias_to_n", "vcn vbp vdd", s.tail, TAIL),
+        *_n("stack_n", "vcn vcn stack", LEG * s.cascode / STACK, CASCODE),
+        *_n("stack_low", "stack vcn vss", max(0.42, LEG * s.sink / STACK / TRIODE), SINK),
         *_n("bias_to_pc", "vcp vbn vss", s.leg / 2, LEGS),
         *_p("cascode_p", "vcp vcp vdd", *STACK_P),
         # A part of the tail is on with the amplifier, the others not before the reset's end

@@ -1,18 +1,19 @@
 """What the lanes stand on: non-overlapping switch drivers, bias with start-up. Rows have `row_driver`.
 
 `non_overlap`: clk phi1 phi2 vdd vss; phi2 follows clk, phi1 is high while it is low, and both are low in between.
-`bias`: ibias vdd vss; BIAS amperes leave ibias (the amplifier's pin) at the typical corner. With several outputs its
-pins are ibias_0, ibias_1 and so on: lanes convert side by side, and each amplifier has a current of its own.
+`bias`: ibias vdd vss; BIAS amperes and 8 % leave ibias (the amplifier's pin) at the typical corner. With several
+outputs its pins are ibias_0, ibias_1 and so on: lanes convert side by side, each amplifier has a current of its own.
 """
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 from talbot.models.parameters import check_int, check_real
 
 from .gates import inverter, nor
 from .netlist import Circuit, Instance, Resistor, Transistor
 
-BIAS_OHM = 11.5e3  # of the bias: 5 uA in each branch at 27 degrees
+BIAS_OHM, BARS = 46e3, 4  # of the bias, in so many parts: 5 uA in each branch at 27 degrees
 DELAYS = 4  # inverters in each loop of the switch drivers
 
 
@@ -51,11 +52,11 @@ def non_overlap() -> Circuit:
 
 
 def bias(outputs: int = 1) -> Circuit:
-    """A current proportional to absolute temperature, n kT/q ln 4 / r: a pair of 1 to 4 in weak inversion.
+    """The difference of two thresholds, and n kT/q ln 16, over r: a pair of 1 to 16, the wide one of the low threshold.
 
-    The transconductance of what it drives is constant. Each of ``outputs``, 1..32, has as much as both branches
-    together, and none where it is open. While no current flows, `start` is high and draws the mirror's gate down; the
-    current then pulls `start` low.
+    The first falls with temperature, the second rises, and so does r: the current is nearly constant. Each of
+    ``outputs``, 1..32, has as much as both branches together, and none where it is open. While no current flows,
+    `start` is high and draws the mirror's gate down; the current then pulls `start` low.
     """
 
     def n(name: str, drain: str, gate: str, source: str, w: float, length: float, role: str = "n") -> Transistor:
@@ -70,8 +71,8 @@ def bias(outputs: int = 1) -> Circuit:
         "bias",
         (*pins, "vdd", "vss"),
         (
-            n("one", "vbn", "vbn", "vss", 20, 4.0),
-            *(n(f"four_{k}", "vbp", "vbn", "source", 20, 4.0) for k in range(4)),
+            n("one", "vbn", "vbn", "vss", 5, 4.0),
+            *(n(f"four_{k}", "vbp", "vbn", "source", 20, 4.0, "n_lvt") for k in range(4)),
             p("mirror_one", "vbn", "vbp", 10, 4.0),
             p("mirror_four", "vbp", "vbp", 10, 4.0),
             *(p(pin.replace("ibias", "out") + f"_{k}", pin, "vbp", 10, 4.0) for pin in pins for k in range(2)),
@@ -79,5 +80,8 @@ def bias(outputs: int = 1) -> Circuit:
             n("stop", "start", "vbn", "vss", 4, 0.5, "n_lvt"),
             n("start", "vbp", "start", "vss", 1, 0.5),
         ),
-        resistors=(Resistor("r", "source", "vss", BIAS_OHM, True),),
+        resistors=tuple(
+            Resistor(f"r{k}", a, b, BIAS_OHM / BARS, True)
+            for k, (a, b) in enumerate(pairwise(("source", *(f"part_{k}" for k in range(1, BARS)), "vss")))
+        ),
     )

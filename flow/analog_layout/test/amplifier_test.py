@@ -4,6 +4,7 @@ import re
 import shutil
 from dataclasses import replace
 from importlib.util import find_spec
+from itertools import pairwise
 
 import pytest
 
@@ -23,6 +24,7 @@ from talbot.flow.layout.parasitics.shapes import shapes
 from talbot.pixels.analog_layout.amplifier import amplifier_cell
 from talbot.pixels.analog_layout.bias import bias_cell
 from talbot.pixels.circuits.amplifier import AmplifierSpec, size
+from talbot.pixels.circuits.support import BARS
 from talbot.platforms.analog import analog_masks
 from talbot.platforms.coriolis import coriolis_platform
 from talbot.platforms.extraction import extraction_platform
@@ -44,20 +46,24 @@ def test_the_bias_keeps_the_rules_is_its_circuit_and_faults_are_found(tmp_path):
     assert lvs(path, text, "sky130", tmp_path / "good.lvsdb")
 
     def bridged(layout, top):
-        """The mark of the resistor's body is shorter: the rest is a wire."""
+        """The mark of a part of the resistor is shorter: the rest is a wire."""
         marks = top.shapes(layout.layer(*MASKS.resistor))
-        box = db.Region(marks).bbox()
+        first, *others = (one.bbox() for one in db.Region(marks).each())
         marks.clear()
-        marks.insert(db.Box(box.left, box.bottom, box.right - 2000, box.top))
+        marks.insert(db.Box(first.left, first.bottom, first.right - 2000, first.top))
+        for one in others:
+            marks.insert(one)
 
     assert not lvs(changed(path, tmp_path / "bad.gds", bridged), text, "sky130", tmp_path / "bad.lvsdb")
 
 
-def test_an_extracted_bias_has_its_resistor_between_two_nets():
+def test_an_extracted_bias_has_its_resistor_part_by_part_between_two_nets():
     found, nets = extract(bias_cell(MASKS, 1), MASKS, WIRES["typ"])
-    (drawn,) = (r for r in found.resistors if r.drawn)
-    assert {drawn.a.split("__")[0], drawn.b.split("__")[0]} == {"source", "vss"}
-    assert "Rr " in "\n".join(found.lines(analog)) and "*rscale" in "\n".join(found.lines(analog))
+    drawn = [r for r in found.resistors if r.drawn]
+    ends = [(r.a.split("__")[0], r.b.split("__")[0]) for r in drawn]
+    assert len(ends) == BARS and (ends[0][0], ends[-1][1]) == ("source", "vss")
+    assert all(one[1] == after[0] for one, after in pairwise(ends))
+    assert "Rr0 " in "\n".join(found.lines(analog)) and "*rscale" in "\n".join(found.lines(analog))
     assert 1e-15 < nets.totals["source"] < 1e-12
 
 

@@ -26,7 +26,7 @@ from talbot.pixels.analog_layout.amplifier_bank import (
 from talbot.pixels.analog_layout.bias import bias_cell, resistor_um
 from talbot.pixels.analog_layout.cells import new_canvas
 from talbot.pixels.circuits.amplifier import AmplifierSpec, amplifier, size
-from talbot.pixels.circuits.support import BIAS_OHM, bias
+from talbot.pixels.circuits.support import BARS, BIAS_OHM, bias
 from talbot.platforms.analog import analog_masks
 from talbot.platforms.sky130 import analog
 
@@ -125,8 +125,8 @@ def test_a_finger_has_a_unit_and_a_senseless_unit_is_refused():
 def test_a_bias_has_its_resistor_and_an_output_for_each_lane(outputs):
     made = bias_cell(MASKS, outputs)
     assert made.ports == bias(outputs).ports and len(made.ports) == outputs + 2
-    assert resistor_um(BIAS_OHM, MASKS) == pytest.approx(95.83, abs=0.01)
+    assert resistor_um(BIAS_OHM / BARS, MASKS) == pytest.approx(95.83, abs=0.01)
     body = db.Region(made.cell.shapes(made.layout.layer(*MASKS.resistor)))
-    assert body.area() * 1e-6 == pytest.approx(95.835)
+    assert body.area() * 1e-6 == pytest.approx(BARS * 95.835)
     names = {device.transistor.name for device in made.devices}
     assert {t.name for t in flat.transistors(bias(outputs))} <= names

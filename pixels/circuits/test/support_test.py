@@ -24,4 +24,4 @@ def test_all_are_whole():
 
 def test_what_is_broken_is_named():
     with pytest.raises(ParameterError, match="circuit bias: net source at device four_0: must have two ends"):
-        bias().without("r").check(process)
+        bias().without("r0").check(process)
