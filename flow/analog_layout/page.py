@@ -36,7 +36,7 @@ PICTURES = {
         "From the south the bank of one input, half of the pair over half of the sinks, the tail's parts, the other "
         "half, mirror and switches, the bank of the other input, the trim's switches.",
     ),
-    "bias": ("The bias", "A pair of one to four about its middle, two halves of each output, the resistor below."),
+    "bias": ("The bias", "A pair of one to 16 about its middle, two halves of each output, the resistor below."),
     "adc_lanes": ("All lanes in the die's frame", "Below them the channel to the chip's pins, above the references."),
 }
 NAMES = ("analog_layout.html", *(f"{name}.png" for name in PICTURES))
@@ -63,7 +63,7 @@ def write(folder: Path, s: dict[str, Any], process: PixelProcess) -> None:
             Tile(str(failed), "figures of the layout outside their limits", "bad" if failed else "good"),
         ],
         sections=[
-            *(Section(pictures=[one]) for one in pictures),
+            *(Section(one.title, pictures=[one]) for one in pictures),
             Section(
                 "Layout beside schematic",
                 "The same measurements of the circuit alone and of the extracted layout: drawn junctions, resistance "
