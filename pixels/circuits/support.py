@@ -13,7 +13,7 @@ from talbot.models.parameters import check_int, check_real
 from .gates import inverter, nor
 from .netlist import Circuit, Instance, Resistor, Transistor
 
-BIAS_OHM, BARS = 46e3, 4  # of the bias, in so many parts: 5 uA in each branch at 27 degrees
+BIAS_OHM, BARS = 46e3, 4  # of the bias, in so many parts: 5.4 uA in each branch at 27 degrees
 DELAYS = 4  # inverters in each loop of the switch drivers
 
 
