@@ -206,9 +206,7 @@ def _rows(spec: LaneSpec, found: Pair[Measured]) -> Iterator[Row]:
     yield lane("DAC: INL of seven levels", "LSB", lambda one: inl(one.levels)[2], spec.inl)
     yield lane("lane: offset, systematic", "LSB", lambda one: inl(one.levels)[0], spec.offset)
     yield lane("lane: gain error over the range", "LSB", lambda one: inl(one.levels)[1])
-    yield lane(
-        "lane: decisions off their level", "LSB", lambda one: max(abs(off) for _, off in one.decided), spec.inl
-    )
+    yield lane("lane: decisions off their level", "LSB", lambda one: max(abs(off) for _, off in one.decided), spec.inl)
     yield lane("lane: gain up to the comparator", "", lambda one: one.gain)
     yield lane("lane: droop in a conversion", "LSB", lambda one: one.droop, spec.droop)
     yield lane("lane: energy of a decision", "pJ", lambda one: 1e12 * sum(one.energy.values()), share)
