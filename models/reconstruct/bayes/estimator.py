@@ -31,7 +31,7 @@ from .windows import Axis, Group, Windows
 
 Floats = npt.NDArray[np.floating]
 # What differs between the views, times its mean over what is not known, which shrinks it: by leaves and a tilted plane
-LINEAR, MIXTURE = 1.15, 1.06
+LINEAR, MIXTURE = 1.15, 1.1
 LOST = 0.5  # probability of no one disparity, from which on it is not known
 WIDEST = 8.0  # px, of the evidence's pool, beyond which it tells no slant
 UNLIKELY = 1e-3  # probability below which a disparity is left out of a mixture
@@ -211,7 +211,7 @@ class FieldEstimator:
                 block = down.offset, across.offset, high.block, wide.block
                 window = Window((high.window, wide.window), y, x, self.covariances.weights[diode], block, self.views)
                 shared, field = window.covariances(Plane(float(self.prior.fine[number]), slant), self.prior, views)
-                return Covariance(self._noisy(shared.astype(float)), field)
+                return Covariance(self._noisy(shared), field)
 
             self._slants[slant] = Hypotheses(slant, self.blocks, self.prior, self._read, make)
         return self._slants[slant]
@@ -294,7 +294,9 @@ class FieldEstimator:
             for slant in slants_of(*self._disparity(scores[0], blank), self.prior.slants):
                 sets.append(self._slanted(slant))
                 scores.append(sets[-1].scores(told))
-        every = np.concatenate([*scores, self._score(told)[None]])
+        # More disparities make none of them all together more probable than before
+        more = 2 * math.log(len(sets) * len(self.prior.fine) / len(self.prior.grid))
+        every = np.concatenate([*scores, self._score(told)[None] - np.float32(more)])
         chance = probability(every, UNLIKELY)
         parts = np.split(chance[:-1] * (1 - blank), len(sets))
         # What shows no disparity, or more than one, takes the linear estimate

@@ -94,23 +94,25 @@ class Window:
 
         Returns
         -------
-        tuple of float32 (samples, samples), (block's pixels * views**2, samples)
+        tuple of float64 (samples, samples), float32 (block's pixels * views**2, samples)
             Of samples with samples, without noise, and of the views of the block with samples; None without them.
         """
         top, left, high, wide = self.block
         middle = (np.array(self.size)[:, None, None] - 1) / 2
         places, own = np.unique(np.stack([self.y, self.x]), axis=1, return_inverse=True)
         pupil = self.weights.shape[1]
-        seen = plane.seen(*(places[..., None] - middle), *_steps(pupil, self.views / pupil))
+        # From the middle for the plane, and back to the pixels' own places
+        seen = plane.seen(*(places[..., None] - middle), *_steps(pupil, self.views / pupil)) + middle
         block = np.indices((high, wide)).reshape(2, -1, 1) + np.array([top, left])[:, None, None]
-        wanted = plane.seen(*(block - middle), *_steps(self.views, 1.0))
+        wanted = plane.seen(*(block - middle), *_steps(self.views, 1.0)) + middle
         first = [math.floor(min(s.min(), w.min())) - 1 for s, w in zip(seen, wanted, strict=True)]
         size = [math.floor(max(s.max(), w.max())) + 4 - f for s, w, f in zip(seen, wanted, first, strict=True)]
         root = _root(size[0], size[1], prior)
         down, across = (_taps(s - f, n) for s, f, n in zip(seen, first, size, strict=True))
         weights = self.weights.reshape(len(own), 1, -1).astype(np.float32)
         samples = np.matmul(weights * down.transpose(0, 2, 1)[own], across[own]).reshape(len(own), -1) @ root
-        shared = samples @ samples.T
+        exact = samples.astype(float)  # float32 would leave variances below 0 where noise is little
+        shared = exact @ exact.T
         if not views:
             return shared, None
         down, across = (_taps(w - f, n) for w, f, n in zip(wanted, first, size, strict=True))

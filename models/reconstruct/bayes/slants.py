@@ -18,6 +18,7 @@ AROUND = 6.0  # px, standard deviation of the weights of the pixels that tell a 
 STEP = 0.04  # of a slant down or across: over a window it is half a disparity
 STEEP = 6  # steps at most
 SHARE = 0.02  # of the pixels that a slant must have
+RIDGE = 1e-3  # px^2, of arrays of one row or column
 ROUGH = 0.1  # px, root of the mean square beside the plane, from which on pixels tell none
 
 
@@ -46,6 +47,7 @@ def slants_of(disparity: Floats, spread: Floats, most: int) -> list[Slant]:
     values = y, x, disparity
     means = [mean(v) for v in values]
     yy, yx, yd, xx, xd, dd = (mean(values[i] * values[j]) - means[i] * means[j] for i in range(3) for j in range(i, 3))
+    yy, xx = yy + RIDGE, xx + RIDGE
     over = yy * xx - yx**2
     down, across = (yd * xx - xd * yx) / over, (xd * yy - yd * yx) / over
     rest = dd - down * yd - across * xd
