@@ -1,7 +1,7 @@
 """Depth from the frames of time of flight by every method, beside what costs nothing."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from time import perf_counter
 from typing import Any
 
@@ -64,7 +64,7 @@ def read_depth(frames: DepthFrames, prior: FieldPrior, note: Callable[[str], Non
     diodes = frames.diodes()
     dead = dead_pixels(diodes.sum(0) / (2 * white))
     over = beside(full(diodes, (0, 1)) | dead, prior.margin)
-    estimator = estimator_of(result, prior)
+    estimator = estimator_of(result, replace(prior, between=0, slants=0))  # for turns, that is enough
     estimator.prepare(mixture=True)  # what is done once a sensor
     start = perf_counter()
     field = depth_field(estimator, diodes / white)
