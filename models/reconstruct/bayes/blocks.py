@@ -49,11 +49,33 @@ class Blocks:
         return [(down, across) for down in self.y.groups() for across in self.x.groups()]
 
     def count(self, down: Group, across: Group) -> tuple[int, int]:
-        """Blocks of a group, down and across."""
+        """Blocks of a group, down and across.
+
+        Parameters
+        ----------
+        down, across : Group
+            The group.
+
+        Returns
+        -------
+        tuple of int
+            How many.
+        """
         return len(self.y.blocks[down.blocks]), len(self.x.blocks[across.blocks])
 
     def diodes(self, down: Group, across: Group) -> tuple[Ints, Ints, Ints]:
-        """Row, column and number (2 type + 0 for sums, 1 for differences) of every sample of a window, sums first."""
+        """Row, column and number (2 type + 0 for sums, 1 for differences) of every sample of a window, sums first.
+
+        Parameters
+        ----------
+        down, across : Group
+            The group.
+
+        Returns
+        -------
+        tuple of int64 (samples,)
+            Those three.
+        """
         high, wide = self.y.window, self.x.window
         period = self.tile.type_map(self.tile.rows, self.tile.cols)
         lines = (down.phase + np.arange(high)) % self.tile.rows
@@ -64,14 +86,38 @@ class Blocks:
         return y[used], x[used], diode[used]
 
     def own(self, down: Group, across: Group) -> tuple[Ints, Ints, int]:
-        """Which samples are differences of the block's pixels, these pixels' numbers in it, and how many it has."""
+        """Which samples are differences of the block's pixels, these pixels' numbers in it, and how many it has.
+
+        Parameters
+        ----------
+        down, across : Group
+            The group.
+
+        Returns
+        -------
+        tuple of int64 (n,), int64 (n,), int
+            Those three.
+        """
         y, x, diode = self.diodes(down, across)
         y, x = y - down.offset, x - across.offset
         inside = (diode % 2 == 1) & (y >= 0) & (y < self.y.block) & (x >= 0) & (x < self.x.block)
         return np.flatnonzero(inside), (y * self.x.block + x)[inside], self.y.block * self.x.block
 
     def samples(self, pair: Floats, down: Group, across: Group) -> Floats:
-        """Samples of all windows of a group, (samples, windows); pair: sums and differences, (2, rows, cols)."""
+        """Samples of all windows of a group.
+
+        Parameters
+        ----------
+        pair : array (2, rows, cols)
+            Sums and differences.
+        down, across : Group
+            The group.
+
+        Returns
+        -------
+        float32 (samples, windows)
+            The samples.
+        """
         windows = sliding_window_view(pair, (self.y.window, self.x.window), (1, 2))
         windows = windows[:, down.windows, across.windows].transpose(0, 3, 4, 1, 2)
         out = np.ascontiguousarray(windows, np.float32).reshape(-1, windows.shape[3] * windows.shape[4])
@@ -81,7 +127,18 @@ class Blocks:
         return out[((diode % 2) * self.y.window + y) * self.x.window + x]
 
     def map(self, values: Iterable[Floats]) -> Floats:
-        """A value of each pixel from those of every group's blocks, each (pixels, windows) or (pixels,)."""
+        """Put the values of every group's blocks into place.
+
+        Parameters
+        ----------
+        values : iterable of array (pixels, windows) or (pixels,)
+            Of each group; the latter are the same in all of its blocks.
+
+        Returns
+        -------
+        float32 (rows, cols)
+            The values.
+        """
         out = np.zeros((1, 1, *self.shape), np.float32)
         for (down, across), part in zip(self.groups, values, strict=True):
             shape = len(part), math.prod(self.count(down, across))
@@ -89,7 +146,17 @@ class Blocks:
         return out[0, 0]
 
     def place(self, out: Floats, values: Floats, down: Group, across: Group) -> None:
-        """Write the blocks of a group, (pixels * views, windows), into a light field."""
+        """Write the blocks of a group into a light field.
+
+        Parameters
+        ----------
+        out : array (views, views, rows, cols)
+            The light field.
+        values : array (pixels * views**2, windows)
+            Of the blocks.
+        down, across : Group
+            The group.
+        """
         first, count = self.y.blocks[down.blocks], self.x.blocks[across.blocks]
         part = values.reshape(self.y.block, self.x.block, *out.shape[:2], len(first), len(count))
         lines, columns = even(first), even(count)
@@ -109,5 +176,16 @@ class Blocks:
 
 
 def kind(down: Group, across: Group) -> Kind:
-    """What windows are alike in: where they begin in a tile, then where the blocks are in them."""
+    """What windows are alike in.
+
+    Parameters
+    ----------
+    down, across : Group
+        A group.
+
+    Returns
+    -------
+    tuple of int
+        Where its windows begin in a tile, then where the blocks are in them.
+    """
     return down.phase, across.phase, down.offset, across.offset

@@ -19,7 +19,12 @@ Floats = npt.NDArray[np.floating]
 class Covariance(NamedTuple):
     """Of one disparity in a group's windows.
 
-    shared: float64 (samples, samples), with noise. field: float32 (pixels * views**2, samples), or None.
+    Attributes
+    ----------
+    shared : float64 (samples, samples)
+        Of samples with samples, with noise.
+    field : float32 (pixels * views**2, samples), or None
+        Of the views of a block with samples.
     """
 
     shared: Floats
@@ -66,9 +71,17 @@ class Hypotheses:
         return [made[kind(*group)] for group in self.blocks.groups]
 
     def scores(self, groups: Windows) -> Floats:
-        """What trust leaves of -2 log p of every disparity, float32 (disparities, rows, cols).
+        """What trust leaves of -2 log p of every disparity.
 
-        groups: samples that tell the disparity.
+        Parameters
+        ----------
+        groups : Windows
+            Samples that tell the disparity.
+
+        Returns
+        -------
+        float32 (disparities, rows, cols)
+            By the disparity of the pixel.
         """
         found = np.stack(
             [
@@ -107,7 +120,18 @@ class Hypotheses:
         return self._filters[key]
 
     def at_blocks(self, values: Floats) -> Floats:
-        """By the disparity at the window's middle, of values by that of the pixel; 0 beyond the ends."""
+        """Values by the disparity at the window's middle, of those by the pixel's.
+
+        Parameters
+        ----------
+        values : array (disparities, rows, cols)
+            By the disparity of the pixel.
+
+        Returns
+        -------
+        array (disparities, rows, cols)
+            0 beyond the ends.
+        """
         if self.slant == (0.0, 0.0):
             return values
         return moved(np.pad(values, ((1, 1), (0, 0), (0, 0))), self._ahead)[1:-1]

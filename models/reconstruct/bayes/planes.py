@@ -80,7 +80,9 @@ class Window:
     block: tuple[int, int, int, int]
     views: int
 
-    def covariances(self, plane: Plane, prior: FieldPrior, views: bool = True) -> tuple[Floats, Floats | None]:
+    def covariances(
+        self, plane: Plane, prior: FieldPrior, views: bool = True
+    ) -> tuple[npt.NDArray[np.float64], Floats | None]:
         """Of a plane.
 
         Parameters
@@ -142,7 +144,7 @@ def _taps(places: Floats, count: int) -> npt.NDArray[np.float32]:
 @lru_cache(maxsize=256)
 def _root(high: int, wide: int, prior: FieldPrior) -> npt.NDArray[np.float32]:
     """A root of the covariance of the texture's pixels."""
-    y, x = np.indices((high, wide)).reshape(2, -1)
+    y, x = np.indices((high, wide), float).reshape(2, -1)
     covariance = prior.covariance(y[:, None] - y, x[:, None] - x)
     covariance[np.diag_indices(len(y))] += 1e-9
     return np.linalg.cholesky(covariance).astype(np.float32)

@@ -112,7 +112,20 @@ class Solver(NamedTuple):
 
     @classmethod
     def of(cls, shared: Floats, field: Floats) -> "Solver":
-        """From the samples' covariance, float32 (samples, samples), which is written over."""
+        """Make it from the covariances.
+
+        Parameters
+        ----------
+        shared : float32 (samples, samples)
+            Of the samples; written over.
+        field : float32 (pixels * views**2, samples)
+            Of the views with them.
+
+        Returns
+        -------
+        Solver
+            The estimator.
+        """
         diagonal = np.arange(len(shared))
         shared[diagonal, diagonal] *= 1 + ROUNDING
         return cls(cho_factor(shared, overwrite_a=True, check_finite=False), field)
