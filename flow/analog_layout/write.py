@@ -22,11 +22,9 @@ from talbot.platforms.analog import analog_masks
 
 from .checks import differences, lvs
 
-BLOCKS = CONVERTERS, ROWS
-
 
 def drawn_blocks(pdk: str) -> dict[str, Converters | RowDrivers]:
-    """The blocks of BLOCKS for the default array and chip. Raises ParameterError."""
+    """The converters and the rows' drivers, by name, for the default array and chip. Raises ParameterError."""
     masks, (setup, sizes), room = analog_masks(pdk), setup_of(pdk), AnalogSizes()
     return {
         CONVERTERS: draw_converters(masks, sizes, amplifier_of(setup, sizes)[1], ChipParameters(), room),
@@ -35,7 +33,7 @@ def drawn_blocks(pdk: str) -> dict[str, Converters | RowDrivers]:
 
 
 def write(out: Path, pdk: str) -> None:
-    """Write <block>.lef and <block>.gds of BLOCKS into ``out``. Raises StepError where one is not its circuit."""
+    """Write <block>.lef and <block>.gds of all into ``out``. Raises StepError where one is not its circuit."""
     masks = analog_masks(pdk)
     with staged(out) as part:
         for name, block in drawn_blocks(pdk).items():

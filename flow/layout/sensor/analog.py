@@ -49,8 +49,9 @@ def files(
     circuits = _circuits(analog) if analog else []
     run([sys.executable, "-m", "talbot.pixels.footprints", "--pdk", pdk, "--out", folder], cwd=ROOT)
     found = {f"{block}.{kind}": folder / f"{block}.{kind}" for block in BLOCKS for kind in KINDS}
-    drawn = {block: module for module, blocks in drawings.items() for block in blocks if pdk in PROCESSES}
-    places = {block: _drawing(module, pdk, note) for block, module in drawn.items() if block not in circuits}
+    modules = {block: module for module, blocks in drawings.items() for block in blocks if pdk in PROCESSES}
+    drawn = tuple(block for block in BLOCKS if block in modules and block not in circuits)
+    places = {block: _drawing(modules[block], drawings[modules[block]], pdk, note) for block in drawn}
     if analog:
         places |= dict.fromkeys(circuits, analog)
     extra: dict[str, None] = {}
@@ -60,14 +61,14 @@ def files(
             extra |= dict.fromkeys(check(own[f"{block}.lef"], found[f"{block}.lef"]))
             found |= own
     empty = [block for block in BLOCKS if block not in places]
-    return AnalogFiles(found, empty, tuple(extra), tuple(one for one in BLOCKS if one in drawn and one not in circuits))
+    return AnalogFiles(found, empty, tuple(extra), drawn)
 
 
-def _drawing(module: str, pdk: str, note: Callable[[str], None]) -> Path:
-    """Folder with LEF and GDS of the blocks that ``module`` draws, and compares with their circuits, once."""
+def _drawing(module: str, blocks: Sequence[str], pdk: str, note: Callable[[str], None]) -> Path:
+    """Folder with LEF and GDS of ``blocks``, which ``module`` draws, and compares with their circuits, once."""
 
     def make(part: Path) -> None:
-        note(f"drawing {', '.join(DRAWINGS[module])}")
+        note(f"drawing {', '.join(blocks)}")
         run([sys.executable, "-m", module, "--pdk", pdk, "--out", part], cwd=ROOT)
 
     return cached(STORE / digest(code(module), pdk), make)

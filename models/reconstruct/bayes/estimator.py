@@ -7,7 +7,7 @@ evidence for it; the mixture is the mean of the estimates, each as probable as i
 
 import math
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -23,7 +23,7 @@ from .blocks import Blocks, Pair, kind
 from .covariance import Covariances, Tables
 from .evidence import REACH, Residuals, badness, pooled, probability, whitener
 from .hypotheses import Covariance, Hypotheses
-from .planes import Plane, Window
+from .planes import Plane, Window, texture_points
 from .prior import FieldPrior
 from .scene import Ways, shares_of
 from .slants import Slant, slants_of
@@ -33,6 +33,7 @@ Floats = npt.NDArray[np.floating]
 # What differs between the views, times its mean over what is not known, which shrinks it: by leaves and a tilted plane
 LINEAR, MIXTURE = 1.15, 1.1
 LOST = 0.5  # probability of no one disparity, from which on it is not known
+TEXTURE = 2500  # pixels of texture that a window's planes may need: its covariance is 50 MB
 WIDEST = 8.0  # px, of the evidence's pool, beyond which it tells no slant
 UNLIKELY = 1e-3  # probability below which a disparity is left out of a mixture
 
@@ -189,32 +190,35 @@ class FieldEstimator:
     @cached_property
     def _facing(self) -> Hypotheses:
         """Planes that face the camera."""
-        fine = self.prior.fine
-        last: list[tuple[int, Tables]] = [(-1, self.covariances.of(fine[0]))]
+        last = lru_cache(maxsize=1)(self.covariances.of)  # all groups are asked for one disparity, then for the next
 
         def make(number: int, group: Pair, views: bool) -> Covariance:
-            if last[0][0] != number:
-                last[0] = number, self.covariances.of(float(fine[number]))
-            tables = last[0][1]
+            tables = last(float(self.prior.fine[number]))
             field = self._field(tables, *group).astype(np.float32) if views else None
             return Covariance(self._shared(tables, *group), field)
 
         return Hypotheses((0.0, 0.0), self.blocks, self.prior, self._read, make)
 
     def _slanted(self, slant: Slant) -> Hypotheses:
-        """Planes of a slant, made once."""
-        if slant not in self._slants:
+        """Planes of a slant."""
 
-            def make(number: int, group: Pair, views: bool) -> Covariance:
-                (down, across), high, wide = group, self.blocks.y, self.blocks.x
-                y, x, diode = self.blocks.diodes(*group)
-                block = down.offset, across.offset, high.block, wide.block
-                window = Window((high.window, wide.window), y, x, self.covariances.weights[diode], block, self.views)
-                shared, field = window.covariances(Plane(float(self.prior.fine[number]), slant), self.prior, views)
-                return Covariance(self._noisy(shared), field)
+        def make(number: int, group: Pair, views: bool) -> Covariance:
+            (down, across), high, wide = group, self.blocks.y, self.blocks.x
+            y, x, diode = self.blocks.diodes(*group)
+            block = down.offset, across.offset, high.block, wide.block
+            window = Window((high.window, wide.window), y, x, self.covariances.weights[diode], block, self.views)
+            shared, field = window.covariances(Plane(float(self.prior.fine[number]), slant), self.prior, views)
+            return Covariance(self._noisy(shared), field)
 
-            self._slants[slant] = Hypotheses(slant, self.blocks, self.prior, self._read, make)
-        return self._slants[slant]
+        return Hypotheses(slant, self.blocks, self.prior, self._read, make)
+
+    def _slants_of(self, disparity: Floats, spread: Floats) -> list[Slant]:
+        """Those of `slants_of` whose planes need no more than TEXTURE, none where noise hides them."""
+        if not self.prior.slants or self.prior.width > WIDEST:
+            return []
+        most, window = max(abs(self.prior.far), abs(self.prior.near)), (self.blocks.y.window, self.blocks.x.window)
+        found = slants_of(disparity, spread, self.prior.slants)
+        return [one for one in found if texture_points(window, self.views, most, one) <= TEXTURE]
 
     @cached_property
     def _any(self) -> tuple[list[Residuals], Floats]:
@@ -289,11 +293,12 @@ class FieldEstimator:
         told = groups if evidence is None else self._windows(evidence)
         plain = self._plain(told)
         blank = (self.blocks.y.spread() @ plain @ self.blocks.x.spread().T).astype(np.float32)
-        sets, scores = [self._facing], [self._facing.scores(told)]
-        if self.prior.slants and self.prior.width <= WIDEST:
-            for slant in slants_of(*self._disparity(scores[0], blank), self.prior.slants):
-                sets.append(self._slanted(slant))
-                scores.append(sets[-1].scores(told))
+        facing = self._facing.scores(told)
+        slants = self._slants_of(*self._disparity(facing, blank))
+        # Kept for the next frame of the scene; those of another scene are not
+        self._slants = {slant: self._slants.get(slant) or self._slanted(slant) for slant in slants}
+        sets = [self._facing, *self._slants.values()]
+        scores = [facing, *(planes.scores(told) for planes in sets[1:])]
         # More disparities make none of them all together more probable than before
         more = 2 * math.log(len(sets) * len(self.prior.fine) / len(self.prior.grid))
         every = np.concatenate([*scores, self._score(told)[None] - np.float32(more)])

@@ -18,7 +18,7 @@ Floats = npt.NDArray[np.floating]
 Ints = npt.NDArray[np.int64]
 SHARP = -0.5  # of cubic convolution [Keys1981]
 REACH = 2  # px from a point to the farthest that it is interpolated from
-STEEPEST = 0.9  # of the disparity, a px and view: at 1 the outer view sees the plane from its edge
+ROUNDED = 4  # px, to which the texture is enlarged: few sizes, whose roots are kept
 
 
 class Plane(NamedTuple):
@@ -99,16 +99,7 @@ class Window:
         tuple of float64 (samples, samples), float32 (block's pixels * views**2, samples)
             Of samples with samples, without noise, and of the views of the block with samples; None without them.
         """
-        top, left, high, wide = self.block
-        middle = (np.array(self.size)[:, None, None] - 1) / 2
-        places, own = np.unique(np.stack([self.y, self.x]), axis=1, return_inverse=True)
-        pupil = self.weights.shape[1]
-        # From the middle for the plane, and back to the pixels' own places
-        seen = plane.seen(*(places[..., None] - middle), *_steps(pupil, self.views / pupil)) + middle
-        block = np.indices((high, wide)).reshape(2, -1, 1) + np.array([top, left])[:, None, None]
-        wanted = plane.seen(*(block - middle), *_steps(self.views, 1.0)) + middle
-        first = [math.floor(min(s.min(), w.min())) - 1 for s, w in zip(seen, wanted, strict=True)]
-        size = [math.floor(max(s.max(), w.max())) + 4 - f for s, w, f in zip(seen, wanted, first, strict=True)]
+        seen, wanted, own, first, size = self.texture(plane)
         root = _root(size[0], size[1], prior)
         down, across = (_taps(s - f, n) for s, f, n in zip(seen, first, size, strict=True))
         weights = self.weights.reshape(len(own), 1, -1).astype(np.float32)
@@ -120,6 +111,60 @@ class Window:
         down, across = (_taps(w - f, n) for w, f, n in zip(wanted, first, size, strict=True))
         taps = (down[..., :, None] * across[..., None, :]).reshape(-1, size[0] * size[1])
         return shared, taps @ (root @ samples.T)
+
+    def texture(self, plane: Plane) -> tuple[Floats, Floats, Ints, list[int], list[int]]:
+        """Find the part of the texture that a plane is seen in.
+
+        Parameters
+        ----------
+        plane : Plane
+            What the window shows.
+
+        Returns
+        -------
+        tuple
+            Where every ray of the window's pixels sees it, float64 (2, pixels, pupil**2), and every view of the
+            block's, (2, block's pixels, views**2); the pixel of each sample; first pixel down and across, and size.
+        """
+        top, left, high, wide = self.block
+        middle = (np.array(self.size)[:, None, None] - 1) / 2
+        places, own = np.unique(np.stack([self.y, self.x]), axis=1, return_inverse=True)
+        pupil = self.weights.shape[1]
+        # From the middle for the plane, and back to the pixels' own places
+        seen = plane.seen(*(places[..., None] - middle), *_steps(pupil, self.views / pupil)) + middle
+        block = np.indices((high, wide)).reshape(2, -1, 1) + np.array([top, left])[:, None, None]
+        wanted = plane.seen(*(block - middle), *_steps(self.views, 1.0)) + middle
+        first = [math.floor(min(s.min(), w.min())) - 1 for s, w in zip(seen, wanted, strict=True)]
+        last = [math.floor(max(s.max(), w.max())) + 3 for s, w in zip(seen, wanted, strict=True)]
+        size = [math.ceil((end - begin + 1) / ROUNDED) * ROUNDED for begin, end in zip(first, last, strict=True)]
+        return seen, wanted, own, first, size
+
+
+def texture_points(size: tuple[int, int], views: int, disparity: float, slant: tuple[float, float]) -> float:
+    """Bound the texture that any plane of a slant is seen in.
+
+    Parameters
+    ----------
+    size : tuple of int
+        Rows and columns of a window.
+    views : int
+        Along the pupil's diameter.
+    disparity : float
+        The largest in the window's middle, px per view step, 0 or more.
+    slant : tuple of float
+        Down and across.
+
+    Returns
+    -------
+    float
+        Pixels; infinite where a ray sees the plane from its edge.
+    """
+    steep = (abs(slant[0]) + abs(slant[1])) * views / 2
+    if steep >= 1:
+        return math.inf
+    grown = disparity + (abs(slant[0]) * size[0] + abs(slant[1]) * size[1]) / 2
+    more = views * grown / (1 - steep) + 5 + ROUNDED
+    return (size[0] + more) * (size[1] + more)
 
 
 def _steps(count: int, step: float) -> Floats:
@@ -141,7 +186,7 @@ def _taps(places: Floats, count: int) -> npt.NDArray[np.float32]:
     return out.reshape(*places.shape, count)
 
 
-@lru_cache(maxsize=256)
+@lru_cache(maxsize=32)
 def _root(high: int, wide: int, prior: FieldPrior) -> npt.NDArray[np.float32]:
     """A root of the covariance of the texture's pixels."""
     y, x = np.indices((high, wide), float).reshape(2, -1)

@@ -7,8 +7,9 @@ from talbot.models.capture import CaptureOperator
 from talbot.models.parameters import ArrayParameters, SensorParameters
 from talbot.models.reconstruct import psnr_db
 from talbot.models.reconstruct.bayes import FieldEstimator, FieldPrior
+from talbot.models.reconstruct.bayes.estimator import TEXTURE
 from talbot.models.reconstruct.bayes.evidence import pooled
-from talbot.models.reconstruct.bayes.planes import Plane, Window
+from talbot.models.reconstruct.bayes.planes import Plane, Window, texture_points
 from talbot.models.reconstruct.bayes.slants import along, moved, slants_of
 
 SLANT = 0.08
@@ -63,6 +64,30 @@ def test_covariances_are_those_of_draws_of_the_texture():
     np.testing.assert_allclose(np.cov(samples) / scale / scale[:, None], shared / scale / scale[:, None], atol=0.04)
     found = np.array(views) @ np.array(samples).T / texture.shape[-1]
     np.testing.assert_allclose(found / scale, field / scale, atol=0.04)
+
+
+@pytest.mark.parametrize("views, slant", [(5, (0.08, 0.0)), (5, (-0.04, 0.12)), (9, (0.1, 0.0))])
+def test_no_plane_needs_more_texture_than_is_said(views, slant):
+    y, x = (p.ravel() for p in np.indices((12, 14)))
+    window = Window((12, 14), y, x, np.ones((len(y), 7, 7)), (4, 4, 4, 6), views)
+    for disparity in (-2.5, 0.0, 2.5):
+        *_, size = window.texture(Plane(disparity, slant))
+        assert size[0] * size[1] <= texture_points((12, 14), views, 2.5, slant) < 10_000
+
+
+@pytest.mark.parametrize("views, slant", [(5, (0.24, 0.24)), (9, (0.0, -0.24))])
+def test_a_plane_that_a_view_sees_from_its_edge_has_no_bound(views, slant):
+    assert texture_points((12, 14), views, 2.5, slant) == np.inf
+
+
+@pytest.mark.parametrize("far, views", [(-2.0, 9), (-20.0, 5)])
+def test_slants_that_need_much_texture_are_left_out(far, views):
+    """A plane so steep that outer views see it from its edge, and disparities of a whole array."""
+    sensor, prior = SensorParameters(array=ArrayParameters(32, 40)), FieldPrior(far=far, near=-far, disparities=5)
+    steep, spread = np.broadcast_to(0.2 * np.arange(40.0), (32, 40)), np.full((32, 40), 0.05)
+    assert slants_of(steep, spread, 8) == [(0.0, 0.2)]
+    assert FieldEstimator(sensor, views, prior)._slants_of(steep, spread) == []
+    assert texture_points((12, 14), 5, 2.5, (0.0, 0.08)) < TEXTURE
 
 
 def _cubic(texture, y, x):
