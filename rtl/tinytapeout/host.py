@@ -4,13 +4,16 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from talbot.base.tools import run
-from talbot.models.parameters import AmpTiming
+from talbot.models.digital.host import command, frame_writes, write_transfers
+from talbot.models.parameters import AmpTiming, FrameParameters, Window
 from talbot.rtl.harness.icarus import compile_program
 
 BENCH = Path(__file__).with_name("host.v")
 ADDRESS, WAIT, SHOW, ROW, END = 0x100, 0x300, 0x400, 0x500, 0x600
 START, RESULTS = 3, 4  # of the divider: the address that starts a division, bytes of its result
 HOLD_FREE = 0x201
+SCLK, CSN, MOSI, LINK_RDY = 1, 2, 4, 8  # of the chip, bits of ui_in
+SHOWN = 255 * 256  # cycles that a program shows at once, at most
 DURATIONS = "t_reset", "t_int", "t_cm", "t_settle", "t_read", "t_guard"  # of the amplifier control, 16 bits each
 
 
@@ -32,6 +35,28 @@ def row(timing: AmpTiming, four_tap: bool, cycles: int) -> list[int]:
     return [HOLD_FREE, ADDRESS, *data, ROW | cycles // 256 + 1, int(four_tap)]
 
 
+def frame(asked: FrameParameters, trims: Sequence[int], cycles: int = SHOWN) -> list[int]:
+    """Program for the chip: ``asked`` over SPI, and the frame shown for at least so many ``cycles``.
+
+    trims: registers by pixel type.
+    """
+    words = [CSN | LINK_RDY]
+    for transfer in write_transfers(frame_writes(asked, trims)):
+        words += _bits(transfer)
+    return [*words, ROW | -(-cycles // 256), *_bits(command("start"))]
+
+
+def _bits(transfer: bytes) -> list[int]:
+    """Program for an SPI transfer to the chip."""
+    bits = (byte >> bit & 1 for byte in transfer for bit in range(7, -1, -1))
+    levels = [level for bit in bits for level in (LINK_RDY | MOSI * bit, LINK_RDY | MOSI * bit | SCLK)]
+    return [LINK_RDY, *levels, LINK_RDY, CSN | LINK_RDY]
+
+
+# A time-of-flight frame with phases, which uses every block, of four tiles of the test pattern
+PATTERN_FRAME = FrameParameters(
+    Window(1, 2, 1, 2), "tof", phase=True, test_pattern=True, timing=AmpTiming(2, 9, 2, 2, 3, 1, 1)
+)
 EXAMPLES = {
     "tt_um_talbot_divider": divisions(
         [
@@ -46,6 +71,7 @@ EXAMPLES = {
         ]
     ),
     "tt_um_talbot_amp_ctrl": row(AmpTiming(9, 60, 4, 5, 6, 7, 3), True, 1023),
+    "tt_um_talbot_chip": frame(PATTERN_FRAME, [0] * 24, 8000),
 }
 
 
