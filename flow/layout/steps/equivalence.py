@@ -51,7 +51,13 @@ class Equivalence(Step[EquivalenceParameters]):
     name = "equivalence"
     inputs = {"rtl": "rtl", "netlist": "repair.netlist", "verilog": "stream_out.verilog", "liberty": "library.liberty"}
     outputs = {"summary": "equivalence.json"}
-    metrics = {"equivalence": "", "registers": "", "constant_registers": "", "double_registers": "", "idle_registers": ""}
+    metrics = {
+        "equivalence": "",
+        "registers": "",
+        "constant_registers": "",
+        "double_registers": "",
+        "idle_registers": "",
+    }
     tools = ("yosys",)
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
@@ -65,9 +71,7 @@ class Equivalence(Step[EquivalenceParameters]):
             guess = gold.substitutes(missing, states, p.reset)
             pair = Pair(gold, gate, states, gate_states, folder, p.seconds, guess).settled()
             held, proofs = pair.given, pair.prove(p.reset)
-        lacking = {
-            gold.names[bit][0]: gold.names.get(held[bit], [held[bit]])[0] for bit in missing
-        }
+        lacking = {gold.names[bit][0]: gold.names.get(held[bit], [held[bit]])[0] for bit in missing}
         outputs["summary"].write_text(json.dumps({"proofs": proofs, "missing": lacking}, indent=1) + "\n")
         constants, idle = (sum(value in values for value in held.values()) for values in (("0", "1"), (ANY,)))
         verdict = "proven" if all(proofs.values()) else "failed"
