@@ -31,7 +31,7 @@ class Pair:
     def settled(self) -> "Pair":
         """The same, where a register that does not keep what is ``given`` for it may hold anything."""
         lost = self._lost(list(self.given))
-        return replace(self, given=self.given | dict.fromkeys(lost, ANY)).settled() if lost else self
+        return replace(self, given={**self.given, **dict.fromkeys(lost, ANY)}).settled() if lost else self
 
     def _lost(self, bits: Sequence[Bit]) -> list[Bit]:
         """Those of ``bits`` that do not keep what is given for them."""

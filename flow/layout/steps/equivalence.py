@@ -42,10 +42,10 @@ class Equivalence(Step[EquivalenceParameters]):
     """Outputs and next states are equal as functions of inputs and states, the cells being what the Liberty says.
 
     A register of the RTL that the netlist lacks and that reaches an output must be a constant, or the duplicate of
-    another: it is proven to be so after a reset, and to stay so (induction); the proof then uses that. One that is neither may
-    hold anything: what it reaches must not depend on it. Where the
-    Verilog leaves an output open (an array read beyond its end is x), so that it differs between all x at 0 and at 1,
-    the netlist may have either; the next states of registers must not depend on an x.
+    another: it is proven to be so after a reset, and to stay so (induction); the proof then uses that. One that is
+    neither may hold anything: what it reaches must not depend on it. Where the Verilog leaves an output open (an array
+    read beyond its end is x), so that it differs between all x at 0 and at 1, the netlist may have either; the next
+    states of registers must not depend on an x.
     """
 
     name = "equivalence"
