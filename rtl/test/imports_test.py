@@ -1,4 +1,4 @@
-"""The RTL does not use the golden models: of models/, it imports the parameters; FL, CL and hosts may import more."""
+"""The RTL does not use the golden models: of models/, it imports the parameters; FL and CL may import more."""
 
 import ast
 from pathlib import Path
@@ -10,7 +10,7 @@ FILES = [
     path
     for path in sorted(RTL.rglob("*.py"))
     if not {"test", "formal"} & set(path.relative_to(RTL).parts)
-    and not path.stem.endswith(("_fl", "_cl", "golden", "golden_run", "host"))
+    and not path.stem.endswith(("_fl", "_cl", "golden", "golden_run"))
 ]
 
 

@@ -1,11 +1,11 @@
 """A microcontroller at a project's pins: programs for host.v, which runs in Icarus; its comment lists the words."""
 
 from collections.abc import Iterable, Sequence
+from itertools import chain
 from pathlib import Path
 
 from talbot.base.tools import run
-from talbot.models.digital.host import command, frame_writes, write_transfers
-from talbot.models.parameters import AmpTiming, FrameParameters, Window
+from talbot.models.parameters import AmpTiming
 from talbot.rtl.harness.icarus import compile_program
 
 BENCH = Path(__file__).with_name("host.v")
@@ -35,15 +35,10 @@ def row(timing: AmpTiming, four_tap: bool, cycles: int) -> list[int]:
     return [HOLD_FREE, ADDRESS, *data, ROW | cycles // 256 + 1, int(four_tap)]
 
 
-def frame(asked: FrameParameters, trims: Sequence[int], cycles: int = SHOWN) -> list[int]:
-    """Program for the chip: ``asked`` over SPI, and the frame shown for at least so many ``cycles``.
-
-    trims: registers by pixel type.
-    """
-    words = [CSN | LINK_RDY]
-    for transfer in write_transfers(frame_writes(asked, trims)):
-        words += _bits(transfer)
-    return [*words, ROW | -(-cycles // 256), *_bits(command("start"))]
+def frame(transfers: Sequence[bytes], cycles: int = SHOWN) -> list[int]:
+    """Program for the chip: SPI ``transfers``; from before the last one at least so many ``cycles`` are shown."""
+    *before, last = map(_bits, transfers)
+    return [CSN | LINK_RDY, *chain.from_iterable(before), ROW | -(-cycles // 256), *last]
 
 
 def _bits(transfer: bytes) -> list[int]:
@@ -51,28 +46,6 @@ def _bits(transfer: bytes) -> list[int]:
     bits = (byte >> bit & 1 for byte in transfer for bit in range(7, -1, -1))
     levels = [level for bit in bits for level in (LINK_RDY | MOSI * bit, LINK_RDY | MOSI * bit | SCLK)]
     return [LINK_RDY, *levels, LINK_RDY, CSN | LINK_RDY]
-
-
-# A time-of-flight frame with phases, which uses every block, of four tiles of the test pattern
-PATTERN_FRAME = FrameParameters(
-    Window(1, 2, 1, 2), "tof", phase=True, test_pattern=True, timing=AmpTiming(2, 9, 2, 2, 3, 1, 1)
-)
-EXAMPLES = {
-    "tt_um_talbot_divider": divisions(
-        [
-            (0, 0, 0),
-            (100, 100, 0),
-            (-256, 255, 3),
-            (255, -17, 9),
-            (-31, -200, 63),
-            (88, 3, 1),
-            (-5, 6, 0),
-            (0, -256, 20),
-        ]
-    ),
-    "tt_um_talbot_amp_ctrl": row(AmpTiming(9, 60, 4, 5, 6, 7, 3), True, 1023),
-    "tt_um_talbot_chip": frame(PATTERN_FRAME, [0] * 24, 8000),
-}
 
 
 def simulate(

@@ -55,7 +55,7 @@ class Pair:
         )
 
     def prove(self, reset: str) -> dict[str, bool]:
-        """Return the verdicts.
+        """Return the verdicts of a pair that is `settled`.
 
         same: outputs and next states; open: the outputs that the Verilog leaves open; reset: substitutes hold after it.
         """
@@ -71,7 +71,7 @@ class Pair:
         gate_states = self.gate_states | {name: name for name in names.values()}
         after_reset = replace(self, states=self.states | names, gate_states=gate_states, given={})
         return {
-            "same": self.equal(wanted | kept, made | as_held),
+            "same": self.equal(wanted, made),
             "open": not loose or (not idle & gold.cone(loose) and self.equal_where_defined(sorted(loose))),
             "reset": not kept or after_reset.equal(kept, as_held, {reset: "0" if active_low(reset) else "1"}),
         }

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from talbot.base.gds import db, read_gds
+from talbot.base.gds import db
 from talbot.base.steps import Files, Step
 from talbot.platforms.coriolis import coriolis_platform
 from talbot.platforms.extraction import extraction_platform
@@ -31,7 +31,7 @@ class Compiled(Step[PdkParameters]):
     """
 
     name = "compiled"
-    inputs = {"cells": "library.gds", "rules": "library.rules"}
+    inputs = {"rules": "library.rules"}
     shared = True
     tools = ("python klayout",)
 
@@ -39,7 +39,6 @@ class Compiled(Step[PdkParameters]):
         tech, devices = coriolis_platform(self.parameters.pdk), extraction_platform(self.parameters.pdk)
         rules = RoutingRules.of(tech, json.loads(inputs["rules"].read_text()))
         layer, layout = rules.layers[0], db.Layout()
-        layout.dbu = read_gds(inputs["cells"]).dbu
         top, half = layout.create_cell("top"), layer.width // 2
         pins = [db.Box(at - half, at - PIN_NM, at + half, at + PIN_NM) for at in PINS_NM]
         for pin in pins:

@@ -11,7 +11,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from talbot.base.progress import each
 from talbot.models.reconstruct.sparse import Dictionary, learn
 
-from .samples import shots
+from .samples import light_fields
 
 PATCH = 9, 9  # px, as the thesis's
 PATCHES = 800  # of a scene
@@ -40,8 +40,8 @@ class Learned:
 def learned(seeds: Sequence[int], atoms: int, rounds: int, seed: int) -> Learned:
     """A dictionary of ``atoms`` from scenes of ``seeds``, in so many batches."""
     rng, parts = np.random.default_rng(seed), []
-    for shot in each(shots(seeds), "scenes", total=len(seeds)):
-        windows = sliding_window_view(shot.truth.astype(np.float32), PATCH, (2, 3))
+    for field in each(light_fields(seeds), "scenes", total=len(seeds)):
+        windows = sliding_window_view(field.astype(np.float32), PATCH, (2, 3))
         y, x = rng.integers(0, windows.shape[2:4], (PATCHES, 2)).T
         parts.append(windows[:, :, y, x].transpose(2, 0, 1, 3, 4))
     patches = np.concatenate(parts)

@@ -11,7 +11,8 @@ from talbot.models.digital.divider import quad_divide
 from talbot.models.digital.pattern import PatternEnd
 from talbot.models.parameters import AmpTiming, SensorParameters, Window
 from talbot.rtl.export import translate
-from talbot.rtl.tinytapeout.host import ADDRESS, EXAMPLES, PATTERN_FRAME, SHOW, WAIT, divisions, frame, row, simulate
+from talbot.rtl.tinytapeout.golden import EXAMPLES, PATTERN_FRAME, transfers
+from talbot.rtl.tinytapeout.host import ADDRESS, SHOW, WAIT, divisions, frame, row, simulate
 
 DIVIDER, AMP_CTRL, CHIP = EXAMPLES
 TRIMS = [3, -2, 511, -512] * 6
@@ -86,7 +87,7 @@ class TestChipIcarus:
         sensor = SensorParameters()
         samples = np.zeros((4, *sensor.shape, 2))
         expected = golden_frame(samples, sensor, asked, PatternEnd(*sensor.shape, sensor.tile)).stream
-        said = [line.split() for line in host(CHIP, frame(asked, TRIMS)) if " " in line and line[0] in "01x"]
+        said = [line.split() for line in host(CHIP, frame(transfers(asked, TRIMS))) if " " in line and line[0] in "01x"]
         sent = bytes(int(data, 2) for flags, data in said if flags[1] == "1")  # link_val
         assert sent == expected
         busy = [flags[0] for flags, _ in said]
