@@ -89,12 +89,13 @@ def estimate(result: GoldenResult, method: str = BEST, prior: FieldPrior | None 
 
 
 def prior_of(result: GoldenResult, **rest: Any) -> FieldPrior:
-    """The prior of a frame, with the noise of its sensor in its mean light. rest: other fields of FieldPrior."""
+    """The prior of a frame: the noise of its sensor in its mean light, its contrast. rest: other fields of FieldPrior."""
     asked = result.request
     timing = asked.frame.exposing
     light = result.decoded.samples.mean() / white_sum(asked.lit, timing)
     noise = float(diode_noise(light, asked.lit, timing, asked.noise))
-    return FieldPrior(noise=max(noise, FieldPrior.noise), **rest)  # a scene is never as even as the prior's planes
+    prior = FieldPrior(noise=max(noise, FieldPrior.noise), **rest)  # a scene is never as even as the prior's planes
+    return replace(prior, contrast=prior.contrast_of(pair_of(result, result.decoded.samples).mean(0), noise))
 
 
 def estimator_of(result: GoldenResult, prior: FieldPrior) -> FieldEstimator:

@@ -1,8 +1,8 @@
 """Methods that give a light field back: PSNR against seconds a frame, from a raw frame of the golden chip at physical
-noise, and from its diodes ahead of the converter with Gaussian noise, as [Jayasuriya2017, Sec. 3.7] adds it, of 0.1 and
-0.2 of white; at physical noise with their strides, atoms, disparities and iterations, too, and with nothing left out of
-the mixture. The sum image in every view costs nothing. The thesis's points are of another scene (dragons), at 0, 0.1
-and 0.2."""
+noise, and from its diodes ahead of the converter with Gaussian noise of 0.1 and 0.2, as [Jayasuriya2017, Tab. 3.2] has
+it: of Phi l (Eq. 3.5), where white has 25 by the 25 views of a diode 1 + m cos (Eq. 3.2), and of white. At physical noise
+with their strides, atoms, disparities and iterations, too, and with nothing left out of the mixture. The sum image in
+every view costs nothing. The thesis's points are of another scene (dragons), at 0, 0.1 and 0.2."""
 
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
@@ -24,14 +24,16 @@ from talbot.models.reconstruct import psnr_db, sum_image, white_sum
 from talbot.models.reconstruct.bayes import FieldPrior
 from talbot.models.reconstruct.sparse import Coding, SparseEstimator
 
-NOISES = None, 0.1, 0.2  # standard deviation of a diode, of white; None is the chip's own frame
+WHITE = 25  # of Phi l
+# Standard deviation of a diode, of white; None is the chip's own frame
+NOISES = {"physical": None, "0.1 of white": 0.1, "0.2 of white": 0.2, "0.1 of Phi l": 0.1 / WHITE, "0.2 of Phi l": 0.2 / WHITE}
 SEED = 1  # of the noise
 # [Jayasuriya2017, Sec. 3.7], at noise 0, 0.1, 0.2
 THESIS: dict[str, list[tuple[float, float, str]]] = {
     "thesis, dictionary": [(3786, 25.80, "0"), (9540, 21.98, "0.1"), (20549, 17.40, "0.2")],
     "thesis, network": [(242, 26.77, ""), (242, 26.74, ""), (242, 26.66, "")],
 }
-Point = tuple[float | None, str, Mapping[str, Any], int]
+Point = tuple[str, str, Mapping[str, Any], int]
 # Method, what is changed: of the prior, or of the coding
 SETTINGS: Sequence[tuple[str, Mapping[str, Any]]] = (
     ("direct", {}),
@@ -54,9 +56,9 @@ SETTINGS: Sequence[tuple[str, Mapping[str, Any]]] = (
 
 
 def points(quick: bool) -> list[Point]:
-    """Noise, method, what is changed of its settings, and rows of the array."""
-    noises, size = (NOISES[:2], 48) if quick else (NOISES, 192)
-    every = [(n, name, change, size) for n in noises for name, change in SETTINGS if n is None or not change]
+    """Noise of `NOISES`, method, what is changed of its settings, and rows of the array."""
+    noises, size = (list(NOISES)[:2], 48) if quick else (list(NOISES), 192)
+    every = [(n, name, change, size) for n in noises for name, change in SETTINGS if NOISES[n] is None or not change]
     short = [point for point in every if point[1] in ("direct", "linear", "sparse") and point[2] != {"stride": 2}]
     return short if quick else every
 
@@ -74,7 +76,8 @@ def noisy(result: GoldenResult, noise: float) -> npt.NDArray[np.floating]:
 
 def measure(point: Point) -> dict[str, Any]:
     """Quality and seconds of a method with these settings; what is done once a sensor is not in the seconds."""
-    noise, name, change, size = point
+    label, name, change, size = point
+    noise = NOISES[label]
     result = _frame(size)
     corners = reached(result)
     truth, rest, plain = result.exposed.scene.full_light_field * corners, change if name != "sparse" else {}, 0.0
@@ -82,7 +85,7 @@ def measure(point: Point) -> dict[str, Any]:
         pair, image, prior = pair_of(result, result.decoded.samples), result.image, prior_of(result, **rest)
     else:
         lit, timing = result.request.lit, result.request.frame.exposing
-        pair, prior = noisy(result, noise), FieldPrior(noise=noise, **rest)
+        pair, prior = noisy(result, noise), FieldPrior(noise=max(noise, FieldPrior.noise), **rest)
         image = np.asarray(sum_image(pair.sum(0) * white_sum(lit, timing) / 2, lit, timing=timing), float)
     free = np.broadcast_to(image, truth.shape) * corners
     if name == "sparse":
@@ -96,7 +99,6 @@ def measure(point: Point) -> dict[str, Any]:
         field, seconds, plain = found.light_field, times["seconds"], found.plain
     got = methods.figures(field * corners, truth, psnr_db(free, truth))
     setting = " ".join(f"{key} {value:g}" for key, value in change.items())
-    label = "physical" if noise is None else f"{noise:g}"
     return {"noise": label, "method": name, "setting": setting} | got | {"left_out": plain, "seconds": seconds}
 
 

@@ -92,11 +92,11 @@ def test_noise_is_what_its_label_says(tables):
     error = light_field.noisy(result, 0.1) - pair_of(result, result.exposed.ideal)
     assert error.std() == pytest.approx(0.1, rel=0.03)
     rows = {(r["noise"], r["method"]): r for r in tables[1]["light_field"] if not r["setting"]}
-    noises = "physical", "0.1"
+    noises = "physical", "0.1 of white"
     clean, free = (10 ** -((r["psnr_db"] - r["gain_db"]) / 10) for r in (rows[n, "linear"] for n in noises))
     share = (free - clean) / (reached(result).mean() * 0.1**2 / 2)
     assert 0.7 < share < 1.05  # sums below 0 are clipped, which takes noise from dark pixels
-    assert rows["0.1", "linear"]["gain_db"] > 1
+    assert rows["0.1 of white", "linear"]["gain_db"] > 1
 
 
 def test_a_sweep_goes_on_from_what_is_kept(tmp_path, monkeypatch):

@@ -1,5 +1,6 @@
 """What is known of a light field before it is measured: planes of random texture, each at one disparity."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,6 +10,9 @@ from talbot.models.parameters import ParameterError, check_int, check_real
 
 Floats = npt.NDArray[np.float64]
 CLEAR = 0.006  # of white: noise beyond which evidence is pooled more widely
+LAG = 4  # px between pixels whose sums tell a frame's contrast
+ABOVE = 2.0  # times it: a window may have more than the frame has on the average
+STEPS = 4  # halves of an octave by which a frame's contrast may be below the prior's: estimators are kept by prior
 
 
 @dataclass(frozen=True)
@@ -103,6 +107,30 @@ class FieldPrior:
     def width(self) -> float:
         """The pool's standard deviation in px at this noise: wider where a pixel tells less; by leaves and a room."""
         return self.pool * max(self.noise / CLEAR, 1) ** (2 / 3)
+
+    def contrast_of(self, sums: npt.NDArray[np.floating], noise: float) -> float:
+        """Contrast for a frame: this prior's, or less where the frame has little, in half octaves.
+
+        Parameters
+        ----------
+        sums : array (rows, cols)
+            Mean of both diodes of every pixel, 1 = white.
+        noise : float
+            Standard deviation of a diode.
+
+        Returns
+        -------
+        float
+            A quarter of `contrast` at the least: noise is then not taken for a texture's parallax.
+        """
+        squares = [np.square(part[LAG:] - part[:-LAG]).ravel() for part in (sums, sums.T) if len(part) > LAG]
+        if not squares:
+            return self.contrast
+        own = max(float(np.concatenate(squares).mean()) - noise**2, 0.0)
+        full = 2 * (1 - math.exp(-((LAG / self.length) ** self.fineness)))
+        share = ABOVE * math.sqrt(own / full) / self.contrast
+        below = min(max(round(-2 * math.log2(share)), 0), STEPS) if share > 0 else STEPS
+        return self.contrast * 2.0 ** (-below / 2)
 
     def covariance(self, dy: Floats, dx: Floats) -> Floats:
         """Covariance of two points of a plane.

@@ -1,5 +1,7 @@
 """Light fields by Bayes' rule: covariances against their definition, planes of known disparity, bad input."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -189,3 +191,37 @@ def test_bad_arguments(estimator):
         estimator.linear(np.zeros((2, 4, 4)))
     with pytest.raises(ParameterError, match="measured"):
         FieldEstimator(_sensor(), 5, PRIOR, measured=np.zeros(24, bool))
+
+def _rough(contrast, disparity, size, seed=3):
+    """Light field of a plane with waves of all lengths, of this standard deviation, (5, 5, size, size)."""
+    rng = np.random.default_rng(seed)
+    waves = [(rng.normal(0, 0.5, 2), rng.uniform(0, 2 * np.pi)) for _ in range(40)]
+    y, x = np.mgrid[:size, :size].astype(float)
+    steps = np.arange(-2, 3) * disparity
+
+    def texture(y, x):
+        return sum(np.sin(k[0] * y + k[1] * x + phase) for k, phase in waves) / np.sqrt(len(waves) / 2)
+
+    return 0.4 + contrast * np.array([[texture(y + dv, x + du) for du in steps] for dv in steps])
+
+
+def test_a_frame_of_little_contrast_has_a_prior_of_its_own():
+    """Noise would be taken for parallax of the contrast that is expected: a tenth of it is there."""
+    truth, noise = _rough(0.02, 1.0, 48), 0.006
+    pair = _seen(truth, noise)
+    prior = FieldPrior(far=-2, near=2, disparities=9, slants=0)
+    contrast = prior.contrast_of(pair.mean(0), noise)
+    assert contrast in (prior.contrast / 4, prior.contrast / 8**0.5, prior.contrast / 2)
+    errors = [
+        psnr_db(FieldEstimator(_sensor(48, 48), 5, one).linear(pair), truth)
+        for one in (prior, replace(prior, contrast=contrast))
+    ]
+    assert errors[1] > errors[0] + 0.5
+
+
+def test_contrast_is_never_above_the_priors_nor_far_below():
+    rng = np.random.default_rng(0)
+    assert FieldPrior().contrast_of(rng.random((40, 30)), 0.006) == FieldPrior().contrast
+    for empty in (np.zeros((40, 30)), 0.006 * rng.standard_normal((40, 30))):
+        assert FieldPrior().contrast_of(empty, 0.006) == FieldPrior().contrast / 4
+    assert FieldPrior().contrast_of(np.ones((1, 1)), 0.006) == FieldPrior().contrast
