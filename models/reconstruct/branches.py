@@ -6,7 +6,7 @@ branch alone first, then both together.
 """
 
 from collections.abc import Mapping
-from functools import cache
+from functools import cache, cached_property
 from itertools import pairwise
 from pathlib import Path
 from typing import Self
@@ -27,6 +27,7 @@ DENSE = (2 * PATCH**2 + 1, 200, 100, 200, 100, 200, PATCH**2 * VIEWS**2)  # widt
 AFTER = (1, 8, 1)  # channels of the convolutions behind
 CHANNELS = (3, 8, 8, 8, 8, 1)  # of the other branch; the thesis has 32 and 16
 KINDS = "autoencoder", "convolutions", "both"
+STRETCH = 4.0  # of the differences that the autoencoder sees: they are smaller than the sums
 UNLIKE = 0.2  # greatest rms of what other optics weigh the views with, relative to those that it was taught with
 
 
@@ -62,23 +63,25 @@ class Seen:
     ----------
     total, difference : float32 (rows, cols)
         The sum image, and the differences less a uniform scene's.
-    back : float32 (3, 5, 5, rows, cols)
-        The sum image in every view, Phi' of the differences, the noise's logarithm.
     """
 
     def __init__(self, pair: Floats, sensor: SensorParameters, noise: float) -> None:
         a, b = np.asarray(pair, np.float32)
         kinds = sensor.tile.type_map(*a.shape)
         weights = view_weights(sensor.tile, sensor.optics)
-        across = (weights[:, 0] - weights[:, 1]) / 2  # of a light field with the difference
+        self._across, self._kinds = (weights[:, 0] - weights[:, 1]) / 2, kinds  # of a light field with the difference
         self.level = float(np.log10(np.clip(noise, *NOISE) / NOISE[0]))
         self.total = (a + b) / 2
-        self.difference = (a - b) / 2 - across.sum((1, 2)).astype(np.float32)[kinds] * self.total
-        across -= across.mean((1, 2), keepdims=True)
+        self.difference = (a - b) / 2 - self._across.sum((1, 2)).astype(np.float32)[kinds] * self.total
+
+    @cached_property
+    def back(self) -> Floats:
+        """The sum image in every view, Phi' of the differences, the noise's logarithm, float32 (3, 5, 5, rows, cols)."""
+        across = self._across - self._across.mean((1, 2), keepdims=True)
         across /= np.square(across).sum((1, 2), keepdims=True) + 1e-9
-        turned = across.astype(np.float32)[kinds].transpose(2, 3, 0, 1) * self.difference
+        turned = across.astype(np.float32)[self._kinds].transpose(2, 3, 0, 1) * self.difference
         copied = np.broadcast_to(self.total - 0.5, turned.shape)
-        self.back = np.stack([copied, turned, np.full_like(turned, self.level)])
+        return np.stack([copied, turned, np.full_like(turned, self.level)])
 
     def patches(self, rows: npt.NDArray[np.int64], cols: npt.NDArray[np.int64]) -> Floats:
         """Take the samples of patches.
@@ -91,9 +94,9 @@ class Seen:
         Returns
         -------
         float32 (n * m, 163)
-            Sums less the patch's mean, differences, the noise's logarithm.
+            Sums less the patch's mean, STRETCH times the differences, the noise's logarithm.
         """
-        both = np.stack([self.total, self.difference])
+        both = np.stack([self.total, np.float32(STRETCH) * self.difference])
         windows = sliding_window_view(both, (PATCH, PATCH), (1, 2))[:, rows[:, None], cols]
         flat = windows.transpose(1, 2, 0, 3, 4).reshape(len(rows) * len(cols), 2, -1)
         flat = flat - flat.mean(2, keepdims=True) * np.array([[1], [0]], np.float32)

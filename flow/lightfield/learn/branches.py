@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from numpy.lib.stride_tricks import sliding_window_view
 
 from talbot.base.progress import each
 from talbot.models.pixel.weights import view_weights
@@ -16,23 +17,28 @@ from . import training
 from .samples import Shot, noisy, sensor, shots
 from .training import torch
 
-PATCHES = 3  # of a crop, along each side
+PATCHES = 6  # of a crop, along each side
 RATE = 2e-3  # of Adam, falling to 0 as a cosine
-# Of the steps, and crops at each
-SHARES = {"autoencoder": 0.6, "convolutions": 0.25, "both": 0.15}
-BATCH = {"autoencoder": 6, "convolutions": 2, "both": 2}
+# Of the steps, and crops at each. dense: the autoencoder's layers before its convolutions, which cost ten times as much
+SHARES = {"dense": 0.9, "autoencoder": 0.03, "convolutions": 0.05, "both": 0.02}
+BATCH = {"dense": 16, "autoencoder": 4, "convolutions": 4, "both": 4}
 LAST = 0.1  # scale of the last layers at the start: the sum image as it is
 Weights = Mapping[str, Any]
+
+
+def dense(weights: Weights, patches: Any) -> Any:
+    """What its dense layers add to each patch: from (..., 163) to (..., 2025)."""
+    nn = torch().nn.functional
+    for number in range(len(DENSE) - 1):
+        patches = nn.linear(patches, weights[f"dense_{number}"], weights[f"dense_{number}_bias"])
+        patches = nn.relu(patches) if number < len(DENSE) - 2 else patches
+    return patches
 
 
 def encoded(weights: Weights, patches: Any) -> Any:
     """What the autoencoder adds: from (n, PATCHES, PATCHES, 163) to (n, 1, 5, 5, rows, cols)."""
     nn, pt = torch().nn.functional, torch()
-    values = patches
-    for number in range(len(DENSE) - 1):
-        values = nn.linear(values, weights[f"dense_{number}"], weights[f"dense_{number}_bias"])
-        values = nn.relu(values) if number < len(DENSE) - 2 else values
-    values = values.reshape(*values.shape[:3], VIEWS**2, PATCH, PATCH)
+    values = dense(weights, patches).reshape(*patches.shape[:3], VIEWS**2, PATCH, PATCH)
     tile = sensor().tile
     rows, cols = (PATCH + (PATCHES - 1) * period for period in (tile.rows, tile.cols))
     out, count = pt.zeros(len(values), VIEWS**2, rows, cols), pt.zeros(rows, cols)
@@ -64,7 +70,10 @@ def turned(weights: Weights, back: Any) -> Any:
 
 
 def forward(weights: Weights, kind: str, patches: Any, back: Any) -> Any:
-    """What is added to the sum image, (n, 25, rows, cols)."""
+    """What is added to the sum image, (n, 25, rows, cols); by the dense layers (n, 25, PATCHES**2 * rows, cols)."""
+    if kind == "dense":
+        found = dense(weights, patches).reshape(len(patches), PATCHES**2, VIEWS**2, PATCH, PATCH)
+        return found.transpose(1, 2).flatten(2, 3)
     parts = [encoded(weights, patches)] if kind != "convolutions" else []
     parts += [turned(weights, back)] if kind != "autoencoder" else []
     return torch().stack(parts).mean(0).flatten(1, 3)
@@ -76,8 +85,8 @@ def importance() -> npt.NDArray[np.float32]:
     return np.sqrt(1 + away[:, None] + away).reshape(-1, 1, 1).astype(np.float32)
 
 
-def crop(shot: Shot, rng: np.random.Generator) -> tuple[npt.NDArray[np.float32], ...]:
-    """Patches, back-projection and what is to be added to the sum image of a noisy crop that begins with a tile."""
+def crop(shot: Shot, kind: str, rng: np.random.Generator) -> tuple[npt.NDArray[np.float32], ...]:
+    """Patches, back-projection and what `forward` is to give of a noisy crop that begins with a tile."""
     tile = sensor().tile
     firsts = [np.arange(PATCHES) * period for period in (tile.rows, tile.cols)]
     at = []
@@ -90,7 +99,11 @@ def crop(shot: Shot, rng: np.random.Generator) -> tuple[npt.NDArray[np.float32],
     truth = shot.truth[:, :, *at].reshape(VIEWS**2, *seen.total.shape)
     reached = np.asarray(truth.any((1, 2)))[:, None, None]
     wanted = ((truth - seen.total) * reached).astype(np.float32)
-    return seen.patches(*firsts).reshape(PATCHES, PATCHES, -1), seen.back.astype(np.float32), wanted
+    patches = seen.patches(*firsts).reshape(PATCHES, PATCHES, -1)
+    if kind == "dense":
+        windows = sliding_window_view(wanted, (PATCH, PATCH), (1, 2))[:, firsts[0][:, None], firsts[1]]
+        return patches, np.zeros(0, np.float32), windows.reshape(VIEWS**2, -1, PATCH)
+    return patches, seen.back.astype(np.float32), wanted
 
 
 class Learned(training.Learned):
@@ -111,6 +124,7 @@ def learned(seeds: Sequence[int], steps: int, seed: int) -> Learned:
     taken = list(each(shots(seeds), "scenes", total=len(seeds)))
     own, made, error = sensor(), {}, {}
     weights = {kind: _first(kind, pt) for kind in KINDS[:2]}
+    weights["dense"] = {name: value for name, value in weights["autoencoder"].items() if name.startswith("dense")}
     for kind, share in SHARES.items():
         if kind == "both":
             weights[kind] = {
@@ -119,7 +133,8 @@ def learned(seeds: Sequence[int], steps: int, seed: int) -> Learned:
                 for name, value in weights[part].items()
             }
         error[kind] = _train(weights[kind], kind, taken, max(round(share * steps), 1), rng)
-        made |= {f"{kind}/{name}": value.detach().numpy().astype(np.float16) for name, value in weights[kind].items()}
+        if kind in KINDS:
+            made |= {f"{kind}/{n}": value.detach().numpy().astype(np.float16) for n, value in weights[kind].items()}
     made["phi"] = view_weights(own.tile, own.optics).astype(np.float16)
     count = sum(value.size for key, value in made.items() if key.startswith("both/"))
     summary = {"scenes": len(seeds), "first_scene": seeds[0], "steps": steps, "shares": SHARES, "seed": seed}
@@ -144,7 +159,7 @@ def _train(weights: Weights, kind: str, taken: Sequence[Shot], steps: int, rng: 
     optimizer = pt.optim.Adam(weights.values(), RATE / 2 if kind == "both" else RATE)
     schedule = pt.optim.lr_scheduler.CosineAnnealingLR(optimizer, steps)
     for _ in each(range(steps), kind, total=steps):
-        crops = [crop(taken[number], rng) for number in rng.integers(len(taken), size=BATCH[kind])]
+        crops = [crop(taken[number], kind, rng) for number in rng.integers(len(taken), size=BATCH[kind])]
         patches, back, wanted = (pt.from_numpy(np.stack(part)) for part in zip(*crops, strict=True))
         missed = forward(weights, kind, patches, back) - wanted
         loss = (missed**2 * pt.from_numpy(weight)).mean()

@@ -103,15 +103,15 @@ def test_the_shipped_network_keeps_what_its_inputs_have_on_a_scene_that_it_has_n
 def test_pytorch_and_numpy_are_one_pair_of_branches():
     torch = pytest.importorskip("torch", reason="PyTorch is not installed")
     made = branches.learned([SCENE], 6, 1)
-    assert set(made.summary["error"]) == set(KINDS)
-    (shot,) = samples.shots([SCENE], 24)
+    assert set(made.summary["error"]) == {"dense", *KINDS}
+    (shot,) = samples.shots([SCENE], 48)
     tile = samples.sensor().tile
     rows, cols = (PATCH + (branches.PATCHES - 1) * period for period in (tile.rows, tile.cols))
     own = replace(samples.sensor(), array=ArrayParameters(rows, cols))
     pair = shot.pair[:, :rows, :cols]
     seen = Seen(pair, own, 0.05)
     patches = seen.patches(*(np.arange(branches.PATCHES) * period for period in (tile.rows, tile.cols)))
-    tensors = [torch.from_numpy(part[None]) for part in (patches.reshape(3, 3, -1), seen.back.astype(np.float32))]
+    tensors = [torch.from_numpy(part[None]) for part in (patches.reshape(branches.PATCHES, branches.PATCHES, -1), seen.back.astype(np.float32))]
     for kind in KINDS:
         weights = {
             key.partition("/")[2]: torch.from_numpy(value.astype(np.float32))
