@@ -1,0 +1,274 @@
+"""A column with its pixel's wells, the block's bias and a lane's lines, at one corner; with mismatch; its noise.
+
+    cycle    | 0     | 1 ...      16 | 17 ...     32 | 33    | 34    | 35
+    read     |_______|‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾|‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾|_______|_______|___
+    ref_ctl  |_______|‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾|_______________|_______|_______|___
+    row      |_______|_______________|‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾|_______|_______|___      the wells are at their lines
+    turn     |_______|_______________|_______________|_______|‾‾‾‾‾‾‾|___
+
+The wells are as much larger than nominal as the capacitors are at a corner, so that a slope is over theirs.
+"""
+
+import re
+import tempfile
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from talbot.base.tools import ToolError, finish
+from talbot.cells.corner import Corner
+from talbot.cells.spice.engine import Points, Simulator
+from talbot.cells.spice.wave import Wave
+from talbot.pixels.circuits import column as columns
+from talbot.pixels.circuits.amplifier import BIAS
+from talbot.pixels.circuits.column import BIASES, CONTROLS, SUPPLIES, charge_amplifier, column, holder
+from talbot.pixels.circuits.column_block import CLEAR, column_bias, lane_end, lane_line
+from talbot.pixels.circuits.column_sizes import ColumnSizes, ColumnSpec
+from talbot.pixels.circuits.netlist import Capacitor, Circuit, Instance, Transistor
+from talbot.pixels.circuits.row_driver import THICK
+from talbot.pixels.circuits.support import bias
+
+from .amplifier import EXACT
+from .deck import EDGE, SETTINGS, Setup, deck, simulator
+
+ROW = 3.3  # V of the row's lines: wells at the charge amplifiers' level ask for less than the drawn pixel's 5 V
+GAP = 1e-9  # s between controls that must not be high together: gate delays of the block's bank
+REST = 1  # cycles before the read, and between it and the turn
+WELLS = 0.0, 0.2, 0.4, 0.6, 0.8  # of a full well: a straight line through these
+FULL = 0.98  # of a full well: what is lost there
+QUIET = {f"{name}{t}": name == "wn" for name in ("r", "wn", "asked") for t in range(1, columns.TAPS)}
+DRIVEN = ("group", "k", *CONTROLS, "r0", "wn0", "asked0", "turn", "turnn", "row", "fill", "x_a", "x_b")
+NAMES = {"lane_a": "near_a", "lane_b": "near_b"}  # of a column's pins in the bench
+BAND = "dec 5 1e5 1e9"  # Hz: what is slower, the reference half takes away
+LOOP = 1e12  # ohm, without noise: an operating point for inputs that float
+
+
+@dataclass(frozen=True)
+class ColumnResult:
+    """At one corner; LSB of the lane's converter in edge mode where nothing else is said.
+
+    start: V at which a column without light leaves its lane at the reference. slope: V of the lane's line over the
+    ideal one. inl: peak off a straight line through WELLS. full: lost at FULL of a well. sum: of both diodes, in the
+    modes with codes 0..255, off what the differences' slope says, LSB of these modes. other: of the second diode by
+    the first's light. settling: s of the turn until half an LSB, the slowest. droop: until the last column's turn.
+    energy: J a pixel. idle: A of a column in which nothing happens.
+    """
+
+    start: float
+    slope: float
+    inl: float
+    full: float
+    sum: float
+    other: float
+    settling: float
+    droop: float
+    energy: float
+    idle: float
+    runs: int
+    repeated: int
+
+
+def measure(
+    setup: Setup, spec: ColumnSpec, sizes: ColumnSizes, corner: Corner, circuit: Circuit | None = None
+) -> ColumnResult:
+    """Everything of a column. circuit: in place of the bench of ``sizes``."""
+    start, runs, repeated = trimmed(setup, spec, sizes, corner, circuit), 1, 0
+    end, lsb = turn_of(spec) + spec.cycle, spec.lsb
+    with opened(setup, spec, sizes, corner, start, circuit=circuit) as spice:
+        waves = [sample(spice, spec, corner, part * spec.fall, 0.0) for part in (*WELLS, FULL)]
+        late = sample(spice, spec, corner, WELLS[-1] * spec.fall, 0.0, wait=spec.wait)
+        runs, repeated = runs + spice.runs, repeated + spice.repeated
+    out = np.array([wave.at("far_a", end) for wave in waves])
+    wanted = -spec.swing * np.array(WELLS)
+    slope, offset = np.polyfit(wanted, out[:-1], 1)
+    with opened(setup, spec, sizes, corner, start, True, circuit=circuit) as spice:
+        dark, light = (sample(spice, spec, corner, a * spec.fall, b * spec.fall, True) for a, b in ((0, 0), (0.8, 0.4)))
+        runs, repeated = runs + spice.runs, repeated + spice.repeated
+    both = dark.at("far_a", end) - light.at("far_a", end) - slope * spec.swing * (0.8 + 0.4) / 4
+    moved = [late.at(f"far_{d}", end + spec.wait) - waves[len(WELLS) - 1].at(f"far_{d}", end) for d in "ab"]
+    return ColumnResult(
+        start=start,
+        slope=float(slope),
+        inl=float(np.abs(out[:-1] - offset - slope * wanted).max() / lsb),
+        full=float((out[-1] - offset + slope * spec.swing * FULL) / lsb),
+        sum=abs(both) / lsb,
+        other=abs(waves[len(WELLS) - 1].at("far_b", end) - waves[0].at("far_b", end)) / lsb,
+        settling=max(settling(wave, spec) for wave in (*waves, light)),
+        droop=max(abs(one) for one in moved) / lsb,
+        energy=_energy(waves[2], spec, corner),
+        idle=waves[0].charge("vdd", 0.2 * spec.cycle, 0.9 * spec.cycle) / (0.7 * spec.cycle),
+        runs=runs,
+        repeated=repeated,
+    )
+
+
+def trimmed(
+    setup: Setup, spec: ColumnSpec, sizes: ColumnSizes, corner: Corner, circuit: Circuit | None = None
+) -> float:
+    """V of `start` at which a column without light is at the lanes' reference: what switches leave is off it."""
+    with opened(setup, spec, sizes, corner, spec.dark - 0.1, circuit=circuit) as spice:
+        wave = sample(spice, spec, corner, 0.0, 0.0)
+    return 2 * spec.dark - 0.1 - wave.at("far_a", turn_of(spec) + spec.cycle)
+
+
+def settling(wave: Wave, spec: ColumnSpec) -> float:
+    """S after the turn's begin from which the line stays within half an LSB of what it is at the end."""
+    begin, end = turn_of(spec), turn_of(spec) + spec.cycle
+    inside = (wave.time > begin) & (wave.time < end)
+    out = np.abs(wave.voltage["far_a"][inside] - wave.at("far_a", end)) > 0.5 * spec.lsb
+    return float(wave.time[inside][out].max(initial=begin) - begin)
+
+
+def offset(setup: Setup, spec: ColumnSpec, sizes: ColumnSizes, corner: Corner, start: float, seed: int) -> float:
+    """LSB by which both diodes' lines differ without light, of a column with the models' own mismatch."""
+    end = turn_of(spec) + spec.cycle
+    with opened(setup, spec, sizes, corner, start, seed=seed) as spice:
+        wave = sample(spice, spec, corner, 0.0, 0.0)
+    return (wave.at("far_a", end) - wave.at("far_b", end)) / spec.lsb
+
+
+def noise(setup: Setup, spec: ColumnSpec, sizes: ColumnSizes, corner: Corner) -> float:
+    """Electrons, rms, of a diode: `.noise` of the signal half at the capacitor that holds, root 2 times.
+
+    An upper bound: the reference half adds as much of the charge amplifier, and of the holder less. Of the charge
+    amplifier's reset nothing is left.
+    """
+    volts = dict.fromkeys(("clear", "go", "sel", "idle", "ref", "sign", "sn0", "r0", "vss"), 0.0)
+    volts |= dict.fromkeys(("seln", "sig", "s0", "vdd"), corner.supply)
+    volts |= {"start": spec.dark - 0.1, "lane": spec.dark, "sense": spec.dark}
+    front, back = charge_amplifier(sizes), holder(sizes, 1)
+    biased = {"on": "vdd"}
+    circuit = Circuit(
+        "signal",
+        ("line", *volts),
+        capacitors=(
+            Capacitor("in", "out", "cin", sizes.gain * sizes.hold, 1),
+            Capacitor("line", "line", "vss", spec.line),
+            Capacitor("well", "line", "vss", spec.well, 1),
+        ),
+        instances=(
+            Instance("front", front, tuple(biased.get(pin, pin) for pin in front.ports)),
+            Instance("back", back, tuple(biased.get(pin, pin) for pin in back.ports)),
+            Instance("bias", bias(), ("ibias", *SUPPLIES)),
+            Instance("lines", column_bias(sizes), ("ibias", *BIASES, "level", *SUPPLIES)),
+        ),
+    )
+    lines = [
+        "* noise of a column",
+        *SETTINGS.options,
+        *deck(circuit, setup, corner),
+        f".temp {corner.temperature:g}",
+        *(f"V{name} {name} 0 {level:g}" for name, level in volts.items()),
+        f"Rfront line xcell.out {LOOP:g} noisy=0",
+        f"Rback xcell.xback.x xcell.xback.out {LOOP:g} noisy=0",
+        "Iac 0 line dc 0 ac 1",
+        ".control",
+        f"noise v(xcell.xback.out) Iac {BAND}",
+        "print onoise_total",
+        "quit",
+        ".endc",
+        ".end",
+    ]
+    with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
+        file = Path(folder) / "deck.sp"
+        file.write_text("\n".join([*lines, ""]))
+        done = finish(["ngspice", "-b", file], env={"OMP_NUM_THREADS": "1"})
+    found = re.search(r"onoise_total = (\S+)", done.stdout)
+    if not found:
+        raise ToolError(f"ngspice: no noise of a column: {(done.stdout + done.stderr).strip()[-400:]}")
+    return float(found[1]) * 2**0.5 / spec.swing * spec.full_well
+
+
+def bench(sizes: ColumnSizes, spec: ColumnSpec) -> Circuit:
+    """A column with bias, lines and wells; `own` are its pins."""
+    quiet: dict[str, str] = NAMES | {name: "vdd" if high else "vss" for name, high in QUIET.items()}
+    parts = [
+        Instance("column", column(sizes), tuple(quiet.get(pin) or pin for pin in columns.PINS)),
+        Instance("bias", bias(), ("ibias", "vdd_own", "vss")),
+        Instance("lines", column_bias(sizes), ("ibias", *BIASES, "level", "vdd_bias", "vss")),
+    ]
+    devices, capacitors = list[Transistor](), list[Capacitor]()
+    for d, reference in (("a", "reference"), ("b", "dark")):
+        end = (f"far_{d}", reference, "turn", "turnn", "vbl", "vcp", *SUPPLIES)
+        parts.append(Instance(f"end_{d}", lane_end(sizes), end))
+        parts.append(Instance(f"line_{d}", lane_line(sizes, spec), (f"near_{d}", f"sense_{d}", f"far_{d}", "vss")))
+        devices.append(Transistor(f"read_{d}", f"well_{d}", "row", f"column_{d}", "vss", "n_thick", 0.42, THICK))
+        capacitors += [
+            Capacitor(f"line_{d}", f"column_{d}", "vss", spec.line),
+            Capacitor(f"well_{d}", f"well_{d}", "vss", spec.well, 1),
+            Capacitor(f"input_{d}", f"far_{d}", "vss", spec.input),
+        ]
+    own = (*(name for name in DRIVEN if name not in ("fill", "x_a", "x_b")), "well_a", "well_b", "level", "start")
+    own += ("dark", "reference", "far_a", "far_b", "vdd_bias", "vdd_own", *SUPPLIES)
+    return Circuit("bench", own, tuple(devices), tuple(capacitors), instances=tuple(parts))
+
+
+def opened(
+    setup: Setup,
+    spec: ColumnSpec,
+    sizes: ColumnSizes,
+    corner: Corner,
+    start: float,
+    image: bool = False,
+    seed: int | None = None,
+    more: Sequence[str] = (),
+    circuit: Circuit | None = None,
+) -> Simulator:
+    """An ngspice process of the bench. image: the first lane's reference is the middle. seed: of mismatch."""
+    lines = deck(circuit or bench(sizes, spec), setup, corner, seed=seed)
+    lines.append(f".model filling sw vt={corner.supply / 2:g} vh=0 ron=1000 roff=1e15")
+    for d in "ab":
+        lines += [f"Bfull_{d} full_{d} 0 v=v(level)-v(x_{d})", f"Sfull_{d} well_{d} full_{d} fill 0 filling"]
+    rails = {"start": start, "dark": spec.dark, "reference": spec.dark - image * spec.swing / 4}
+    rails |= {"vdd_bias": corner.supply, "vdd_own": corner.supply}
+    return simulator(lines, DRIVEN, ("far_a", "far_b", "level", *more), corner, rails, EXACT)
+
+
+def sample(
+    spice: Simulator, spec: ColumnSpec, corner: Corner, a: float, b: float, image: bool = False, wait: float = 0.0
+) -> Wave:
+    """A transient: a row is read whose wells are a and b V below their level, and ``wait`` s later than else a turn."""
+    high, t = corner.supply, spec.cycle
+    begin, middle = REST * t, (REST + spec.settle) * t
+    end, turn = middle + spec.read * t, turn_of(spec) + wait
+
+    def pulse(start: float, stop: float, low: float = 0.0) -> Points:
+        return [(0.0, low), (start, low), (start + EDGE, high - low), (stop, high - low), (stop + EDGE, low)]
+
+    stimulus: dict[str, Points] = {
+        "clear": pulse(begin, begin + CLEAR),
+        "reads": pulse(begin, end + 2 * GAP),
+        "readsn": pulse(begin, end + 2 * GAP, high),
+        "ref": pulse(begin, middle),
+        "r0": pulse(begin, middle),
+        "sig": pulse(middle + GAP, end + GAP),
+        "sign": pulse(middle + GAP, end + GAP, high),
+        "wn0": pulse(middle + GAP, end, high),
+        "row": [(s, v / high * ROW) for s, v in pulse(middle + GAP, end + 10 * GAP)],
+        "edge": [(0.0, 0.0 if image else high)],
+        "edgen": [(0.0, high if image else 0.0)],
+        "turn": pulse(turn, turn + t + GAP),
+        "turnn": pulse(turn, turn + t + GAP, high),
+        "group": pulse(turn + GAP, turn + t + GAP),
+        "k": [(0.0, high)],
+        "asked0": [(0.0, high)],
+        "fill": [(0.0, high), (begin, high), (begin + EDGE, 0.0)],
+        "x_a": [(0.0, a)],
+        "x_b": [(0.0, b)],
+    }
+    return spice.transient(stimulus, {}, turn + 2 * t, t / 5)
+
+
+def turn_of(spec: ColumnSpec) -> float:
+    """S at which the turn begins that is not late."""
+    return (2 * REST + spec.settle + spec.read) * spec.cycle
+
+
+def _energy(wave: Wave, spec: ColumnSpec, corner: Corner) -> float:
+    """J of a pixel: of the row's read, of its turn, and a pixel's time of the block's bias."""
+    read = wave.charge("vdd", REST * spec.cycle, turn_of(spec) - 0.5 * spec.cycle)
+    turn = wave.charge("vdd", turn_of(spec) - 0.5 * spec.cycle, turn_of(spec) + 1.5 * spec.cycle)
+    steady = wave.charge("vdd_bias", 0.1 * spec.cycle, 0.9 * spec.cycle) / (0.8 * spec.cycle) + BIAS
+    return (read + turn + steady * spec.pixel) * corner.supply

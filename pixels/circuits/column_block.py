@@ -1,0 +1,173 @@
+"""What a block of columns has beside them: bias, what drives the lines to all columns, the ends of the lanes' lines."""
+
+from itertools import pairwise
+
+from .amplifier import BIAS
+from .amplifier import UNIT as CELL
+from .column import BIASES, CONTROLS, OF_TAPS, POWER, SUPPLIES, SWITCH, SWITCH_P, TAPS, n, p
+from .column_sizes import CASCODE, CASCODE_P, FRONT, LANE, LANE_TOP, PARTS, TOP, ColumnSizes, ColumnSpec, Stage
+from .gates import LENGTH, inverter, nand, nor
+from .netlist import Capacitor, Circuit, Instance, Resistor, Transistor
+from .row_driver import nand_of
+
+BRANCH = 1.25e-6  # A, of each branch of the bias
+DECOUPLING = 10e-12  # F at each of its lines for a lane
+STACK, STACK_P = (0.42, ("n_lvt", 5.0)), (0.42, ("p", 2.0))  # um, of the diodes that make the cascodes' gates
+LEG = 0.8  # um, of a branch of the bias
+SECTIONS = 12  # of a lane's line
+GROUPS, PLACES = 8, 6  # lines of a group, of a place in the tile
+CLEAR = 0.7e-6  # s in which the charge amplifiers are reset: their lines may come from 0 V
+LATE = 4  # inverters by which what must end last does
+BANK_INPUTS = ("ref_ctl", "read", "tap0", "tap1", "mode0", "mode1", "hold")
+BANK_INPUTS += tuple(f"{name}{bit}" for name, bits in (("group", 3), ("k", 3), ("sub", 2)) for bit in range(bits))
+LINES = tuple(f"group_{g}" for g in range(GROUPS)) + tuple(f"k_{k}" for k in range(PLACES))
+BANK_OUTPUTS = (*CONTROLS, *OF_TAPS, *LINES, "turn", "turnn")
+
+
+def column_bias(sizes: ColumnSizes) -> Circuit:
+    """Lines of the bias to all columns and lanes, and the level to which wells are reset.
+
+    Pins ibias BIASES level vdd vss. ibias: takes BIAS. vx and level are of replicas: the input of a selected column, and of a charge amplifier, with
+    the current through them.
+    """
+    front, lane = sizes.front, sizes.lane
+
+    def feed(name: str, node: str, amperes: float = BRANCH) -> tuple[Transistor, Transistor]:
+        """A branch's current into a node."""
+        times = amperes / front.current
+        return (
+            p(f"{name}_top", f"{name}_high vbp vdd", round(front.top * times, 2), TOP),
+            p(f"{name}_cascode", f"{node} vcp {name}_high", round(front.cascode_p * times, 2), CASCODE_P),
+        )
+
+    def replica(name: str, kind: tuple[str, float], stage: Stage, parts: int) -> tuple[Transistor, ...]:
+        """A part of a stage whose input is its output."""
+        return (
+            *feed(name, name, stage.current / parts),
+            n(f"{name}_in", f"{name}_low {name} vss", stage.input / parts, kind),
+            n(f"{name}_under", f"{name} vcn {name}_low", max(0.42, round(stage.cascode / parts, 2)), CASCODE),
+        )
+
+    devices = [
+        *(n(f"one{k}", "ibias ibias vss", LEG, FRONT) for k in range(round(BIAS / BRANCH))),
+        *(n(f"leg_{name}", f"{name} ibias vss", LEG, FRONT) for name in ("vbp", "vcp")),
+        n("leg_vbl", "vbl ibias vss", round(LEG * lane.current / PARTS / BRANCH, 2), FRONT),
+        *feed("vbp", "vbp"),
+        p("vbl_top", "vbl_high vbl vdd", lane.top / PARTS, LANE_TOP),
+        p("vbl_cascode", "vbl vcp vbl_high", lane.cascode_p / PARTS, CASCODE_P),
+        p("vcp", "vcp vcp vdd", *STACK_P),
+        *feed("vcn", "vcn"),
+        n("vcn", "vcn vcn vss", *STACK),
+        *replica("vx", LANE, lane, PARTS),
+        *replica("level", FRONT, front, 1),
+    ]
+    lines = tuple(
+        Capacitor(
+            f"c_{name}", name, "vdd" if "p" in name or "b" in name else "vss", DECOUPLING, round(DECOUPLING / CELL)
+        )
+        for name in BIASES
+    )
+    return Circuit("column_bias", ("ibias", *BIASES, "level", *SUPPLIES), tuple(devices), lines)
+
+
+def lane_end(sizes: ColumnSizes) -> Circuit:
+    """What a lane's line has beside its columns: its source of current in a turn, else its reference.
+
+    Pins lane reference turn turnn vbl vcp vdd vss.
+    """
+    one = sizes.lane
+    return Circuit(
+        "lane_end",
+        ("lane", "reference", "turn", "turnn", "vbl", "vcp", *SUPPLIES),
+        (
+            p("on", "high turnn vdd", 10.0, POWER),
+            *(p(f"top{k}", "above vbl high", one.top / PARTS, LANE_TOP) for k in range(PARTS)),
+            *(p(f"cascode_p{k}", "lane vcp above", one.cascode_p / PARTS, CASCODE_P) for k in range(PARTS)),
+            n("rest_n", "lane turnn reference", 6.0, SWITCH),
+            p("rest_p", "lane turn reference", 12.0, SWITCH_P),
+        ),
+    )
+
+
+def lane_line(sizes: ColumnSizes, spec: ColumnSpec) -> Circuit:
+    """A lane's line with its other columns, none of which is selected, and the one that senses its far end.
+
+    Pins near sense far vss. A selected column's feedback is from the far end: its current has a drop on the way there.
+    """
+    ohm, farad = spec.ohm / SECTIONS, spec.wire / SECTIONS
+    w = round((spec.columns - 1) / SECTIONS * sizes.lane.cascode, 2)
+    transistors, resistors, capacitors = [], [], []
+    for name in ("near", "sense"):
+        nodes = [name, *(f"{name}{k}" for k in range(1, SECTIONS)), "far"]
+        for k, (a, b) in enumerate(pairwise(nodes)):
+            middle = f"{name}_m{k}"
+            resistors += [Resistor(f"{name}_a{k}", a, middle, ohm / 2), Resistor(f"{name}_b{k}", middle, b, ohm / 2)]
+            capacitors.append(Capacitor(f"{name}{k}", middle, "vss", farad))
+            if name == "near":
+                transistors.append(n(f"others{k}", f"{middle} vss vss", w, CASCODE))
+    return Circuit(
+        "lane_line", ("near", "sense", "far", "vss"), tuple(transistors), tuple(capacitors), tuple(resistors)
+    )
+
+
+def bank(sizes: ColumnSizes) -> Circuit:
+    """What drives the lines that cross all columns. Pins BANK_INPUTS, BANK_OUTPUTS, vbp vdd vss.
+
+    A group's line is high in a turn alone. `clear` ends by itself: a current charges a capacitor from the row's start
+    on. The holder's reset ends before the signal half begins, and its capacitors part from x before all else.
+    """
+    parts, count = list[Instance](), 0
+
+    def gate(kind: Circuit, *nodes: str) -> str:
+        nonlocal count
+        count += 1
+        parts.append(Instance(f"g{count}", kind, (*nodes, *SUPPLIES)))
+        return nodes[-1]
+
+    def late(node: str, name: str) -> str:
+        """``node``, as many slow inverters later."""
+        for k in range(LATE):
+            node = gate(inverter(1, 0.5), node, f"{name}_late{k}")
+        return node
+
+    def longer(node: str, name: str, inverted: str = "") -> None:
+        """A line that ends after ``node`` does."""
+        both = gate(nor(), node, late(node, name), f"{name}_both")
+        gate(inverter(6), both, name)
+        if inverted:
+            gate(inverter(6), name, inverted)
+
+    def decoded(name: str, lines: int, bits: int, out: str, also: tuple[str, ...] = ()) -> None:
+        for bit in range(bits):
+            gate(inverter(2), f"{name}{bit}", f"{name}{bit}n")
+        for code in range(lines):
+            inputs = (f"{name}{bit}{'' if code >> bit & 1 else 'n'}" for bit in range(bits))
+            gate(inverter(6), gate(nand_of(bits + len(also)), *inputs, *also, f"{out}{code}n"), f"{out}{code}")
+
+    gate(inverter(6), gate(nand(), "read", "ref_ctl", "refn"), "ref")
+    longer("read", "reads", "readsn")
+    gate(inverter(), "read", "readn")
+    gate(nor(), "readn", gate(inverter(), gate(nor(), "ref", late("ref", "after"), "noref"), "anyref"), "signal")
+    longer("signal", "sig", "sign")
+    gate(inverter(6), gate(nand(), "ref", gate(inverter(1, 2.0), "ramp", "notyet"), "clearn"), "clear")
+    gate(inverter(6), gate(inverter(6), gate(nor(), "mode0", "mode1", "first"), "edgen"), "edge")
+    decoded("tap", TAPS, 2, "now")
+    for t in range(TAPS):
+        gate(inverter(6), gate(nand(), "ref", f"now{t}", f"r{t}n"), f"r{t}")
+        gate(nand(6), "signal", f"now{t}", f"wn{t}")
+    decoded("sub", TAPS, 2, "asked")
+    gate(inverter(6), gate(inverter(6), "hold", "turnn"), "turn")
+    decoded("group", GROUPS, 3, "group_", ("turn",))
+    decoded("k", PLACES, 3, "k_")
+    width = max(0.42, round(sizes.front.top * BRANCH / sizes.front.current, 2))
+    devices = (p("charge", "ramp vbp vdd", width, TOP), n("stay", "ramp refn vss", 0.84, ("n", LENGTH)))
+    capacitor = Capacitor("ramp", "ramp", "vss", CLEAR * BRANCH / 0.75, round(CLEAR * BRANCH / 0.75 / CELL))
+    return Circuit(
+        "column_bank", (*BANK_INPUTS, *BANK_OUTPUTS, "vbp", *SUPPLIES), devices, (capacitor,), instances=tuple(parts)
+    )
+
+
+def taken(column: int, lanes: int, tile_cols: int = PLACES) -> tuple[int, dict[str, int]]:
+    """The lane of a column, and the code of the line that it takes of each kind."""
+    tile = column // tile_cols
+    return tile % lanes, {"group": tile // lanes, "k": column % tile_cols}

@@ -1,0 +1,262 @@
+"""What a column must do, from the sensor, the chip's timing and Table 6.1, and its sizes: see column.py."""
+
+from dataclasses import dataclass
+from math import ceil, log
+from types import ModuleType
+from typing import Self
+
+from talbot.models.parameters import (
+    ELEMENTARY_CHARGE,
+    AmpTiming,
+    EnergyParameters,
+    SensorParameters,
+    check_int,
+    check_real,
+    drawn_lines,
+)
+
+from .amplifier import GAIN, UNITS
+from .amplifier import UNIT as CELL
+from .specification import LaneSpec, one_digit
+
+# Roles and lengths (um): inputs of both stages and of what drives the lane, cascodes, sources of current, the lane's
+FRONT, BACK, LANE, CASCODE = ("n", 1.0), ("n", 1.0), ("n", 0.5), ("n_lvt", 0.5)
+TOP, CASCODE_P, LANE_TOP = ("p", 2.0), ("p", 0.5), ("p", 0.5)
+EFFICIENCY = {"front": 21.0, "back": 17.0, "lane": 17.0, "cascode": 15.0, "top": 9.0, "cascode_p": 15.0, "lane_p": 11.0}
+PARTS = 16  # of the lane's transistors: a replica is one of them
+JUNCTIONS = 9e-15  # F, of a column that is not selected, at its lane's line
+LEFT = 0.3  # of a limit, at the typical corner: others are slower
+
+
+@dataclass(frozen=True)
+class ColumnSpec:
+    """What a column must do, in LSB of the lane's converter where nothing else is said.
+
+    Attributes
+    ----------
+    full_well : float
+        Electrons of a diode, 100..1e9.
+    fall : float
+        V by which a full well falls, 0.01..0.7.
+    swing : float
+        V by which the lane's line falls for it, 0.01..1.2.
+    dark : float
+        V of the lane's line without light, 0.5..1.6.
+    line : float
+        F of a column line, 1e-15..1e-10.
+    cycle : float
+        S of the chip's clock, 1e-9..1e-3.
+    settle, read : int
+        Cycles of the reference half and of the signal half, 4..65535.
+    wire, ohm : float
+        Of a lane's line along the block, 1e-16..1e-10 F, 1..1e5 ohm.
+    input : float
+        F of the lane's amplifier at it, 1e-15..1e-10.
+    columns : int
+        At a lane's line, 1..10000.
+    ready : float
+        S from the select until the line is within ``settling``: what the lane's amplifier leaves of the cycle.
+    settling : float
+        LSB that may be left then.
+    slope : float
+        Relative, by which volts a charge may be off, over that of the capacitors.
+    inl : float
+        LSB, peak, of an image's range, half a volt of the line.
+    noise : float
+        Electrons, rms, of a diode: the light's own at half a full well.
+    offset : float
+        LSB, rms over columns, of a difference.
+    wait : float
+        S from the sample to the last column's turn.
+    droop : float
+        LSB that may be lost until then.
+    energy : float
+        J a pixel that is read: Table 6.1's pixel array, which takes no current of its own here.
+    pixel : float
+        S a pixel at the table's frame rate: the bias's share.
+    """
+
+    full_well: float = 1e5
+    fall: float = 0.5
+    swing: float = 1.0
+    dark: float = 1.2
+    line: float = 0.8e-12
+    cycle: float = 100e-9
+    settle: int = 16
+    read: int = 16
+    wire: float = 0.7e-12
+    ohm: float = 1200.0
+    input: float = UNITS * CELL
+    columns: int = 48
+    ready: float = 50e-9
+    settling: float = 0.5
+    slope: float = 0.02
+    inl: float = 0.5
+    noise: float = 224.0
+    offset: float = 4.0
+    wait: float = 50e-6
+    droop: float = 0.5
+    energy: float = 70e-12
+    pixel: float = 226e-9
+
+    def __post_init__(self) -> None:
+        check_real("full_well", self.full_well, 100, 1e9)
+        check_real("fall", self.fall, 0.01, 0.7)
+        check_real("swing", self.swing, 0.01, 1.2)
+        check_real("dark", self.dark, 0.5, 1.6)
+        for name in ("line", "wire", "input"):
+            check_real(name, getattr(self, name), 1e-16, 1e-10)
+        check_real("cycle", self.cycle, 1e-9, 1e-3)
+        check_int("settle", self.settle, 4, 65535)
+        check_int("read", self.read, 4, 65535)
+        check_real("ohm", self.ohm, 1, 1e5)
+        check_int("columns", self.columns, 1, 10_000)
+        check_real("ready", self.ready, 1e-9, self.cycle)
+        for name in ("settling", "inl", "droop"):
+            check_real(name, getattr(self, name), 0.01, 16)
+        check_real("offset", self.offset, 0.01, 64)
+        check_real("slope", self.slope, 1e-4, 0.5)
+        check_real("noise", self.noise, 1, 1e6)
+        check_real("wait", self.wait, 1e-7, 1.0)
+        check_real("energy", self.energy, 1e-15, 1e-6)
+        check_real("pixel", self.pixel, 1e-9, 1.0)
+
+    @classmethod
+    def of(
+        cls,
+        sensor: SensorParameters | None = None,
+        energy: EnergyParameters | None = None,
+        timing: AmpTiming | None = None,
+    ) -> Self:
+        """Of a sensor: its array's lines and full well, the chip's clock and lanes, Table 6.1."""
+        sensor, energy, timing = sensor or SensorParameters(), energy or EnergyParameters(), timing or AmpTiming()
+        drawn, array, chip = drawn_lines(), sensor.array, sensor.chip
+        columns = ceil(array.cols / chip.lanes)
+        rate = energy.frame_rate * energy.pixels
+        return cls(
+            full_well=sensor.electrical.full_well,
+            swing=sensor.electrical.swing,
+            line=array.rows * drawn.column_farad,
+            cycle=1 / chip.f_clk,
+            settle=timing.t_settle,
+            read=timing.t_read,
+            wire=array.cols * drawn.row_farad,
+            ohm=array.cols * drawn.row_ohm / 2,  # a line of twice the width
+            columns=columns,
+            noise=(sensor.electrical.full_well / 2) ** 0.5,
+            wait=columns * 10 / chip.f_clk,
+            energy=one_digit(energy.pixel_array / rate),
+            pixel=1 / rate,
+        )
+
+    @property
+    def well(self) -> float:
+        """F of a well."""
+        return self.full_well * ELEMENTARY_CHARGE / self.fall
+
+    @property
+    def lsb(self) -> float:
+        """V of the lane's line for an LSB of its converter."""
+        return LaneSpec().lsb / GAIN
+
+    @property
+    def gain(self) -> float:
+        """V of the lane's line for a volt of the charge amplifier's."""
+        return self.swing / self.fall
+
+
+@dataclass(frozen=True)
+class Stage:
+    """A cascoded transistor with a cascoded source of current: A, and widths in um."""
+
+    current: float
+    input: float
+    cascode: float
+    top: float
+    cascode_p: float
+
+    def __post_init__(self) -> None:
+        check_real("current", self.current, 1e-8, 1e-3)
+        for name in ("input", "cascode", "top", "cascode_p"):
+            check_real(name, getattr(self, name), 0.42, 100)
+
+
+@dataclass(frozen=True)
+class ColumnSizes:
+    """Of a diode's part of a column, and of the block's bias.
+
+    front: the charge amplifier; back: the holder while a row is read; lane: while its column is selected, its input is
+    the holder's, its source of current the lane's. bias: a branch for each. feedback: Cf; hold: Chold, F. gain: Cin
+    over Chold.
+    """
+
+    front: Stage
+    back: Stage
+    lane: Stage
+    feedback: float
+    hold: float
+    gain: float
+
+    def __post_init__(self) -> None:
+        for name in ("feedback", "hold"):
+            check_real(name, getattr(self, name), 1e-16, 1e-11)
+        check_real("gain", self.gain, 0.1, 16)
+
+
+HOLD = 60 * CELL  # F: kT/C and the switches' charge against what the charge amplifier has to drive
+SLACK = 20e-9  # s of the signal half until the row's line is up
+WAKE = 8e-9  # s of a column's turn until its transistors conduct
+
+
+def size(spec: ColumnSpec, process: ModuleType, hold: float = HOLD) -> ColumnSizes:
+    """Sizes for ``spec`` from the process's tables of gm/Id.
+
+    The charge amplifier has the signal half to come within LEFT of the slope's limit, the holder is five times as
+    fast, and a selected one has its lane settled to LEFT of the settling's limit when it must be ready. Cf is the
+    well's size less what finite gain and time take: what is left of a charge's slope is the corners'.
+    """
+    front, drive = process.operating(*FRONT, EFFICIENCY["front"]), process.operating(*LANE, EFFICIENCY["lane"])
+    cin, half = spec.gain * hold, spec.read * spec.cycle - SLACK
+    constants = log(1 / (LEFT * spec.slope))
+    gm, beta, width = 0.0, 0.0, 10.0
+    for _ in range(20):
+        beta = spec.well / (spec.line + 2 * spec.well + width * front.gate)
+        gm = (1.25 * cin + spec.well) / beta * constants / half
+        width = gm / EFFICIENCY["front"] / front.density
+    lane_gm, gate = 0.0, 0.0
+    load = 2 * spec.wire + spec.input + spec.columns * JUNCTIONS
+    for _ in range(20):
+        rest = log(spec.swing / (LEFT * spec.settling * spec.lsb))
+        lane_gm = load * (hold + gate) / hold * rest / (spec.ready - WAKE)
+        gate = lane_gm / EFFICIENCY["lane"] / drive.density * drive.gate
+    back_beta = hold / (hold + cin + gate)
+    back_gm = 5 * constants / half * hold / back_beta
+
+    def stage(kind: tuple[str, float], name: str, top: tuple[str, float], gm: float, parts: int = 1) -> Stage:
+        amperes = gm / EFFICIENCY[name]
+        above = "lane_p" if name == "lane" else "cascode_p"
+        roles = (kind, name), (CASCODE, "cascode"), (top, "top"), (CASCODE_P, above)
+        widths = [amperes / process.operating(*one, EFFICIENCY[role]).density for one, role in roles]
+        return Stage(
+            amperes,
+            *(max(0.42 * n, n * round(w / n, 2)) for w, n in zip(widths, (parts, 1, parts, parts), strict=True)),
+        )
+
+    def gain(kind: tuple[str, float], name: str, top: tuple[str, float]) -> float:
+        below = process.operating(*kind, EFFICIENCY[name]).gain
+        below *= process.operating(*CASCODE, EFFICIENCY["cascode"]).gain
+        above = process.operating(*top, EFFICIENCY["top"]).gain
+        above *= process.operating(*CASCODE_P, EFFICIENCY["cascode_p"]).gain
+        return 1 / (1 / below + EFFICIENCY["top"] / EFFICIENCY[name] / above)
+
+    lost = LEFT * spec.slope + 1 / (beta * gain(FRONT, "front", TOP))
+    lost += 1 / (back_beta * gain(BACK, "back", TOP))
+    lost += (hold + gate) / hold / gain(LANE, "lane", LANE_TOP)
+    return ColumnSizes(
+        stage(FRONT, "front", TOP, gm),
+        stage(BACK, "back", TOP, back_gm),
+        stage(LANE, "lane", LANE_TOP, lane_gm, PARTS),
+        spec.well * (1 - lost),
+        hold,
+        spec.gain,
+    )
