@@ -9,29 +9,28 @@
 The wells are as much larger than nominal as the capacitors are at a corner, so that a slope is over theirs.
 """
 
-import re
-import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
+from types import ModuleType
 
 import numpy as np
 
-from talbot.base.tools import ToolError, finish
 from talbot.cells.corner import Corner
 from talbot.cells.spice.engine import Points, Simulator
 from talbot.cells.spice.wave import Wave
+from talbot.models.parameters.electrical import BOLTZMANN
 from talbot.pixels.circuits import column as columns
 from talbot.pixels.circuits.amplifier import BIAS
-from talbot.pixels.circuits.column import BIASES, CONTROLS, SUPPLIES, charge_amplifier, column, holder
+from talbot.pixels.circuits.column import BIASES, CONTROLS, SUPPLIES, column
 from talbot.pixels.circuits.column_block import CLEAR, column_bias, lane_end, lane_line
-from talbot.pixels.circuits.column_sizes import ColumnSizes, ColumnSpec
+from talbot.pixels.circuits.column_sizes import BACK, EFFICIENCY, FRONT, LANE, ColumnSizes, ColumnSpec
 from talbot.pixels.circuits.netlist import Capacitor, Circuit, Instance, Transistor
 from talbot.pixels.circuits.row_driver import THICK
 from talbot.pixels.circuits.support import bias
 
 from .amplifier import EXACT
-from .deck import EDGE, SETTINGS, Setup, deck, simulator
+from .deck import EDGE, Setup, deck, simulator
+from .noise import GAMMA
 
 ROW = 3.3  # V of the row's lines: wells at the charge amplifiers' level ask for less than the drawn pixel's 5 V
 GAP = 1e-9  # s between controls that must not be high together: gate delays of the block's bank
@@ -41,8 +40,7 @@ FULL = 0.98  # of a full well: what is lost there
 QUIET = {f"{name}{t}": name == "wn" for name in ("r", "wn", "asked") for t in range(1, columns.TAPS)}
 DRIVEN = ("group", "k", *CONTROLS, "r0", "wn0", "asked0", "turn", "turnn", "row", "fill", "x_a", "x_b")
 NAMES = {"lane_a": "near_a", "lane_b": "near_b"}  # of a column's pins in the bench
-BAND = "dec 5 1e5 1e9"  # Hz: what is slower, the reference half takes away
-LOOP = 1e12  # ohm, without noise: an operating point for inputs that float
+STRAY = 40e-15  # F at the holder's output
 
 
 @dataclass(frozen=True)
@@ -129,56 +127,33 @@ def offset(setup: Setup, spec: ColumnSpec, sizes: ColumnSizes, corner: Corner, s
     return (wave.at("far_a", end) - wave.at("far_b", end)) / spec.lsb
 
 
-def noise(setup: Setup, spec: ColumnSpec, sizes: ColumnSizes, corner: Corner) -> float:
-    """Electrons, rms, of a diode: `.noise` of the signal half at the capacitor that holds, root 2 times.
+def noise(spec: ColumnSpec, sizes: ColumnSizes, process: ModuleType, celsius: float) -> float:
+    """Electrons, rms, of a diode, in closed form: k T gamma (1 + source's share) / (beta C) of each stage.
 
-    An upper bound: the reference half adds as much of the charge amplifier, and of the holder less. Of the charge
-    amplifier's reset nothing is left.
+    The reference half has as much of both stages as the signal half, the turn adds its own once. Reset noise of the
+    charge amplifier is taken off. ngspice's `.noise` has far less than this of transistors in weak inversion.
     """
-    volts = dict.fromkeys(("clear", "go", "sel", "idle", "ref", "sign", "sn0", "r0", "vss"), 0.0)
-    volts |= dict.fromkeys(("seln", "sig", "s0", "vdd"), corner.supply)
-    volts |= {"start": spec.dark - 0.1, "lane": spec.dark, "sense": spec.dark}
-    front, back = charge_amplifier(sizes), holder(sizes, 1)
-    biased = {"on": "vdd"}
-    circuit = Circuit(
-        "signal",
-        ("line", *volts),
-        capacitors=(
-            Capacitor("in", "out", "cin", sizes.gain * sizes.hold, 1),
-            Capacitor("line", "line", "vss", spec.line),
-            Capacitor("well", "line", "vss", spec.well, 1),
+    stages = (
+        (
+            spec.gain,
+            2,
+            "front",
+            FRONT,
+            sizes.front,
+            sizes.feedback,
+            spec.line + spec.well,
+            1.25 * sizes.gain * sizes.hold,
         ),
-        instances=(
-            Instance("front", front, tuple(biased.get(pin, pin) for pin in front.ports)),
-            Instance("back", back, tuple(biased.get(pin, pin) for pin in back.ports)),
-            Instance("bias", bias(), ("ibias", *SUPPLIES)),
-            Instance("lines", column_bias(sizes), ("ibias", *BIASES, "level", *SUPPLIES)),
-        ),
+        (1.0, 2, "back", BACK, sizes.back, sizes.hold, sizes.gain * sizes.hold, STRAY),
+        (1.0, 1, "lane", LANE, sizes.lane, sizes.hold, 0.0, 2 * spec.wire + spec.input),
     )
-    lines = [
-        "* noise of a column",
-        *SETTINGS.options,
-        *deck(circuit, setup, corner),
-        f".temp {corner.temperature:g}",
-        *(f"V{name} {name} 0 {level:g}" for name, level in volts.items()),
-        f"Rfront line xcell.out {LOOP:g} noisy=0",
-        f"Rback xcell.xback.x xcell.xback.out {LOOP:g} noisy=0",
-        "Iac 0 line dc 0 ac 1",
-        ".control",
-        f"noise v(xcell.xback.out) Iac {BAND}",
-        "print onoise_total",
-        "quit",
-        ".endc",
-        ".end",
-    ]
-    with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
-        file = Path(folder) / "deck.sp"
-        file.write_text("\n".join([*lines, ""]))
-        done = finish(["ngspice", "-b", file], env={"OMP_NUM_THREADS": "1"})
-    found = re.search(r"onoise_total = (\S+)", done.stdout)
-    if not found:
-        raise ToolError(f"ngspice: no noise of a column: {(done.stdout + done.stderr).strip()[-400:]}")
-    return float(found[1]) * 2**0.5 / spec.swing * spec.full_well
+    total, gates = 0.0, {name: process.operating(*kind, EFFICIENCY[name]).gate for _, _, name, kind, *_ in stages}
+    driver = sizes.lane.input * gates["lane"]
+    for gain, times, name, _, stage, feedback, inputs, load in stages:
+        beta = feedback / (feedback + inputs + (stage.input * gates[name] if name == "front" else driver))
+        white = BOLTZMANN * (celsius + 273.15) * GAMMA * (1 + EFFICIENCY["top"] / EFFICIENCY[name])
+        total += times * gain**2 * white / (beta * (load + feedback * (1 - beta)))
+    return total**0.5 / spec.swing * spec.full_well
 
 
 def bench(sizes: ColumnSizes, spec: ColumnSpec) -> Circuit:

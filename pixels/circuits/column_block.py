@@ -27,8 +27,8 @@ BANK_OUTPUTS = (*CONTROLS, *OF_TAPS, *LINES, "turn", "turnn")
 def column_bias(sizes: ColumnSizes) -> Circuit:
     """Lines of the bias to all columns and lanes, and the level to which wells are reset.
 
-    Pins ibias BIASES level vdd vss. ibias: takes BIAS. vx and level are of replicas: the input of a selected column, and of a charge amplifier, with
-    the current through them.
+    Pins ibias BIASES level vdd vss. ibias: takes BIAS. vx and level are of replicas: the input of a column in its
+    turn, and of a charge amplifier, with the current through them.
     """
     front, lane = sizes.front, sizes.lane
 
