@@ -38,7 +38,22 @@ REST = 1  # cycles before the read, and between it and the turn
 WELLS = 0.0, 0.2, 0.4, 0.6, 0.8  # of a full well: a straight line through these
 FULL = 0.98  # of a full well: what is lost there
 QUIET = {f"{name}{t}": name == "wn" for name in ("r", "wn", "asked") for t in range(1, columns.TAPS)}
-DRIVEN = ("group", "k", *CONTROLS, "r0", "wn0", "asked0", "turn", "turnn", "row", "fill", "x_a", "x_b")
+DRIVEN = (
+    "group",
+    "k",
+    *CONTROLS,
+    "r0",
+    "wn0",
+    "asked0",
+    "turn",
+    "turnn",
+    "turnb",
+    "turnbn",
+    "row",
+    "fill",
+    "x_a",
+    "x_b",
+)
 NAMES = {"lane_a": "near_a", "lane_b": "near_b"}  # of a column's pins in the bench
 STRAY = 40e-15  # F at the holder's output
 
@@ -135,7 +150,7 @@ def noise(spec: ColumnSpec, sizes: ColumnSizes, process: ModuleType, celsius: fl
     """
     stages = (
         (
-            spec.gain,
+            sizes.gain,
             2,
             "front",
             FRONT,
@@ -166,7 +181,8 @@ def bench(sizes: ColumnSizes, spec: ColumnSpec) -> Circuit:
     ]
     devices, capacitors = list[Transistor](), list[Capacitor]()
     for d, reference in (("a", "reference"), ("b", "dark")):
-        end = (f"far_{d}", reference, "turn", "turnn", "vbl", "vcp", *SUPPLIES)
+        turn = ("turn", "turnn") if d == "a" else ("turnb", "turnbn")
+        end = (f"far_{d}", reference, *turn, "vbl", "vcp", *SUPPLIES)
         parts.append(Instance(f"end_{d}", lane_end(sizes), end))
         parts.append(Instance(f"line_{d}", lane_line(sizes, spec), (f"near_{d}", f"sense_{d}", f"far_{d}", "vss")))
         devices.append(Transistor(f"read_{d}", f"well_{d}", "row", f"column_{d}", "vss", "n_thick", 0.42, THICK))
@@ -226,6 +242,8 @@ def sample(
         "edgen": [(0.0, high if image else 0.0)],
         "turn": pulse(turn, turn + t + GAP),
         "turnn": pulse(turn, turn + t + GAP, high),
+        "turnb": [(0.0, 0.0)] if image else pulse(turn, turn + t + GAP),
+        "turnbn": [(0.0, high)] if image else pulse(turn, turn + t + GAP, high),
         "group": pulse(turn + GAP, turn + t + GAP),
         "k": [(0.0, high)],
         "asked0": [(0.0, high)],

@@ -21,7 +21,7 @@ LATE = 4  # inverters by which what must end last does
 BANK_INPUTS = ("ref_ctl", "read", "tap0", "tap1", "mode0", "mode1", "hold")
 BANK_INPUTS += tuple(f"{name}{bit}" for name, bits in (("group", 3), ("k", 3), ("sub", 2)) for bit in range(bits))
 LINES = tuple(f"group_{g}" for g in range(GROUPS)) + tuple(f"k_{k}" for k in range(PLACES))
-BANK_OUTPUTS = (*CONTROLS, *OF_TAPS, *LINES, "turn", "turnn")
+BANK_OUTPUTS = (*CONTROLS, *OF_TAPS, *LINES, "turn", "turnn", "turnb", "turnbn")
 
 
 def column_bias(sizes: ColumnSizes) -> Circuit:
@@ -110,6 +110,25 @@ def lane_line(sizes: ColumnSizes, spec: ColumnSpec) -> Circuit:
     )
 
 
+def clear_pulse(sizes: ColumnSizes) -> Circuit:
+    """A pulse of some CLEAR from the begin of ref on, which a current through a capacitor ends.
+
+    Pins ref refn clear vbp vdd vss.
+    """
+    width, farad = max(0.42, round(sizes.front.top * BRANCH / sizes.front.current, 2)), CLEAR * BRANCH / 0.75
+    return Circuit(
+        "clear_pulse",
+        ("ref", "refn", "clear", "vbp", *SUPPLIES),
+        (p("charge", "ramp vbp vdd", width, TOP), n("stay", "ramp refn vss", 0.84, ("n", LENGTH))),
+        (Capacitor("ramp", "ramp", "vss", farad, round(farad / CELL)),),
+        instances=(
+            Instance("over", inverter(1, 2.0), ("ramp", "notyet", *SUPPLIES)),
+            Instance("clear_n", nand(), ("ref", "notyet", "clearn", *SUPPLIES)),
+            Instance("clear", inverter(6), ("clearn", "clear", *SUPPLIES)),
+        ),
+    )
+
+
 def bank(sizes: ColumnSizes) -> Circuit:
     """What drives the lines that cross all columns. Pins BANK_INPUTS, BANK_OUTPUTS, vbp vdd vss.
 
@@ -149,7 +168,7 @@ def bank(sizes: ColumnSizes) -> Circuit:
     gate(inverter(), "read", "readn")
     gate(nor(), "readn", gate(inverter(), gate(nor(), "ref", late("ref", "after"), "noref"), "anyref"), "signal")
     longer("signal", "sig", "sign")
-    gate(inverter(6), gate(nand(), "ref", gate(inverter(1, 2.0), "ramp", "notyet"), "clearn"), "clear")
+    parts.append(Instance("clear", clear_pulse(sizes), ("ref", "refn", "clear", "vbp", *SUPPLIES)))
     gate(inverter(6), gate(inverter(6), gate(nor(), "mode0", "mode1", "first"), "edgen"), "edge")
     decoded("tap", TAPS, 2, "now")
     for t in range(TAPS):
@@ -157,14 +176,10 @@ def bank(sizes: ColumnSizes) -> Circuit:
         gate(nand(6), "signal", f"now{t}", f"wn{t}")
     decoded("sub", TAPS, 2, "asked")
     gate(inverter(6), gate(inverter(6), "hold", "turnn"), "turn")
+    gate(inverter(6), gate(nand(6), "hold", "edge", "turnbn"), "turnb")
     decoded("group", GROUPS, 3, "group_", ("turn",))
     decoded("k", PLACES, 3, "k_")
-    width = max(0.42, round(sizes.front.top * BRANCH / sizes.front.current, 2))
-    devices = (p("charge", "ramp vbp vdd", width, TOP), n("stay", "ramp refn vss", 0.84, ("n", LENGTH)))
-    capacitor = Capacitor("ramp", "ramp", "vss", CLEAR * BRANCH / 0.75, round(CLEAR * BRANCH / 0.75 / CELL))
-    return Circuit(
-        "column_bank", (*BANK_INPUTS, *BANK_OUTPUTS, "vbp", *SUPPLIES), devices, (capacitor,), instances=tuple(parts)
-    )
+    return Circuit("column_bank", (*BANK_INPUTS, *BANK_OUTPUTS, "vbp", *SUPPLIES), instances=tuple(parts))
 
 
 def taken(column: int, lanes: int, tile_cols: int = PLACES) -> tuple[int, dict[str, int]]:

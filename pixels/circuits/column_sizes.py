@@ -24,6 +24,8 @@ FRONT, BACK, LANE, CASCODE = ("n", 1.0), ("n", 1.0), ("n", 0.5), ("n_lvt", 0.5)
 TOP, CASCODE_P, LANE_TOP = ("p", 2.0), ("p", 0.5), ("p", 0.5)
 EFFICIENCY = {"front": 21.0, "back": 17.0, "lane": 17.0, "cascode": 15.0, "top": 9.0, "cascode_p": 15.0, "lane_p": 11.0}
 PARTS = 16  # of the lane's transistors: a replica is one of them
+FULL = 127.5  # LSB of a diode whose well is full
+TIMES = 2.0  # Cin over Chold: the holder's gain
 JUNCTIONS = 9e-15  # F, of a column that is not selected, at its lane's line
 LEFT = 0.3  # of a limit, at the typical corner: others are slower
 
@@ -39,7 +41,7 @@ class ColumnSpec:
     fall : float
         V by which a full well falls, 0.01..0.7.
     swing : float
-        V by which the lane's line falls for it, 0.01..1.2.
+        V by which the lane's line falls for it, 0.01..1.2: what the lane's amplifier makes the sensor's gain of.
     dark : float
         V of the lane's line without light, 0.5..1.6.
     line : float
@@ -78,7 +80,7 @@ class ColumnSpec:
 
     full_well: float = 1e5
     fall: float = 0.5
-    swing: float = 1.0
+    swing: float = FULL * 4 * LaneSpec().lsb / GAIN
     dark: float = 1.2
     line: float = 0.8e-12
     cycle: float = 100e-9
@@ -135,7 +137,7 @@ class ColumnSpec:
         rate = energy.frame_rate * energy.pixels
         return cls(
             full_well=sensor.electrical.full_well,
-            swing=sensor.electrical.swing,
+            swing=FULL * sensor.electrical.difference_gain * LaneSpec().lsb / GAIN,
             line=array.rows * drawn.column_farad,
             cycle=1 / chip.f_clk,
             settle=timing.t_settle,
@@ -158,11 +160,6 @@ class ColumnSpec:
     def lsb(self) -> float:
         """V of the lane's line for an LSB of its converter."""
         return LaneSpec().lsb / GAIN
-
-    @property
-    def gain(self) -> float:
-        """V of the lane's line for a volt of the charge amplifier's."""
-        return self.swing / self.fall
 
 
 @dataclass(frozen=True)
@@ -216,7 +213,7 @@ def size(spec: ColumnSpec, process: ModuleType, hold: float = HOLD) -> ColumnSiz
     well's size less what finite gain and time take: what is left of a charge's slope is the corners'.
     """
     front, drive = process.operating(*FRONT, EFFICIENCY["front"]), process.operating(*LANE, EFFICIENCY["lane"])
-    cin, half = spec.gain * hold, spec.read * spec.cycle - SLACK
+    cin, half = TIMES * hold, spec.read * spec.cycle - SLACK
     constants = log(1 / (LEFT * spec.slope))
     gm, beta, width = 0.0, 0.0, 10.0
     for _ in range(20):
@@ -256,7 +253,7 @@ def size(spec: ColumnSpec, process: ModuleType, hold: float = HOLD) -> ColumnSiz
         stage(FRONT, "front", TOP, gm),
         stage(BACK, "back", TOP, back_gm),
         stage(LANE, "lane", LANE_TOP, lane_gm, PARTS),
-        spec.well * (1 - lost),
+        spec.well * TIMES * spec.fall / spec.swing * (1 - lost),
         hold,
-        spec.gain,
+        TIMES,
     )
