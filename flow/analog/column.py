@@ -36,7 +36,9 @@ ROW = 3.3  # V of the row's lines: wells at the charge amplifiers' level ask for
 GAP = 1e-9  # s between controls that must not be high together: gate delays of the block's bank
 REST = 1  # cycles before the read, and between it and the turn
 WELLS = 0.0, 0.2, 0.4, 0.6, 0.8  # of a full well: a straight line through these
+BOTH = 0.8, 0.4  # of a full well, of the diodes whose mean is measured
 FULL = 0.98  # of a full well: what is lost there
+LIGHT = 1e-6  # s in which the wells get their charge, while they are at no line
 QUIET = {f"{name}{t}": name == "wn" for name in ("r", "wn", "asked") for t in range(1, columns.TAPS)}
 DRIVEN = (
     "group",
@@ -63,8 +65,8 @@ class ColumnResult:
     """At one corner; LSB of the lane's converter in edge mode where nothing else is said.
 
     start: V at which a column without light leaves its lane at the reference. slope: V of the lane's line over the
-    ideal one. inl: peak off a straight line through WELLS. full: lost at FULL of a well. sum: of both diodes, in the
-    modes with codes 0..255, off what the differences' slope says, LSB of these modes. other: of the second diode by
+    ideal one; mean: of both diodes' mean, in the modes with codes 0..255. inl: peak off a straight line through WELLS.
+    full: lost at FULL of a well. other: of the second diode by
     the first's light. settling: s of the turn until half an LSB, the slowest. droop: until the last column's turn.
     energy: J a pixel. idle: A of a column in which nothing happens.
     """
@@ -73,7 +75,7 @@ class ColumnResult:
     slope: float
     inl: float
     full: float
-    sum: float
+    mean: float
     other: float
     settling: float
     droop: float
@@ -97,16 +99,16 @@ def measure(
     wanted = -spec.swing * np.array(WELLS)
     slope, offset = np.polyfit(wanted, out[:-1], 1)
     with opened(setup, spec, sizes, corner, start, True, circuit=circuit) as spice:
-        dark, light = (sample(spice, spec, corner, a * spec.fall, b * spec.fall, True) for a, b in ((0, 0), (0.8, 0.4)))
+        dark, light = (sample(spice, spec, corner, a * spec.fall, b * spec.fall, True) for a, b in ((0.0, 0.0), BOTH))
         runs, repeated = runs + spice.runs, repeated + spice.repeated
-    both = dark.at("far_a", end) - light.at("far_a", end) - slope * spec.swing * (0.8 + 0.4) / 4
+    mean = (dark.at("far_a", end) - light.at("far_a", end)) / (spec.swing * sum(BOTH) / 4)
     moved = [late.at(f"far_{d}", end + spec.wait) - waves[len(WELLS) - 1].at(f"far_{d}", end) for d in "ab"]
     return ColumnResult(
         start=start,
         slope=float(slope),
         inl=float(np.abs(out[:-1] - offset - slope * wanted).max() / lsb),
         full=float((out[-1] - offset + slope * spec.swing * FULL) / lsb),
-        sum=abs(both) / lsb,
+        mean=mean,
         other=abs(waves[len(WELLS) - 1].at("far_b", end) - waves[0].at("far_b", end)) / lsb,
         settling=max(settling(wave, spec) for wave in (*waves, light)),
         droop=max(abs(one) for one in moved) / lsb,
@@ -210,8 +212,9 @@ def opened(
     """An ngspice process of the bench. image: the first lane's reference is the middle. seed: of mismatch."""
     lines = deck(circuit or bench(sizes, spec), setup, corner, seed=seed)
     lines.append(f".model filling sw vt={corner.supply / 2:g} vh=0 ron=1000 roff=1e15")
+    ampere = spec.well * setup.scale(corner) / LIGHT
     for d in "ab":
-        lines += [f"Bfull_{d} full_{d} 0 v=v(level)-v(x_{d})", f"Sfull_{d} well_{d} full_{d} fill 0 filling"]
+        lines += [f"Sreset_{d} well_{d} level fill 0 filling", f"Glight_{d} well_{d} 0 x_{d} 0 {ampere:.9g}"]
     rails = {"start": start, "dark": spec.dark, "reference": spec.dark - image * spec.swing / 4}
     rails |= {"vdd_bias": corner.supply, "vdd_own": corner.supply}
     return simulator(lines, DRIVEN, ("far_a", "far_b", "level", *more), corner, rails, EXACT)
@@ -220,7 +223,7 @@ def opened(
 def sample(
     spice: Simulator, spec: ColumnSpec, corner: Corner, a: float, b: float, image: bool = False, wait: float = 0.0
 ) -> Wave:
-    """A transient: a row is read whose wells are a and b V below their level, and ``wait`` s later than else a turn."""
+    """A transient: a row is read whose wells have the charge of a and b V, and ``wait`` s later than else a turn."""
     high, t = corner.supply, spec.cycle
     begin, middle = REST * t, (REST + spec.settle) * t
     end, turn = middle + spec.read * t, turn_of(spec) + wait
@@ -248,9 +251,9 @@ def sample(
         "k": [(0.0, high)],
         "asked0": [(0.0, high)],
         "fill": [(0.0, high), (begin, high), (begin + EDGE, 0.0)],
-        "x_a": [(0.0, a)],
-        "x_b": [(0.0, b)],
     }
+    for name, volts in (("x_a", a), ("x_b", b)):
+        stimulus[name] = [(s, v / high * volts) for s, v in pulse(begin + GAP, begin + GAP + LIGHT)]
     return spice.transient(stimulus, {}, turn + 2 * t, t / 5)
 
 

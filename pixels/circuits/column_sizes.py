@@ -26,6 +26,8 @@ EFFICIENCY = {"front": 21.0, "back": 17.0, "lane": 17.0, "cascode": 15.0, "top":
 PARTS = 16  # of the lane's transistors: a replica is one of them
 FULL = 127.5  # LSB of a diode whose well is full
 TIMES = 2.0  # Cin over Chold: the holder's gain
+EXPOSED = 0.006  # of a charge that the signal half may leave at the typical corner
+ACROSS = 0.14e-15  # F, of transistors across Cf
 JUNCTIONS = 9e-15  # F, of a column that is not selected, at its lane's line
 LEFT = 0.3  # of a limit, at the typical corner: others are slower
 
@@ -61,9 +63,9 @@ class ColumnSpec:
     settling : float
         LSB that may be left then.
     slope : float
-        Relative, by which volts a charge may be off, over that of the capacitors.
+        Relative, by which a charge's volts may be off, over that of the capacitors: common to all columns.
     inl : float
-        LSB, peak, of an image's range, half a volt of the line.
+        LSB, peak, over four fifths of a full well, which are 408 LSB.
     noise : float
         Electrons, rms, of a diode: the light's own at half a full well.
     offset : float
@@ -71,7 +73,7 @@ class ColumnSpec:
     wait : float
         S from the sample to the last column's turn.
     droop : float
-        LSB that may be lost until then.
+        LSB that may be lost until then: the same of every row, and at 125 degrees alone.
     energy : float
         J a pixel that is read: Table 6.1's pixel array, which takes no current of its own here.
     pixel : float
@@ -92,12 +94,12 @@ class ColumnSpec:
     columns: int = 48
     ready: float = 50e-9
     settling: float = 0.5
-    slope: float = 0.02
-    inl: float = 0.5
+    slope: float = 0.05
+    inl: float = 1.0
     noise: float = 224.0
     offset: float = 4.0
     wait: float = 50e-6
-    droop: float = 0.5
+    droop: float = 4.0
     energy: float = 70e-12
     pixel: float = 226e-9
 
@@ -208,13 +210,13 @@ WAKE = 8e-9  # s of a column's turn until its transistors conduct
 def size(spec: ColumnSpec, process: ModuleType, hold: float = HOLD) -> ColumnSizes:
     """Sizes for ``spec`` from the process's tables of gm/Id.
 
-    The charge amplifier has the signal half to come within LEFT of the slope's limit, the holder is five times as
+    The charge amplifier has the signal half to come within EXPOSED of the charge, the holder is five times as
     fast, and a selected one has its lane settled to LEFT of the settling's limit when it must be ready. Cf is the
     well's size less what finite gain and time take: what is left of a charge's slope is the corners'.
     """
     front, drive = process.operating(*FRONT, EFFICIENCY["front"]), process.operating(*LANE, EFFICIENCY["lane"])
     cin, half = TIMES * hold, spec.read * spec.cycle - SLACK
-    constants = log(1 / (LEFT * spec.slope))
+    constants = log(1 / EXPOSED)
     gm, beta, width = 0.0, 0.0, 10.0
     for _ in range(20):
         beta = spec.well / (spec.line + 2 * spec.well + width * front.gate)
@@ -246,14 +248,14 @@ def size(spec: ColumnSpec, process: ModuleType, hold: float = HOLD) -> ColumnSiz
         above *= process.operating(*CASCODE_P, EFFICIENCY["cascode_p"]).gain
         return 1 / (1 / below + EFFICIENCY["top"] / EFFICIENCY[name] / above)
 
-    lost = LEFT * spec.slope + 1 / (beta * gain(FRONT, "front", TOP))
+    lost = EXPOSED + 1 / (beta * gain(FRONT, "front", TOP))
     lost += 1 / (back_beta * gain(BACK, "back", TOP))
     lost += (hold + gate) / hold / gain(LANE, "lane", LANE_TOP)
     return ColumnSizes(
         stage(FRONT, "front", TOP, gm),
         stage(BACK, "back", TOP, back_gm),
         stage(LANE, "lane", LANE_TOP, lane_gm, PARTS),
-        spec.well * TIMES * spec.fall / spec.swing * (1 - lost),
+        spec.well * TIMES * spec.fall / spec.swing * (1 - lost) - ACROSS,
         hold,
         TIMES,
     )
