@@ -22,7 +22,7 @@ from talbot.models.parameters.electrical import BOLTZMANN
 from talbot.pixels.circuits import column as columns
 from talbot.pixels.circuits.amplifier import BIAS
 from talbot.pixels.circuits.column import BIASES, CONTROLS, SUPPLIES, column
-from talbot.pixels.circuits.column_block import CLEAR, column_bias, lane_end, lane_line
+from talbot.pixels.circuits.column_block import CLEAR, column_bias, lane_end, lane_line, vx_drive
 from talbot.pixels.circuits.column_sizes import BACK, EFFICIENCY, FRONT, LANE, ColumnSizes, ColumnSpec
 from talbot.pixels.circuits.netlist import Capacitor, Circuit, Instance, Transistor
 from talbot.pixels.circuits.row_driver import THICK
@@ -180,6 +180,7 @@ def bench(sizes: ColumnSizes, spec: ColumnSpec) -> Circuit:
         Instance("column", column(sizes), tuple(quiet.get(pin) or pin for pin in columns.PINS)),
         Instance("bias", bias(), ("ibias", "vdd_own", "vss")),
         Instance("lines", column_bias(sizes), ("ibias", *BIASES, "level", "vdd_bias", "vss")),
+        Instance("hold", vx_drive(sizes), ("vx", "reads", "readsn", "vbp", "vcp", "vcn", "vdd_hold", "vss")),
     ]
     devices, capacitors = list[Transistor](), list[Capacitor]()
     for d, reference in (("a", "reference"), ("b", "dark")):
@@ -194,7 +195,7 @@ def bench(sizes: ColumnSizes, spec: ColumnSpec) -> Circuit:
             Capacitor(f"input_{d}", f"far_{d}", "vss", spec.input),
         ]
     own = (*(name for name in DRIVEN if name not in ("fill", "x_a", "x_b")), "well_a", "well_b", "level", "start")
-    own += ("dark", "reference", "far_a", "far_b", "vdd_bias", "vdd_own", *SUPPLIES)
+    own += ("dark", "reference", "far_a", "far_b", "vdd_bias", "vdd_own", "vdd_hold", *SUPPLIES)
     return Circuit("bench", own, tuple(devices), tuple(capacitors), instances=tuple(parts))
 
 
@@ -216,7 +217,7 @@ def opened(
     for d in "ab":
         lines += [f"Sreset_{d} well_{d} level fill 0 filling", f"Glight_{d} well_{d} 0 x_{d} 0 {ampere:.9g}"]
     rails = {"start": start, "dark": spec.dark, "reference": spec.dark - image * spec.swing / 4}
-    rails |= {"vdd_bias": corner.supply, "vdd_own": corner.supply}
+    rails |= {"vdd_bias": corner.supply, "vdd_own": corner.supply, "vdd_hold": corner.supply}
     return simulator(lines, DRIVEN, ("far_a", "far_b", "level", *more), corner, rails, EXACT)
 
 
@@ -265,6 +266,7 @@ def turn_of(spec: ColumnSpec) -> float:
 def _energy(wave: Wave, spec: ColumnSpec, corner: Corner) -> float:
     """J of a pixel: of the row's read, of its turn, and a pixel's time of the block's bias."""
     read = wave.charge("vdd", REST * spec.cycle, turn_of(spec) - 0.5 * spec.cycle)
+    read += wave.charge("vdd_hold", REST * spec.cycle, turn_of(spec) - 0.5 * spec.cycle) / spec.columns
     turn = wave.charge("vdd", turn_of(spec) - 0.5 * spec.cycle, turn_of(spec) + 1.5 * spec.cycle)
     steady = wave.charge("vdd_bias", 0.1 * spec.cycle, 0.9 * spec.cycle) / (0.8 * spec.cycle) + BIAS
     return (read + turn + steady * spec.pixel) * corner.supply

@@ -14,7 +14,7 @@ from talbot.flow.analog.amplifier import COLUMNS, EXACT
 from talbot.flow.analog.column import GAP, ROW
 from talbot.models.parameters import ELEMENTARY_CHARGE, AmpTiming
 from talbot.pixels.circuits.column import BIASES, PINS, TAPS, column
-from talbot.pixels.circuits.column_block import clear_pulse, column_bias, lane_end, lane_line
+from talbot.pixels.circuits.column_block import clear_pulse, column_bias, lane_end, lane_line, vx_drive
 from talbot.pixels.circuits.column_sizes import FULL, ColumnSizes, ColumnSpec, size
 from talbot.pixels.circuits.netlist import Capacitor, Circuit, Transistor
 from talbot.pixels.circuits.row_driver import THICK
@@ -27,12 +27,14 @@ from .pixels import PixelSizes
 
 TIMING = AmpTiming()  # of a row with these columns: the holder has 16 cycles in each half
 CELSIUS = 25.0
+SOURCE = "vbn", "vbp", "source", "start", "part_1", "part_2", "part_3"  # nodes of a bias
+RESTING = (*BIASES, "level", "ibias_columns", *(f"xcolumn_source.{name}" for name in SOURCE))
 
 
 def circuits(spec: ColumnSpec, sizes: ColumnSizes) -> tuple[Circuit, ...]:
     """All that the lines of a deck call."""
     parts = column(sizes), column_bias(sizes), clear_pulse(sizes), lane_end(sizes), lane_line(sizes, spec), bias()
-    return (*parts, pixel(spec))
+    return (*parts, vx_drive(sizes), pixel(spec))
 
 
 def pixel(spec: ColumnSpec) -> Circuit:
@@ -62,24 +64,31 @@ def lines(
     sizes: ColumnSizes,
     pixels: PixelSizes,
     start: float,
+    rest: Mapping[str, float],
     swapped: frozenset[int] = frozenset(),
     cut: int | None = None,
 ) -> list[str]:
     """Lines of the deck; see `drive` for their controls. lanes: of each column; the lanes' lines end at cola0, colb0.
 
     diodes: (a, b) in LSB of each column and tap. edge: lanes get both diodes, else the mean. start: V, trimmed.
+    rest: V of RESTING, with which it begins: an operating point of so many nodes that float takes minutes.
     swapped: columns whose diodes are on each other's line. cut: column from which on the row's read line is open.
     """
     own = {"edge": "vdd" if edge else "0", "edgen": "0" if edge else "vdd", "k": "vdd", "vss": "0", "ref": "row_ref"}
+    resting = dict(rest)
+    for lane in set(lanes.values()) if rest else ():  # the bias of its amplifier is at the same levels
+        resting |= {f"xbias{lane}.{name}": rest[f"xcolumn_source.{name}"] for name in SOURCE}
     deck = [
         f"Vdark dark 0 {spec.dark:g}",
         f"Vreference reference 0 {spec.dark - (not edge) * CODES / 2 * spec.lsb:.9g}",
         f"Vstart start 0 {start:.9g}",
+        *([".ic " + " ".join(f"v({name})={volts:.6g}" for name, volts in resting.items())] if rest else []),
         "Xcolumn_source ibias_columns vdd 0 bias",
         f"Xcolumn_bias ibias_columns {' '.join(BIASES)} level vdd 0 column_bias",
         "Xclear row_ref row_refn clear vbp vdd 0 clear_pulse",
     ]
     for lane in sorted(set(lanes.values())):
+        deck.append(f"Xhold{lane} vx reads readsn vbp vcp vcn vdd 0 vx_drive")
         for d, reference in (("a", "reference"), ("b", "dark")):
             turn = f"turn{lane} turnn{lane}" if d == "a" or edge else "0 vdd"
             deck.append(f"Xend{d}{lane} col{d}{lane} {reference} {turn} vbl vcp vdd 0 lane_end")
@@ -129,8 +138,11 @@ def drive(source: Drive, columns: Sequence[int], lanes: Sequence[int], first: in
 
 
 @cache
-def trimmed(spec: ColumnSpec, edge: bool, cycle: float, high: float) -> float:
-    """V of `start` at which a pixel without light leaves its lane's line at dark: simulated once. Raises ToolError."""
+def trimmed(spec: ColumnSpec, edge: bool, cycle: float, high: float) -> tuple[float, dict[str, float]]:
+    """V of `start` at which a pixel without light leaves its lane's line at dark, and of the bias's lines at rest.
+
+    Simulated once. Raises ToolError.
+    """
     sizes, pixels, start = size(spec, analog), PixelSizes(), spec.dark - 0.1
     reset, read, ends = 2, 6, 6 + spec.settle + spec.read
     turn = ends + 2
@@ -158,8 +170,9 @@ def trimmed(spec: ColumnSpec, edge: bool, cycle: float, high: float) -> float:
     inner = {one.name: one for part in parts for one in part.circuits().values()}
     deck = [*analog.cards("tt", set().union(*(one.sizes() for one in parts))), ".param cscale=1 rscale=1"]
     deck += [line for one in inner.values() for line in one.own_lines(analog)]
-    deck += lines({0: {0: (0.0, 0.0)}}, {0: lane_bit}, edge, 1.0, spec, sizes, pixels, start)
+    deck += lines({0: {0: (0.0, 0.0)}}, {0: lane_bit}, edge, 1.0, spec, sizes, pixels, start, {})
     out = f"cola{lane_bit}"
-    with Simulator(deck, tuple(waves), (out,), {"vdd": high}, CELSIUS, EXACT) as spice:
+    with Simulator(deck, tuple(waves), (out, *RESTING), {"vdd": high}, CELSIUS, EXACT) as spice:
         wave = spice.transient(waves, {out: spec.input}, (turn + 1) * cycle, cycle / 5)
-    return start + spec.dark - wave.at(out, float(np.nextafter((turn + 1) * cycle, 0)))
+    end = float(np.nextafter((turn + 1) * cycle, 0))
+    return start + spec.dark - wave.at(out, end), {"vdd": high} | {name: wave.at(name, 0.0) for name in RESTING}

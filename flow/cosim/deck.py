@@ -194,10 +194,10 @@ def _columns(
     sizes = size(column, analog)
     swapped = frozenset(fault.where if fault and fault.kind == "diodes" else ())
     cut = fault.where[0] if fault and fault.kind == "row" else None
-    start = own_columns.trimmed(column, not unsigned, timing.period, spec.supply)
+    start, rest = own_columns.trimmed(column, not unsigned, timing.period, spec.supply)
     taps = {c: row.diodes[c] for c in deck.columns}
     of_lane = {c: c // tile_cols % lanes for c in deck.columns}
-    given = (not unsigned, row.integration, column, sizes, row.sizes, start, swapped, cut)
+    given = (not unsigned, row.integration, column, sizes, row.sizes, start, rest, swapped, cut)
     body += own_columns.lines(taps, of_lane, *given)
     first = 10 * lanes + SUBS * row.cols
     own_columns.drive(partial(_source, deck), deck.columns, deck.lanes, first, spec.supply)

@@ -13,6 +13,7 @@ from .row_driver import nand_of
 BRANCH = 1.25e-6  # A, of each branch of the bias
 DECOUPLING = 10e-12  # F at each of its lines for a lane
 STACK, STACK_P = (0.42, ("n_lvt", 5.0)), (0.42, ("p", 2.0))  # um, of the diodes that make the cascodes' gates
+STRONG = 4  # replicas that hold vx while a row is read, of each lane
 LEG = 0.8  # um, of a branch of the bias
 SECTIONS = 12  # of a lane's line
 GROUPS, PLACES = 8, 6  # lines of a group, of a place in the tile
@@ -68,6 +69,28 @@ def column_bias(sizes: ColumnSizes) -> Circuit:
         for name in BIASES
     )
     return Circuit("column_bias", ("ibias", *BIASES, "level", *SUPPLIES), tuple(devices), lines)
+
+
+def vx_drive(sizes: ColumnSizes) -> Circuit:
+    """What holds vx while a row is read: each of a lane's columns has its capacitors go there. A lane has one.
+
+    Pins vx reads readsn vbp vcp vcn vdd vss. It is STRONG of the bias's own replica.
+    """
+    lane, front = sizes.lane, sizes.front
+    times = STRONG * lane.current / PARTS / front.current
+    return Circuit(
+        "vx_drive",
+        ("vx", "reads", "readsn", "vbp", "vcp", "vcn", *SUPPLIES),
+        (
+            p("power", "on readsn vdd", 4.0, POWER),
+            p("top", "above vbp on", round(front.top * times, 2), TOP),
+            p("cascode_p", "vx vcp above", round(front.cascode_p * times, 2), CASCODE_P),
+            *(n(f"in{k}", "below vx vss", lane.input / PARTS, LANE) for k in range(STRONG)),
+            n("under", "vx cn below", round(STRONG * lane.cascode / PARTS, 2), CASCODE),
+            n("go", "vcn reads cn", 0.84, SWITCH),
+            n("stop", "cn readsn vss", 0.42, SWITCH),
+        ),
+    )
 
 
 def lane_end(sizes: ColumnSizes) -> Circuit:

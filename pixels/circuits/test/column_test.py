@@ -76,7 +76,14 @@ def test_the_feedback_is_the_well_less_what_is_lost():
 
 
 def test_all_are_whole_and_what_is_broken_is_named():
-    for one in (COLUMN, column_bias(SIZES), block.lane_end(SIZES), block.lane_line(SIZES, SPEC), bank(SIZES)):
+    for one in (
+        COLUMN,
+        column_bias(SIZES),
+        block.lane_end(SIZES),
+        block.vx_drive(SIZES),
+        block.lane_line(SIZES, SPEC),
+        bank(SIZES),
+    ):
         one.check(process)
     with pytest.raises(ParameterError, match="circuit tap: net inner at device hold: must have two ends"):
         COLUMN.replaced(columns.tap(SIZES).without("join").without("from_vx")).check(process)
