@@ -40,13 +40,13 @@ PINS += (*BIASES, "start", *SUPPLIES)
 
 
 def n(name: str, nodes: str, w: float, kind: tuple[str, float]) -> Transistor:
-    """nodes: drain gate source."""
+    """An n transistor; nodes: drain gate source."""
     drain, gate, source = nodes.split()
     return Transistor(name, drain, gate, source, "vss", kind[0], w, kind[1])
 
 
 def p(name: str, nodes: str, w: float, kind: tuple[str, float]) -> Transistor:
-    """nodes: drain gate source."""
+    """A p transistor; nodes: drain gate source."""
     drain, gate, source = nodes.split()
     return Transistor(name, drain, gate, source, "vdd", kind[0], w, kind[1])
 
