@@ -72,7 +72,7 @@ def _fields() -> list[Case]:
         _bounded("a third of it full", estimator.mixture(np.minimum(pair, 0.55)), 1.0),
         _bounded("dead columns", _amid_dead(estimator, dead), 1.0, known=0.0),
         _bounded("a dead pixel", _amid_dead(estimator, one), 1.0),
-        _bounded("noise of 40 %", estimator.mixture(pair * (1 + 0.4 * draw.standard_normal(pair.shape))), 1.5),
+        _bounded("noise of 40 %", estimator.mixture(pair * (1 + 0.4 * draw.standard_normal(pair.shape))), 1.6),
         _bounded("m = 0", FieldEstimator(flat, 5, PRIOR).mixture(dimmed), 1.0, known=0.0),
     ]
     out.append(_at_most("disparity amid a dead pixel: greatest error where sure", float(wrong.max(initial=0)), 0.3))

@@ -272,7 +272,7 @@ def converter(spec: LaneSpec, sizes: LaneSizes, found: Found) -> dict[str, Any]:
     """What `models/afe` takes of the circuit, each with its source and the fit's error where there is one (LSB)."""
     rms, low, high = interval(found.offsets)
     rms_a, low_a, high_a = interval([one.offset for one in found.amplifier_draws])
-    shape = inl(found.lanes[TYPICAL].levels)
+    shape = inl(found.lanes[TYPICAL].decided)
     bend, bend_error = polynomial(found.amplifiers[TYPICAL].points)
     gains = float(np.std([one.gain for one in found.amplifier_draws], ddof=1))
     counts = f"{len(found.offsets)} comparators and {len(found.amplifier_draws)} amplifiers"
@@ -289,7 +289,7 @@ def converter(spec: LaneSpec, sizes: LaneSizes, found: Found) -> dict[str, Any]:
             **{name: round(value, 4) for name, value in zip(AMPLIFIER, bend, strict=True)},
         },
         "sources": {
-            "inl": f"peak of {len(lane.CODES)} levels in ngspice off the line through the ends",
+            "inl": f"peak of {len(lane.CODES)} levels, by the decisions in ngspice, off the line through the ends",
             "dnl": "steps come from unit_mismatch",
             "offset": f"{counts} with the models' mismatch in ngspice",
             "noise": f"{2 * found.noise.decisions} decisions with transient noise in ngspice",

@@ -23,6 +23,7 @@ CODES = (1, 255, 64, 192, 127, 128, 129)  # levels that are measured, from end t
 VALUE = 100.3  # LSB, of the whole conversion
 DROOP_CYCLES, DROOP_CODES = 8, 64
 WRONG_WEIGHT = 0.2  # of a bit of one unit; less by the square root of the units of others
+BISECTIONS, REACH = 6, 0.8  # LSB around a code's level within which its decision is sought: to 0.0125
 SECOND = 2.0  # LSB: a second point at one level, which gives the gain at it
 
 
@@ -30,13 +31,15 @@ SECOND = 2.0  # LSB: a second point at one level, which gives the gain at it
 class LaneResult:
     """A lane at one corner; all but energies and counts in LSB or s.
 
-    levels: (code, level - (code - 0.5)). gain: volts at the comparator for a volt at the input. settling: s until the
+    levels: (code, level - (code - 0.5)), by the plates before the strobe; decided: by the decisions, in the order of
+    CODES, +-REACH where it is beyond. gain: volts at the comparator for a volt at the input. settling: s until the
     comparator's input is within half an LSB. droop: LSB in a conversion, DROOP_CODES away from balance. code: of the
     conversion of VALUE; passes: transients until its decisions agreed with the codes that were put in. energy: J a
     decision of supply and references.
     """
 
     levels: list[tuple[int, float]]
+    decided: list[tuple[int, float]]
     gain: float
     settling: float
     droop: float
@@ -134,11 +137,12 @@ def measure(setup: Setup, sizes: LaneSizes, corner: Corner, circuit: Circuit | N
         settling = max(_settled(wave, when - period / 2, when, lsb / 2) for when in strobes)
         ends = [difference(wave, (after + n + 0.5) * period) for n in (1, DROOP_CYCLES)]
         droop = abs(ends[1] - ends[0]) / lsb * BITS / (DROOP_CYCLES - 1)
+        decided = _decided(spice, setup, CODES)
         code, passes, wave = convert(spice, setup, VALUE)
         energy = {"supply": _energy(wave, "vdd", period, spice.rails["vdd"])}
         rails = {f"{name}_ext": getattr(setup.spec, name) for name in ("refp", "refn", "vcm")}
         energy["references"] = sum(_energy(wave, name, period, volts) for name, volts in rails.items())
-        return LaneResult(levels, gain, settling, droop, code, passes, energy, spice.runs, spice.repeated)
+        return LaneResult(levels, decided, gain, settling, droop, code, passes, energy, spice.runs, spice.repeated)
 
 
 def _levels(
@@ -158,6 +162,24 @@ def _levels(
     found = [difference(wave, (2 * k + 1.5) * period) for k in range(len(points))]
     gain = (found[0] - found[-1]) / (SECOND * spec.lsb)
     return wave, [(code, -volts / (gain * spec.lsb)) for code, volts in zip(codes, found[1:], strict=True)], gain
+
+
+def _decided(spice: Simulator, setup: Setup, codes: Sequence[int]) -> list[tuple[int, float]]:
+    """(code, level - (code - 0.5)) where the comparator's decision changes.
+
+    The comparator kicks both plates as it decides, and what it makes of them need not be what is there before.
+    """
+    period, count = 1 / setup.spec.f_clk, len(codes)
+    low, high = np.full(count, -REACH), np.full(count, REACH)
+    for _ in range(BISECTIONS):
+        middle = (low + high) / 2
+        values = [code - 0.5 + off for code, off in zip(codes, middle, strict=True) for _ in range(2)]
+        put = [given for code in codes for given in (128, code)]
+        wave = run_codes(spice, setup, values, [True, False] * count, put)
+        ends = (2 * np.arange(count) + 2) * period - 1e-10
+        ones = np.array([wave.at("comparator", end) > spice.rails["vdd"] / 2 for end in ends])
+        low, high = np.where(ones, low, middle), np.where(ones, middle, high)
+    return [(code, float(off)) for code, off in zip(codes, (low + high) / 2, strict=True)]
 
 
 def faults(setup: Setup, sizes: LaneSizes, corner: Corner, circuit: Circuit | None = None) -> list[str]:

@@ -29,6 +29,7 @@ def datasheet(spec: LaneSpec, found: Found, draws: int) -> list[Row]:
     decisions, results = found.decisions, found.lanes
     energies = {name: 1e12 * sum(one.energy.values()) for name, one in results.items()}
     shapes = {name: inl(one.levels) for name, one in results.items()}
+    decided = {name: max(abs(off) for _, off in one.decided) for name, one in results.items()}
     wrong = {name: float(not one.right) for name, one in decisions.items()}
     missed = {name: float(abs(one.code - round(VALUE))) for name, one in results.items()}
     over = f"{draws} draws, max: 95 % interval"
@@ -52,6 +53,7 @@ def datasheet(spec: LaneSpec, found: Found, draws: int) -> list[Row]:
         _quantile("DAC", "DNL, mismatch", found.dnl, spec.dnl, arrays),
         corners("lane", "offset, systematic", "LSB", {n: abs(s[0]) for n, s in shapes.items()}, spec.offset),
         corners("lane", "gain error over the range", "LSB", {n: abs(s[1]) for n, s in shapes.items()}, None),
+        corners("lane", "decisions off their level", "LSB", decided, spec.inl),
         corners("lane", "sampled noise, rms", "LSB", found.ktc, spec.ktc),
         corners("lane", "droop in a conversion", "LSB", {n: r.droop for n, r in results.items()}, spec.droop),
         corners("lane", f"conversion of {VALUE:g}, off by", "codes", missed, 0.0),

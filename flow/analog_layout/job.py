@@ -17,17 +17,14 @@ from talbot.flow.analog.lane import inl
 from talbot.flow.analog.linearity import inl_dnl, levels
 from talbot.flow.analog.row_driver import RowDriverResult
 from talbot.flow.analog.row_driver import measure as measure_row
-from talbot.models.parameters import ArrayParameters, ChipParameters
+from talbot.models.parameters import ArrayParameters
 from talbot.pixels.analog_layout.amplifier import amplifier_cell
 from talbot.pixels.analog_layout.bias import bias_cell
 from talbot.pixels.analog_layout.cells import Cell, comparator_cell
-from talbot.pixels.analog_layout.converters import NAME as BLOCK
-from talbot.pixels.analog_layout.converters import Converters, draw_converters
+from talbot.pixels.analog_layout.converters import Converters
 from talbot.pixels.analog_layout.lane import lane_cell
-from talbot.pixels.analog_layout.row_drivers import NAME as ROWS
-from talbot.pixels.analog_layout.row_drivers import RowDrivers, draw_row_drivers, row_cell
+from talbot.pixels.analog_layout.row_drivers import RowDrivers, row_cell
 from talbot.pixels.analog_layout.switch import switch_cell
-from talbot.pixels.blocks import AnalogSizes
 from talbot.pixels.circuits.amplifier import AmplifierSizes, AmplifierSpec
 from talbot.pixels.circuits.dac import BITS
 from talbot.pixels.circuits.lane import LaneSizes
@@ -46,6 +43,7 @@ from .extract import Extracted, Nets, extract
 from .measure import Measured, measure
 from .row import Row
 from .switch import Gaps
+from .write import drawn_blocks
 
 STEPS = "draw", "drc", "lvs", "extract", "measure", "report"
 KINDS = "gds", "spice", "extracted.spice", "lyrdb", "lvsdb"
@@ -74,11 +72,7 @@ def make(
     masks, (setup, sizes) = analog_masks(pdk), setup_of(pdk)
     spec, own = amplifier_of(setup, sizes)
     made = cells(masks, sizes, own, spec.lanes)
-    chip, room = ChipParameters(), AnalogSizes()
-    blocks = {
-        BLOCK: draw_converters(masks, sizes, own, chip, room),
-        ROWS: draw_row_drivers(masks, ArrayParameters(), room),
-    }
+    blocks = drawn_blocks(pdk)
     drawn: dict[str, Cell | Converters | RowDrivers] = {**made, **blocks}
     names = [f"{name}.{kind}" for name in drawn for kind in KINDS if name in made or kind != "extracted.spice"]
     names += [f"{name}.lef" for name in blocks]
@@ -206,6 +200,7 @@ def _rows(spec: LaneSpec, found: Pair[Measured]) -> Iterator[Row]:
     yield lane("DAC: INL of seven levels", "LSB", lambda one: inl(one.levels)[2], spec.inl)
     yield lane("lane: offset, systematic", "LSB", lambda one: inl(one.levels)[0], spec.offset)
     yield lane("lane: gain error over the range", "LSB", lambda one: inl(one.levels)[1])
+    yield lane("lane: decisions off their level", "LSB", lambda one: max(abs(off) for _, off in one.decided), spec.inl)
     yield lane("lane: gain up to the comparator", "", lambda one: one.gain)
     yield lane("lane: droop in a conversion", "LSB", lambda one: one.droop, spec.droop)
     yield lane("lane: energy of a decision", "pJ", lambda one: 1e12 * sum(one.energy.values()), share)

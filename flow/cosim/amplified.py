@@ -20,7 +20,7 @@ from talbot.pixels.circuits.netlist import Circuit
 from talbot.pixels.circuits.specification import LaneSpec
 from talbot.pixels.circuits.support import bias
 
-AFTER = 1e-9  # s after the sample's end at which the reset begins; the columns leave their signals as much later
+AFTER = 1e-9  # s after the sample's end at which columns leave the lanes and the reset begins
 Drive = Callable[..., str]  # name, V at 1; half, rise, fall, low: see `deck.source`
 
 

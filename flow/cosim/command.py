@@ -85,7 +85,8 @@ def _print(s: dict[str, Any], folder: Path) -> None:
         print(
             f"{row['mode']}: {row['differing']} of {row['samples']} codes differ, by "
             f"{row['largest_difference_lsb']} LSB at most, {row['beyond']} beyond half an LSB and the noise; "
-            f"{row['largest_error_at_lane_lsb']:.3f} LSB off at the lane at most; "
+            f"{row['largest_error_at_lane_lsb']:.3f} LSB off at the lane at most, "
+            f"its level {row['largest_error_of_level_lsb']:.3f}; "
             f"{row['differing_decisions']} of {row['decisions']} decisions; "
             f"slowest {1e9 * row['slowest_decision_s']:.2f} ns; {row['circuit_cycles']} cycles of "
             f"{row['transistors']} transistors in {row['seconds']:.1f} s"

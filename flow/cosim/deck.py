@@ -131,7 +131,9 @@ def build(
     level = 0.5 * (spec.refp + spec.refn)
     for (column, sub), value in sorted(values.items()) if not (row and row.columns) else ():
         name, into = f"{column}_{sub}", column // tile_cols % lanes
-        rise, fall = (amplified.COLUMNS, amplified.AFTER) if amplifier else (0.0, 0.0)
+        # The chip's position is stable for a cycle after hold. A switch that opens with the lane's sample leaves its
+        # charge in it: 0.66 LSB at value 40
+        rise, fall = amplified.COLUMNS if amplifier else 0.0, amplified.AFTER
         on = _source(deck, f"select{name}", spec.supply, 10 * lanes + SUBS * column + sub, rise=rise, fall=fall)
         ways = [(f"{d}{name}", f"col{d}{into}") for d in "ab"] if amplifier else [(name, f"in{into}")]
         body += [f"Xselect{one} column{one} {to} {on} vdd 0 selector" for one, to in ways]

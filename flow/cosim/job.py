@@ -44,6 +44,7 @@ def summary(row: Row) -> dict[str, Any]:
         "largest_difference_lsb": int(np.abs(off).max(initial=0)),
         "beyond": int(row.beyond.sum()),
         "largest_error_at_lane_lsb": float(np.abs(row.at_lane).max(initial=0)),
+        "largest_error_of_level_lsb": float(np.abs(row.level_off).max(initial=0)),
         "amplifier": row.request.amplifier,
         "decisions": int(decisions.sum()),
         "differing_decisions": int((run.cycles.answer != run.cycles.expected)[decisions].sum()),

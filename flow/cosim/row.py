@@ -1,6 +1,6 @@
 """One row through the chip's Verilog with the circuit in the loop, and its codes beside the real-number model's."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -28,7 +28,7 @@ from talbot.pixels.circuits.specification import LaneSpec
 from . import lockstep
 from .accuracy import Accuracy
 from .columns import TIMING
-from .deck import Deck, RowOfPixels, Timing, build
+from .deck import LANE_NODES, Deck, RowOfPixels, Timing, build
 from .faults import Fault
 
 MODES = ("edge", "image", "tof")
@@ -208,16 +208,31 @@ class Row:
     @property
     def at_lane(self) -> npt.NDArray[np.float64]:
         """LSB at the lane's input as its sample ends, of each sample, less the real-number model's."""
-        run, zero = self.run, 128 * (self.request.mode != "edge")
-        off = []
+        run, zero, off = self.run, 128 * (self.request.mode != "edge"), []
         for s in self.samples:
-            c = run.cycles
-            width = self.request.frame[0].tile.cols
-            place = c.hold & (c.group == s.column // (width * self.request.lanes)) & (c.k == s.column % width)
-            end = (np.flatnonzero(place & (c.sub == s.sub))[0] + 1) * self.request.timing.period
+            end = (_held(run.cycles, s.column, s.sub, self.request)[0] + 1) * self.request.timing.period
             ends = (np.interp(end, run.time, run.waves[node]) for node in (f"in{s.lane}", "ref"))
             volts = next(ends) - next(ends)
             off.append(volts / self.request.spec.lsb + zero - s.value)
+        return np.array(off)
+
+    @property
+    def level_off(self) -> npt.NDArray[np.float64]:
+        """LSB by which the lane's levels are off in the search of each sample: 0 of an ideal lane.
+
+        The comparator's inputs just before the strobe are a line through the two codes nearest to balance; its zero is
+        the level that the value at the lane's input has.
+        """
+        run, at_lane, clock, off = self.run, self.at_lane, self.request.clock, []
+        for s, miss in zip(self.samples, at_lane, strict=True):
+            top, other = (run.waves[f"xlane{s.lane}.{node}"] for node in LANE_NODES[:2])
+            volts: dict[int, float] = {}
+            for i in _search_of(run.cycles, _held(run.cycles, s.column, s.sub, self.request)[0], s.lane):
+                strobe = i * clock.period + clock.high - clock.edge
+                volts[int(run.cycles.asked[i, s.lane])] = float(np.interp(strobe, run.time, top - other))
+            (a, at_a), (b, at_b) = sorted(volts.items(), key=lambda one: abs(one[1]))[:2]
+            level = a - at_a * (b - a) / (at_b - at_a) - (0.5 if self.request.mode != "edge" else 128.5)
+            off.append(level - s.value - miss)
         return np.array(off)
 
     @property
@@ -247,23 +262,36 @@ def read_row(asked: RowRequest, note: Callable[[str], None] = lambda text: None,
     found = []
     for (column, sub), value in asked.values.items():
         lane = column // sensor.tile.cols % asked.lanes
-        why = _first_difference(run.cycles, lane, column, sub, sensor.tile.cols * asked.lanes, sensor.tile.cols)
+        why = _first_difference(run.cycles, lane, column, sub, asked)
         found.append(Sample(column, sub, lane, value, int(codes[column, sub]), int(expected[column, sub]), why))
     return Row(asked, deck, run, found, decision_times(run, deck, asked.clock))
 
 
+def _held(c: lockstep.Cycle, column: int, sub: int, asked: RowRequest) -> npt.NDArray[np.int64]:
+    """The cycles in which a position is held."""
+    width = asked.frame[0].tile.cols
+    place = (c.group == column // (width * asked.lanes)) & (c.k == column % width) & (c.sub == sub)
+    return np.flatnonzero(c.hold & place)
+
+
+def _search_of(c: lockstep.Cycle, held: int, lane: int) -> Iterator[int]:
+    """The cycles in which a lane decides on what it held in a cycle."""
+    for i in range(held + 1, len(c.hold)):
+        if c.deciding[i, lane]:
+            yield i
+        if c.hold[i]:
+            return
+
+
 def _first_difference(
-    c: lockstep.Cycle, lane: int, column: int, sub: int, group: int, tile_cols: int
+    c: lockstep.Cycle, lane: int, column: int, sub: int, asked: RowRequest
 ) -> tuple[int, float] | None:
     """The first decision on a sample in which circuit and model differ."""
-    at = c.hold & (c.group == column // group) & (c.k == column % tile_cols) & (c.sub == sub)
-    for start in np.flatnonzero(at):
-        for i in range(start + 1, len(c.hold)):
-            if c.deciding[i, lane] and c.answer[i, lane] != c.expected[i, lane]:
+    for held in _held(c, column, sub, asked):
+        for i in _search_of(c, held, lane):
+            if c.answer[i, lane] != c.expected[i, lane]:
                 level = c.asked[i, lane] - (0.5 if c.unsigned[i] else 128.5)
                 return int(c.asked[i, lane]), float(c.held[i, lane] - level)
-            if c.hold[i]:
-                break
     return None
 
 

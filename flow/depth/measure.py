@@ -1,7 +1,7 @@
 """Depth from the frames of time of flight by every method, beside what costs nothing."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from time import perf_counter
 from typing import Any
 
@@ -28,6 +28,8 @@ Complexes = npt.NDArray[np.complexfloating]
 BEST = "field"
 FAINT = 3.0  # codes: what has a smaller amplitude has no phase
 LOOSE = 0.2  # px per view step: no disparity is surer
+# Of the prior: enough for turns, and smooth textures, whose phases are the less noisy
+COARSE: dict[str, Any] = {"between": 0, "slants": 0, "fineness": 1.0}
 EDGE = 2  # steps of the disparities that are tried from their ends: what is nearer may be beyond
 CODES = 255
 PLANES = 9  # of focus behind an occluder
@@ -64,7 +66,7 @@ def read_depth(frames: DepthFrames, prior: FieldPrior, note: Callable[[str], Non
     diodes = frames.diodes()
     dead = dead_pixels(diodes.sum(0) / (2 * white))
     over = beside(full(diodes, (0, 1)) | dead, prior.margin)
-    estimator = estimator_of(result, prior)
+    estimator = estimator_of(result, replace(prior, **COARSE))
     estimator.prepare(mixture=True)  # what is done once a sensor
     start = perf_counter()
     field = depth_field(estimator, diodes / white)

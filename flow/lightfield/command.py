@@ -25,7 +25,7 @@ def add_prior_arguments(parser: ArgumentParser) -> None:
     add = parser.add_argument
     add("--far", default="-2.5", help="farthest disparity that is tried, -20..20 px per view step")
     add("--near", default="2.5", help="nearest disparity that is tried, far..20 px per view step")
-    add("--disparities", default="21", help="how many are tried, 1..500")
+    add("--disparities", default="21", help="how many are tried, 1..500; by mixture those between, too")
 
 
 def prior_asked(options: Namespace) -> "Callable[[GoldenResult], FieldPrior]":

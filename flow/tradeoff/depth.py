@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 
 from talbot.base.charts import curves
 from talbot.flow.depth.capture import DepthFrames, capture
-from talbot.flow.depth.measure import FAINT, by_disparity, figures
+from talbot.flow.depth.measure import COARSE, FAINT, by_disparity, figures
 from talbot.flow.frame.request import request
 from talbot.flow.lightfield.fields import estimator_of, prior_of
 from talbot.models.parameters import LIFE_SIZE, STANDARD
@@ -54,7 +54,7 @@ def measure(point: tuple[tuple[str, int, int, int], int]) -> dict[str, Any]:
     result, step = frames.sums, 1 << (8 - bits)
     scene, ambiguity = result.exposed.scene, SPEED_OF_LIGHT / (2 * F_MOD)
     truth, white = np.asarray(scene.depth), white_sum(result.request.lit, result.request.frame.exposing)
-    prior = prior_of(result, disparities=disparities)
+    prior = prior_of(result, disparities=disparities, **COARSE)
     estimator = estimator_of(result, prior)
     diodes = _coarser(frames.diodes(), step)
     estimator.prepare(mixture=True)  # what is done once a sensor

@@ -51,6 +51,15 @@ def test_a_sample_converts_as_in_the_model(row: Row):
 
 
 @library
+@pytest.mark.parametrize("seed", [29, 10])  # values 44 and 212: at the ends the switches' charges have two signs
+def test_a_level_is_where_it_is_at_rest(seed: int):
+    """A column's switch that opens with the lane's sample moves the level by -0.6 LSB at 44."""
+    row = read_row(replace(SMALL, seed=seed, pixels=False))
+    assert np.abs(row.level_off).max() < 0.05 and np.abs(row.at_lane).max() < 0.01
+    assert not row.differences.any()
+
+
+@library
 def test_pixels_give_the_charge_of_two_milliseconds_from_one_cycle(row: Row):
     """The wells, the column's charge amplifiers and the sample together: the value of models/afe."""
     (sample,), cycles = row.samples, row.run.cycles

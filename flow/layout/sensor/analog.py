@@ -1,6 +1,7 @@
-"""Files of the analog blocks: the drawn pixel array, black boxes of the others, or a user's circuits in their place."""
+"""Files of the analog blocks: those that this project draws, black boxes, or a user's circuits in their place."""
 
 import sys
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -16,8 +17,9 @@ from .plan import BLOCKS
 
 KINDS = "lef", "gds"
 ARRAY = "pixel_array"
-DRAWING = "talbot.pixels.layout.write"
-STORE = BUILD / "pixel" / "arrays"
+# Modules that write the drawn blocks, and these
+DRAWINGS = {"talbot.pixels.layout.write": (ARRAY,), "talbot.flow.analog_layout.write": ("row_driver", "adc_lanes")}
+STORE = BUILD / "drawn"
 
 
 class AnalogFiles(NamedTuple):
@@ -32,37 +34,44 @@ class AnalogFiles(NamedTuple):
     drawn: tuple[str, ...] = ()
 
 
-def files(folder: Path, pdk: str, analog: Path | None = None) -> AnalogFiles:
+def files(
+    folder: Path,
+    pdk: str,
+    analog: Path | None = None,
+    note: Callable[[str], None] = lambda text: None,
+    drawings: Mapping[str, Sequence[str]] = DRAWINGS,
+) -> AnalogFiles:
     """Write the black boxes into ``folder``; those of which ``analog`` has LEF and GDS are replaced by these.
 
-    The pixel array is the drawn one where the process has it and the user has no other; the drawing is kept. A pin that
-    a black box does not have, a reference or a bias, leads to a pin of the die. Raises ParameterError.
+    Where the process has drawn pixels and the user no other, blocks that this project draws are these; they are kept. A
+    pin that a black box does not have, a reference or a bias, leads to a pin of the die. Raises ParameterError.
     """
     circuits = _circuits(analog) if analog else []
     run([sys.executable, "-m", "talbot.pixels.footprints", "--pdk", pdk, "--out", folder], cwd=ROOT)
     found = {f"{block}.{kind}": folder / f"{block}.{kind}" for block in BLOCKS for kind in KINDS}
+    modules = {block: module for module, blocks in drawings.items() for block in blocks if pdk in PROCESSES}
+    drawn = tuple(block for block in BLOCKS if block in modules and block not in circuits)
+    places = {block: _drawing(modules[block], drawings[modules[block]], pdk, note) for block in drawn}
+    if analog:
+        places |= dict.fromkeys(circuits, analog)
     extra: dict[str, None] = {}
-    drawn = (ARRAY,) if pdk in PROCESSES and ARRAY not in circuits else ()
-    for block in drawn:
-        kept = _drawing(pdk)
-        own = {f"{block}.{kind}": kept / f"{block}.{kind}" for kind in KINDS}
-        check(own[f"{block}.lef"], found[f"{block}.lef"])
-        found |= own
-    for block in circuits:
-        own = {f"{block}.{kind}": analog / f"{block}.{kind}" for kind in KINDS} if analog else {}
-        extra |= dict.fromkeys(check(own[f"{block}.lef"], found[f"{block}.lef"]))
-        found |= own
-    empty = [block for block in BLOCKS if block not in (*circuits, *drawn)]
+    for block in BLOCKS:
+        if block in places:
+            own = {f"{block}.{kind}": places[block] / f"{block}.{kind}" for kind in KINDS}
+            extra |= dict.fromkeys(check(own[f"{block}.lef"], found[f"{block}.lef"]))
+            found |= own
+    empty = [block for block in BLOCKS if block not in places]
     return AnalogFiles(found, empty, tuple(extra), drawn)
 
 
-def _drawing(pdk: str) -> Path:
-    """Folder with LEF and GDS of the pixel array, drawn once."""
+def _drawing(module: str, blocks: Sequence[str], pdk: str, note: Callable[[str], None]) -> Path:
+    """Folder with LEF and GDS of ``blocks``, which ``module`` draws, and compares with their circuits, once."""
 
     def make(part: Path) -> None:
-        run([sys.executable, "-m", DRAWING, "--pdk", pdk, "--out", part], cwd=ROOT)
+        note(f"drawing {', '.join(blocks)}")
+        run([sys.executable, "-m", module, "--pdk", pdk, "--out", part], cwd=ROOT)
 
-    return cached(STORE / digest(code(DRAWING), pdk), make)
+    return cached(STORE / digest(code(module), pdk), make)
 
 
 def _circuits(folder: Path) -> list[str]:

@@ -77,7 +77,7 @@ def lay_out_sensor(
     """
     top_metal(options.pdk)  # a process without one is refused before anything runs
     folder = out / SENSOR
-    blocks = files(folder / "black_boxes", options.pdk, analog)
+    blocks = files(folder / "black_boxes", options.pdk, analog, note)
     core, summary = lay_out(chip, options, out, lambda text: note(f"{CHIP}: {text}"))
     if wrong := broken(summary):
         raise StepError(f"{SENSOR}: its block {CHIP} breaks a limit: {wrong[0]}")

@@ -23,12 +23,18 @@ class FieldPrior:
         Standard deviation of the radiance within, 0.001..100.
     length : float
         Distance at which its correlation falls to 1/e, 0.1..1000 px.
+    fineness : float
+        Exponent of the distance there, 0.1..2: the less, the more fine texture.
     noise : float
         Standard deviation of a sample, of white = 1: 1e-5..10.
     far, near : float
         Ends of the disparities in px per view step, -20..20.
     disparities : int
         How many are tried from far to near, 1..500.
+    between : int
+        More that the mixture tries between each two of these, 0..3.
+    slants : int
+        Slants of planes that the mixture tries at most, 0..32, beside planes that face the camera.
     margin : int
         Pixels around a block that its estimate uses, 0..16.
     trust : float
@@ -48,10 +54,13 @@ class FieldPrior:
     level: float = 0.5
     contrast: float = 0.25
     length: float = 30.0
+    fineness: float = 0.75
     noise: float = CLEAR
     far: float = -2.5
     near: float = 2.5
     disparities: int = 21
+    between: int = 1
+    slants: int = 8
     margin: int = 4
     trust: float = 0.25
     pool: float = 2.5
@@ -61,10 +70,13 @@ class FieldPrior:
         check_real("level", self.level, 0.01, 100)
         check_real("contrast", self.contrast, 1e-3, 100)
         check_real("length", self.length, 0.1, 1000)
+        check_real("fineness", self.fineness, 0.1, 2)
         check_real("noise", self.noise, 1e-5, 10)
         check_real("far", self.far, -20, 20)
         check_real("near", self.near, -20, 20)
         check_int("disparities", self.disparities, 1, 500)
+        check_int("between", self.between, 0, 3)
+        check_int("slants", self.slants, 0, 32)
         check_int("margin", self.margin, 0, 16)
         check_real("trust", self.trust, 1e-3, 1)
         check_real("pool", self.pool, 0.1, 100)
@@ -76,6 +88,16 @@ class FieldPrior:
     def grid(self) -> Floats:
         """The disparities that are tried, (disparities,), from far to near."""
         return np.linspace(self.far, self.near, self.disparities)
+
+    @property
+    def fine(self) -> Floats:
+        """Those that the mixture tries: `grid` and what is between."""
+        return np.linspace(self.far, self.near, (self.disparities - 1) * (self.between + 1) + 1)
+
+    @property
+    def fine_step(self) -> float:
+        """Between two of these; 1 where there is one alone."""
+        return (self.near - self.far) / (len(self.fine) - 1) if len(self.fine) > 1 else 1.0
 
     @property
     def width(self) -> float:
@@ -95,4 +117,4 @@ class FieldPrior:
         float64 array
             Of the common shape.
         """
-        return self.contrast**2 * np.exp(-np.hypot(dy, dx) / self.length) + self.level**2
+        return self.contrast**2 * np.exp(-((np.hypot(dy, dx) / self.length) ** self.fineness)) + self.level**2

@@ -92,14 +92,8 @@ class Ways(NamedTuple):
         shared, field = (
             (weights @ part.reshape(len(part), -1)).reshape(-1, *part.shape[1:]) for part in (self.shared, self.field)
         )
-        diagonal = np.arange(shared.shape[1])
-        shared[:, diagonal, diagonal] *= 1 + ROUNDING
-        each = field.reshape(len(field), -1, views**2, field.shape[2])
-        middle = (1 - parallax) * each.mean(2, keepdims=True)
-        each *= np.float32(parallax)
-        each += middle
-        for one, other in zip(shared, field, strict=True):
-            yield Solver(cho_factor(one, overwrite_a=True, check_finite=False), other)
+        for one, other in zip(shared, raised(field, parallax, views), strict=True):
+            yield Solver.of(one, other)
 
 
 class Solver(NamedTuple):
@@ -115,6 +109,26 @@ class Solver(NamedTuple):
 
     factor: tuple[Floats, bool]
     field: Floats
+
+    @classmethod
+    def of(cls, shared: Floats, field: Floats) -> "Solver":
+        """Make it from the covariances.
+
+        Parameters
+        ----------
+        shared : float32 (samples, samples)
+            Of the samples; written over.
+        field : float32 (pixels * views**2, samples)
+            Of the views with them.
+
+        Returns
+        -------
+        Solver
+            The estimator.
+        """
+        diagonal = np.arange(len(shared))
+        shared[diagonal, diagonal] *= 1 + ROUNDING
+        return cls(cho_factor(shared, overwrite_a=True, check_finite=False), field)
 
     @property
     def filters(self) -> Floats:
@@ -135,6 +149,30 @@ class Solver(NamedTuple):
             Their views.
         """
         return self.field @ cho_solve(self.factor, samples, check_finite=False)
+
+
+def raised(field: Floats, parallax: float, views: int) -> Floats:
+    """Raise what differs between the views, in place.
+
+    Parameters
+    ----------
+    field : float32 (..., pixels * views**2, samples)
+        Covariances of views with samples.
+    parallax : float
+        Factor.
+    views : int
+        Along the pupil's diameter.
+
+    Returns
+    -------
+    float32
+        ``field``.
+    """
+    each = field.reshape(*field.shape[:-2], -1, views**2, field.shape[-1])
+    middle = (1 - parallax) * each.mean(-2, keepdims=True)
+    each *= np.float32(parallax)
+    each += middle
+    return field
 
 
 def shares_of(chance: Floats, contrast: Floats) -> Floats:

@@ -1,6 +1,6 @@
 """Where blocks of pixels and the windows around them are: a window at the border is moved inside."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -27,6 +27,10 @@ class Group(NamedTuple):
     offset: int
     blocks: slice
     windows: slice
+
+
+# Samples of every group, (samples, windows)
+Windows = Sequence[tuple[Group, Group, npt.NDArray[np.floating]]]
 
 
 @dataclass(frozen=True)

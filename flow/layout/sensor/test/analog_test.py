@@ -13,6 +13,7 @@ from talbot.platforms.coriolis import coriolis_platform
 
 from . import small
 
+ARRAY = {"talbot.pixels.layout.write": ("pixel_array",)}
 pytest.importorskip("klayout.db", reason="klayout: not installed")
 
 
@@ -20,7 +21,7 @@ pytest.importorskip("klayout.db", reason="klayout: not installed")
 def black_boxes(tmp_path_factory):
     """Folder with the black boxes of the whole sensor."""
     folder = tmp_path_factory.mktemp("black_boxes")
-    found, names, extra, drawn = files(folder, "sky130")
+    found, names, extra, drawn = files(folder, "sky130", drawings=ARRAY)
     assert names == [block for block in BLOCKS if block not in drawn] and extra == () and drawn == ("pixel_array",)
     assert all((path.parent == folder) == (name.split(".")[0] in names) for name, path in found.items())
     return folder
@@ -44,12 +45,20 @@ def with_reference(text):
 
 def test_a_block_takes_the_place_of_its_black_box(black_boxes, tmp_path):
     theirs(black_boxes, tmp_path, "adc_lanes", with_reference)
-    found, names, extra, drawn = files(tmp_path / "out", "sky130", tmp_path)
+    found, names, extra, drawn = files(tmp_path / "out", "sky130", tmp_path, drawings=ARRAY)
     assert found["adc_lanes.lef"].parent == found["adc_lanes.gds"].parent == tmp_path
     assert names == ["row_driver", "column_amplifiers"] and extra == ("vref",) and drawn == ("pixel_array",)
     theirs(black_boxes, tmp_path, "pixel_array")
-    found, names, _, drawn = files(tmp_path / "out", "sky130", tmp_path)
+    found, names, _, drawn = files(tmp_path / "out", "sky130", tmp_path, drawings=ARRAY)
     assert found["pixel_array.gds"].parent == tmp_path and drawn == ()
+
+
+@pytest.mark.slow
+def test_every_block_that_is_drawn_is_on_the_die(tmp_path):
+    found, names, extra, drawn = files(tmp_path, "sky130")
+    assert names == ["column_amplifiers"] and drawn == ("pixel_array", "row_driver", "adc_lanes")
+    assert set(extra) == {"refp", "refn", "vcm", "vref", "amp_on"}
+    assert all((path.parent == tmp_path) == (name.split(".")[0] in names) for name, path in found.items())
 
 
 @pytest.mark.parametrize(
@@ -75,7 +84,7 @@ def test_missing_files(black_boxes, tmp_path):
 
     def refused(words):
         with pytest.raises(ParameterError, match=words):
-            files(tmp_path / "out", "sky130", folder)
+            files(tmp_path / "out", "sky130", folder, drawings=ARRAY)
 
     refused("mine: no such folder")
     folder.mkdir()

@@ -115,7 +115,7 @@ def test_where_two_planes_meet_the_mixture_is_no_worse_than_the_linear_estimate(
     truth = np.where(x // 4 % 2 == 0, 0.2, _plane(-1.5))
     pair = _seen(truth)
     mixture, linear = estimator.mixture(pair), estimator.linear(pair)
-    assert psnr_db(mixture.light_field, truth) > psnr_db(linear, truth) - 0.1
+    assert psnr_db(mixture.light_field, truth) > psnr_db(linear, truth) - 0.2
     assert np.median(mixture.spread) > 0.5
 
 

@@ -1,0 +1,191 @@
+"""Blocks of an array and the windows of samples around them."""
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+from numpy.lib.stride_tricks import sliding_window_view
+
+from talbot.models.parameters import TileParameters
+
+from .windows import Axis, Group, even
+
+Floats = npt.NDArray[np.floating]
+Ints = npt.NDArray[np.int64]
+Pair = tuple[Group, Group]  # of blocks, down and across
+Kind = tuple[int, int, int, int]
+
+
+@dataclass(frozen=True, eq=False)
+class Blocks:
+    """A tile's pixels are a block.
+
+    Attributes
+    ----------
+    y, x : Axis
+        Blocks down and across.
+    tile : TileParameters
+        Pixel types.
+    measured : bool (types,)
+        Types that are read.
+    """
+
+    y: Axis
+    x: Axis
+    tile: TileParameters
+    measured: npt.NDArray[np.bool_]
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Of the array."""
+        return self.y.length, self.x.length
+
+    @cached_property
+    def groups(self) -> list[Pair]:
+        """Blocks whose windows are alike."""
+        return [(down, across) for down in self.y.groups() for across in self.x.groups()]
+
+    def count(self, down: Group, across: Group) -> tuple[int, int]:
+        """Blocks of a group, down and across.
+
+        Parameters
+        ----------
+        down, across : Group
+            The group.
+
+        Returns
+        -------
+        tuple of int
+            How many.
+        """
+        return len(self.y.blocks[down.blocks]), len(self.x.blocks[across.blocks])
+
+    def diodes(self, down: Group, across: Group) -> tuple[Ints, Ints, Ints]:
+        """Row, column and number (2 type + 0 for sums, 1 for differences) of every sample of a window, sums first.
+
+        Parameters
+        ----------
+        down, across : Group
+            The group.
+
+        Returns
+        -------
+        tuple of int64 (samples,)
+            Those three.
+        """
+        high, wide = self.y.window, self.x.window
+        period = self.tile.type_map(self.tile.rows, self.tile.cols)
+        lines = (down.phase + np.arange(high)) % self.tile.rows
+        kinds = period[np.ix_(lines, (across.phase + np.arange(wide)) % self.tile.cols)]
+        diode = (2 * kinds + np.arange(2)[:, None, None]).ravel()
+        y, x = (np.tile(p.ravel(), 2) for p in np.indices((high, wide)))
+        used = self.measured[diode // 2]
+        return y[used], x[used], diode[used]
+
+    def own(self, down: Group, across: Group) -> tuple[Ints, Ints, int]:
+        """Which samples are differences of the block's pixels, these pixels' numbers in it, and how many it has.
+
+        Parameters
+        ----------
+        down, across : Group
+            The group.
+
+        Returns
+        -------
+        tuple of int64 (n,), int64 (n,), int
+            Those three.
+        """
+        y, x, diode = self.diodes(down, across)
+        y, x = y - down.offset, x - across.offset
+        inside = (diode % 2 == 1) & (y >= 0) & (y < self.y.block) & (x >= 0) & (x < self.x.block)
+        return np.flatnonzero(inside), (y * self.x.block + x)[inside], self.y.block * self.x.block
+
+    def samples(self, pair: Floats, down: Group, across: Group) -> Floats:
+        """Samples of all windows of a group.
+
+        Parameters
+        ----------
+        pair : array (2, rows, cols)
+            Sums and differences.
+        down, across : Group
+            The group.
+
+        Returns
+        -------
+        float32 (samples, windows)
+            The samples.
+        """
+        windows = sliding_window_view(pair, (self.y.window, self.x.window), (1, 2))
+        windows = windows[:, down.windows, across.windows].transpose(0, 3, 4, 1, 2)
+        out = np.ascontiguousarray(windows, np.float32).reshape(-1, windows.shape[3] * windows.shape[4])
+        if self.measured.all():
+            return out
+        y, x, diode = self.diodes(down, across)
+        return out[((diode % 2) * self.y.window + y) * self.x.window + x]
+
+    def map(self, values: Iterable[Floats]) -> Floats:
+        """Put the values of every group's blocks into place.
+
+        Parameters
+        ----------
+        values : iterable of array (pixels, windows) or (pixels,)
+            Of each group; the latter are the same in all of its blocks.
+
+        Returns
+        -------
+        float32 (rows, cols)
+            The values.
+        """
+        out = np.zeros((1, 1, *self.shape), np.float32)
+        for (down, across), part in zip(self.groups, values, strict=True):
+            shape = len(part), math.prod(self.count(down, across))
+            self.place(out, np.broadcast_to(part.reshape(len(part), -1), shape), down, across)
+        return out[0, 0]
+
+    def place(self, out: Floats, values: Floats, down: Group, across: Group) -> None:
+        """Write the blocks of a group into a light field.
+
+        Parameters
+        ----------
+        out : array (views, views, rows, cols)
+            The light field.
+        values : array (pixels * views**2, windows)
+            Of the blocks.
+        down, across : Group
+            The group.
+        """
+        first, count = self.y.blocks[down.blocks], self.x.blocks[across.blocks]
+        part = values.reshape(self.y.block, self.x.block, *out.shape[:2], len(first), len(count))
+        lines, columns = even(first), even(count)
+        for i, j in np.ndindex(self.y.block, self.x.block):
+            rows = slice(lines.start + i, lines.stop + i, lines.step)
+            out[:, :, rows, columns.start + j : columns.stop + j : columns.step] = part[i, j]
+
+    @cached_property
+    def beside(self) -> Floats:
+        """Every pixel from the middle of its block's window, float32 (2, rows, cols): down and across, px."""
+        own = np.indices((self.y.block, self.x.block), np.float32).reshape(2, -1)
+        parts = [[], []]
+        for group in self.groups:
+            for part, axis, side, pixels in zip(parts, (self.y, self.x), group, own, strict=True):
+                part.append(pixels + np.float32(side.offset - (axis.window - 1) / 2))
+        return np.stack([self.map(part) for part in parts])
+
+
+def kind(down: Group, across: Group) -> Kind:
+    """What windows are alike in.
+
+    Parameters
+    ----------
+    down, across : Group
+        A group.
+
+    Returns
+    -------
+    tuple of int
+        Where its windows begin in a tile, then where the blocks are in them.
+    """
+    return down.phase, across.phase, down.offset, across.offset

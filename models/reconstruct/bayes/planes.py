@@ -1,0 +1,195 @@
+"""Covariances of the samples of a window and of the views of its block, where both show a slanted plane of texture.
+
+The texture is on the pixels' grid of the middle view, interpolated between them, so that samples and views are matrices
+times texture: no covariance of theirs can be indefinite.
+"""
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from .prior import FieldPrior
+
+Floats = npt.NDArray[np.floating]
+Ints = npt.NDArray[np.int64]
+SHARP = -0.5  # of cubic convolution [Keys1981]
+REACH = 2  # px from a point to the farthest that it is interpolated from
+ROUNDED = 4  # px, to which the texture is enlarged: few sizes, whose roots are kept
+
+
+class Plane(NamedTuple):
+    """A plane of the scene, as the middle view sees it.
+
+    Attributes
+    ----------
+    disparity : float
+        At the middle of a window, px per view step.
+    slant : tuple of float
+        By how much it grows a pixel down and across.
+    """
+
+    disparity: float
+    slant: tuple[float, float] = (0.0, 0.0)
+
+    def seen(self, y: Floats, x: Floats, dv: Floats, du: Floats) -> tuple[Floats, Floats]:
+        """Places in the middle view of what other views see at pixels.
+
+        Parameters
+        ----------
+        y, x : float64 (n, 1)
+            Pixels, from the middle of the window.
+        dv, du : float64 (views,)
+            Steps from the middle view.
+
+        Returns
+        -------
+        tuple of float64 (n, views)
+            Down and across.
+        """
+        down, across = self.slant
+        grown = (self.disparity + down * y + across * x) / (1 - down * dv - across * du)
+        return y + dv * grown, x + du * grown
+
+
+@dataclass(frozen=True, eq=False)
+class Window:
+    """Samples of a window.
+
+    Attributes
+    ----------
+    size : tuple of int
+        Its rows and columns.
+    y, x : int64 (samples,)
+        Pixel of each, in it.
+    weights : float64 (samples, pupil, pupil)
+        Of each over the pupil.
+    block : tuple of int
+        First pixel of the block in it, down and across, then the block's pixels.
+    views : int
+        That are to be given back along the pupil's diameter.
+    """
+
+    size: tuple[int, int]
+    y: Ints
+    x: Ints
+    weights: Floats
+    block: tuple[int, int, int, int]
+    views: int
+
+    def covariances(
+        self, plane: Plane, prior: FieldPrior, views: bool = True
+    ) -> tuple[npt.NDArray[np.float64], Floats | None]:
+        """Of a plane.
+
+        Parameters
+        ----------
+        plane : Plane
+            What the window shows.
+        prior : FieldPrior
+            Its texture.
+        views : bool
+            Also those of the block's views.
+
+        Returns
+        -------
+        tuple of float64 (samples, samples), float32 (block's pixels * views**2, samples)
+            Of samples with samples, without noise, and of the views of the block with samples; None without them.
+        """
+        seen, wanted, own, first, size = self.texture(plane)
+        root = _root(size[0], size[1], prior)
+        down, across = (_taps(s - f, n) for s, f, n in zip(seen, first, size, strict=True))
+        weights = self.weights.reshape(len(own), 1, -1).astype(np.float32)
+        samples = np.matmul(weights * down.transpose(0, 2, 1)[own], across[own]).reshape(len(own), -1) @ root
+        exact = samples.astype(float)  # float32 would leave variances below 0 where noise is little
+        shared = exact @ exact.T
+        if not views:
+            return shared, None
+        down, across = (_taps(w - f, n) for w, f, n in zip(wanted, first, size, strict=True))
+        taps = (down[..., :, None] * across[..., None, :]).reshape(-1, size[0] * size[1])
+        return shared, taps @ (root @ samples.T)
+
+    def texture(self, plane: Plane) -> tuple[Floats, Floats, Ints, list[int], list[int]]:
+        """Find the part of the texture that a plane is seen in.
+
+        Parameters
+        ----------
+        plane : Plane
+            What the window shows.
+
+        Returns
+        -------
+        tuple
+            Where every ray of the window's pixels sees it, float64 (2, pixels, pupil**2), and every view of the
+            block's, (2, block's pixels, views**2); the pixel of each sample; first pixel down and across, and size.
+        """
+        top, left, high, wide = self.block
+        middle = (np.array(self.size)[:, None, None] - 1) / 2
+        places, own = np.unique(np.stack([self.y, self.x]), axis=1, return_inverse=True)
+        pupil = self.weights.shape[1]
+        # From the middle for the plane, and back to the pixels' own places
+        seen = plane.seen(*(places[..., None] - middle), *_steps(pupil, self.views / pupil)) + middle
+        block = np.indices((high, wide)).reshape(2, -1, 1) + np.array([top, left])[:, None, None]
+        wanted = plane.seen(*(block - middle), *_steps(self.views, 1.0)) + middle
+        first = [math.floor(min(s.min(), w.min())) - 1 for s, w in zip(seen, wanted, strict=True)]
+        last = [math.floor(max(s.max(), w.max())) + 3 for s, w in zip(seen, wanted, strict=True)]
+        size = [math.ceil((end - begin + 1) / ROUNDED) * ROUNDED for begin, end in zip(first, last, strict=True)]
+        return seen, wanted, own, first, size
+
+
+def texture_points(size: tuple[int, int], views: int, disparity: float, slant: tuple[float, float]) -> float:
+    """Bound the texture that any plane of a slant is seen in.
+
+    Parameters
+    ----------
+    size : tuple of int
+        Rows and columns of a window.
+    views : int
+        Along the pupil's diameter.
+    disparity : float
+        The largest in the window's middle, px per view step, 0 or more.
+    slant : tuple of float
+        Down and across.
+
+    Returns
+    -------
+    float
+        Pixels; infinite where a ray sees the plane from its edge.
+    """
+    steep = (abs(slant[0]) + abs(slant[1])) * views / 2
+    if steep >= 1:
+        return math.inf
+    grown = disparity + (abs(slant[0]) * size[0] + abs(slant[1]) * size[1]) / 2
+    more = views * grown / (1 - steep) + 5 + ROUNDED
+    return (size[0] + more) * (size[1] + more)
+
+
+def _steps(count: int, step: float) -> Floats:
+    """Steps of all views from the middle one, (2, count**2)."""
+    return (np.indices((count, count)).reshape(2, -1) - (count - 1) / 2) * step
+
+
+def _taps(places: Floats, count: int) -> npt.NDArray[np.float32]:
+    """Weights of ``count`` pixels in what is interpolated at ``places`` (n, views), (n, views, count): [Keys1981]."""
+    whole = np.floor(places).astype(int)
+    part = (places - whole).astype(np.float32)
+    out = np.zeros((places.size, count), np.float32)
+    rows, columns = np.arange(places.size), whole.ravel()
+    for tap in range(1 - REACH, REACH + 1):
+        away = np.abs(part - tap).ravel()
+        near = ((SHARP + 2) * away - (SHARP + 3)) * away**2 + 1
+        far = SHARP * (((away - 5) * away + 8) * away - 4)
+        out[rows, columns + tap] = near if tap in (0, 1) else far
+    return out.reshape(*places.shape, count)
+
+
+@lru_cache(maxsize=32)
+def _root(high: int, wide: int, prior: FieldPrior) -> npt.NDArray[np.float32]:
+    """A root of the covariance of the texture's pixels."""
+    y, x = np.indices((high, wide), float).reshape(2, -1)
+    covariance = prior.covariance(y[:, None] - y, x[:, None] - x)
+    covariance[np.diag_indices(len(y))] += 1e-9
+    return np.linalg.cholesky(covariance).astype(np.float32)
