@@ -22,8 +22,8 @@ from talbot.models.parameters.electrical import BOLTZMANN
 from talbot.pixels.circuits import column as columns
 from talbot.pixels.circuits.amplifier import BIAS
 from talbot.pixels.circuits.column import BIASES, CONTROLS, SUPPLIES, column
-from talbot.pixels.circuits.column_block import CLEAR, column_bias, lane_end, lane_line, vx_drive
-from talbot.pixels.circuits.column_sizes import BACK, EFFICIENCY, FRONT, LANE, ColumnSizes, ColumnSpec
+from talbot.pixels.circuits.column_block import CASCODES, CLEAR, cascode_lines, column_bias, lane_end, lane_line
+from talbot.pixels.circuits.column_sizes import EFFICIENCY, FRONT, LANE, ColumnSizes, ColumnSpec
 from talbot.pixels.circuits.netlist import Capacitor, Circuit, Instance, Transistor
 from talbot.pixels.circuits.row_driver import THICK
 from talbot.pixels.circuits.support import bias
@@ -39,14 +39,17 @@ WELLS = 0.0, 0.2, 0.4, 0.6, 0.8  # of a full well: a straight line through these
 BOTH = 0.8, 0.4  # of a full well, of the diodes whose mean is measured
 FULL = 0.98  # of a full well: what is lost there
 LIGHT = 1e-6  # s in which the wells get their charge, while they are at no line
-QUIET = {f"{name}{t}": name == "wn" for name in ("r", "wn", "asked") for t in range(1, columns.TAPS)}
+QUIET = {f"{name}{t}": high for name, high in (("w", False), ("f", False), ("fn", True), ("unasked", True)) for t in range(1, columns.TAPS)}
 DRIVEN = (
     "group",
     "k",
-    *CONTROLS,
-    "r0",
-    "wn0",
-    "asked0",
+    *(name for name in CONTROLS if name not in CASCODES),
+    "reads",
+    "readsn",
+    "w0",
+    "f0",
+    "fn0",
+    "unasked0",
     "turn",
     "turnn",
     "turnb",
@@ -161,7 +164,7 @@ def noise(spec: ColumnSpec, sizes: ColumnSizes, process: ModuleType, celsius: fl
             spec.line + spec.well,
             1.25 * sizes.gain * sizes.hold,
         ),
-        (1.0, 2, "back", BACK, sizes.back, sizes.hold, sizes.gain * sizes.hold, STRAY),
+        (1.0, 2, "back", LANE, sizes.back, sizes.hold, sizes.gain * sizes.hold, STRAY),
         (1.0, 1, "lane", LANE, sizes.lane, sizes.hold, 0.0, 2 * spec.wire + spec.input),
     )
     total, gates = 0.0, {name: process.operating(*kind, EFFICIENCY[name]).gate for _, _, name, kind, *_ in stages}
@@ -180,7 +183,7 @@ def bench(sizes: ColumnSizes, spec: ColumnSpec) -> Circuit:
         Instance("column", column(sizes), tuple(quiet.get(pin) or pin for pin in columns.PINS)),
         Instance("bias", bias(), ("ibias", "vdd_own", "vss")),
         Instance("lines", column_bias(sizes), ("ibias", *BIASES, "level", "vdd_bias", "vss")),
-        Instance("hold", vx_drive(sizes), ("vx", "reads", "readsn", "vbp", "vcp", "vcn", "vdd_hold", "vss")),
+        Instance("cascodes", cascode_lines(), cascode_lines().ports),
     ]
     devices, capacitors = list[Transistor](), list[Capacitor]()
     for d, reference in (("a", "reference"), ("b", "dark")):
@@ -195,7 +198,7 @@ def bench(sizes: ColumnSizes, spec: ColumnSpec) -> Circuit:
             Capacitor(f"input_{d}", f"far_{d}", "vss", spec.input),
         ]
     own = (*(name for name in DRIVEN if name not in ("fill", "x_a", "x_b")), "well_a", "well_b", "level", "start")
-    own += ("dark", "reference", "far_a", "far_b", "vdd_bias", "vdd_own", "vdd_hold", *SUPPLIES)
+    own += ("dark", "reference", "far_a", "far_b", "vdd_bias", "vdd_own", *SUPPLIES)
     return Circuit("bench", own, tuple(devices), tuple(capacitors), instances=tuple(parts))
 
 
@@ -217,7 +220,7 @@ def opened(
     for d in "ab":
         lines += [f"Sreset_{d} well_{d} level fill 0 filling", f"Glight_{d} well_{d} 0 x_{d} 0 {ampere:.9g}"]
     rails = {"start": start, "dark": spec.dark, "reference": spec.dark - image * spec.swing / 4}
-    rails |= {"vdd_bias": corner.supply, "vdd_own": corner.supply, "vdd_hold": corner.supply}
+    rails |= {"vdd_bias": corner.supply, "vdd_own": corner.supply}
     return simulator(lines, DRIVEN, ("far_a", "far_b", "level", *more), corner, rails, EXACT)
 
 
@@ -232,15 +235,20 @@ def sample(
     def pulse(start: float, stop: float, low: float = 0.0) -> Points:
         return [(0.0, low), (start, low), (start + EDGE, high - low), (stop, high - low), (stop + EDGE, low)]
 
+    def both(start: float, stop: float, again: float, off: float, low: float = 0.0) -> Points:
+        return [*pulse(start, stop, low), *pulse(again, off, low)[1:]]
+
     stimulus: dict[str, Points] = {
         "clear": pulse(begin, begin + CLEAR),
         "reads": pulse(begin, end + 2 * GAP),
         "readsn": pulse(begin, end + 2 * GAP, high),
         "ref": pulse(begin, middle),
-        "r0": pulse(begin, middle),
+        "w0": pulse(begin, end),
         "sig": pulse(middle + GAP, end + GAP),
         "sign": pulse(middle + GAP, end + GAP, high),
-        "wn0": pulse(middle + GAP, end, high),
+        "f0": both(middle + GAP, end + GAP, turn, turn + t + 2 * GAP),
+        "fn0": both(middle + GAP, end + GAP, turn, turn + t + 2 * GAP, high),
+        "idle": both(begin, end + 2 * GAP, turn, turn + t + 2 * GAP, high),
         "row": [(s, v / high * ROW) for s, v in pulse(middle + GAP, end + 10 * GAP)],
         "edge": [(0.0, 0.0 if image else high)],
         "edgen": [(0.0, high if image else 0.0)],
@@ -250,7 +258,7 @@ def sample(
         "turnbn": [(0.0, high)] if image else pulse(turn, turn + t + GAP, high),
         "group": pulse(turn + GAP, turn + t + GAP),
         "k": [(0.0, high)],
-        "asked0": [(0.0, high)],
+        "unasked0": [(0.0, 0.0)],
         "fill": [(0.0, high), (begin, high), (begin + EDGE, 0.0)],
     }
     for name, volts in (("x_a", a), ("x_b", b)):
@@ -266,7 +274,6 @@ def turn_of(spec: ColumnSpec) -> float:
 def _energy(wave: Wave, spec: ColumnSpec, corner: Corner) -> float:
     """J of a pixel: of the row's read, of its turn, and a pixel's time of the block's bias."""
     read = wave.charge("vdd", REST * spec.cycle, turn_of(spec) - 0.5 * spec.cycle)
-    read += wave.charge("vdd_hold", REST * spec.cycle, turn_of(spec) - 0.5 * spec.cycle) / spec.columns
     turn = wave.charge("vdd", turn_of(spec) - 0.5 * spec.cycle, turn_of(spec) + 1.5 * spec.cycle)
     steady = wave.charge("vdd_bias", 0.1 * spec.cycle, 0.9 * spec.cycle) / (0.8 * spec.cycle) + BIAS
     return (read + turn + steady * spec.pixel) * corner.supply

@@ -14,7 +14,7 @@ from talbot.flow.analog.amplifier import COLUMNS, EXACT
 from talbot.flow.analog.column import GAP, ROW
 from talbot.models.parameters import ELEMENTARY_CHARGE, AmpTiming
 from talbot.pixels.circuits.column import BIASES, PINS, TAPS, column
-from talbot.pixels.circuits.column_block import clear_pulse, column_bias, lane_end, lane_line, vx_drive
+from talbot.pixels.circuits.column_block import cascode_lines, clear_pulse, column_bias, lane_end, lane_line
 from talbot.pixels.circuits.column_sizes import FULL, ColumnSizes, ColumnSpec, size
 from talbot.pixels.circuits.netlist import Capacitor, Circuit, Transistor
 from talbot.pixels.circuits.row_driver import THICK
@@ -34,7 +34,7 @@ RESTING = (*BIASES, "level", "ibias_columns", *(f"xcolumn_source.{name}" for nam
 def circuits(spec: ColumnSpec, sizes: ColumnSizes) -> tuple[Circuit, ...]:
     """All that the lines of a deck call."""
     parts = column(sizes), column_bias(sizes), clear_pulse(sizes), lane_end(sizes), lane_line(sizes, spec), bias()
-    return (*parts, vx_drive(sizes), pixel(spec))
+    return (*parts, cascode_lines(), pixel(spec))
 
 
 def pixel(spec: ColumnSpec) -> Circuit:
@@ -85,10 +85,10 @@ def lines(
         *([".ic " + " ".join(f"v({name})={volts:.6g}" for name, volts in resting.items())] if rest else []),
         "Xcolumn_source ibias_columns vdd 0 bias",
         f"Xcolumn_bias ibias_columns {' '.join(BIASES)} level vdd 0 column_bias",
+        f"Xcascodes vcn reads readsn {own['edge']} {own['edgen']} cn vcnb 0 cascode_lines",
         "Xclear row_ref row_refn clear vbp vdd 0 clear_pulse",
     ]
     for lane in sorted(set(lanes.values())):
-        deck.append(f"Xhold{lane} vx reads readsn vbp vcp vcn vdd 0 vx_drive")
         for d, reference in (("a", "reference"), ("b", "dark")):
             turn = f"turn{lane} turnn{lane}" if d == "a" or edge else "0 vdd"
             deck.append(f"Xend{d}{lane} col{d}{lane} {reference} {turn} vbl vcp vdd 0 lane_end")
@@ -125,13 +125,15 @@ def drive(source: Drive, columns: Sequence[int], lanes: Sequence[int], first: in
     source("sign", 0.0, first + 1, low=high, rise=GAP, fall=GAP)
     source("reads", high, more, fall=2 * GAP)
     source("readsn", 0.0, more, low=high, fall=2 * GAP)
+    source("idle", 0.0, more + 1, low=high, fall=3 * AFTER)
     for t in range(TAPS):
-        source(f"r{t}", high, more + 1 + t)
-        source(f"wn{t}", 0.0, more + 1 + TAPS + t, low=high, rise=GAP)
-        source(f"asked{t}", high, more + 1 + 2 * TAPS + t)
+        source(f"w{t}", high, more + 2 + t)
+        source(f"f{t}", high, more + 2 + TAPS + t, rise=GAP, fall=3 * AFTER)
+        source(f"fn{t}", 0.0, more + 2 + TAPS + t, low=high, rise=GAP, fall=3 * AFTER)
+        source(f"unasked{t}", 0.0, more + 2 + 2 * TAPS + t, low=high)
         source(f"light{t}", 1.0, -1)
     for c in columns:
-        source(f"turn_column{c}", high, more + 1 + 3 * TAPS + c, rise=COLUMNS, fall=2 * AFTER)
+        source(f"turn_column{c}", high, more + 2 + 3 * TAPS + c, rise=COLUMNS, fall=2 * AFTER)
     for lane in lanes:
         source(f"turn{lane}", high, lane, rise=COLUMNS / 2, fall=2 * AFTER)
         source(f"turnn{lane}", 0.0, lane, low=high, rise=COLUMNS / 2, fall=2 * AFTER)
@@ -148,8 +150,9 @@ def trimmed(spec: ColumnSpec, edge: bool, cycle: float, high: float) -> tuple[fl
     turn = ends + 2
     halves = range(read, read + spec.settle), range(read + spec.settle, ends)
     more = 3 + TAPS
-    on = {0: range(1, reset + 1), 1: halves[1], 2: halves[0], more: range(read, ends), more + 1: halves[0]}
-    on |= {more + 1 + TAPS: halves[1], more + 1 + 2 * TAPS: range(turn + 2), more + 1 + 3 * TAPS: [turn]}
+    on = {0: range(1, reset + 1), 1: halves[1], 2: halves[0], more: range(read, ends)}
+    on |= {more + 1: [*range(read, ends), turn], more + 2: range(read, ends), more + 2 + TAPS: [*halves[1], turn]}
+    on |= {more + 2 + 2 * TAPS: range(turn + 2), more + 2 + 3 * TAPS: [turn]}
     lane_bit = 100  # the lane's own, none of the row's
     on[lane_bit] = [turn]
     waves: dict[str, list[tuple[float, float]]] = {}

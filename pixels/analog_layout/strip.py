@@ -53,7 +53,8 @@ class Plan:
     n, p: rows. left, right: its ends, um. axis: of its symmetry, or None. split, twisted: pairs of nets that are mirror
     images, the western one first. through: x up to which the
     tracks of nets that meet other strips go, too. rails: nets without tracks, the lower rail's first. quiet: nets whose
-    tracks are together, away from the others. least_um: of its height.
+    tracks are together, away from the others. least_um: of its height. fixed: rows of nets that go on in other strips at
+    the same height; least_rows: of tracks, that there always are.
     """
 
     n: tuple[Placed, ...]
@@ -67,6 +68,8 @@ class Plan:
     rails: tuple[str, ...] = ("vss", "vdd")
     quiet: frozenset[str] = frozenset()
     least_um: float = 0.0
+    fixed: Mapping[str, int] = field(default_factory=dict)
+    least_rows: int = 0
 
     @property
     def height_um(self) -> float:
@@ -105,8 +108,12 @@ class Plan:
             for nets in (pair, pair[::-1])[: 1 if pair in self.split else 2]:
                 rows.append([(net, *end) for net, end in zip(nets, ends, strict=True)])
         paired = {net for pair in (*self.split, *self.twisted) for net in pair}
+        rows += [[] for _ in range(self.least_rows - len(rows))]
+        for net in self.fixed.keys() & spans.keys():
+            rows[self.fixed[net]].append((net, *spans[net]))
+        paired |= self.fixed.keys()
         for kind in (spans.keys() & self.quiet - paired, spans.keys() - self.quiet - paired):
-            fixed = len(rows)
+            fixed = 0 if self.least_rows else len(rows)
             for net in sorted(kind, key=lambda net: (spans[net][0] - spans[net][1], net)):
                 a, b = spans[net]
                 fitting = (row for row in rows[fixed:] if all(b + 1 < c or d + 1 < a for _, c, d in row))

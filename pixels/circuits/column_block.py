@@ -4,16 +4,16 @@ from itertools import pairwise
 
 from .amplifier import BIAS
 from .amplifier import UNIT as CELL
-from .column import BIASES, CONTROLS, OF_TAPS, POWER, SUPPLIES, SWITCH, SWITCH_P, TAPS, n, p
-from .column_sizes import CASCODE, CASCODE_P, FRONT, LANE, LANE_TOP, PARTS, TOP, ColumnSizes, ColumnSpec, Stage
+from .column import BIASES, CONTROLS, OF_TAPS, SUPPLIES, SWITCH, SWITCH_P, TAPS, n, p
+from .column_sizes import CASCODE, CASCODE_P, FRONT, LANE_TOP, PARTS, TOP, ColumnSizes, ColumnSpec
 from .gates import LENGTH, inverter, nand, nor
 from .netlist import Capacitor, Circuit, Instance, Resistor, Transistor
 from .row_driver import nand_of
 
+POWER = ("p", LENGTH)
 BRANCH = 1.25e-6  # A, of each branch of the bias
 DECOUPLING = 10e-12  # F at each of its lines for a lane
 STACK, STACK_P = (0.42, ("n_lvt", 5.0)), (0.42, ("p", 2.0))  # um, of the diodes that make the cascodes' gates
-STRONG = 4  # replicas that hold vx while a row is read, of each lane
 LEG = 0.8  # um, of a branch of the bias
 SECTIONS = 12  # of a lane's line
 GROUPS, PLACES = 8, 6  # lines of a group, of a place in the tile
@@ -22,14 +22,15 @@ LATE = 4  # inverters by which what must end last does
 BANK_INPUTS = ("ref_ctl", "read", "tap0", "tap1", "mode0", "mode1", "hold")
 BANK_INPUTS += tuple(f"{name}{bit}" for name, bits in (("group", 3), ("k", 3), ("sub", 2)) for bit in range(bits))
 LINES = tuple(f"group_{g}" for g in range(GROUPS)) + tuple(f"k_{k}" for k in range(PLACES))
-BANK_OUTPUTS = (*CONTROLS, *OF_TAPS, *LINES, "turn", "turnn", "turnb", "turnbn")
+CASCODES = "cn", "vcn", "vcnb"  # lines that are not the bank's
+BANK_OUTPUTS = (*(name for name in CONTROLS if name not in CASCODES), "reads", "readsn", *OF_TAPS, *LINES)
+BANK_OUTPUTS += ("turn", "turnn", "turnb", "turnbn")
 
 
 def column_bias(sizes: ColumnSizes) -> Circuit:
     """Lines of the bias to all columns and lanes, and the level to which wells are reset.
 
-    Pins ibias BIASES level vdd vss. ibias: takes BIAS. vx and level are of replicas: the input of a column in its
-    turn, and of a charge amplifier, with the current through them.
+    Pins ibias BIASES level vdd vss. ibias: takes BIAS. level is of a replica of a charge amplifier.
     """
     front, lane = sizes.front, sizes.lane
 
@@ -41,26 +42,19 @@ def column_bias(sizes: ColumnSizes) -> Circuit:
             p(f"{name}_cascode", f"{node} vcp {name}_high", round(front.cascode_p * times, 2), CASCODE_P),
         )
 
-    def replica(name: str, kind: tuple[str, float], stage: Stage, parts: int) -> tuple[Transistor, ...]:
-        """A part of a stage whose input is its output."""
-        return (
-            *feed(name, name, stage.current / parts),
-            n(f"{name}_in", f"{name}_low {name} vss", stage.input / parts, kind),
-            n(f"{name}_under", f"{name} vcn {name}_low", max(0.42, round(stage.cascode / parts, 2)), CASCODE),
-        )
-
     devices = [
         *(n(f"one{k}", "ibias ibias vss", LEG, FRONT) for k in range(round(BIAS / BRANCH))),
         *(n(f"leg_{name}", f"{name} ibias vss", LEG, FRONT) for name in ("vbp", "vcp")),
         n("leg_vbl", "vbl ibias vss", round(LEG * lane.current / PARTS / BRANCH, 2), FRONT),
         *feed("vbp", "vbp"),
-        p("vbl_top", "vbl_high vbl vdd", lane.top / PARTS, LANE_TOP),
-        p("vbl_cascode", "vbl vcp vbl_high", lane.cascode_p / PARTS, CASCODE_P),
+        p("vbl_top", "vbl_high vbl vdd", round(lane.top / PARTS, 3), LANE_TOP),
+        p("vbl_cascode", "vbl vcp vbl_high", round(lane.cascode_p / PARTS, 3), CASCODE_P),
         p("vcp", "vcp vcp vdd", *STACK_P),
         *feed("vcn", "vcn"),
         n("vcn", "vcn vcn vss", *STACK),
-        *replica("vx", LANE, lane, PARTS),
-        *replica("level", FRONT, front, 1),
+        *feed("level", "level", front.current),
+        n("level_in", "level_low level vss", front.input, FRONT),
+        n("level_under", "level vcn level_low", front.cascode, CASCODE),
     ]
     lines = tuple(
         Capacitor(
@@ -71,24 +65,22 @@ def column_bias(sizes: ColumnSizes) -> Circuit:
     return Circuit("column_bias", ("ibias", *BIASES, "level", *SUPPLIES), tuple(devices), lines)
 
 
-def vx_drive(sizes: ColumnSizes) -> Circuit:
-    """What holds vx while a row is read: each of a lane's columns has its capacitors go there. A lane has one.
+def cascode_lines() -> Circuit:
+    """The gates of the columns' cascodes: cn while a row is read, vcnb for what drives the second diode's lane.
 
-    Pins vx reads readsn vbp vcp vcn vdd vss. It is STRONG of the bias's own replica.
+    Pins vcn reads readsn edge edgen cn vcnb vss.
     """
-    lane, front = sizes.lane, sizes.front
-    times = STRONG * lane.current / PARTS / front.current
     return Circuit(
-        "vx_drive",
-        ("vx", "reads", "readsn", "vbp", "vcp", "vcn", *SUPPLIES),
-        (
-            p("power", "on readsn vdd", 4.0, POWER),
-            p("top", "above vbp on", round(front.top * times, 2), TOP),
-            p("cascode_p", "vx vcp above", round(front.cascode_p * times, 2), CASCODE_P),
-            *(n(f"in{k}", "below vx vss", lane.input / PARTS, LANE) for k in range(STRONG)),
-            n("under", "vx cn below", round(STRONG * lane.cascode / PARTS, 2), CASCODE),
-            n("go", "vcn reads cn", 0.84, SWITCH),
-            n("stop", "cn readsn vss", 0.42, SWITCH),
+        "cascode_lines",
+        ("vcn", "reads", "readsn", "edge", "edgen", *(name for name in CASCODES if name != "vcn"), "vss"),
+        tuple(
+            n(name, nodes, 2.6, SWITCH)
+            for name, nodes in {
+                "read": "vcn reads cn",
+                "unread": "cn readsn vss",
+                "second": "vcn edge vcnb",
+                "none": "vcnb edgen vss",
+            }.items()
         ),
     )
 
@@ -104,8 +96,8 @@ def lane_end(sizes: ColumnSizes) -> Circuit:
         ("lane", "reference", "turn", "turnn", "vbl", "vcp", *SUPPLIES),
         (
             p("on", "high turnn vdd", 10.0, POWER),
-            *(p(f"top{k}", "above vbl high", one.top / PARTS, LANE_TOP) for k in range(PARTS)),
-            *(p(f"cascode_p{k}", "lane vcp above", one.cascode_p / PARTS, CASCODE_P) for k in range(PARTS)),
+            p("top", "above vbl high", one.top, LANE_TOP),
+            p("cascode_p", "lane vcp above", one.cascode_p, CASCODE_P),
             n("rest_n", "lane turnn reference", 6.0, SWITCH),
             p("rest_p", "lane turn reference", 12.0, SWITCH_P),
         ),
@@ -156,7 +148,8 @@ def bank(sizes: ColumnSizes) -> Circuit:
     """What drives the lines that cross all columns. Pins BANK_INPUTS, BANK_OUTPUTS, vbp vdd vss.
 
     A group's line is high in a turn alone. `clear` ends by itself: a current charges a capacitor from the row's start
-    on. The holder's reset ends before the signal half begins, and its capacitors part from x before all else.
+    on. The holder's reset ends before the signal half begins, and its capacitors part from x before all else. While a
+    row is read or a lane has its turn no x is tied.
     """
     parts, count = list[Instance](), 0
 
@@ -194,10 +187,15 @@ def bank(sizes: ColumnSizes) -> Circuit:
     parts.append(Instance("clear", clear_pulse(sizes), ("ref", "refn", "clear", "vbp", *SUPPLIES)))
     gate(inverter(6), gate(inverter(6), gate(nor(), "mode0", "mode1", "first"), "edgen"), "edge")
     decoded("tap", TAPS, 2, "now")
-    for t in range(TAPS):
-        gate(inverter(6), gate(nand(), "ref", f"now{t}", f"r{t}n"), f"r{t}")
-        gate(nand(6), "signal", f"now{t}", f"wn{t}")
+    longer("hold", "turned")
+    gate(inverter(6), gate(inverter(), gate(nor(), "reads", "turned", "alone"), "idlen"), "idle")
     decoded("sub", TAPS, 2, "asked")
+    for t in range(TAPS):
+        gate(inverter(6), gate(nand(), "read", f"now{t}", f"w{t}n"), f"w{t}")
+        gate(inverter(6), f"asked{t}", f"unasked{t}")
+        ends = gate(nand(), "sig", f"now{t}", f"f{t}r"), gate(nand(), "turned", f"asked{t}", f"f{t}s")
+        gate(inverter(6), gate(inverter(2), gate(nand(), *ends, f"f{t}_0"), f"f{t}_1"), f"f{t}")
+        gate(inverter(6), gate(inverter(2), f"f{t}_1", f"f{t}_2"), f"fn{t}")
     gate(inverter(6), gate(inverter(6), "hold", "turnn"), "turn")
     gate(inverter(6), gate(nand(6), "hold", "edge", "turnbn"), "turnb")
     decoded("group", GROUPS, 3, "group_", ("turn",))

@@ -1,6 +1,6 @@
 """What a column must do, from the sensor, the chip's timing and Table 6.1, and its sizes: see column.py."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import ceil, log
 from types import ModuleType
 from typing import Self
@@ -19,17 +19,19 @@ from .amplifier import GAIN, UNITS
 from .amplifier import UNIT as CELL
 from .specification import LaneSpec, one_digit
 
-# Roles and lengths (um): inputs of both stages and of what drives the lane, cascodes, sources of current, the lane's
-FRONT, BACK, LANE, CASCODE = ("n", 1.0), ("n", 1.0), ("n", 0.5), ("n_lvt", 0.5)
+# Roles and lengths (um): input of the charge amplifier; of the holder, which drives the lane; cascodes, sources of current
+FRONT, LANE, CASCODE = ("n", 1.0), ("n", 0.5), ("n_lvt", 0.5)
 TOP, CASCODE_P, LANE_TOP = ("p", 2.0), ("p", 0.5), ("p", 0.5)
-EFFICIENCY = {"front": 21.0, "back": 17.0, "lane": 17.0, "cascode": 15.0, "top": 9.0, "cascode_p": 15.0, "lane_p": 11.0}
-PARTS = 16  # of the lane's transistors: a replica is one of them
+BACK_TOP = TOP
+EFFICIENCY = {"front": 21.0, "back": 22.0, "lane": 17.0, "cascode": 15.0, "top": 9.0, "cascode_p": 15.0, "lane_p": 11.0}
+PARTS = 16  # of what drives the lane: a replica is one of them
 FULL = 127.5  # LSB of a diode whose well is full
 TIMES = 2.0  # Cin over Chold: the holder's gain
 EXPOSED = 0.006  # of a charge that the signal half may leave at the typical corner
 ACROSS = 0.14e-15  # F, of transistors across Cf
 JUNCTIONS = 9e-15  # F, of a column that is not selected, at its lane's line
 LEFT = 0.3  # of a limit, at the typical corner: others are slower
+UNLIKE = 0.6  # of the offset's limit that is left to the charge amplifiers' inputs
 
 
 @dataclass(frozen=True)
@@ -184,9 +186,8 @@ class Stage:
 class ColumnSizes:
     """Of a diode's part of a column, and of the block's bias.
 
-    front: the charge amplifier; back: the holder while a row is read; lane: while its column is selected, its input is
-    the holder's, its source of current the lane's. bias: a branch for each. feedback: Cf; hold: Chold, F. gain: Cin
-    over Chold.
+    front: the charge amplifier; back: the holder while a row is read; lane: while its column is selected, with the
+    lane's source of current. Both have one input. feedback: Cf; hold: Chold, F. gain: Cin over Chold.
     """
 
     front: Stage
@@ -202,7 +203,8 @@ class ColumnSizes:
         check_real("gain", self.gain, 0.1, 16)
 
 
-HOLD = 60 * CELL  # F: kT/C and the switches' charge against what the charge amplifier has to drive
+HOLD = 0.14e-12  # F: a square of 8.2 um of MIM, as the pitch has room for
+FINGER = 2.6  # um, of a transistor drawn on the pitch of a column
 SLACK = 20e-9  # s of the signal half until the row's line is up
 WAKE = 8e-9  # s of a column's turn until its transistors conduct
 
@@ -211,17 +213,19 @@ def size(spec: ColumnSpec, process: ModuleType, hold: float = HOLD) -> ColumnSiz
     """Sizes for ``spec`` from the process's tables of gm/Id.
 
     The charge amplifier has the signal half to come within EXPOSED of the charge, the holder is five times as
-    fast, and a selected one has its lane settled to LEFT of the settling's limit when it must be ready. Cf is the
-    well's size less what finite gain and time take: what is left of a charge's slope is the corners'.
+    fast, and a selected one has its lane settled to LEFT of the settling's limit when it must be ready. What the charge
+    amplifiers' thresholds differ by is the wells' level against their lines': by it their inputs are UNLIKE of the
+    offset's limit. Cf is the well's size less what finite gain and time take.
     """
     front, drive = process.operating(*FRONT, EFFICIENCY["front"]), process.operating(*LANE, EFFICIENCY["lane"])
     cin, half = TIMES * hold, spec.read * spec.cycle - SLACK
     constants = log(1 / EXPOSED)
-    gm, beta, width = 0.0, 0.0, 10.0
+    unlike = process.AREA[FRONT[0]] * 1e-3 * spec.swing / spec.fall * 2**0.5 / (UNLIKE * spec.offset * spec.lsb)
+    gm, beta, width, wide = 0.0, 0.0, 10.0, unlike**2 / FRONT[1]
     for _ in range(20):
         beta = spec.well / (spec.line + 2 * spec.well + width * front.gate)
         gm = (1.25 * cin + spec.well) / beta * constants / half
-        width = gm / EFFICIENCY["front"] / front.density
+        width = max(gm / EFFICIENCY["front"] / front.density, wide)
     lane_gm, gate = 0.0, 0.0
     load = 2 * spec.wire + spec.input + spec.columns * JUNCTIONS
     for _ in range(20):
@@ -231,15 +235,12 @@ def size(spec: ColumnSpec, process: ModuleType, hold: float = HOLD) -> ColumnSiz
     back_beta = hold / (hold + cin + gate)
     back_gm = 5 * constants / half * hold / back_beta
 
-    def stage(kind: tuple[str, float], name: str, top: tuple[str, float], gm: float, parts: int = 1) -> Stage:
+    def stage(kind: tuple[str, float], name: str, top: tuple[str, float], gm: float, least: float = 0.0) -> Stage:
         amperes = gm / EFFICIENCY[name]
         above = "lane_p" if name == "lane" else "cascode_p"
         roles = (kind, name), (CASCODE, "cascode"), (top, "top"), (CASCODE_P, above)
         widths = [amperes / process.operating(*one, EFFICIENCY[role]).density for one, role in roles]
-        return Stage(
-            amperes,
-            *(max(0.42 * n, n * round(w / n, 2)) for w, n in zip(widths, (parts, 1, parts, parts), strict=True)),
-        )
+        return Stage(amperes, *(drawn(max(w, floor)) for w, floor in zip(widths, (least, 0, 0, 0), strict=True)))
 
     def gain(kind: tuple[str, float], name: str, top: tuple[str, float]) -> float:
         below = process.operating(*kind, EFFICIENCY[name]).gain
@@ -249,13 +250,20 @@ def size(spec: ColumnSpec, process: ModuleType, hold: float = HOLD) -> ColumnSiz
         return 1 / (1 / below + EFFICIENCY["top"] / EFFICIENCY[name] / above)
 
     lost = EXPOSED + 1 / (beta * gain(FRONT, "front", TOP))
-    lost += 1 / (back_beta * gain(BACK, "back", TOP))
+    lost += 1 / (back_beta * gain(LANE, "back", BACK_TOP))
     lost += (hold + gate) / hold / gain(LANE, "lane", LANE_TOP)
+    lane = stage(LANE, "lane", LANE_TOP, lane_gm)
     return ColumnSizes(
-        stage(FRONT, "front", TOP, gm),
-        stage(BACK, "back", TOP, back_gm),
-        stage(LANE, "lane", LANE_TOP, lane_gm, PARTS),
+        stage(FRONT, "front", TOP, gm, wide),
+        replace(stage(LANE, "back", BACK_TOP, back_gm), input=lane.input),
+        lane,
         spec.well * TIMES * spec.fall / spec.swing * (1 - lost) - ACROSS,
         hold,
         TIMES,
     )
+
+
+def drawn(width: float) -> float:
+    """The nearest width (um) of equal fingers: one below 2 um, else an even number of at most FINGER."""
+    fingers = 1 if width < 2 else 2 * ceil(width / FINGER / 2)
+    return round(max(0.42, round(width / fingers / 0.005) * 0.005) * fingers, 3)

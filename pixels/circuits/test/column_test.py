@@ -71,6 +71,14 @@ def test_currents_follow_from_time_and_load():
     assert 1.3 < longer.lane.current / SIZES.lane.current < 2 and longer.front == SIZES.front
 
 
+def test_inputs_of_the_charge_amplifiers_are_as_alike_as_the_offset_asks():
+    """What their thresholds differ by is doubled, at both diodes: three fifths of the limit."""
+    millivolts = process.AREA["n"] / (SIZES.front.input * 1.0) ** 0.5
+    unlike = 1e-3 * millivolts * SPEC.swing / SPEC.fall * 2**0.5 / SPEC.lsb
+    assert unlike == pytest.approx(0.6 * SPEC.offset, rel=0.01)
+    assert size(replace(SPEC, offset=2.0), process).front.input == pytest.approx(4 * SIZES.front.input, rel=0.01)
+
+
 def test_the_feedback_is_the_well_less_what_is_lost():
     assert 0.97 < SIZES.feedback / (2 * SPEC.fall / SPEC.swing * SPEC.well) < 1
 
@@ -80,13 +88,13 @@ def test_all_are_whole_and_what_is_broken_is_named():
         COLUMN,
         column_bias(SIZES),
         block.lane_end(SIZES),
-        block.vx_drive(SIZES),
+        block.cascode_lines(),
         block.lane_line(SIZES, SPEC),
         bank(SIZES),
     ):
         one.check(process)
     with pytest.raises(ParameterError, match="circuit tap: net inner at device hold: must have two ends"):
-        COLUMN.replaced(columns.tap(SIZES).without("join").without("from_vx")).check(process)
+        COLUMN.replaced(columns.tap(SIZES).without("join").without("write")).check(process)
     with pytest.raises(ParameterError, match="circuit column: net go_a at device back_a: must have two ends"):
         COLUMN.without("go_a").without("stop_a").check(process)
 
@@ -125,34 +133,36 @@ def test_a_turn_selects_one_column(number):
 
 def test_the_phases_of_a_row():
     quiet = lines()
-    assert not any(quiet[name] for name in ("clear", "reads", "ref", "sig")) and quiet["readsn"] and quiet["wn0"]
+    assert not any(quiet[name] for name in ("clear", "reads", "ref", "sig", "w0", "f0"))
+    assert all(quiet[name] for name in ("readsn", "fn0", "idle"))
     first = lines(read=True, ref_ctl=True, tap1=True)
-    assert first["clear"] and first["ref"] and first["r2"] and not first["r0"] and not first["sig"]
+    assert first["clear"] and first["ref"] and first["w2"] and not first["w0"] and not first["sig"]
+    assert first["fn2"] and not first["f2"] and not first["idle"]  # the far end is at start
     assert not lines(read=True, ref_ctl=True, ramp=True)["clear"]
     second = lines(read=True, tap1=True)
-    assert second["sig"] and not second["ref"] and not second["wn2"] and second["wn0"] and not second["clear"]
-    assert first["reads"] and second["reads"] and not second["sign"]
+    assert second["sig"] and second["w2"] and second["f2"] and not second["fn2"] and not second["f0"]
+    assert not second["ref"] and not second["clear"] and not second["sign"]
+    assert first["reads"] and second["reads"]
 
 
 def test_modes_and_sub_samples():
     assert lines()["edge"] and not lines(mode0=True)["edge"] and lines(mode0=True, mode1=True)["edgen"]
     for sub in range(TAPS):
         levels = lines(sub0=bool(sub & 1), sub1=bool(sub & 2))
-        assert [levels[f"asked{t}"] for t in range(TAPS)] == [t == sub for t in range(TAPS)]
+        assert [levels[f"unasked{t}"] for t in range(TAPS)] == [t != sub for t in range(TAPS)]
+        assert not any(levels[f"f{t}"] for t in range(TAPS))
+        levels = lines(hold=True, sub0=bool(sub & 1), sub1=bool(sub & 2))
+        assert [levels[f"f{t}"] for t in range(TAPS)] == [t == sub for t in range(TAPS)] and not levels["idle"]
 
 
 def selected(**driven):
-    names = ("group", "k", "reads", "edge", *columns.OF_TAPS)
-    return settled(COLUMN, dict.fromkeys(names, False) | {f"wn{t}": True for t in range(TAPS)} | driven)
+    unasked = {f"unasked{t}": True for t in range(TAPS)}
+    return settled(COLUMN, {"group": False, "k": False} | unasked | driven)
 
 
 def test_a_column_in_its_turn():
-    """Its tap is joined, its input no longer tied; of a sum the second diode's stays off."""
-    turn = selected(group=True, k=True, edge=True, asked2=True)
-    assert turn["sel"] and turn["selb"] and [turn[f"s{t}"] for t in range(TAPS)] == [False, False, True, False]
-    assert not turn["idle"]
-    assert not selected(group=True, k=True, asked0=True)["selb"]
-    other = selected(group=True, asked0=True)
-    assert not other["sel"] and not other["s0"] and other["idle"]
-    read = selected(reads=True, wn1=False)
-    assert read["s1"] and not read["s0"] and not read["idle"]
+    """Its tap that is asked for is joined; one that is not selected has none, and its drive is off."""
+    turn = selected(group=True, k=True, unasked2=False)
+    assert turn["sel"] and not turn["seln"] and [turn[f"s{t}"] for t in range(TAPS)] == [False, False, True, False]
+    for other in (selected(group=True, unasked0=False), selected(k=True, unasked0=False)):
+        assert not other["sel"] and not other["s0"]
