@@ -44,7 +44,6 @@ DRIVEN = (
     "group",
     "k",
     *(name for name in CONTROLS if name not in CASCODES),
-    "reads",
     "readsn",
     "w0",
     "f0",

@@ -12,12 +12,12 @@ each at its track's height in the strip that it comes from. What crosses all col
 strips: a column has a via at its own of the lanes' lines, of the groups' and of the places'.
 """
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from math import sqrt
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from talbot.models.parameters import ParameterError
-from talbot.pixels.circuits.column import BIASES, CONTROLS, OF_TAPS, PINS, SUPPLIES, column
+from talbot.pixels.circuits.column import CONTROLS, OF_TAPS, PINS, TAPS, column
 from talbot.pixels.circuits.column_block import GROUPS, PLACES
 from talbot.pixels.circuits.column_sizes import FINGER, ColumnSizes
 from talbot.pixels.layout.canvas import Canvas
@@ -26,16 +26,14 @@ from talbot.platforms.analog import AnalogMasks
 from . import flat
 from .array import AROUND, TAB, VIA_IN
 from .cells import Cell, new_canvas
-from .device import GRID, Device, Strap, snap
+from .device import Device, snap
 from .flat import Plate, Tap
 from .strip import (
     FOURTH,
     RAIL_AT,
-    RAIL_ENDS,
     RAIL_TRUNK,
     SECOND,
     THIRD,
-    Placed,
     Plan,
     Strip,
     draw_rails,
@@ -46,77 +44,94 @@ from .strip import (
 
 # um
 PITCH, BETWEEN = 10.0, 1.2  # of the columns; of the rails' middles of two columns
+ROWS = 11  # of tracks in a strip
 WIDE = 8.2  # of a plate across the column
-LINE, LINE_PITCH = 0.4, 0.8  # of what crosses all columns
-LANE, LANE_PITCH = 0.6, 1.0  # of the lanes' lines
+LINE, LANE = 0.4, 0.6  # widths of what crosses all columns, and of the lanes' lines
+STEP, LEAST = 0.2, 0.4  # of the places of these; between two
 ROOM = 0.6  # beside each pair of devices, for its drops
-PAD_AT, PLATE_AT = 0.85, 1.8  # of an upper plate's vias from the one before it, and of the plate itself
+FIRST = 1.5  # of the first plate from the array
+PAD_AT, PLATE_AT = 0.95, 1.8  # of an upper plate's vias from that plate; of the next plate from it
+PATCH_IN, VIAS = 0.3, 1.0  # of the metal over an upper plate from its edges; pitch of its vias
 UNDER = 0.28  # width of the lines under the plates
-EXIT = 3.2  # from a strip's end to the plates beside it
-PIN_AT = {"column_a": 2.5, "column_b": 7.5}
+OUT, EXIT, JOGS = 0.35, 3.2, (2.2, 3.0)  # from a strip's end to its lines' vias; to a plate; to what leaves above
+WAYS = {"column_a": 2.5, "column_b": 7.5, "cin_b": 2.0, "cin_a": 4.0}  # y of what leaves on the fourth metal
 LANES = 8
+GROUPED = {"group": GROUPS, "k": PLACES} | {f"{name}_{d}": LANES for name in ("lane", "sense") for d in "ab"}
+SINGLE = (*CONTROLS, *OF_TAPS, "vbp", "vcp", "level", "start")
 
-# Pairs (n, p) of the strips from the west
-FRONT = (
-    ("front_a.clear", None),
-    ("front_a.in", "front_a.top"),
-    ("front_a.cascode", "front_a.cascode_p"),
-    ("quarter_a_n", "quarter_a_p"),
-    ("half_a_n", "half_a_p"),
-    ("half_rest", None),
-    ("quarter_b_n", "quarter_b_p"),
-    ("front_b.cascode", "front_b.cascode_p"),
-    ("front_b.in", "front_b.top"),
-    ("front_b.clear", None),
+
+@dataclass(frozen=True)
+class Piece:
+    """A strip: its n and p transistors from the west; rows of the tracks of nets that leave it at a height of theirs.
+
+    west, east: nets that leave it under the plates beside it.
+    """
+
+    n: tuple[str, ...]
+    p: tuple[str, ...]
+    west: tuple[str, ...] = ()
+    east: tuple[str, ...] = ()
+    fixed: Mapping[str, int] = field(default_factory=dict)
+
+
+class Cap(NamedTuple):
+    """A capacitor beside a strip: its plates' nets; the strip that its lines come from is in the east."""
+
+    name: str
+    lower: str
+    upper: str
+    from_east: bool = False
+
+
+def _hold(d: str, t: int, from_east: bool = False) -> Cap:
+    tap = f"back_{d}.tap{t}."
+    return Cap(f"{tap}hold", f"{tap}outer", f"{tap}inner", from_east)
+
+
+PIECES: tuple[Piece, ...] = ()
+# Between the strips, and at both ends of the column
+CAPS = (
+    (Cap("front_a.f", "out_a", "column_a", True), Cap("front_b.f", "out_b", "column_b", True)),
+    (
+        Cap("in_b", "out_b", "cin_b"),
+        Cap("in_a", "out_a", "cin_a"),
+        Cap("in_quarter", "quarter", "cin_a"),
+        Cap("in_half", "half", "cin_a"),
+        _hold("b", 0, True),
+    ),
+    *((_hold("a", t),) for t in range(TAPS)),
 )
-DECODER = (
-    ("select_n.na", "select_n.pa"),
-    ("select_n.nb", "select_n.pb"),
-    ("select.n", "select.p"),
-    *((f"on{t}.n{leg}", f"on{t}.p{leg}") for t in range(4) for leg in "ab"),
-)
 
 
-def _back(d: str) -> tuple[tuple[str | None, str | None], ...]:
-    """Pairs of a diode's second stage."""
-    back = f"back_{d}."
-    return (
-        (f"{back}enter", None),
-        (f"{back}tie", None),
-        (f"{back}reset", f"{back}top"),
-        (f"{back}cascode", f"{back}cascode_p"),
-        (f"{back}in", f"{back}own_p"),
-        (f"{back}drive", f"{back}onto_p"),
-        (f"go_{d}", None),
-        (f"stop_{d}", None),
-        (f"{back}onto_n", None),
-        (f"{back}own_n", None),
-    )
+class Drawn(NamedTuple):
+    """A plate that is to be drawn: x of its ends."""
 
+    cap: Cap
+    left: float
+    right: float
 
-def _tap(d: str, t: int) -> tuple[tuple[str | None, str | None], ...]:
-    """Pairs of a tap."""
-    own = f"back_{d}.tap{t}."
-    return (f"{own}write", f"{own}rest"), (f"{own}join", None), (f"{own}far_n", f"{own}far_p")
+    @property
+    def near(self) -> float:
+        """X of the end that its lines come from."""
+        return self.right if self.cap.from_east else self.left
 
-
-BACK = (*_back("b"), *_tap("b", 0), *DECODER, *_back("a"), *(pair for t in range(4) for pair in _tap("a", t)))
-ACROSS = tuple(name for name in (*CONTROLS, *OF_TAPS, "vbp", "vcp", "level", "start"))
+    @property
+    def way(self) -> int:
+        """From there away from the plate."""
+        return 1 if self.cap.from_east else -1
 
 
 @dataclass(frozen=True)
 class ColumnPlan:
     """Where everything of a column is, um.
 
-    front, back: the strips. lines: x of what crosses all columns, of both strips. joints: of the supplies that do.
-    plates: (capacitor, lower net, upper net, x, um along the column). right: its east end.
+    lines: x of what crosses all columns. joints: x of the supplies that do. plates: of the capacitors. right: its end.
     """
 
-    front: Plan
-    back: Plan
+    strips: tuple[Plan, ...]
     lines: Mapping[str, float]
     joints: Mapping[str, tuple[float, ...]]
-    plates: Sequence[tuple[str, str, str, float, float]]
+    plates: tuple[Drawn, ...]
     right: float
 
 
@@ -129,6 +144,204 @@ def length_um(farad: float, masks: AnalogMasks) -> float:
     return found
 
 
-def devices(circuit_of: ColumnSizes) -> dict[str, Device]:
+def devices(sizes: ColumnSizes) -> dict[str, Device]:
     """All transistors of a column, in fingers that fit its pitch."""
-    return {t.name: Device.of(t, FINGER) for t in flat.transistors(column(circuit_of))}
+    return {t.name: Device.of(t, FINGER) for t in flat.transistors(column(sizes))}
+
+
+def names(net: str) -> tuple[str, ...]:
+    """Lines that cross all columns, of a pin of a column."""
+    return tuple(f"{net}{k}" for k in range(GROUPED[net])) if net in GROUPED else (net,)
+
+
+def column_plan(d: Mapping[str, Device], sizes: ColumnSizes, masks: AnalogMasks) -> ColumnPlan:
+    """Raises ParameterError where a strip has more nets than tracks, or a line no place."""
+    farads = {c.name: c.value for c in flat.capacitors(column(sizes))}
+    x, plates, strips = FIRST, list[Drawn](), list[Plan]()
+    lines, joints = dict[str, float](), dict[str, tuple[float, ...]]()
+    for number, group in enumerate(CAPS):
+        for k, cap in enumerate(group):
+            x = snap(x + PLATE_AT * (k > 0))
+            plates.append(Drawn(cap, x, snap(x + length_um(farads[cap.name], masks))))
+            x = plates[-1].right
+        if number == len(PIECES):
+            break
+        piece = PIECES[number]
+        left = snap(x + EXIT + (JOGS[1] - JOGS[0] + PAD_AT if group[-1].upper in WAYS or number == 1 else 0.0))
+        strip, found = _strip(piece, d, left, number, lines)
+        strips.append(strip)
+        lines |= found
+        joints |= {"vss": (*joints.get("vss", ()), strip.left - RAIL_AT)}
+        joints |= {"vdd": (*joints.get("vdd", ()), strip.right + RAIL_AT)}
+        x = strip.right + EXIT
+    if lacking := {line for net in (*GROUPED, *SINGLE) for line in names(net)} - lines.keys():
+        raise ParameterError(f"column: line {min(lacking)} must have a place")
+    return ColumnPlan(tuple(strips), lines, joints, tuple(plates), snap(x + PAD_AT))
+
+
+def _strip(
+    piece: Piece, d: Mapping[str, Device], left: float, number: int, known: Collection[str]
+) -> tuple[Plan, dict[str, float]]:
+    """A strip, and the lines over it that are not ``known``."""
+    count = max(len(piece.n), len(piece.p))
+    n, p = ([d[name] for name in row] + [None] * (count - len(row)) for row in (piece.n, piece.p))
+    row_n, row_p, right = in_columns(list(zip(n, p, strict=True)), left, ROOM)
+    ends: dict[str, tuple[float, ...]] = {net: (left - OUT,) for net in piece.west}
+    ends |= {net: (*ends.get(net, ()), right + OUT) for net in piece.east}
+    present = {net for one in (*row_n, *row_p) for net in one.device.transistor.nodes}
+    if number < 2:
+        ways = ("column_a", "column_b") if number == 0 else ("cin_a", "cin_b")
+        ends |= {net: (left - jog,) for net, jog in zip(ways, JOGS, strict=True)}
+    plain = Plan(row_n, row_p, left, right, ends)
+    lines = _lines(plain, {net for net in present if names(net)[0] not in known}, left, right, number)
+    for net in present & (GROUPED.keys() | set(SINGLE)):
+        if names(net)[0] in lines:
+            ends[net] = (*ends.get(net, ()), lines[names(net)[0]], lines[names(net)[-1]])
+    plan = Plan(
+        row_n, row_p, left, right, ends, least_um=PITCH - BETWEEN, fixed=piece.fixed, least_rows=ROWS
+    )
+    if plan.height_um > PITCH - BETWEEN + 1e-9:
+        rows = round((plan.height_um - (PITCH - BETWEEN)) / 0.7) + ROWS
+        raise ParameterError(f"column strip {number} = {rows} tracks: must be {ROWS} at most")
+    return plan, lines
+
+
+def _lines(plan: Plan, present: Collection[str], left: float, right: float, number: int) -> dict[str, float]:
+    """X of the lines over a strip: those of a group together, each as near as may be to the gates on it."""
+    spans, taken, found = plan.spans(), list[tuple[float, float]](), dict[str, float]()
+    own = sorted((set(GROUPED) | set(SINGLE)) & present)
+    own.sort(key=lambda net: (-len(names(net)), spans[net][1] - spans[net][0]))
+    places = [snap(left + STEP * k) for k in range(2, int((right - left) / STEP) - 1)]
+    for net in own:
+        half = (LANE if net.startswith(("lane", "sense")) else LINE) / 2
+        pitch, count = 2 * half + LEAST, len(names(net))
+        low, high = spans[net]
+        middle = (low + high) / 2 - pitch * (count - 1) / 2
+
+        def free(x: float, half: float = half, pitch: float = pitch, count: int = count) -> bool:
+            ends = x - half, x + pitch * (count - 1) + half
+            return ends[1] <= right - 0.2 and all(ends[1] + LEAST <= a + 1e-9 or b + LEAST <= ends[0] + 1e-9 for a, b in taken)
+
+        place = min(filter(free, places), key=lambda x: abs(x - middle), default=None)
+        if place is None:
+            raise ParameterError(f"column strip {number} = {right - left:.0f} um: must have room for line {net}")
+        taken.append((place - half, place + pitch * (count - 1) + half))
+        found |= {line: snap(place + pitch * k) for k, line in enumerate(names(net))}
+    return found
+
+
+def draw_column(canvas: Canvas, masks: AnalogMasks, made: ColumnPlan) -> list[Strip]:
+    """A column, its south edge at y = 0, with its part of the supplies and single lines that cross all columns."""
+    y, strips = BETWEEN / 2, list[Strip]()
+    for plan in made.strips:
+        strip = draw_rows(canvas, masks, plan, y)
+        draw_rails(canvas, masks, plan, y)
+        join_rails(canvas, [strip])
+        strips.append(strip)
+    for x in made.joints["vss"] + made.joints["vdd"]:
+        canvas.wire(FOURTH, x - RAIL_TRUNK / 2, 0, x + RAIL_TRUNK / 2, PITCH)
+    for net in SINGLE:
+        canvas.wire(FOURTH, made.lines[net] - LINE / 2, 0, made.lines[net] + LINE / 2, PITCH)
+        for strip in strips:
+            for track in strip.tracks:
+                if track.net == net and track.left <= made.lines[net] <= track.right:
+                    canvas.stack(made.lines[net], track.y, THIRD, FOURTH)
+    for plate in made.plates:
+        _plate(canvas, masks, plate)
+    for number, strip in enumerate(strips):
+        _leave(canvas, made, strips, number, strip)
+    return strips
+
+
+def _plate(canvas: Canvas, masks: AnalogMasks, plate: Drawn) -> None:
+    """A capacitor without its lines."""
+    low, high = (PITCH - WIDE) / 2, (PITCH + WIDE) / 2
+    canvas.box(masks.mim, plate.left, low, plate.right, high)
+    tabs = {1: AROUND, -1: AROUND} | {plate.way: TAB}
+    canvas.wire(THIRD, plate.left - tabs[-1], low - AROUND, plate.right + tabs[1], high + AROUND)
+    ends = _patch(plate)
+    left, right = plate.left + PATCH_IN, plate.right - PATCH_IN
+    canvas.wire(FOURTH, left, ends[0], right, ends[1])
+    for x in _steps(left, right):
+        for y in _steps(*ends):
+            canvas.square(masks.base.vias[THIRD].gds, x, y, 0.2)
+
+
+def _steps(low: float, high: float) -> Iterator[float]:
+    """Places of vias in a piece of metal."""
+    count = max(1, int((high - low - 0.4) / VIAS) + 1)
+    for k in range(count):
+        yield (low + high) / 2 + (k - (count - 1) / 2) * VIAS
+
+
+def _patch(plate: Drawn) -> tuple[float, float]:
+    """Y of the metal over an upper plate: beside the lines of others that pass."""
+    if plate.cap.upper in WAYS:
+        y = WAYS[plate.cap.upper]
+        return y - 0.5, y + 0.5
+    return (5.2, 8.8) if plate.cap.from_east else (1.2, 8.8)
+
+
+def _leave(canvas: Canvas, made: ColumnPlan, strips: Sequence[Strip], number: int, strip: Strip) -> None:
+    """What leaves a strip: on the fourth metal in the west, or on the second under the plates."""
+    plan, half = strip.plan, UNDER / 2
+    tracks = {net: track.y for track in strip.tracks for net in [track.net]}
+    for net, jog in zip(("column_a", "column_b") if number == 0 else ("cin_a", "cin_b"), JOGS, strict=True):
+        if number < 2:
+            x, y, to = plan.left - jog, tracks[net], WAYS[net]
+            first = 0.0 if number == 0 else min(one.left for one in made.plates if one.cap.upper == net) + PATCH_IN
+            canvas.stack(x, y, THIRD, FOURTH)
+            canvas.wire(FOURTH, x - LINE / 2, min(y, to) - LINE / 2, x + LINE / 2, max(y, to) + LINE / 2)
+            canvas.wire(FOURTH, first, to - LINE / 2, x + LINE / 2, to + LINE / 2)
+    for plate in made.plates:
+        beside = CAPS.index(next(group for group in CAPS if plate.cap in group)) - (not plate.cap.from_east)
+        if beside != number:
+            continue
+        start = plan.left - OUT if plate.cap.from_east else plan.right + OUT
+        for net, at in ((plate.cap.lower, VIA_IN), (plate.cap.upper, PAD_AT)):
+            if net in WAYS:
+                continue
+            x, y = plate.near + plate.way * at, tracks[net]
+            canvas.stack(start, y, SECOND, THIRD)
+            canvas.wire(SECOND, min(x, start), y - half, max(x, start), y + half)
+            canvas.stack(x, y, SECOND, THIRD if net == plate.cap.lower else FOURTH)
+            if net == plate.cap.upper:
+                ends = x, plate.near - plate.way * PATCH_IN
+                canvas.wire(FOURTH, min(ends), y - LINE / 2, max(ends), y + LINE / 2)
+    if number + 1 < len(strips):
+        after = strips[number + 1]
+        for net in set(PIECES[number].east) & set(PIECES[number + 1].west):
+            y, x0, x1 = tracks[net], plan.right + OUT, after.plan.left - OUT
+            canvas.wire(SECOND, x0, y - half, x1, y + half)
+            for x in (x0, x1):
+                canvas.stack(x, y, SECOND, THIRD)
+
+
+def as_cell(canvas: Canvas, d: Mapping[str, Device], made: ColumnPlan, strips: Sequence[Strip]) -> Cell:
+    """The drawn column with its circuit's names."""
+    plates, taps = list[Plate](), list[Tap]()
+    for cap, left, right in made.plates:
+        edges = right - left, WIDE
+        plates.append(Plate(cap.name, cap.upper, cap.lower, edges[0] * edges[1], 2 * sum(edges)))
+        near = (right + VIA_IN) if cap.from_east else (left - VIA_IN)
+        taps.append(Tap(cap.name, 1, near, PITCH / 2))
+    terminals = tuple(one for strip in strips for one in strip.terminals)
+    tracks = tuple(one for strip in strips for one in strip.tracks)
+    return Cell(canvas.layout, canvas.cell, PINS, tuple(d.values()), tuple(plates), terminals, tuple(taps), tracks)
+
+
+def column_cell(masks: AnalogMasks, sizes: ColumnSizes) -> Cell:
+    """A column alone, its pins named where its lines are: what is checked and extracted."""
+    d, canvas = devices(sizes), new_canvas(masks, "column")
+    plan = column_plan(d, sizes, masks)
+    made = as_cell(canvas, d, plan, draw_column(canvas, masks, plan))
+    for net in PINS:
+        if net in ("column_a", "column_b"):
+            canvas.label(FOURTH, net, 0.2, WAYS[net])
+        elif net in SINGLE:
+            canvas.label(FOURTH, net, plan.lines[net], 0.2)
+        elif net in GROUPED:
+            track = next(one for one in made.tracks if one.net == net)
+            canvas.label(THIRD, net, track.left + 0.3, track.y)
+    canvas.box(masks.base.outline, 0, 0, plan.right, PITCH)
+    return made

@@ -16,8 +16,9 @@ The charge amplifier raises its output by what the well had lost, Cf being the w
 that; reset noise, charge and offset of what was before the signal half are taken off. What Chold has as it ends stays
 until the column's turn. Then the holder's transistor drives the lane through a cascode of its own, with the lane's
 source of current (`lane_end`) and Chold alone as its feedback: lane = dark - 2 (the well's fall). It is the transistor
-that the holder was reset to: its threshold is in no sample. `start` is trimmed until a column without light is at the
-lanes' reference. Without the gate of its cascodes, cn, a column takes no current.
+that the holder was reset to: its threshold is in no sample. Its gate is higher then, by a hundred times the current: a
+capacitor from x to what rises to start (`kick`) brings that, or the holder would have to reach below ground. `start` is
+trimmed until a column without light is at the lanes' reference. Without the gate of its cascodes, cn, a column takes no current.
 
 In the modes with codes 0..255 (edgen) a quarter of the first diode's Cin is at either charge amplifier's output and a
 half at none: lane_a is dark - (a + b) / 2 then, and its reference a quarter of the swing below dark.
@@ -32,7 +33,7 @@ TAPS = 4
 SWITCH, SWITCH_P, SLOW = ("n_lvt", LENGTH), ("p_lvt", 0.35), ("n_lvt", 1.0)
 SUPPLIES = "vdd", "vss"
 BIASES = "vbp", "vcp", "vcn", "vbl"  # lines of the bias
-CONTROLS = ("clear", "cn", "ref", "sig", "sign", "edge", "edgen", "idle", "vcn", "vcnb")
+CONTROLS = ("clear", "reads", "cn", "ref", "sig", "sign", "edge", "edgen", "idle", "vcn", "vcnb")
 OF_TAPS = tuple(f"{name}{t}" for name in ("w", "f", "fn", "unasked") for t in range(TAPS))
 PINS = ("column_a", "column_b", "lane_a", "sense_a", "lane_b", "sense_b", "group", "k", *CONTROLS, *OF_TAPS)
 PINS += ("vbp", "vcp", "level", "start", *SUPPLIES)
@@ -99,10 +100,10 @@ def holder(sizes: ColumnSizes, taps: int) -> Circuit:
     of_taps = tuple(f"{name}{t}" for t in range(taps) for name in ("w", "s", "o", "on"))
     return Circuit(
         f"holder{taps}",
-        ("cin", "lane", "sense", "go", "sel", "seln", "idle", "ref", "sig", "sign", *of_taps)
+        ("cin", "lane", "sense", "go", "sel", "seln", "idle", "reads", "ref", "sig", "sign", *of_taps)
         + ("cn", "vbp", "vcp", "level", "start", *SUPPLIES),
         (
-            n("enter", "cin seln x", 0.84, SWITCH),
+            n("enter", "cin reads x", 0.84, SWITCH),
             n("in", "below x vss", lane.input, LANE),
             n("cascode", "out cn below", back.cascode, CASCODE),
             p("top", "above vbp vdd", back.top, BACK_TOP),
@@ -110,9 +111,12 @@ def holder(sizes: ColumnSizes, taps: int) -> Circuit:
             n("drive", "lane go below", lane.cascode, CASCODE),
             n("reset", "x ref out", 0.42, SLOW),
             n("tie", "x idle level", 0.42, SWITCH),
+            n("low", "kick seln vss", 0.42, SWITCH),
+            p("high", "kick seln start", 0.84, SWITCH_P),
             *_through("own", "f", "out", "sig", "sign", 0.84),
             *_through("onto", "f", "sense", "sel", "seln", 1.68),
         ),
+        (Capacitor("kick", "x", "kick", sizes.kick, 1),),
         instances=tuple(
             Instance(f"tap{t}", tap(sizes), ("x", "f", f"w{t}", f"s{t}", f"o{t}", f"on{t}", "start", *SUPPLIES))
             for t in range(taps)
@@ -138,7 +142,7 @@ def column(sizes: ColumnSizes) -> Circuit:
             Instance(
                 f"back_{d}",
                 holder(sizes, taps),
-                (f"cin_{d}", f"lane_{d}", f"sense_{d}", f"go_{d}", "sel", "seln", "idle", "ref", "sig", "sign")
+                (f"cin_{d}", f"lane_{d}", f"sense_{d}", f"go_{d}", "sel", "seln", "idle", "reads", "ref", "sig", "sign")
                 + (*of_taps, *biased, "level", "start", *SUPPLIES),
             )
         )

@@ -23,7 +23,7 @@ BANK_INPUTS = ("ref_ctl", "read", "tap0", "tap1", "mode0", "mode1", "hold")
 BANK_INPUTS += tuple(f"{name}{bit}" for name, bits in (("group", 3), ("k", 3), ("sub", 2)) for bit in range(bits))
 LINES = tuple(f"group_{g}" for g in range(GROUPS)) + tuple(f"k_{k}" for k in range(PLACES))
 CASCODES = "cn", "vcn", "vcnb"  # lines that are not the bank's
-BANK_OUTPUTS = (*(name for name in CONTROLS if name not in CASCODES), "reads", "readsn", *OF_TAPS, *LINES)
+BANK_OUTPUTS = (*(name for name in CONTROLS if name not in CASCODES), "readsn", *OF_TAPS, *LINES)
 BANK_OUTPUTS += ("turn", "turnn", "turnb", "turnbn")
 
 

@@ -187,7 +187,7 @@ class ColumnSizes:
     """Of a diode's part of a column, and of the block's bias.
 
     front: the charge amplifier; back: the holder while a row is read; lane: while its column is selected, with the
-    lane's source of current. Both have one input. feedback: Cf; hold: Chold, F. gain: Cin over Chold.
+    lane's source of current. Both have one input. feedback: Cf; hold: Chold; kick: F. gain: Cin over Chold.
     """
 
     front: Stage
@@ -195,15 +195,17 @@ class ColumnSizes:
     lane: Stage
     feedback: float
     hold: float
+    kick: float
     gain: float
 
     def __post_init__(self) -> None:
-        for name in ("feedback", "hold"):
+        for name in ("feedback", "hold", "kick"):
             check_real(name, getattr(self, name), 1e-16, 1e-11)
         check_real("gain", self.gain, 0.1, 16)
 
 
 HOLD = 0.14e-12  # F: a square of 8.2 um of MIM, as the pitch has room for
+KICK = 0.30  # of Chold: with it start is near dark at the typical corner
 FINGER = 2.6  # um, of a transistor drawn on the pitch of a column
 SLACK = 20e-9  # s of the signal half until the row's line is up
 WAKE = 8e-9  # s of a column's turn until its transistors conduct
@@ -230,9 +232,9 @@ def size(spec: ColumnSpec, process: ModuleType, hold: float = HOLD) -> ColumnSiz
     load = 2 * spec.wire + spec.input + spec.columns * JUNCTIONS
     for _ in range(20):
         rest = log(spec.swing / (LEFT * spec.settling * spec.lsb))
-        lane_gm = load * (hold + gate) / hold * rest / (spec.ready - WAKE)
+        lane_gm = load * (hold * (1 + KICK) + gate) / hold * rest / (spec.ready - WAKE)
         gate = lane_gm / EFFICIENCY["lane"] / drive.density * drive.gate
-    back_beta = hold / (hold + cin + gate)
+    back_beta = hold / (hold * (1 + KICK) + cin + gate)
     back_gm = 5 * constants / half * hold / back_beta
 
     def stage(kind: tuple[str, float], name: str, top: tuple[str, float], gm: float, least: float = 0.0) -> Stage:
@@ -251,7 +253,7 @@ def size(spec: ColumnSpec, process: ModuleType, hold: float = HOLD) -> ColumnSiz
 
     lost = EXPOSED + 1 / (beta * gain(FRONT, "front", TOP))
     lost += 1 / (back_beta * gain(LANE, "back", BACK_TOP))
-    lost += (hold + gate) / hold / gain(LANE, "lane", LANE_TOP)
+    lost += (hold * (1 + KICK) + gate) / hold / gain(LANE, "lane", LANE_TOP)
     lane = stage(LANE, "lane", LANE_TOP, lane_gm)
     return ColumnSizes(
         stage(FRONT, "front", TOP, gm, wide),
@@ -259,6 +261,7 @@ def size(spec: ColumnSpec, process: ModuleType, hold: float = HOLD) -> ColumnSiz
         lane,
         spec.well * TIMES * spec.fall / spec.swing * (1 - lost) - ACROSS,
         hold,
+        KICK * hold,
         TIMES,
     )
 
