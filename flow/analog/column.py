@@ -66,14 +66,14 @@ STRAY = 40e-15  # F at the holder's output
 class ColumnResult:
     """At one corner; LSB of the lane's converter in edge mode where nothing else is said.
 
-    start: V at which a column without light leaves its lane at the reference. slope: V of the lane's line over the
+    start: V of both diodes at which a column without light leaves its lanes at their references. slope: V of the lane's line over the
     ideal one; mean: of both diodes' mean, in the modes with codes 0..255. inl: peak off a straight line through WELLS.
     full: lost at FULL of a well. other: of the second diode by
     the first's light. settling: s of the turn until half an LSB, the slowest. droop: until the last column's turn.
     energy: J a pixel. idle: A of a column in which nothing happens.
     """
 
-    start: float
+    start: tuple[float, float]
     slope: float
     inl: float
     full: float
@@ -123,11 +123,14 @@ def measure(
 
 def trimmed(
     setup: Setup, spec: ColumnSpec, sizes: ColumnSizes, corner: Corner, circuit: Circuit | None = None
-) -> float:
-    """V of `start` at which a column without light is at the lanes' reference: what switches leave is off it."""
-    with opened(setup, spec, sizes, corner, spec.dark - 0.1, circuit=circuit) as spice:
+) -> tuple[float, float]:
+    """V of `start_a` and `start` at which a column without light is at the lanes' references."""
+    first = spec.dark - 0.1
+    with opened(setup, spec, sizes, corner, (first, first), circuit=circuit) as spice:
         wave = sample(spice, spec, corner, 0.0, 0.0)
-    return 2 * spec.dark - 0.1 - wave.at("far_a", turn_of(spec) + spec.cycle)
+    end = turn_of(spec) + spec.cycle
+    a, b = (first + (spec.dark - wave.at(f"far_{d}", end)) / sizes.follows for d in "ab")
+    return a, b
 
 
 def settling(wave: Wave, spec: ColumnSpec) -> float:
@@ -138,7 +141,7 @@ def settling(wave: Wave, spec: ColumnSpec) -> float:
     return float(wave.time[inside][out].max(initial=begin) - begin)
 
 
-def offset(setup: Setup, spec: ColumnSpec, sizes: ColumnSizes, corner: Corner, start: float, seed: int) -> float:
+def offset(setup: Setup, spec: ColumnSpec, sizes: ColumnSizes, corner: Corner, start: tuple[float, float], seed: int) -> float:
     """LSB by which both diodes' lines differ without light, of a column with the models' own mismatch."""
     end = turn_of(spec) + spec.cycle
     with opened(setup, spec, sizes, corner, start, seed=seed) as spice:
@@ -179,7 +182,7 @@ def bench(sizes: ColumnSizes, spec: ColumnSpec) -> Circuit:
     """A column with bias, lines and wells; `own` are its pins."""
     quiet: dict[str, str] = NAMES | {name: "vdd" if high else "vss" for name, high in QUIET.items()}
     parts = [
-        Instance("column", column(sizes), tuple(quiet.get(pin) or pin for pin in columns.PINS)),
+        Instance("column", column(sizes), tuple(quiet.get(name) or name for name in map(columns.line, columns.PINS))),
         Instance("bias", bias(), ("ibias", "vdd_own", "vss")),
         Instance("lines", column_bias(sizes), ("ibias", *BIASES, "level", "vdd_bias", "vss")),
         Instance("cascodes", cascode_lines(), cascode_lines().ports),
@@ -196,7 +199,7 @@ def bench(sizes: ColumnSizes, spec: ColumnSpec) -> Circuit:
             Capacitor(f"well_{d}", f"well_{d}", "vss", spec.well, 1),
             Capacitor(f"input_{d}", f"far_{d}", "vss", spec.input),
         ]
-    own = (*(name for name in DRIVEN if name not in ("fill", "x_a", "x_b")), "well_a", "well_b", "level", "start")
+    own = (*(name for name in DRIVEN if name not in ("fill", "x_a", "x_b")), "well_a", "well_b", "level", "start", "start_a")
     own += ("dark", "reference", "far_a", "far_b", "vdd_bias", "vdd_own", *SUPPLIES)
     return Circuit("bench", own, tuple(devices), tuple(capacitors), instances=tuple(parts))
 
@@ -206,7 +209,7 @@ def opened(
     spec: ColumnSpec,
     sizes: ColumnSizes,
     corner: Corner,
-    start: float,
+    start: tuple[float, float],
     image: bool = False,
     seed: int | None = None,
     more: Sequence[str] = (),
@@ -218,7 +221,7 @@ def opened(
     ampere = spec.well * setup.scale(corner) / LIGHT
     for d in "ab":
         lines += [f"Sreset_{d} well_{d} level fill 0 filling", f"Glight_{d} well_{d} 0 x_{d} 0 {ampere:.9g}"]
-    rails = {"start": start, "dark": spec.dark, "reference": spec.dark - image * spec.swing / 4}
+    rails = {"start_a": start[0], "start": start[1], "dark": spec.dark, "reference": spec.dark - image * spec.swing / 4}
     rails |= {"vdd_bias": corner.supply, "vdd_own": corner.supply}
     return simulator(lines, DRIVEN, ("far_a", "far_b", "level", *more), corner, rails, EXACT)
 

@@ -136,7 +136,8 @@ def _columns(found: Found) -> list[Row]:
         Row("column", "offset of a difference, rms", "LSB", rms, None, high, most=spec.offset, over=over),
         row("energy of a pixel", "pJ", each("energy", 1e12), 1e12 * spec.energy),
         row("current of a column at rest", "nA", each("idle", 1e9)),
-        row("level that is trimmed", "V", each("start")),
+        row("level that is trimmed, first diode", "V", {name: one.start[0] for name, one in found.columns.items()}),
+        row("level that is trimmed, second diode", "V", {name: one.start[1] for name, one in found.columns.items()}),
     ]
 
 

@@ -13,7 +13,7 @@ from talbot.cells.spice.engine import Simulator
 from talbot.flow.analog.amplifier import COLUMNS, EXACT
 from talbot.flow.analog.column import GAP, ROW
 from talbot.models.parameters import ELEMENTARY_CHARGE, AmpTiming
-from talbot.pixels.circuits.column import BIASES, PINS, TAPS, column
+from talbot.pixels.circuits.column import BIASES, PINS, TAPS, column, line
 from talbot.pixels.circuits.column_block import cascode_lines, clear_pulse, column_bias, lane_end, lane_line
 from talbot.pixels.circuits.column_sizes import FULL, ColumnSizes, ColumnSpec, size
 from talbot.pixels.circuits.netlist import Capacitor, Circuit, Transistor
@@ -27,6 +27,7 @@ from .pixels import PixelSizes
 
 TIMING = AmpTiming()  # of a row with these columns: the holder has 16 cycles in each half
 CELSIUS = 25.0
+LEVEL = 100e-9  # F at the wells' level, outside of the chip: a row's wells take 12 pC as they are reset
 SOURCE = "vbn", "vbp", "source", "start", "part_1", "part_2", "part_3"  # nodes of a bias
 RESTING = (*BIASES, "level", "ibias_columns", *(f"xcolumn_source.{name}" for name in SOURCE))
 
@@ -63,14 +64,14 @@ def lines(
     spec: ColumnSpec,
     sizes: ColumnSizes,
     pixels: PixelSizes,
-    start: float,
+    start: tuple[float, float],
     rest: Mapping[str, float],
     swapped: frozenset[int] = frozenset(),
     cut: int | None = None,
 ) -> list[str]:
     """Lines of the deck; see `drive` for their controls. lanes: of each column; the lanes' lines end at cola0, colb0.
 
-    diodes: (a, b) in LSB of each column and tap. edge: lanes get both diodes, else the mean. start: V, trimmed.
+    diodes: (a, b) in LSB of each column and tap. edge: lanes get both diodes, else the mean. start: V of start_a and start, trimmed.
     rest: V of RESTING, with which it begins: an operating point of so many nodes that float takes minutes.
     swapped: columns whose diodes are on each other's line. cut: column from which on the row's read line is open.
     """
@@ -81,8 +82,9 @@ def lines(
     deck = [
         f"Vdark dark 0 {spec.dark:g}",
         f"Vreference reference 0 {spec.dark - (not edge) * CODES / 2 * spec.lsb:.9g}",
-        f"Vstart start 0 {start:.9g}",
+        *(f"V{name} {name} 0 {volts:.9g}" for name, volts in zip(("start_a", "start"), start, strict=True)),
         *([".ic " + " ".join(f"v({name})={volts:.6g}" for name, volts in resting.items())] if rest else []),
+        f"Clevel level 0 {LEVEL:g}",
         "Xcolumn_source ibias_columns vdd 0 bias",
         f"Xcolumn_bias ibias_columns {' '.join(BIASES)} level vdd 0 column_bias",
         f"Xcascodes vcn reads readsn {own['edge']} {own['edgen']} cn vcnb 0 cascode_lines",
@@ -106,7 +108,7 @@ def lines(
         lane = lanes[c]
         nodes = own | {f"column_{d}": f"line_{d}{c}" for d in "ab"} | {"group": f"turn_column{c}"}
         nodes |= {f"{name}_{d}": f"{name}{d}{lane}" for name in ("lane", "sense") for d in "ab"}
-        deck.append(f"Xcolumn{c} {' '.join(nodes.get(pin, pin) for pin in PINS)} column")
+        deck.append(f"Xcolumn{c} {' '.join(nodes.get(pin, pin) for pin in map(line, PINS))} column")
         for tap, pair in taps.items():
             for diode, value in zip("ab", pair, strict=True):
                 ampere = value / FULL * spec.full_well * ELEMENTARY_CHARGE / integration
@@ -140,8 +142,8 @@ def drive(source: Drive, columns: Sequence[int], lanes: Sequence[int], first: in
 
 
 @cache
-def trimmed(spec: ColumnSpec, edge: bool, cycle: float, high: float) -> tuple[float, dict[str, float]]:
-    """V of `start` at which a pixel without light leaves its lane's line at dark, and of the bias's lines at rest.
+def trimmed(spec: ColumnSpec, edge: bool, cycle: float, high: float) -> tuple[tuple[float, float], dict[str, float]]:
+    """V of `start_a` and `start` at which a pixel without light leaves its lanes' lines at dark, and of the bias's lines at rest.
 
     Simulated once. Raises ToolError.
     """
@@ -173,9 +175,10 @@ def trimmed(spec: ColumnSpec, edge: bool, cycle: float, high: float) -> tuple[fl
     inner = {one.name: one for part in parts for one in part.circuits().values()}
     deck = [*analog.cards("tt", set().union(*(one.sizes() for one in parts))), ".param cscale=1 rscale=1"]
     deck += [line for one in inner.values() for line in one.own_lines(analog)]
-    deck += lines({0: {0: (0.0, 0.0)}}, {0: lane_bit}, edge, 1.0, spec, sizes, pixels, start, {})
-    out = f"cola{lane_bit}"
-    with Simulator(deck, tuple(waves), (out, *RESTING), {"vdd": high}, CELSIUS, EXACT) as spice:
-        wave = spice.transient(waves, {out: spec.input}, (turn + 1) * cycle, cycle / 5)
+    deck += lines({0: {0: (0.0, 0.0)}}, {0: lane_bit}, edge, 1.0, spec, sizes, pixels, (start, start), {})
+    outs = [f"col{d}{lane_bit}" for d in "ab"]
+    with Simulator(deck, tuple(waves), (*outs, *RESTING), {"vdd": high}, CELSIUS, EXACT) as spice:
+        wave = spice.transient(waves, dict.fromkeys(outs, spec.input), (turn + 1) * cycle, cycle / 5)
     end = float(np.nextafter((turn + 1) * cycle, 0))
-    return start + spec.dark - wave.at(out, end), {"vdd": high} | {name: wave.at(name, 0.0) for name in RESTING}
+    a, b = (start + (spec.dark - wave.at(out, end)) / sizes.follows for out in outs)
+    return (a, b), {"vdd": high} | {name: wave.at(name, 0.0) for name in RESTING}

@@ -44,7 +44,7 @@ from .strip import (
 
 # um
 PITCH, BETWEEN = 10.0, 1.2  # of the columns; of the rails' middles of two columns
-ROWS = 11  # of tracks in a strip
+ROWS, ROW_IN = 13, 0.2  # of tracks in a strip; of the first from a rail's middle
 WIDE = 8.2  # of a plate across the column
 LINE, LANE = 0.4, 0.6  # widths of what crosses all columns, and of the lanes' lines
 STEP, LEAST = 0.2, 0.4  # of the places of these; between two
@@ -88,6 +88,10 @@ def _hold(d: str, t: int, from_east: bool = False) -> Cap:
     return Cap(f"{tap}hold", f"{tap}outer", f"{tap}inner", from_east)
 
 
+def _kick(d: str, from_east: bool = False) -> Cap:
+    return Cap(f"back_{d}.kick", f"back_{d}.kick", f"back_{d}.x", from_east)
+
+
 PIECES: tuple[Piece, ...] = ()
 # Between the strips, and at both ends of the column
 CAPS = (
@@ -97,9 +101,11 @@ CAPS = (
         Cap("in_a", "out_a", "cin_a"),
         Cap("in_quarter", "quarter", "cin_a"),
         Cap("in_half", "half", "cin_a"),
+        _kick("b", True),
         _hold("b", 0, True),
     ),
-    *((_hold("a", t),) for t in range(TAPS)),
+    (_kick("a"), _hold("a", 0)),
+    *((_hold("a", t),) for t in range(1, TAPS)),
 )
 
 
@@ -198,7 +204,7 @@ def _strip(
         if names(net)[0] in lines:
             ends[net] = (*ends.get(net, ()), lines[names(net)[0]], lines[names(net)[-1]])
     plan = Plan(
-        row_n, row_p, left, right, ends, least_um=PITCH - BETWEEN, fixed=piece.fixed, least_rows=ROWS
+        row_n, row_p, left, right, ends, least_um=PITCH - BETWEEN, fixed=piece.fixed, least_rows=ROWS, track_in=ROW_IN
     )
     if plan.height_um > PITCH - BETWEEN + 1e-9:
         rows = round((plan.height_um - (PITCH - BETWEEN)) / 0.7) + ROWS

@@ -54,7 +54,7 @@ class Plan:
     images, the western one first. through: x up to which the
     tracks of nets that meet other strips go, too. rails: nets without tracks, the lower rail's first. quiet: nets whose
     tracks are together, away from the others. least_um: of its height. fixed: rows of nets that go on in other strips at
-    the same height; least_rows: of tracks, that there always are.
+    the same height; least_rows: of tracks, that there always are. track_in: um from a rail's middle to the first.
     """
 
     n: tuple[Placed, ...]
@@ -70,6 +70,7 @@ class Plan:
     least_um: float = 0.0
     fixed: Mapping[str, int] = field(default_factory=dict)
     least_rows: int = 0
+    track_in: float = TRACK_IN
 
     @property
     def height_um(self) -> float:
@@ -77,7 +78,7 @@ class Plan:
         heights = [max((placed.device.finger_um for placed in row), default=0.0) for row in (self.n, self.p)]
         between = MIDDLE if self.n and self.p else OPEN_ENDS
         devices = 2 * RAIL + sum(heights) + between
-        return max(devices, 2 * TRACK_IN + TRACK_PITCH * (len(self._rows()) - 1), self.least_um)
+        return max(devices, 2 * self.track_in + TRACK_PITCH * (len(self._rows()) - 1), self.least_um)
 
     def placed(self) -> tuple[Placed, ...]:
         """All devices."""

@@ -17,8 +17,8 @@ that; reset noise, charge and offset of what was before the signal half are take
 until the column's turn. Then the holder's transistor drives the lane through a cascode of its own, with the lane's
 source of current (`lane_end`) and Chold alone as its feedback: lane = dark - 2 (the well's fall). It is the transistor
 that the holder was reset to: its threshold is in no sample. Its gate is higher then, by a hundred times the current: a
-capacitor from x to what rises to start (`kick`) brings that, or the holder would have to reach below ground. `start` is
-trimmed until a column without light is at the lanes' reference. Without the gate of its cascodes, cn, a column takes no current.
+capacitor from x to what rises to start (`kick`) brings that, or the holder would have to reach below ground. `start` and
+`start_a`, of the second and the first diode, are trimmed until a column without light is at the lanes' reference. Without the gate of its cascodes, cn, a column takes no current.
 
 In the modes with codes 0..255 (edgen) a quarter of the first diode's Cin is at either charge amplifier's output and a
 half at none: lane_a is dark - (a + b) / 2 then, and its reference a quarter of the swing below dark.
@@ -35,8 +35,16 @@ SUPPLIES = "vdd", "vss"
 BIASES = "vbp", "vcp", "vcn", "vbl"  # lines of the bias
 CONTROLS = ("clear", "reads", "cn", "ref", "sig", "sign", "edge", "edgen", "idle", "vcn", "vcnb")
 OF_TAPS = tuple(f"{name}{t}" for name in ("w", "f", "fn", "unasked") for t in range(TAPS))
+# Those that the first diode's second stage has lines of its own of: on all but start_a is the same, `reads` on `reads_a`
+SHARED = ("reads", "cn", "ref", "sig", "sign", "idle", "vbp", "vcp", "level", "start", "w0", "f0", "fn0")
+TWICE = tuple(f"{name}_a" for name in SHARED)
 PINS = ("column_a", "column_b", "lane_a", "sense_a", "lane_b", "sense_b", "group", "k", *CONTROLS, *OF_TAPS)
-PINS += ("vbp", "vcp", "level", "start", *SUPPLIES)
+PINS += ("vbp", "vcp", "level", "start", *TWICE, *SUPPLIES)
+
+
+def line(pin: str) -> str:
+    """What is on a pin: `reads` on `reads_a`."""
+    return pin.removesuffix("_a") if pin in TWICE and pin != "start_a" else pin
 
 
 def n(name: str, nodes: str, w: float, kind: tuple[str, float]) -> Transistor:
@@ -132,20 +140,16 @@ def column(sizes: ColumnSizes) -> Circuit:
         Instance("select", inverter(2), ("seln", "sel", *SUPPLIES)),
         *(Instance(f"on{t}", nor(), ("seln", f"unasked{t}", f"s{t}", *SUPPLIES)) for t in range(TAPS)),
     ]
-    biased = "cn", "vbp", "vcp"
     for d, taps in (("a", TAPS), ("b", 1)):
+        biased = "cn", "vbp", "vcp"
         parts.append(
             Instance(f"front_{d}", charge_amplifier(sizes), (f"column_{d}", f"out_{d}", "clear", *biased, *SUPPLIES))
         )
         of_taps = (name for t in range(taps) for name in (f"w{t}", f"s{t}", f"f{t}", f"fn{t}"))
-        parts.append(
-            Instance(
-                f"back_{d}",
-                holder(sizes, taps),
-                (f"cin_{d}", f"lane_{d}", f"sense_{d}", f"go_{d}", "sel", "seln", "idle", "reads", "ref", "sig", "sign")
-                + (*of_taps, *biased, "level", "start", *SUPPLIES),
-            )
-        )
+        nodes = "idle", "reads", "ref", "sig", "sign", *of_taps, *biased, "level", "start"
+        own = (f"{name}_a" if d == "a" and name in SHARED else name for name in nodes)
+        ways = f"cin_{d}", f"lane_{d}", f"sense_{d}", f"go_{d}", "sel", "seln"
+        parts.append(Instance(f"back_{d}", holder(sizes, taps), (*ways, *own, *SUPPLIES)))
     switches = [
         n("go_a", "vcn sel go_a", 0.84, SWITCH),
         n("stop_a", "go_a seln vss", 0.42, SWITCH),

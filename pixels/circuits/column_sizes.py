@@ -203,9 +203,14 @@ class ColumnSizes:
             check_real(name, getattr(self, name), 1e-16, 1e-11)
         check_real("gain", self.gain, 0.1, 16)
 
+    @property
+    def follows(self) -> float:
+        """V of the lane's line for a V of start: what rises to start takes its part."""
+        return 1 - self.kick / self.hold
+
 
 HOLD = 0.14e-12  # F: a square of 8.2 um of MIM, as the pitch has room for
-KICK = 0.30  # of Chold: with it start is near dark at the typical corner
+KICK = 0.3  # of Chold: with it start is near dark at the typical corner
 FINGER = 2.6  # um, of a transistor drawn on the pitch of a column
 SLACK = 20e-9  # s of the signal half until the row's line is up
 WAKE = 8e-9  # s of a column's turn until its transistors conduct
