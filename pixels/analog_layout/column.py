@@ -17,7 +17,7 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from talbot.models.parameters import ParameterError
-from talbot.pixels.circuits.column import CONTROLS, OF_TAPS, PINS, TAPS, column
+from talbot.pixels.circuits.column import CONTROLS, OF_TAPS, PINS, TAPS, TWICE, column
 from talbot.pixels.circuits.column_block import GROUPS, PLACES
 from talbot.pixels.circuits.column_sizes import FINGER, ColumnSizes
 from talbot.pixels.layout.canvas import Canvas
@@ -50,14 +50,17 @@ LINE, LANE = 0.4, 0.6  # widths of what crosses all columns, and of the lanes' l
 STEP, LEAST = 0.2, 0.4  # of the places of these; between two
 ROOM = 0.6  # beside each pair of devices, for its drops
 FIRST = 1.5  # of the first plate from the array
-PAD_AT, PLATE_AT = 0.95, 1.8  # of an upper plate's vias from that plate; of the next plate from it
+PAD_AT, PLATE_AT = 1.06, 1.86  # of an upper plate's vias from that plate; of the next plate from it
 PATCH_IN, VIAS = 0.3, 1.0  # of the metal over an upper plate from its edges; pitch of its vias
+PAD = 0.19, 0.33  # half of the third metal at those vias: its least area
 UNDER = 0.28  # width of the lines under the plates
 OUT, EXIT, JOGS = 0.35, 3.2, (2.2, 3.0)  # from a strip's end to its lines' vias; to a plate; to what leaves above
 WAYS = {"column_a": 2.5, "column_b": 7.5, "cin_b": 2.0, "cin_a": 4.0}  # y of what leaves on the fourth metal
+STRAP, TOP = 2.4, 5  # of the top metal along a column
+VIA, VIA_PITCH, VIA_PAD = 0.8, 1.6, 0.59  # of its vias; half of their pad below
 LANES = 8
 GROUPED = {"group": GROUPS, "k": PLACES} | {f"{name}_{d}": LANES for name in ("lane", "sense") for d in "ab"}
-SINGLE = (*CONTROLS, *OF_TAPS, "vbp", "vcp", "level", "start")
+SINGLE = (*CONTROLS, *OF_TAPS, "vbp", "vcp", "level", "start", *TWICE)
 
 
 @dataclass(frozen=True)
@@ -92,7 +95,145 @@ def _kick(d: str, from_east: bool = False) -> Cap:
     return Cap(f"back_{d}.kick", f"back_{d}.kick", f"back_{d}.x", from_east)
 
 
-PIECES: tuple[Piece, ...] = ()
+def _tap_piece(t: int) -> Piece:
+    """The strip of a tap of the first diode, with its part of the decoder."""
+    tap, on = f"back_a.tap{t}.", f"on{t}."
+    through = "back_a.x", "back_a.f", "seln", "start_a"
+    own = f"{tap}inner", f"{tap}outer"
+    rows = {"back_a.x": 6, "back_a.f": 8, "seln": 4, "start_a": 3, own[0]: 7, own[1]: 9}
+    return Piece(
+        (f"{on}nb", f"{on}na", f"{tap}join", f"{tap}write", f"{tap}far_n"),
+        (f"{on}pb", f"{on}pa", "", f"{tap}far_p", f"{tap}rest"),
+        through,
+        (*(through if t < TAPS - 1 else ()), *own),
+        rows,
+    )
+
+
+PIECES = (
+    Piece(
+        (
+            "front_b.clear",
+            "front_a.clear",
+            "front_a.in",
+            "front_a.cascode",
+            "front_b.in",
+            "front_b.cascode",
+            "quarter_a_n",
+            "half_a_n",
+            "half_rest",
+            "quarter_b_n",
+        ),
+        (
+            "",
+            "",
+            "front_b.top",
+            "front_b.cascode_p",
+            "front_a.top",
+            "front_a.cascode_p",
+            "quarter_b_p",
+            "",
+            "quarter_a_p",
+            "half_a_p",
+        ),
+        ("out_a", "out_b"),
+        ("out_a", "out_b", "quarter", "half", "cn", "vbp", "vcp"),
+        {"cn": 1, "vbp": 11, "vcp": 10, "out_a": 3, "out_b": 4, "quarter": 5, "half": 6, "column_a": 7, "column_b": 8},
+    ),
+    Piece(
+        (
+            "back_b.enter",
+            "back_b.cascode",
+            "back_b.reset",
+            "back_b.tap0.write",
+            "back_b.tap0.far_n",
+            "back_b.tie",
+            "back_b.in",
+            "back_b.low",
+            "back_b.tap0.join",
+            "on0.na",
+            "back_b.own_n",
+            "back_b.drive",
+            "select_n.nb",
+            "select_n.na",
+            "on0.nb",
+            "go_b",
+            "back_a.enter",
+            "stop_b",
+            "back_b.onto_n",
+            "go_a",
+            "back_a.in",
+            "stop_a",
+            "back_a.drive",
+            "back_a.tap0.join",
+            "back_a.cascode",
+            "back_a.reset",
+            "back_a.own_n",
+            "back_a.tap0.write",
+            "back_a.tie",
+            "select.n",
+            "back_a.onto_n",
+            "back_a.low",
+            "back_a.tap0.far_n",
+        ),
+        (
+            "back_b.top",
+            "back_b.cascode_p",
+            "",
+            "back_b.tap0.far_p",
+            "",
+            "back_b.tap0.rest",
+            "back_b.high",
+            "",
+            "",
+            "back_b.own_p",
+            "",
+            "select_n.pb",
+            "",
+            "",
+            "select_n.pa",
+            "",
+            "",
+            "",
+            "on0.pb",
+            "on0.pa",
+            "back_b.onto_p",
+            "",
+            "select.p",
+            "back_a.top",
+            "",
+            "back_a.cascode_p",
+            "back_a.own_p",
+            "",
+            "",
+            "back_a.onto_p",
+            "back_a.tap0.far_p",
+            "back_a.high",
+            "back_a.tap0.rest",
+        ),
+        ("back_b.tap0.inner", "back_b.tap0.outer", "back_b.x", "back_b.kick", "cn", "vbp", "vcp"),
+        ("back_a.x", "back_a.f", "seln", "start_a", "back_a.tap0.inner", "back_a.tap0.outer", "back_a.kick"),
+        {
+            "cn": 1,
+            "vbp": 11,
+            "vcp": 10,
+            "seln": 4,
+            "back_b.x": 7,
+            "back_b.tap0.inner": 8,
+            "back_b.tap0.outer": 9,
+            "back_b.kick": 6,
+            "cin_a": 5,
+            "cin_b": 2,
+            "back_a.x": 6,
+            "back_a.f": 8,
+            "back_a.tap0.inner": 7,
+            "back_a.tap0.outer": 9,
+            "back_a.kick": 2,
+            "start_a": 3,
+        },
+    ),
+    *map(_tap_piece, range(1, TAPS)),
+)
 # Between the strips, and at both ends of the column
 CAPS = (
     (Cap("front_a.f", "out_a", "column_a", True), Cap("front_b.f", "out_b", "column_b", True)),
@@ -190,7 +331,7 @@ def _strip(
 ) -> tuple[Plan, dict[str, float]]:
     """A strip, and the lines over it that are not ``known``."""
     count = max(len(piece.n), len(piece.p))
-    n, p = ([d[name] for name in row] + [None] * (count - len(row)) for row in (piece.n, piece.p))
+    n, p = ([d.get(name) for name in row] + [None] * (count - len(row)) for row in (piece.n, piece.p))
     row_n, row_p, right = in_columns(list(zip(n, p, strict=True)), left, ROOM)
     ends: dict[str, tuple[float, ...]] = {net: (left - OUT,) for net in piece.west}
     ends |= {net: (*ends.get(net, ()), right + OUT) for net in piece.east}
@@ -226,7 +367,9 @@ def _lines(plan: Plan, present: Collection[str], left: float, right: float, numb
 
         def free(x: float, half: float = half, pitch: float = pitch, count: int = count) -> bool:
             ends = x - half, x + pitch * (count - 1) + half
-            return ends[1] <= right - 0.2 and all(ends[1] + LEAST <= a + 1e-9 or b + LEAST <= ends[0] + 1e-9 for a, b in taken)
+            return ends[1] <= right - 0.2 and all(
+                ends[1] + LEAST <= a + 1e-9 or b + LEAST <= ends[0] + 1e-9 for a, b in taken
+            )
 
         place = min(filter(free, places), key=lambda x: abs(x - middle), default=None)
         if place is None:
@@ -277,7 +420,7 @@ def _steps(low: float, high: float) -> Iterator[float]:
     """Places of vias in a piece of metal."""
     count = max(1, int((high - low - 0.4) / VIAS) + 1)
     for k in range(count):
-        yield (low + high) / 2 + (k - (count - 1) / 2) * VIAS
+        yield snap((low + high) / 2 + (k - (count - 1) / 2) * VIAS)
 
 
 def _patch(plate: Drawn) -> tuple[float, float]:
@@ -312,6 +455,7 @@ def _leave(canvas: Canvas, made: ColumnPlan, strips: Sequence[Strip], number: in
             canvas.wire(SECOND, min(x, start), y - half, max(x, start), y + half)
             canvas.stack(x, y, SECOND, THIRD if net == plate.cap.lower else FOURTH)
             if net == plate.cap.upper:
+                canvas.wire(THIRD, x - PAD[0], y - PAD[1], x + PAD[0], y + PAD[1])
                 ends = x, plate.near - plate.way * PATCH_IN
                 canvas.wire(FOURTH, min(ends), y - LINE / 2, max(ends), y + LINE / 2)
     if number + 1 < len(strips):
@@ -349,5 +493,18 @@ def column_cell(masks: AnalogMasks, sizes: ColumnSizes) -> Cell:
         elif net in GROUPED:
             track = next(one for one in made.tracks if one.net == net)
             canvas.label(THIRD, net, track.left + 0.3, track.y)
+    for net, y in (("vss", 2.5), ("vdd", 7.5)):
+        strap(canvas, plan.joints[net], y, STRAP, (0.0, plan.right))
+        canvas.label(TOP, net, 1.0, y)
     canvas.box(masks.base.outline, 0, 0, plan.right, PITCH)
     return made
+
+
+def strap(canvas: Canvas, joints: Sequence[float], y: float, wide: float, ends: tuple[float, float]) -> None:
+    """A strap of the top metal along a column, with vias to what joins its rails at each of ``joints``."""
+    canvas.wire(TOP, ends[0], y - wide / 2, ends[1], y + wide / 2)
+    count = max(1, int((wide - 0.6) / VIA_PITCH))
+    for x in joints:
+        for k in range(count):
+            canvas.square(canvas.process.vias[FOURTH].gds, x, y + (k - (count - 1) / 2) * VIA_PITCH, VIA)
+        canvas.wire(FOURTH, x - VIA_PAD, y - wide / 2, x + VIA_PAD, y + wide / 2)

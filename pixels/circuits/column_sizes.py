@@ -274,4 +274,4 @@ def size(spec: ColumnSpec, process: ModuleType, hold: float = HOLD) -> ColumnSiz
 def drawn(width: float) -> float:
     """The nearest width (um) of equal fingers: one below 2 um, else an even number of at most FINGER."""
     fingers = 1 if width < 2 else 2 * ceil(width / FINGER / 2)
-    return round(max(0.42, round(width / fingers / 0.005) * 0.005) * fingers, 3)
+    return round(max(0.42, round(width / fingers, 2)) * fingers, 2)
