@@ -12,7 +12,7 @@ each at its track's height in the strip that it comes from. What crosses all col
 strips: a column has a via at its own of the lanes' lines, of the groups' and of the places'.
 """
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -280,6 +280,7 @@ class ColumnPlan:
     joints: Mapping[str, tuple[float, ...]]
     plates: tuple[Drawn, ...]
     right: float
+    free: tuple[str, ...] = ()
 
 
 def length_um(farad: float, masks: AnalogMasks) -> float:
@@ -301,8 +302,10 @@ def names(net: str) -> tuple[str, ...]:
     return tuple(f"{net}{k}" for k in range(GROUPED[net])) if net in GROUPED else (net,)
 
 
-def column_plan(d: Mapping[str, Device], sizes: ColumnSizes, masks: AnalogMasks) -> ColumnPlan:
-    """Raises ParameterError where a strip has more nets than tracks, or a line no place."""
+def column_plan(
+    d: Mapping[str, Device], sizes: ColumnSizes, masks: AnalogMasks, extra: Iterable[str] = ()
+) -> ColumnPlan:
+    """extra: names of lines across, beside those of its nets. Raises ParameterError where a strip has more nets than tracks, or a line no place."""
     farads = {c.name: c.value for c in flat.capacitors(column(sizes))}
     x, plates, strips = FIRST, list[Drawn](), list[Plan]()
     lines, joints = dict[str, float](), dict[str, tuple[float, ...]]()
@@ -323,7 +326,15 @@ def column_plan(d: Mapping[str, Device], sizes: ColumnSizes, masks: AnalogMasks)
         x = strip.right + EXIT
     if lacking := {line for net in (*GROUPED, *SINGLE) for line in names(net)} - lines.keys():
         raise ParameterError(f"column: line {min(lacking)} must have a place")
-    return ColumnPlan(tuple(strips), lines, joints, tuple(plates), snap(x + PAD_AT))
+    wide = {name: LANE if net.startswith(("lane", "sense")) else LINE for net in GROUPED for name in names(net)}
+    for name in extra:
+        taken = [(at, (wide.get(own, LINE) + LINE) / 2 + LEAST) for own, at in lines.items()]
+        places = (snap(s.left + STEP * k) for s in strips for k in range(2, int((s.right - s.left) / STEP) - 1))
+        free = (place for place in places if all(abs(place - at) >= apart - 1e-9 for at, apart in taken))
+        lines[name] = next(free, -1.0)
+        if lines[name] < 0:
+            raise ParameterError(f"column strips: must have room for line {name}")
+    return ColumnPlan(tuple(strips), lines, joints, tuple(plates), snap(x + PAD_AT), tuple(extra))
 
 
 def _strip(
@@ -411,12 +422,12 @@ def _plate(canvas: Canvas, masks: AnalogMasks, plate: Drawn) -> None:
     ends = _patch(plate)
     left, right = plate.left + PATCH_IN, plate.right - PATCH_IN
     canvas.wire(FOURTH, left, ends[0], right, ends[1])
-    for x in _steps(left, right):
-        for y in _steps(*ends):
+    for x in steps(left, right):
+        for y in steps(*ends):
             canvas.square(masks.base.vias[THIRD].gds, x, y, 0.2)
 
 
-def _steps(low: float, high: float) -> Iterator[float]:
+def steps(low: float, high: float) -> Iterator[float]:
     """Places of vias in a piece of metal."""
     count = max(1, int((high - low - 0.4) / VIAS) + 1)
     for k in range(count):

@@ -3,16 +3,15 @@
 from itertools import pairwise
 
 from .amplifier import BIAS
-from .amplifier import UNIT as CELL
 from .column import BIASES, CONTROLS, OF_TAPS, SUPPLIES, SWITCH, SWITCH_P, TAPS, n, p
-from .column_sizes import CASCODE, CASCODE_P, FRONT, LANE_TOP, PARTS, TOP, ColumnSizes, ColumnSpec
+from .column_sizes import CASCODE, CASCODE_P, FRONT, LANE_TOP, PARTS, TOP, ColumnSizes, ColumnSpec, drawn
 from .gates import LENGTH, inverter, nand, nor
 from .netlist import Capacitor, Circuit, Instance, Resistor, Transistor
 from .row_driver import nand_of
 
 POWER = ("p", LENGTH)
 BRANCH = 1.25e-6  # A, of each branch of the bias
-DECOUPLING = 10e-12  # F at each of its lines for a lane
+DECOUPLING = 5e-12  # F at each of its lines
 STACK, STACK_P = (0.42, ("n_lvt", 5.0)), (0.42, ("p", 2.0))  # um, of the diodes that make the cascodes' gates
 LEG = 0.8  # um, of a branch of the bias
 SECTIONS = 12  # of a lane's line
@@ -23,8 +22,7 @@ BANK_INPUTS = ("ref_ctl", "read", "tap0", "tap1", "mode0", "mode1", "hold")
 BANK_INPUTS += tuple(f"{name}{bit}" for name, bits in (("group", 3), ("k", 3), ("sub", 2)) for bit in range(bits))
 LINES = tuple(f"group_{g}" for g in range(GROUPS)) + tuple(f"k_{k}" for k in range(PLACES))
 CASCODES = "cn", "vcn", "vcnb"  # lines that are not the bank's
-BANK_OUTPUTS = (*(name for name in CONTROLS if name not in CASCODES), "readsn", *OF_TAPS, *LINES)
-BANK_OUTPUTS += ("turn", "turnn", "turnb", "turnbn")
+BANK_OUTPUTS = (*(name for name in CONTROLS if name != "vcn"), *OF_TAPS, *LINES, "turn", "turnn", "turnb", "turnbn")
 
 
 def column_bias(sizes: ColumnSizes) -> Circuit:
@@ -38,17 +36,17 @@ def column_bias(sizes: ColumnSizes) -> Circuit:
         """A branch's current into a node."""
         times = amperes / front.current
         return (
-            p(f"{name}_top", f"{name}_high vbp vdd", round(front.top * times, 2), TOP),
-            p(f"{name}_cascode", f"{node} vcp {name}_high", round(front.cascode_p * times, 2), CASCODE_P),
+            p(f"{name}_top", f"{name}_high vbp vdd", drawn(front.top * times), TOP),
+            p(f"{name}_cascode", f"{node} vcp {name}_high", drawn(front.cascode_p * times), CASCODE_P),
         )
 
     devices = [
         *(n(f"one{k}", "ibias ibias vss", LEG, FRONT) for k in range(round(BIAS / BRANCH))),
         *(n(f"leg_{name}", f"{name} ibias vss", LEG, FRONT) for name in ("vbp", "vcp")),
-        n("leg_vbl", "vbl ibias vss", round(LEG * lane.current / PARTS / BRANCH, 2), FRONT),
+        n("leg_vbl", "vbl ibias vss", drawn(LEG * lane.current / PARTS / BRANCH), FRONT),
         *feed("vbp", "vbp"),
-        p("vbl_top", "vbl_high vbl vdd", round(lane.top / PARTS, 3), LANE_TOP),
-        p("vbl_cascode", "vbl vcp vbl_high", round(lane.cascode_p / PARTS, 3), CASCODE_P),
+        p("vbl_top", "vbl_high vbl vdd", drawn(lane.top / PARTS), LANE_TOP),
+        p("vbl_cascode", "vbl vcp vbl_high", drawn(lane.cascode_p / PARTS), CASCODE_P),
         p("vcp", "vcp vcp vdd", *STACK_P),
         *feed("vcn", "vcn"),
         n("vcn", "vcn vcn vss", *STACK),
@@ -58,7 +56,7 @@ def column_bias(sizes: ColumnSizes) -> Circuit:
     ]
     lines = tuple(
         Capacitor(
-            f"c_{name}", name, "vdd" if "p" in name or "b" in name else "vss", DECOUPLING, round(DECOUPLING / CELL)
+            f"c_{name}", name, "vss" if name == "vcn" else "vdd", DECOUPLING, 1
         )
         for name in BIASES
     )
@@ -95,7 +93,7 @@ def lane_end(sizes: ColumnSizes) -> Circuit:
         "lane_end",
         ("lane", "reference", "turn", "turnn", "vbl", "vcp", *SUPPLIES),
         (
-            p("on", "high turnn vdd", 10.0, POWER),
+            p("on", "high turnn vdd", 10.4, POWER),
             p("top", "above vbl high", one.top, LANE_TOP),
             p("cascode_p", "lane vcp above", one.cascode_p, CASCODE_P),
             n("rest_n", "lane turnn reference", 6.0, SWITCH),
@@ -130,12 +128,12 @@ def clear_pulse(sizes: ColumnSizes) -> Circuit:
 
     Pins ref refn clear vbp vdd vss.
     """
-    width, farad = max(0.42, round(sizes.front.top * BRANCH / sizes.front.current, 2)), CLEAR * BRANCH / 0.75
+    width, farad = drawn(sizes.front.top * BRANCH / sizes.front.current), CLEAR * BRANCH / 0.75
     return Circuit(
         "clear_pulse",
         ("ref", "refn", "clear", "vbp", *SUPPLIES),
         (p("charge", "ramp vbp vdd", width, TOP), n("stay", "ramp refn vss", 0.84, ("n", LENGTH))),
-        (Capacitor("ramp", "ramp", "vss", farad, round(farad / CELL)),),
+        (Capacitor("ramp", "ramp", "vss", farad, 1),),
         instances=(
             Instance("over", inverter(1, 2.0), ("ramp", "notyet", *SUPPLIES)),
             Instance("clear_n", nand(), ("ref", "notyet", "clearn", *SUPPLIES)),
@@ -145,7 +143,7 @@ def clear_pulse(sizes: ColumnSizes) -> Circuit:
 
 
 def bank(sizes: ColumnSizes) -> Circuit:
-    """What drives the lines that cross all columns. Pins BANK_INPUTS, BANK_OUTPUTS, vbp vdd vss.
+    """What drives the lines that cross all columns. Pins BANK_INPUTS, BANK_OUTPUTS, vbp vcn vdd vss.
 
     A group's line is high in a turn alone. `clear` ends by itself: a current charges a capacitor from the row's start
     on. The holder's reset ends before the signal half begins, and its capacitors part from x before all else. While a
@@ -185,6 +183,7 @@ def bank(sizes: ColumnSizes) -> Circuit:
     gate(nor(), "readn", gate(inverter(), gate(nor(), "ref", late("ref", "after"), "noref"), "anyref"), "signal")
     longer("signal", "sig", "sign")
     parts.append(Instance("clear", clear_pulse(sizes), ("ref", "refn", "clear", "vbp", *SUPPLIES)))
+    parts.append(Instance("cascodes", cascode_lines(), cascode_lines().ports))
     gate(inverter(6), gate(inverter(6), gate(nor(), "mode0", "mode1", "first"), "edgen"), "edge")
     decoded("tap", TAPS, 2, "now")
     longer("hold", "turned")
@@ -200,7 +199,26 @@ def bank(sizes: ColumnSizes) -> Circuit:
     gate(inverter(6), gate(nand(6), "hold", "edge", "turnbn"), "turnb")
     decoded("group", GROUPS, 3, "group_", ("turn",))
     decoded("k", PLACES, 3, "k_")
-    return Circuit("column_bank", (*BANK_INPUTS, *BANK_OUTPUTS, "vbp", *SUPPLIES), instances=tuple(parts))
+    return Circuit("column_bank", (*BANK_INPUTS, *BANK_OUTPUTS, "vbp", "vcn", *SUPPLIES), instances=tuple(parts))
+
+
+def band(sizes: ColumnSizes, lanes: int) -> Circuit:
+    """All that a block has beside its columns: bank, bias, the ends of the lanes' lines.
+
+    Pins BANK_INPUTS, BANK_OUTPUTS, ibias BIASES level reference dark, lane_a0 lane_b0 and so on, vdd vss.
+    """
+    made, end = bank(sizes), lane_end(sizes)
+    parts = [
+        Instance("bank", made, made.ports),
+        Instance("bias", column_bias(sizes), ("ibias", *BIASES, "level", *SUPPLIES)),
+    ]
+    for lane in range(lanes):
+        first = (f"lane_a{lane}", "reference", "turn", "turnn", "vbl", "vcp", *SUPPLIES)
+        second = (f"lane_b{lane}", "dark", "turnb", "turnbn", "vbl", "vcp", *SUPPLIES)
+        parts += [Instance(f"end_a{lane}", end, first), Instance(f"end_b{lane}", end, second)]
+    lines = (f"lane_{d}{lane}" for lane in range(lanes) for d in "ab")
+    pins = (*BANK_INPUTS, *BANK_OUTPUTS, "ibias", *BIASES, "level", "reference", "dark", *lines, *SUPPLIES)
+    return Circuit("column_band", pins, instances=tuple(parts))
 
 
 def taken(column: int, lanes: int, tile_cols: int = PLACES) -> tuple[int, dict[str, int]]:
