@@ -37,6 +37,7 @@ GAP = 1e-9  # s between controls that must not be high together: gate delays of 
 REST = 1  # cycles before the read, and between it and the turn
 WELLS = 0.0, 0.2, 0.4, 0.6, 0.8  # of a full well: a straight line through these
 BOTH = 0.8, 0.4  # of a full well, of the diodes whose mean is measured
+TRIMS = 2  # steps to the trimmed level
 FULL = 0.98  # of a full well: what is lost there
 LIGHT = 1e-6  # s in which the wells get their charge, while they are at no line
 QUIET = {f"{name}{t}": high for name, high in (("w", False), ("f", False), ("fn", True), ("unasked", True)) for t in range(1, columns.TAPS)}
@@ -91,7 +92,7 @@ def measure(
     setup: Setup, spec: ColumnSpec, sizes: ColumnSizes, corner: Corner, circuit: Circuit | None = None
 ) -> ColumnResult:
     """Everything of a column. circuit: in place of the bench of ``sizes``."""
-    start, runs, repeated = trimmed(setup, spec, sizes, corner, circuit), 1, 0
+    start, runs, repeated = trimmed(setup, spec, sizes, corner, circuit), TRIMS, 0
     end, lsb = turn_of(spec) + spec.cycle, spec.lsb
     with opened(setup, spec, sizes, corner, start, circuit=circuit) as spice:
         waves = [sample(spice, spec, corner, part * spec.fall, 0.0) for part in (*WELLS, FULL)]
@@ -125,12 +126,13 @@ def trimmed(
     setup: Setup, spec: ColumnSpec, sizes: ColumnSizes, corner: Corner, circuit: Circuit | None = None
 ) -> tuple[float, float]:
     """V of `start_a` and `start` at which a column without light is at the lanes' references."""
-    first = spec.dark - 0.1
-    with opened(setup, spec, sizes, corner, (first, first), circuit=circuit) as spice:
-        wave = sample(spice, spec, corner, 0.0, 0.0)
-    end = turn_of(spec) + spec.cycle
-    a, b = (first + (spec.dark - wave.at(f"far_{d}", end)) / sizes.follows for d in "ab")
-    return a, b
+    end, start = turn_of(spec) + spec.cycle, (spec.dark, spec.dark)
+    for _ in range(TRIMS):
+        with opened(setup, spec, sizes, corner, start, circuit=circuit) as spice:
+            wave = sample(spice, spec, corner, 0.0, 0.0)
+        a, b = (v + (spec.dark - wave.at(f"far_{d}", end)) / sizes.follows for v, d in zip(start, "ab", strict=True))
+        start = a, b
+    return start
 
 
 def settling(wave: Wave, spec: ColumnSpec) -> float:

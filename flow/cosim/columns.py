@@ -27,6 +27,8 @@ from .pixels import PixelSizes
 
 TIMING = AmpTiming()  # of a row with these columns: the holder has 16 cycles in each half
 CELSIUS = 25.0
+BEFORE = {"line_{d}{c}": 0.5, "xcolumn{c}.cin_{d}": 1.6}  # V of what floats, since the row before was read
+TRIMS = 2  # steps to the trimmed level
 LEVEL = 100e-9  # F at the wells' level, outside of the chip: a row's wells take 12 pC as they are reset
 SOURCE = "vbn", "vbp", "source", "start", "part_1", "part_2", "part_3"  # nodes of a bias
 RESTING = (*BIASES, "level", "ibias_columns", *(f"xcolumn_source.{name}" for name in SOURCE))
@@ -105,6 +107,8 @@ def lines(
         ends = " ".join(f"line_{d}{c}" for d in names)
         deck.append(f"Xpixel{c} well_a{c} well_b{c} {ends} reset{c} read{c} level 0 thick_pixel")
         deck += [f"Cline_{d}{c} line_{d}{c} 0 {spec.line:g}" for d in "ab"]
+        floats = {name.format(d=d, c=c): volts for name, volts in BEFORE.items() for d in "ab"}
+        deck.append(".ic " + " ".join(f"v({name})={volts:g}" for name, volts in floats.items()))
         lane = lanes[c]
         nodes = own | {f"column_{d}": f"line_{d}{c}" for d in "ab"} | {"group": f"turn_column{c}"}
         nodes |= {f"{name}_{d}": f"{name}{d}{lane}" for name in ("lane", "sense") for d in "ab"}
@@ -145,9 +149,9 @@ def drive(source: Drive, columns: Sequence[int], lanes: Sequence[int], first: in
 def trimmed(spec: ColumnSpec, edge: bool, cycle: float, high: float) -> tuple[tuple[float, float], dict[str, float]]:
     """V of `start_a` and `start` at which a pixel without light leaves its lanes' lines at dark, and of the bias's lines at rest.
 
-    Simulated once. Raises ToolError.
+    Simulated TRIMS times. Raises ToolError.
     """
-    sizes, pixels, start = size(spec, analog), PixelSizes(), spec.dark - 0.1
+    sizes, pixels = size(spec, analog), PixelSizes()
     reset, read, ends = 2, 6, 6 + spec.settle + spec.read
     turn = ends + 2
     halves = range(read, read + spec.settle), range(read + spec.settle, ends)
@@ -175,10 +179,13 @@ def trimmed(spec: ColumnSpec, edge: bool, cycle: float, high: float) -> tuple[tu
     inner = {one.name: one for part in parts for one in part.circuits().values()}
     deck = [*analog.cards("tt", set().union(*(one.sizes() for one in parts))), ".param cscale=1 rscale=1"]
     deck += [line for one in inner.values() for line in one.own_lines(analog)]
-    deck += lines({0: {0: (0.0, 0.0)}}, {0: lane_bit}, edge, 1.0, spec, sizes, pixels, (start, start), {})
-    outs = [f"col{d}{lane_bit}" for d in "ab"]
-    with Simulator(deck, tuple(waves), (*outs, *RESTING), {"vdd": high}, CELSIUS, EXACT) as spice:
-        wave = spice.transient(waves, dict.fromkeys(outs, spec.input), (turn + 1) * cycle, cycle / 5)
-    end = float(np.nextafter((turn + 1) * cycle, 0))
-    a, b = (start + (spec.dark - wave.at(out, end)) / sizes.follows for out in outs)
-    return (a, b), {"vdd": high} | {name: wave.at(name, 0.0) for name in RESTING}
+    outs, found = [f"col{d}{lane_bit}" for d in "ab"], dict[str, float]()
+    start = spec.dark, spec.dark
+    for _ in range(TRIMS):
+        own = lines({0: {0: (0.0, 0.0)}}, {0: lane_bit}, edge, 1.0, spec, sizes, pixels, start, {})
+        with Simulator([*deck, *own], tuple(waves), (*outs, *RESTING), {"vdd": high}, CELSIUS, EXACT) as spice:
+            wave = spice.transient(waves, dict.fromkeys(outs, spec.input), (turn + 1) * cycle, cycle / 5)
+        end = float(np.nextafter((turn + 1) * cycle, 0))
+        a, b = (v + (spec.dark - wave.at(out, end)) / sizes.follows for v, out in zip(start, outs, strict=True))
+        start, found = (a, b), {name: wave.at(name, 0.0) for name in RESTING}
+    return start, {"vdd": high} | found
