@@ -40,7 +40,11 @@ BOTH = 0.8, 0.4  # of a full well, of the diodes whose mean is measured
 TRIMS = 2  # steps to the trimmed level
 FULL = 0.98  # of a full well: what is lost there
 LIGHT = 1e-6  # s in which the wells get their charge, while they are at no line
-QUIET = {f"{name}{t}": high for name, high in (("w", False), ("f", False), ("fn", True), ("unasked", True)) for t in range(1, columns.TAPS)}
+QUIET = {
+    f"{name}{t}": high
+    for name, high in (("w", False), ("f", False), ("fn", True), ("unasked", True))
+    for t in range(1, columns.TAPS)
+}
 DRIVEN = (
     "group",
     "k",
@@ -67,11 +71,11 @@ STRAY = 40e-15  # F at the holder's output
 class ColumnResult:
     """At one corner; LSB of the lane's converter in edge mode where nothing else is said.
 
-    start: V of both diodes at which a column without light leaves its lanes at their references. slope: V of the lane's line over the
-    ideal one; mean: of both diodes' mean, in the modes with codes 0..255. inl: peak off a straight line through WELLS.
-    full: lost at FULL of a well. other: of the second diode by
-    the first's light. settling: s of the turn until half an LSB, the slowest. droop: until the last column's turn.
-    energy: J a pixel. idle: A of a column in which nothing happens.
+    start: V of both diodes at which a column without light leaves its lanes at their references. slope: V of the
+    lane's line over the ideal one; mean: of both diodes' mean, in the modes with codes 0..255. inl: peak off a straight
+    line through WELLS. full: lost at FULL of a well. other: of the second diode by the first's light. settling: s of
+    the turn until half an LSB, the slowest. droop: until the last column's turn. energy: J a pixel. idle: A of a column
+    in which nothing happens.
     """
 
     start: tuple[float, float]
@@ -143,7 +147,9 @@ def settling(wave: Wave, spec: ColumnSpec) -> float:
     return float(wave.time[inside][out].max(initial=begin) - begin)
 
 
-def offset(setup: Setup, spec: ColumnSpec, sizes: ColumnSizes, corner: Corner, start: tuple[float, float], seed: int) -> float:
+def offset(
+    setup: Setup, spec: ColumnSpec, sizes: ColumnSizes, corner: Corner, start: tuple[float, float], seed: int
+) -> float:
     """LSB by which both diodes' lines differ without light, of a column with the models' own mismatch."""
     end = turn_of(spec) + spec.cycle
     with opened(setup, spec, sizes, corner, start, seed=seed) as spice:
@@ -201,7 +207,14 @@ def bench(sizes: ColumnSizes, spec: ColumnSpec) -> Circuit:
             Capacitor(f"well_{d}", f"well_{d}", "vss", spec.well, 1),
             Capacitor(f"input_{d}", f"far_{d}", "vss", spec.input),
         ]
-    own = (*(name for name in DRIVEN if name not in ("fill", "x_a", "x_b")), "well_a", "well_b", "level", "start", "start_a")
+    own = (
+        *(name for name in DRIVEN if name not in ("fill", "x_a", "x_b")),
+        "well_a",
+        "well_b",
+        "level",
+        "start",
+        "start_a",
+    )
     own += ("dark", "reference", "far_a", "far_b", "vdd_bias", "vdd_own", *SUPPLIES)
     return Circuit("bench", own, tuple(devices), tuple(capacitors), instances=tuple(parts))
 

@@ -73,7 +73,8 @@ def lines(
 ) -> list[str]:
     """Lines of the deck; see `drive` for their controls. lanes: of each column; the lanes' lines end at cola0, colb0.
 
-    diodes: (a, b) in LSB of each column and tap. edge: lanes get both diodes, else the mean. start: V of start_a and start, trimmed.
+    diodes: (a, b) in LSB of each column and tap. edge: lanes get both diodes, else the mean. start: V of start_a and
+    start, trimmed.
     rest: V of RESTING, with which it begins: an operating point of so many nodes that float takes minutes.
     swapped: columns whose diodes are on each other's line. cut: column from which on the row's read line is open.
     """
@@ -147,7 +148,7 @@ def drive(source: Drive, columns: Sequence[int], lanes: Sequence[int], first: in
 
 @cache
 def trimmed(spec: ColumnSpec, edge: bool, cycle: float, high: float) -> tuple[tuple[float, float], dict[str, float]]:
-    """V of `start_a` and `start` at which a pixel without light leaves its lanes' lines at dark, and of the bias's lines at rest.
+    """V of start_a and start at which a pixel without light leaves its lanes at dark, of the bias's lines at rest.
 
     Simulated TRIMS times. Raises ToolError.
     """

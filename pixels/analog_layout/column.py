@@ -7,7 +7,7 @@
                p  transistors of both charge amplifiers; of the second stages, the taps, the decoder
     rail vss   ================
 
-Capacitors are metal-insulator-metal, their lower plates at what is driven. Under them run the lines of the second metal,
+Capacitors are metal-insulator-metal, their lower plates at what is driven. Under them run lines of the second metal,
 each at its track's height in the strip that it comes from. What crosses all columns is on the fourth metal over the
 strips: a column has a via at its own of the lanes' lines, of the groups' and of the places'.
 """
@@ -31,6 +31,7 @@ from .flat import Plate, Tap
 from .strip import (
     FOURTH,
     RAIL_AT,
+    RAIL_HALF,
     RAIL_TRUNK,
     SECOND,
     THIRD,
@@ -56,8 +57,7 @@ PAD = 0.19, 0.33  # half of the third metal at those vias: its least area
 UNDER = 0.28  # width of the lines under the plates
 OUT, EXIT, JOGS = 0.35, 3.2, (2.2, 3.0)  # from a strip's end to its lines' vias; to a plate; to what leaves above
 WAYS = {"column_a": 2.5, "column_b": 7.5, "cin_b": 2.0, "cin_a": 4.0}  # y of what leaves on the fourth metal
-STRAP, TOP = 2.4, 5  # of the top metal along a column
-VIA, VIA_PITCH, VIA_PAD = 0.8, 1.6, 0.59  # of its vias; half of their pad below
+RAILS = 1  # the metal of the rails
 LANES = 8
 GROUPED = {"group": GROUPS, "k": PLACES} | {f"{name}_{d}": LANES for name in ("lane", "sense") for d in "ab"}
 SINGLE = (*CONTROLS, *OF_TAPS, "vbp", "vcp", "level", "start", *TWICE)
@@ -113,32 +113,44 @@ def _tap_piece(t: int) -> Piece:
 PIECES = (
     Piece(
         (
-            "front_b.clear",
             "front_a.clear",
             "front_a.in",
             "front_a.cascode",
-            "front_b.in",
-            "front_b.cascode",
             "quarter_a_n",
             "half_a_n",
             "half_rest",
             "quarter_b_n",
+            "front_b.cascode",
+            "front_b.in",
+            "front_b.clear",
         ),
         (
             "",
-            "",
-            "front_b.top",
-            "front_b.cascode_p",
             "front_a.top",
             "front_a.cascode_p",
-            "quarter_b_p",
-            "",
             "quarter_a_p",
             "half_a_p",
+            "",
+            "quarter_b_p",
+            "front_b.cascode_p",
+            "front_b.top",
         ),
         ("out_a", "out_b"),
         ("out_a", "out_b", "quarter", "half", "cn", "vbp", "vcp"),
-        {"cn": 1, "vbp": 11, "vcp": 10, "out_a": 3, "out_b": 4, "quarter": 5, "half": 6, "column_a": 7, "column_b": 8},
+        # The columns' lines beside what is quiet: an output beside the other diode's line would be its light in it
+        {
+            "cn": 1,
+            "column_a": 2,
+            "edge": 3,
+            "quarter": 4,
+            "out_a": 5,
+            "out_b": 6,
+            "half": 7,
+            "edgen": 8,
+            "column_b": 9,
+            "vcp": 10,
+            "vbp": 11,
+        },
     ),
     Piece(
         (
@@ -305,7 +317,10 @@ def names(net: str) -> tuple[str, ...]:
 def column_plan(
     d: Mapping[str, Device], sizes: ColumnSizes, masks: AnalogMasks, extra: Iterable[str] = ()
 ) -> ColumnPlan:
-    """extra: names of lines across, beside those of its nets. Raises ParameterError where a strip has more nets than tracks, or a line no place."""
+    """extra: names of lines across, beside those of its nets.
+
+    Raises ParameterError where a strip has more nets than tracks, or a line no place.
+    """
     farads = {c.name: c.value for c in flat.capacitors(column(sizes))}
     x, plates, strips = FIRST, list[Drawn](), list[Plan]()
     lines, joints = dict[str, float](), dict[str, tuple[float, ...]]()
@@ -344,7 +359,7 @@ def _strip(
     count = max(len(piece.n), len(piece.p))
     n, p = ([d.get(name) for name in row] + [None] * (count - len(row)) for row in (piece.n, piece.p))
     row_n, row_p, right = in_columns(list(zip(n, p, strict=True)), left, ROOM)
-    ends: dict[str, tuple[float, ...]] = {net: (left - OUT,) for net in piece.west}
+    ends: dict[str, tuple[float, ...]] = dict.fromkeys(piece.west, (left - OUT,))
     ends |= {net: (*ends.get(net, ()), right + OUT) for net in piece.east}
     present = {net for one in (*row_n, *row_p) for net in one.device.transistor.nodes}
     if number < 2:
@@ -391,17 +406,19 @@ def _lines(plan: Plan, present: Collection[str], left: float, right: float, numb
 
 
 def draw_column(canvas: Canvas, masks: AnalogMasks, made: ColumnPlan) -> list[Strip]:
-    """A column, its south edge at y = 0, with its part of the supplies and single lines that cross all columns."""
+    """A column, its south edge at y = 0, with its part of the supplies that cross all columns, and vias to lines."""
     y, strips = BETWEEN / 2, list[Strip]()
     for plan in made.strips:
         strip = draw_rows(canvas, masks, plan, y)
         draw_rails(canvas, masks, plan, y)
         join_rails(canvas, [strip])
         strips.append(strip)
+    ends = made.strips[0].left, made.strips[-1].right
+    for rail in (y, PITCH - y):  # beside the plates from strip to strip
+        canvas.wire(RAILS, ends[0], rail - RAIL_HALF, ends[1], rail + RAIL_HALF)
     for x in made.joints["vss"] + made.joints["vdd"]:
         canvas.wire(FOURTH, x - RAIL_TRUNK / 2, 0, x + RAIL_TRUNK / 2, PITCH)
     for net in SINGLE:
-        canvas.wire(FOURTH, made.lines[net] - LINE / 2, 0, made.lines[net] + LINE / 2, PITCH)
         for strip in strips:
             for track in strip.tracks:
                 if track.net == net and track.left <= made.lines[net] <= track.right:
@@ -500,22 +517,12 @@ def column_cell(masks: AnalogMasks, sizes: ColumnSizes) -> Cell:
         if net in ("column_a", "column_b"):
             canvas.label(FOURTH, net, 0.2, WAYS[net])
         elif net in SINGLE:
+            canvas.wire(FOURTH, plan.lines[net] - LINE / 2, 0, plan.lines[net] + LINE / 2, PITCH)
             canvas.label(FOURTH, net, plan.lines[net], 0.2)
         elif net in GROUPED:
             track = next(one for one in made.tracks if one.net == net)
             canvas.label(THIRD, net, track.left + 0.3, track.y)
-    for net, y in (("vss", 2.5), ("vdd", 7.5)):
-        strap(canvas, plan.joints[net], y, STRAP, (0.0, plan.right))
-        canvas.label(TOP, net, 1.0, y)
+    for net, y in (("vss", BETWEEN / 2), ("vdd", PITCH - BETWEEN / 2)):
+        canvas.label(RAILS, net, plan.strips[0].left, y)
     canvas.box(masks.base.outline, 0, 0, plan.right, PITCH)
     return made
-
-
-def strap(canvas: Canvas, joints: Sequence[float], y: float, wide: float, ends: tuple[float, float]) -> None:
-    """A strap of the top metal along a column, with vias to what joins its rails at each of ``joints``."""
-    canvas.wire(TOP, ends[0], y - wide / 2, ends[1], y + wide / 2)
-    count = max(1, int((wide - 0.6) / VIA_PITCH))
-    for x in joints:
-        for k in range(count):
-            canvas.square(canvas.process.vias[FOURTH].gds, x, y + (k - (count - 1) / 2) * VIA_PITCH, VIA)
-        canvas.wire(FOURTH, x - VIA_PAD, y - wide / 2, x + VIA_PAD, y + wide / 2)

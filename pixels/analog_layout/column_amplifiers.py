@@ -5,7 +5,7 @@ north     column_a, column_b of each column
           band: bank, bias, the ends of the lanes' lines
 south     the chip's pins | lane_a, lane_b of each lane | dark, reference, start, start_a, level, ibias_columns
 
-Supplies are straps of the top metal over the columns, in turn the supply's and the ground's, and between them across the
+Supplies are straps of the top metal over the columns, in turn the supply's and the ground's; between them, across the
 band. The pins in the south-east are none of the black box: the die has pins for them.
 """
 
@@ -21,12 +21,12 @@ from talbot.pixels.footprints import draw_pins, lef
 from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.analog import AnalogMasks
 
-from .cells import Cell, new_canvas
-from .column import LANES, PITCH, TOP, VIA, VIA_PAD, VIA_PITCH
+from .cells import new_canvas
+from .column import LANES, PITCH
 from .column_band import Band, draw_band
 from .columns import END, Columns, column_nets, draw_columns, draw_way
 from .device import snap
-from .row_drivers import chip_pin
+from .row_drivers import TOP, VIA, VIA_PAD, VIA_PITCH, chip_pin
 from .strip import FOURTH, TRUNK
 
 NAME = "column_amplifiers"
@@ -135,9 +135,7 @@ def frame(array: ArrayParameters, chip: ChipParameters, room: AnalogSizes) -> Bl
     first = max(pin.at_um for pin in block.pins if pin.side == "south") + room.bias_um + room.lane_um
     number = round(first / PITCH)
     names = {**OUTSIDE, SOURCE: "input"}
-    extra = (
-        Pin(name, way, "south", PITCH * (number + EAST * k)) for k, (name, way) in enumerate(names.items(), 1)
-    )
+    extra = (Pin(name, way, "south", PITCH * (number + EAST * k)) for k, (name, way) in enumerate(names.items(), 1))
     return replace(block, pins=(*block.pins, *extra))
 
 

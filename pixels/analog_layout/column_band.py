@@ -252,7 +252,7 @@ def _device(t: Transistor) -> Device:
 
 
 def _ramp(canvas: Canvas, masks: AnalogMasks, sizes: ColumnSizes, bank: Group, top: float) -> flat.Plate:
-    """The pulse's capacitor, above the bank's west: its upper plate's metal between two ways, its lower one at the ground."""
+    """The pulse's capacitor, above the bank's west: its upper plate's metal between two ways, the lower at ground."""
     pulse = next(c for c in flat.capacitors(band(sizes, 1)) if c.name == "bank.clear.ramp")
     left, low, high = WEST + 1.0, top + RAMP_UP, snap(top + RAMP_UP + _high(pulse.value, RAMP_WIDE, masks))
     canvas.box(masks.mim, left, low, left + RAMP_WIDE, high)

@@ -1,19 +1,18 @@
-"""All columns side by side, lying: what crosses them, and each one's vias to its own of the lanes', groups' and places'.
+"""All columns side by side, lying: what crosses them, each one's vias to its own of the lanes', groups' and places'.
 
 What goes on to the south is on the second metal between two columns, at a multiple of their pitch: a `way`.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from talbot.base.gds import db
-from talbot.pixels.circuits.column import PINS, SUPPLIES, column, line
+from talbot.pixels.circuits.column import PINS, SUPPLIES, line
 from talbot.pixels.circuits.column_block import LINES, taken
 from talbot.pixels.circuits.column_sizes import ColumnSizes
 from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.analog import AnalogMasks
 
-from . import flat
 from .cells import Cell
 from .column import (
     GROUPED,
@@ -22,6 +21,7 @@ from .column import (
     LINE,
     PAD,
     PITCH,
+    SINGLE,
     ColumnPlan,
     as_cell,
     column_plan,
@@ -74,7 +74,7 @@ def draw_columns(
     whole = Canvas(layout, "columns", masks.base)
     step = db.Vector(0, whole.snap(PITCH))
     whole.cell.insert(db.CellInstArray(one.cell.cell_index(), db.Trans(), step, db.Vector(1, 0), count, 1))
-    for net in (*GROUPED, *plan.free):
+    for net in (*GROUPED, *SINGLE, *plan.free):
         wide = LANE if net.startswith(("lane", "sense")) else LINE
         for name in names(net):
             x = plan.lines[name]
@@ -84,7 +84,7 @@ def draw_columns(
     tracks = {track.net: track.y for track in one.tracks if track.net in GROUPED}
     for number in range(count):
         lane, code = taken(number, LANES)
-        own = {net: code[net] if net in code else lane for net in GROUPED}
+        own = {net: code.get(net, lane) for net in GROUPED}
         for net, k in own.items():
             x, y = plan.lines[f"{net}{k}"], number * PITCH + tracks[net]
             whole.cell.insert(db.CellInstArray(via.cell.cell_index(), db.Trans(whole.snap(x), whole.snap(y))))

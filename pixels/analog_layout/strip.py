@@ -53,8 +53,8 @@ class Plan:
     n, p: rows. left, right: its ends, um. axis: of its symmetry, or None. split, twisted: pairs of nets that are mirror
     images, the western one first. through: x up to which the
     tracks of nets that meet other strips go, too. rails: nets without tracks, the lower rail's first. quiet: nets whose
-    tracks are together, away from the others. least_um: of its height. fixed: rows of nets that go on in other strips at
-    the same height; least_rows: of tracks, that there always are. track_in: um from a rail's middle to the first.
+    tracks are together, away from the others. least_um: of its height. fixed: rows of nets that go on in other strips
+    at the same height; least_rows: of tracks, that there always are. track_in: um from a rail's middle to the first.
     """
 
     n: tuple[Placed, ...]

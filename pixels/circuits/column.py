@@ -17,8 +17,9 @@ that; reset noise, charge and offset of what was before the signal half are take
 until the column's turn. Then the holder's transistor drives the lane through a cascode of its own, with the lane's
 source of current (`lane_end`) and Chold alone as its feedback: lane = dark - 2 (the well's fall). It is the transistor
 that the holder was reset to: its threshold is in no sample. Its gate is higher then, by a hundred times the current: a
-capacitor from x to what rises to start (`kick`) brings that, or the holder would have to reach below ground. `start` and
-`start_a`, of the second and the first diode, are trimmed until a column without light is at the lanes' reference. Without the gate of its cascodes, cn, a column takes no current.
+capacitor from x to what rises to start (`kick`) brings that, or the holder would have to reach below ground. start and
+start_a, of the second and the first diode, are trimmed until a column without light is at the lanes' reference.
+Without the gate of its cascodes, cn, a column takes no current.
 
 In the modes with codes 0..255 (edgen) a quarter of the first diode's Cin is at either charge amplifier's output and a
 half at none: lane_a is dark - (a + b) / 2 then, and its reference a quarter of the swing below dark.
@@ -35,7 +36,7 @@ SUPPLIES = "vdd", "vss"
 BIASES = "vbp", "vcp", "vcn", "vbl"  # lines of the bias
 CONTROLS = ("clear", "reads", "cn", "ref", "sig", "sign", "edge", "edgen", "idle", "vcn", "vcnb")
 OF_TAPS = tuple(f"{name}{t}" for name in ("w", "f", "fn", "unasked") for t in range(TAPS))
-# Those that the first diode's second stage has lines of its own of: on all but start_a is the same, `reads` on `reads_a`
+# Of those the first diode's second stage has lines of its own: on all but start_a is the same, `reads` on `reads_a`
 SHARED = ("reads", "cn", "ref", "sig", "sign", "idle", "vbp", "vcp", "level", "start", "w0", "f0", "fn0")
 TWICE = tuple(f"{name}_a" for name in SHARED)
 PINS = ("column_a", "column_b", "lane_a", "sense_a", "lane_b", "sense_b", "group", "k", *CONTROLS, *OF_TAPS)

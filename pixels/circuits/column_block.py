@@ -54,12 +54,7 @@ def column_bias(sizes: ColumnSizes) -> Circuit:
         n("level_in", "level_low level vss", front.input, FRONT),
         n("level_under", "level vcn level_low", front.cascode, CASCODE),
     ]
-    lines = tuple(
-        Capacitor(
-            f"c_{name}", name, "vss" if name == "vcn" else "vdd", DECOUPLING, 1
-        )
-        for name in BIASES
-    )
+    lines = tuple(Capacitor(f"c_{name}", name, "vss" if name == "vcn" else "vdd", DECOUPLING, 1) for name in BIASES)
     return Circuit("column_bias", ("ibias", *BIASES, "level", *SUPPLIES), tuple(devices), lines)
 
 

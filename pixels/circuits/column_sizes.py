@@ -19,7 +19,7 @@ from .amplifier import GAIN, UNITS
 from .amplifier import UNIT as CELL
 from .specification import LaneSpec, one_digit
 
-# Roles and lengths (um): input of the charge amplifier; of the holder, which drives the lane; cascodes, sources of current
+# Roles and lengths (um): inputs of the charge amplifier and of the holder, which drives the lane; cascodes, sources
 FRONT, LANE, CASCODE = ("n", 1.0), ("n", 0.5), ("n_lvt", 0.5)
 TOP, CASCODE_P, LANE_TOP = ("p", 2.0), ("p", 0.5), ("p", 0.5)
 BACK_TOP = TOP
@@ -28,6 +28,7 @@ PARTS = 16  # of what drives the lane: a replica is one of them
 FULL = 127.5  # LSB of a diode whose well is full
 TIMES = 2.0  # Cin over Chold: the holder's gain
 EXPOSED = 0.006  # of a charge that the signal half may leave at the typical corner
+BEYOND = 0.0023  # more of a charge is lost, as measured there
 ACROSS = 0.14e-15  # F, of transistors across Cf
 JUNCTIONS = 9e-15  # F, of a column that is not selected, at its lane's line
 LEFT = 0.3  # of a limit, at the typical corner: others are slower
@@ -256,7 +257,7 @@ def size(spec: ColumnSpec, process: ModuleType, hold: float = HOLD) -> ColumnSiz
         above *= process.operating(*CASCODE_P, EFFICIENCY["cascode_p"]).gain
         return 1 / (1 / below + EFFICIENCY["top"] / EFFICIENCY[name] / above)
 
-    lost = EXPOSED + 1 / (beta * gain(FRONT, "front", TOP))
+    lost = EXPOSED + BEYOND + 1 / (beta * gain(FRONT, "front", TOP))
     lost += 1 / (back_beta * gain(LANE, "back", BACK_TOP))
     lost += (hold * (1 + KICK) + gate) / hold / gain(LANE, "lane", LANE_TOP)
     lane = stage(LANE, "lane", LANE_TOP, lane_gm)
