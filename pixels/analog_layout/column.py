@@ -67,7 +67,7 @@ SINGLE = (*CONTROLS, *OF_TAPS, "vbp", "vcp", "level", "start", *TWICE)
 class Piece:
     """A strip: its n and p transistors from the west; rows of the tracks of nets that leave it at a height of theirs.
 
-    west, east: nets that leave it under the plates beside it.
+    west, east: nets that leave it under the plates beside it. shields: quiet nets whose tracks are as long as it is.
     """
 
     n: tuple[str, ...]
@@ -75,6 +75,7 @@ class Piece:
     west: tuple[str, ...] = ()
     east: tuple[str, ...] = ()
     fixed: Mapping[str, int] = field(default_factory=dict)
+    shields: tuple[str, ...] = ()
 
 
 class Cap(NamedTuple):
@@ -151,6 +152,7 @@ PIECES = (
             "vcp": 10,
             "vbp": 11,
         },
+        ("cn", "edge", "edgen", "vcp"),
     ),
     Piece(
         (
@@ -361,6 +363,7 @@ def _strip(
     row_n, row_p, right = in_columns(list(zip(n, p, strict=True)), left, ROOM)
     ends: dict[str, tuple[float, ...]] = dict.fromkeys(piece.west, (left - OUT,))
     ends |= {net: (*ends.get(net, ()), right + OUT) for net in piece.east}
+    ends |= {net: (*ends.get(net, ()), left + 0.5, right - 0.5) for net in piece.shields}
     present = {net for one in (*row_n, *row_p) for net in one.device.transistor.nodes}
     if number < 2:
         ways = ("column_a", "column_b") if number == 0 else ("cin_a", "cin_b")

@@ -16,7 +16,7 @@ pytestmark = pytest.mark.skipif(not shutil.which("ngspice"), reason="needs ngspi
 SETUP, _ = job.setup_of("sky130")
 CORNER = Corner.parse(job.TYPICAL)
 SPEC, SIZES = job.column_of(SETUP)
-START = SPEC.dark - 0.08
+START = SPEC.dark - 0.09, SPEC.dark - 0.09
 
 
 def fall(a: float, b: float, image: bool = False, circuit=None) -> tuple[float, float]:
