@@ -79,17 +79,21 @@ class Piece:
 
 
 class Cap(NamedTuple):
-    """A capacitor beside a strip: its plates' nets; the strip that its lines come from is in the east."""
+    """A capacitor beside a strip: its plates' nets; the strip that its lines come from is in the east.
+
+    beside: F that the lines of both nets have already, as extracted.
+    """
 
     name: str
     lower: str
     upper: str
     from_east: bool = False
+    beside: float = 0.0
 
 
 def _hold(d: str, t: int, from_east: bool = False) -> Cap:
     tap = f"back_{d}.tap{t}."
-    return Cap(f"{tap}hold", f"{tap}outer", f"{tap}inner", from_east)
+    return Cap(f"{tap}hold", f"{tap}outer", f"{tap}inner", from_east, 4e-15 if t else 6e-15)
 
 
 def _kick(d: str, from_east: bool = False) -> Cap:
@@ -250,7 +254,7 @@ PIECES = (
 )
 # Between the strips, and at both ends of the column
 CAPS = (
-    (Cap("front_a.f", "out_a", "column_a", True), Cap("front_b.f", "out_b", "column_b", True)),
+    (Cap("front_a.f", "out_a", "column_a", True, 0.6e-15), Cap("front_b.f", "out_b", "column_b", True, 0.6e-15)),
     (
         Cap("in_b", "out_b", "cin_b"),
         Cap("in_a", "out_a", "cin_a"),
@@ -319,7 +323,7 @@ def names(net: str) -> tuple[str, ...]:
 def column_plan(
     d: Mapping[str, Device], sizes: ColumnSizes, masks: AnalogMasks, extra: Iterable[str] = ()
 ) -> ColumnPlan:
-    """extra: names of lines across, beside those of its nets.
+    """Plan a column. extra: names of lines across, beside those of its nets.
 
     Raises ParameterError where a strip has more nets than tracks, or a line no place.
     """
@@ -329,7 +333,7 @@ def column_plan(
     for number, group in enumerate(CAPS):
         for k, cap in enumerate(group):
             x = snap(x + PLATE_AT * (k > 0))
-            plates.append(Drawn(cap, x, snap(x + length_um(farads[cap.name], masks))))
+            plates.append(Drawn(cap, x, snap(x + length_um(farads[cap.name] - cap.beside, masks))))
             x = plates[-1].right
         if number == len(PIECES):
             break
