@@ -386,7 +386,7 @@ def _strip(
     return plan, lines
 
 
-def _lines(plan: Plan, present: Collection[str], left: float, right: float, number: int) -> dict[str, float]:
+def _lines(plan: Plan, present: set[str], left: float, right: float, number: int) -> dict[str, float]:
     """X of the lines over a strip: those of a group together, each as near as may be to the gates on it."""
     spans, taken, found = plan.spans(), list[tuple[float, float]](), dict[str, float]()
     own = sorted((set(GROUPED) | set(SINGLE)) & present)

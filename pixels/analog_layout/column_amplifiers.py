@@ -168,8 +168,8 @@ def _supplies(canvas: Canvas, block: Block, columns: Columns, band: Band, room: 
                 _vias(canvas, x, y, wide)
             west = max((other for other in others if other < x), default=None)
             east = min((other for other in others if other > x), default=width - 1.0)
-            begin = west + STRAP / 2 + APART if west is not None else x - wide / 2
-            if west == EDGE[1]:
+            begin = x - wide / 2 if west is None else west + STRAP / 2 + APART
+            if west is not None and west == EDGE[1]:
                 begin = west + EDGE[0] / 2 + 1.7
             y = HEIGHTS[net]
             canvas.wire(TOP, begin, y - ACROSS / 2, east - STRAP / 2 - APART, y + ACROSS / 2)
