@@ -22,15 +22,16 @@ from talbot.rtl.lint import lint
 from talbot.rtl.tops import PACKERS, PARTS, TOPS, WRAPPERS, build_top
 
 WRAPPER = Path(__file__).parent / "tinytapeout"
-BUS = "tt_bytes.v"
+BUS = "tt_bytes"
 BY_NAME = *PARTS, *PACKERS, *WRAPPERS
 
 
 def translate(name: str, sensor: SensorParameters) -> str:
     """The Verilog of top, part, packer or wrapper ``name`` for ``sensor``, as text. Raises ParameterError."""
     if name in WRAPPERS:
-        own = ((WRAPPER / file).read_text() for file in (f"{name}.v", BUS))
-        return "\n".join((*own, translate(WRAPPERS[name], sensor)))
+        own = (WRAPPER / f"{name}.v").read_text()
+        bus = [(WRAPPER / f"{BUS}.v").read_text()] if BUS in own else []
+        return "\n".join((own, *bus, translate(WRAPPERS[name], sensor)))
     return translate_component(build_top(name, sensor), name)
 
 

@@ -126,7 +126,11 @@ def pattern(sensor: SensorParameters) -> "Component":
 PARTS: dict[str, Build] = {"Balance": balance, "Pattern": pattern}
 
 # Of rtl.tinytapeout: Verilog around a top, exported by name only
-WRAPPERS = {"tt_um_talbot_divider": "QuadDividerRadix4", "tt_um_talbot_amp_ctrl": "AmpCtrl"}
+WRAPPERS = {
+    "tt_um_talbot_divider": "QuadDividerRadix4",
+    "tt_um_talbot_amp_ctrl": "AmpCtrl",
+    "tt_um_talbot_chip": "AspChip",
+}
 
 # Of rtl.run_length.candidates: exported by name only, to measure their sizes
 PACKERS = "BytePairPacker", "NibblePacker", "FixedRicePacker", "AdaptiveRicePacker", "PayloadPacker"

@@ -14,6 +14,7 @@ from .steps.antenna import Antenna
 from .steps.arrange import Arrange, ArrangeParameters
 from .steps.assemble import Assemble, AssembleParameters
 from .steps.block_liberty import BlockLiberty, BlockLibertyParameters
+from .steps.compiled import Compiled
 from .steps.drc import Drc
 from .steps.equivalence import Equivalence, EquivalenceParameters
 from .steps.extraction import Extraction, ExtractionBlocks
@@ -130,6 +131,7 @@ def signoff_steps(design: Design, options: Options) -> list[Step]:
     deck = FoundryDrcParameters(options.pdk, design.top)
     foundry = [{"klayout": FoundryDrc, "magic": MagicDrc}[name](deck) for name, _ in options.decks]
     steps: list[Step] = [
+        Compiled(PdkParameters(options.pdk)),
         Equivalence(EquivalenceParameters(design.top, design.clock.port, design.reset)),
         *netlist_tests(design),
         *foundry,

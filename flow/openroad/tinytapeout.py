@@ -46,6 +46,15 @@ PROJECTS = {  # by design
         "Write the address 0, then the six durations, n_cm, and the byte that starts a row, with hold free high. The "
         "outputs then show one row's phases: no two of pixel_reset, integrate, cm_reset and read are high at once.",
     ),
+    "tt_asp_chip": Project(
+        "Readout chip of an angle-sensitive-pixel sensor",
+        "Readout, converters' logic, phase divider and run-length encoder of a 384 x 384 light-field sensor",
+        ("sclk", "csn", "mosi", "link_rdy", "", "", "", ""),
+        tuple(f"link_data {k}" for k in range(8)),
+        ("pixel_reset", "integrate", "read", "hold", "miso", "frame_sync", "link_val", "busy"),
+        "Write a frame's registers over SPI, test_pattern among them, and the command start: the frame of a digital "
+        "image comes out of the link. talbot.models.chip gives its bytes, talbot decode the image.",
+    ),
 }
 
 

@@ -45,11 +45,11 @@ SETTINGS: Sequence[tuple[str, Mapping[str, Any]]] = (
     ("two_branch", {}),
     ("sparse", {}),
     ("sparse", {"stride": 9}),
-    ("sparse", {"stride": 3}),
+    ("sparse", {"stride": 5}),
     ("sparse", {"stride": 2}),
     ("sparse", {"atoms": 64}),
     ("sparse", {"atoms": 192}),
-    ("sparse", {"iterations": 60}),
+    ("sparse", {"iterations": 20}),
 )
 
 

@@ -54,9 +54,9 @@ class Coding:
     [Jayasuriya2017], Sec. 3.3.2.
     """
 
-    stride: int = 5
-    iterations: int = 20
-    penalty: float = 0.1
+    stride: int = 3
+    iterations: int = 60
+    penalty: float = 0.04
     noise: float = 0.006
     floor_sum: float = 0.05
     floor_difference: float = 0.005

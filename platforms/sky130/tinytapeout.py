@@ -9,7 +9,7 @@ from talbot.platforms.frame import Frame
 from . import layers
 from .cells import SITE
 
-SIZES_UM = {"1x1": (161.00, 111.52), "1x2": (161.00, 225.76), "2x2": (334.88, 225.76)}
+SIZES_UM = {"1x1": (161.00, 111.52), "1x2": (161.00, 225.76), "2x2": (334.88, 225.76), "4x4": (682.64, 511.36)}
 BYTES = "ui_in", "uio_in", "uo_out", "uio_out", "uio_oe"
 PORTS = "ena", "clk", "rst_n", *(f"{name}[{bit}]" for name in BYTES for bit in range(8))  # from the east on
 FIRST_UM, PITCH_UM = 146.74, 2.76

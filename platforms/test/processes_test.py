@@ -3,6 +3,7 @@
 import asyncio
 import importlib.util
 import re
+import sys
 
 import pytest
 
@@ -79,6 +80,20 @@ def test_a_busy_machine_has_a_minute_for_a_cell(tmp_path, monkeypatch):
     slow = imported("slow_process")
     assert not slow.running and slow.loop.is_closed()
     assert asyncio.wait is wait
+
+
+def test_pads_are_drawn_where_they_are_asked_for_alone(tmp_path, monkeypatch):
+    """A package that imports its pads, and a module that does not want them."""
+    folder = tmp_path / "made" / "up" / "process"
+    folder.mkdir(parents=True)
+    (folder / "__init__.py").write_text("from .io import __all__\n")
+    (folder / "io.py").write_text("__all__ = ['pads']\npads = 3\n")
+    (folder / "rules.py").write_text("space = 0.17\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    assert imported("made.up.process.rules").space == 0.17
+    assert "made.up.process.io" not in sys.modules
+    assert imported("made.up.process.io").pads == 3
+    assert imported("made.up.process").__all__ == []
 
 
 def test_an_unknown_process():

@@ -1,6 +1,7 @@
 """A microcontroller at a project's pins: programs for host.v, which runs in Icarus; its comment lists the words."""
 
 from collections.abc import Iterable, Sequence
+from itertools import chain
 from pathlib import Path
 
 from talbot.base.tools import run
@@ -11,6 +12,8 @@ BENCH = Path(__file__).with_name("host.v")
 ADDRESS, WAIT, SHOW, ROW, END = 0x100, 0x300, 0x400, 0x500, 0x600
 START, RESULTS = 3, 4  # of the divider: the address that starts a division, bytes of its result
 HOLD_FREE = 0x201
+SCLK, CSN, MOSI, LINK_RDY = 1, 2, 4, 8  # of the chip, bits of ui_in
+SHOWN = 255 * 256  # cycles that a program shows at once, at most
 DURATIONS = "t_reset", "t_int", "t_cm", "t_settle", "t_read", "t_guard"  # of the amplifier control, 16 bits each
 
 
@@ -32,21 +35,17 @@ def row(timing: AmpTiming, four_tap: bool, cycles: int) -> list[int]:
     return [HOLD_FREE, ADDRESS, *data, ROW | cycles // 256 + 1, int(four_tap)]
 
 
-EXAMPLES = {
-    "tt_um_talbot_divider": divisions(
-        [
-            (0, 0, 0),
-            (100, 100, 0),
-            (-256, 255, 3),
-            (255, -17, 9),
-            (-31, -200, 63),
-            (88, 3, 1),
-            (-5, 6, 0),
-            (0, -256, 20),
-        ]
-    ),
-    "tt_um_talbot_amp_ctrl": row(AmpTiming(9, 60, 4, 5, 6, 7, 3), True, 1023),
-}
+def frame(transfers: Sequence[bytes], cycles: int = SHOWN) -> list[int]:
+    """Program for the chip: SPI ``transfers``; from before the last one at least so many ``cycles`` are shown."""
+    *before, last = map(_bits, transfers)
+    return [CSN | LINK_RDY, *chain.from_iterable(before), ROW | -(-cycles // 256), *last]
+
+
+def _bits(transfer: bytes) -> list[int]:
+    """Program for an SPI transfer to the chip."""
+    bits = (byte >> bit & 1 for byte in transfer for bit in range(7, -1, -1))
+    levels = [level for bit in bits for level in (LINK_RDY | MOSI * bit, LINK_RDY | MOSI * bit | SCLK)]
+    return [LINK_RDY, *levels, LINK_RDY, CSN | LINK_RDY]
 
 
 def simulate(

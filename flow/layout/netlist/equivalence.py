@@ -8,7 +8,7 @@ from talbot.base.steps import StepError
 from talbot.base.tools import run
 
 from .netlist import REGISTER, Netlist, is_register
-from .registers import Bit, Cut, active_low
+from .registers import ANY, Bit, Cut, active_low
 
 PROOF = "cec -T {seconds} -C 100000000 {gold} {gate}"
 
@@ -17,7 +17,7 @@ PROOF = "cec -T {seconds} -C 100000000 {gold} {gate}"
 class Pair:
     """The RTL (gold) and the netlist (gate) with the names of their registers by Q bit.
 
-    given: see `Cut.blif`, of registers of gold. folder, seconds: for ABC.
+    given: see `Cut.blif`, of registers of gold, ANY for one that has no effect. folder, seconds: for ABC.
     """
 
     gold: Cut
@@ -28,21 +28,40 @@ class Pair:
     seconds: int
     given: Mapping[Bit, Bit]
 
-    def prove(self, missing: Sequence[Bit], reset: str) -> dict[str, bool]:
-        """Return the verdicts, all or none: registers of ``missing`` need a substitute in ``given``.
+    def settled(self) -> "Pair":
+        """The same, where a register that does not keep what is ``given`` for it may hold anything."""
+        lost = self._lost(list(self.given))
+        return replace(self, given={**self.given, **dict.fromkeys(lost, ANY)}).settled() if lost else self
+
+    def _lost(self, bits: Sequence[Bit]) -> list[Bit]:
+        """Those of ``bits`` that do not keep what is given for them."""
+        kept, as_held = self._kept(bits)
+        if not kept or self.equal(kept, as_held):
+            return []
+        half = len(bits) // 2
+        return self._lost(bits[:half]) + self._lost(bits[half:]) if half else list(bits)
+
+    def _kept(self, bits: Sequence[Bit]) -> tuple[dict[str, Bit], dict[str, Bit]]:
+        """Next states of ``bits`` by gold, and of what is given for them by gate; none where that is anything."""
+        gate_bits = {name: bit for bit, name in self.gate_states.items()}
+        held = {f"kept({bit})": bit for bit in bits if self.given[bit] != ANY}
+        values = {name: self.given[bit] for name, bit in held.items()}
+        return (
+            {name: self.gold.registers[bit] for name, bit in held.items()},
+            {
+                name: value if value in ("0", "1") else self.gate.registers[gate_bits[self.states[value]]]
+                for name, value in values.items()
+            },
+        )
+
+    def prove(self, reset: str) -> dict[str, bool]:
+        """Return the verdicts of a pair that is `settled`.
 
         same: outputs and next states; open: the outputs that the Verilog leaves open; reset: substitutes hold after it.
         """
-        if set(missing) != set(self.given):
-            return {}
         gold, gate, held = self.gold, self.gate, self.given
-        gate_bits = {name: bit for bit, name in self.gate_states.items()}
-        kept = {f"kept({k})": gold.registers[bit] for k, bit in enumerate(held)}
-        as_held = {
-            f"kept({k})": value if value in ("0", "1") else gate.registers[gate_bits[self.states[value]]]
-            for k, value in enumerate(held.values())
-        }
-        loose = gold.open_outputs()
+        kept, as_held = self._kept(list(held))
+        loose, idle = gold.open_outputs(), {bit for bit, value in held.items() if value == ANY}
         wanted, made = (
             {name: bit for name, bit in cut.outputs.items() if name not in loose}
             | {f"next({name})": cut.registers[bit] for bit, name in own.items()}
@@ -52,8 +71,8 @@ class Pair:
         gate_states = self.gate_states | {name: name for name in names.values()}
         after_reset = replace(self, states=self.states | names, gate_states=gate_states, given={})
         return {
-            "same": self.equal(wanted | kept, made | as_held),
-            "open": not loose or self.equal_where_defined(sorted(loose)),
+            "same": self.equal(wanted, made),
+            "open": not loose or (not idle & gold.cone(loose) and self.equal_where_defined(sorted(loose))),
             "reset": not kept or after_reset.equal(kept, as_held, {reset: "0" if active_low(reset) else "1"}),
         }
 

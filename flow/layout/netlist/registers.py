@@ -18,7 +18,8 @@ from .enables import LATCHES, REGISTER, pins_of, with_enables
 from .netlist import named_bits
 
 Bit = int | str  # of Yosys's JSON: a net, or a constant '0', '1', 'x'
-Given = Mapping[Bit, Bit]  # by Q bit what a register is assumed to hold: '0', '1' or a Q bit
+ANY = "x"
+Given = Mapping[Bit, Bit]  # by Q bit what a register is assumed to hold: '0', '1', a Q bit, or ANY
 Fixed = Mapping[str, str] | None  # '0' or '1' by the name of the input
 
 # Yosys's simple gates: their pins, rows of BLIF's .names, and what they compute with all lanes of a number at once
@@ -114,13 +115,17 @@ class Cut:
         """Q bits of the registers that can reach an output."""
         return set(self.registers) & self._fan_in(self.outputs.values(), self.registers)
 
+    def cone(self, names: Iterable[str]) -> set[Bit]:
+        """Bits that the outputs ``names`` come from, up to the registers."""
+        return self._fan_in([self.outputs[name] for name in names])
+
     def substitutes(self, missing: Sequence[Bit], present: Collection[Bit], reset: str) -> dict[Bit, Bit]:
         """Find what the registers ``missing`` (Q bits) seem to hold after a reset: '0', '1' or one of ``present``.
 
         A guess from random states, sparse and dense ones too: a constant is a register whose next state is what it
         holds, a duplicate has the same next state as the other wherever both hold the same; of several the one whose
         next state comes from most of the same gates, and from the fewest others. One substitute changes what others
-        seem to hold: therefore in turns. Registers without one are left out.
+        seem to hold: therefore in turns. A register without one holds ANY.
         """
         rng = random.Random(1)
         levels: dict[Bit, int] = {"0": 0, "1": ALL}
@@ -150,7 +155,7 @@ class Cut:
             guess = better
             if kept == SURE:
                 break
-        return {bit: held for bit, held in guess.items() if held}
+        return {bit: guess.get(bit) or ANY for bit in missing}
 
     def _fan_in(self, bits: Iterable[Bit], through: Mapping[Bit, Bit] | None = None) -> set[Bit]:
         """Bits that ``bits`` come from through gates and the registers ``through``, themselves among them."""

@@ -11,7 +11,7 @@ from talbot.base.tools import run
 
 from ..netlist.equivalence import Pair, match
 from ..netlist.netlist import Netlist
-from ..netlist.registers import Cut
+from ..netlist.registers import ANY, Cut
 
 # Registers without a load stay: a macro has those, too, that the design around it does not use
 GOLD = (
@@ -42,15 +42,22 @@ class Equivalence(Step[EquivalenceParameters]):
     """Outputs and next states are equal as functions of inputs and states, the cells being what the Liberty says.
 
     A register of the RTL that the netlist lacks and that reaches an output must be a constant, or the duplicate of
-    another: it is proven to be so after a reset, and to stay so (induction); the proof then uses that. Where the
-    Verilog leaves an output open (an array read beyond its end is x), so that it differs between all x at 0 and at 1,
-    the netlist may have either; the next states of registers must not depend on an x.
+    another: it is proven to be so after a reset, and to stay so (induction); the proof then uses that. One that is
+    neither may hold anything: what it reaches must not depend on it. Where the Verilog leaves an output open (an array
+    read beyond its end is x), so that it differs between all x at 0 and at 1, the netlist may have either; the next
+    states of registers must not depend on an x.
     """
 
     name = "equivalence"
     inputs = {"rtl": "rtl", "netlist": "repair.netlist", "verilog": "stream_out.verilog", "liberty": "library.liberty"}
     outputs = {"summary": "equivalence.json"}
-    metrics = {"equivalence": "", "registers": "", "constant_registers": "", "double_registers": ""}
+    metrics = {
+        "equivalence": "",
+        "registers": "",
+        "constant_registers": "",
+        "double_registers": "",
+        "idle_registers": "",
+    }
     tools = ("yosys",)
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
@@ -61,15 +68,15 @@ class Equivalence(Step[EquivalenceParameters]):
             gate = self.cut(GATE, folder / "gate.json", netlist=inputs["verilog"], liberty=inputs["liberty"])
             states, gate_states = match(gold, gate, Netlist.read(inputs["netlist"]))
             missing = sorted(gold.live() - set(states), key=int)
-            held = gold.substitutes(missing, states, p.reset)
-            proofs = Pair(gold, gate, states, gate_states, folder, p.seconds, held).prove(missing, p.reset)
-        lacking = {
-            gold.names[bit][0]: gold.names.get(held[bit], [held[bit]])[0] if bit in held else None for bit in missing
-        }
+            guess = gold.substitutes(missing, states, p.reset)
+            pair = Pair(gold, gate, states, gate_states, folder, p.seconds, guess).settled()
+            held, proofs = pair.given, pair.prove(p.reset)
+        lacking = {gold.names[bit][0]: gold.names.get(held[bit], [held[bit]])[0] for bit in missing}
         outputs["summary"].write_text(json.dumps({"proofs": proofs, "missing": lacking}, indent=1) + "\n")
-        constants = sum(value in ("0", "1") for value in held.values())
-        verdict = "proven" if proofs and all(proofs.values()) else "failed"
-        found = {"constant_registers": constants, "double_registers": len(held) - constants}
+        constants, idle = (sum(value in values for value in held.values()) for values in (("0", "1"), (ANY,)))
+        verdict = "proven" if all(proofs.values()) else "failed"
+        doubles = len(held) - constants - idle
+        found = {"constant_registers": constants, "double_registers": doubles, "idle_registers": idle}
         return {"equivalence": verdict, "registers": len(states), **found}
 
     def cut(self, script: str, path: Path, **files: Path) -> Cut:

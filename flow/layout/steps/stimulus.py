@@ -17,7 +17,7 @@ from talbot.base.steps import Files, Step, StepError
 from talbot.base.tools import ToolError, finish, run
 from talbot.flow.simulate.build import Build
 from talbot.flow.simulate.icarus import icarus_program
-from talbot.rtl.tinytapeout.host import EXAMPLES
+from talbot.rtl.tinytapeout.golden import EXAMPLES
 from talbot.rtl.tinytapeout.host import simulate as simulate_host
 from talbot.rtl.verilog import export_verilog
 

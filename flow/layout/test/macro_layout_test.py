@@ -73,6 +73,7 @@ def test_it_is_clean_matches_and_is_proven(runners):
         "registers": 85,
         "constant_registers": 0,
         "double_registers": 0,
+        "idle_registers": 0,
     }
 
 

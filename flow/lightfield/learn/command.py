@@ -7,7 +7,7 @@ from pathlib import Path
 from talbot.flow.frame import arguments as text
 from talbot.models.parameters import ParameterError
 
-STEPS = {"dictionary": 40, "network": 2500, "branches": 4000}
+STEPS = {"dictionary": 60, "network": 2500, "branches": 4000}
 FIRST = 1000  # seed of the first scene; those of the tests and figures are below
 
 
@@ -20,7 +20,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     add("--scenes", default="24", help="to learn from, 1..10000")
     default = ", ".join(f"{steps} of the {what}" for what, steps in STEPS.items())
     add("--steps", default="", help=f"of the learning, 1..1000000 (default: {default})")
-    add("--atoms", default="384", help="of the dictionary, 2..4096")
+    add("--atoms", default="512", help="of the dictionary, 2..4096")
     add("--start", help="weights of the network to go on from (default: none)")
     add("--out", default="build/learn", help="folder for <what>.npz, which models/reconstruct ships, and <what>.json")
 

@@ -1,4 +1,4 @@
-"""The dictionary of sparse coding, learned from patches of dead leaves."""
+"""The dictionary of sparse coding, learned from patches of dead leaves and of slanted planes of them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,13 +10,12 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from talbot.base.progress import each
 from talbot.models.reconstruct.sparse import Dictionary, learn
-from talbot.models.scene import Sampling, load
 
-from .samples import sensor
+from .samples import light_fields
 
 PATCH = 9, 9  # px, as the thesis's
 PATCHES = 800  # of a scene
-PENALTY = 0.1  # of the codes while it is learned
+PENALTY = 0.05  # of the codes while it is learned
 BATCH = 2048
 
 
@@ -40,10 +39,9 @@ class Learned:
 
 def learned(seeds: Sequence[int], atoms: int, rounds: int, seed: int) -> Learned:
     """A dictionary of ``atoms`` from scenes of ``seeds``, in so many batches."""
-    rng, own, parts = np.random.default_rng(seed), sensor(), []
-    for number in each(seeds, "scenes"):
-        field = load(f"leaves:{number}", Sampling.of(own)).full_light_field.astype(np.float32)
-        windows = sliding_window_view(field, PATCH, (2, 3))
+    rng, parts = np.random.default_rng(seed), []
+    for field in each(light_fields(seeds), "scenes", total=len(seeds)):
+        windows = sliding_window_view(field.astype(np.float32), PATCH, (2, 3))
         y, x = rng.integers(0, windows.shape[2:4], (PATCHES, 2)).T
         parts.append(windows[:, :, y, x].transpose(2, 0, 1, 3, 4))
     patches = np.concatenate(parts)

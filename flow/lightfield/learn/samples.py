@@ -50,17 +50,34 @@ def sensor(size: int = SIZE) -> SensorParameters:
     return SensorParameters(array=ArrayParameters(size, size))
 
 
+def light_fields(seeds: Sequence[int], size: int = SIZE) -> Iterator[Values]:
+    """Truth of each seed's scene (see `Shot`): by turns dead leaves, the same blurred by a lens, a slanted plane."""
+    return (_truth(_view(seed, size)) for seed in seeds)
+
+
 def shots(seeds: Sequence[int], size: int = SIZE) -> Iterator[Shot]:
-    """A scene for each seed: by turns dead leaves, the same as a lens blurs them, and a slanted plane of them."""
+    """The scenes of `light_fields`, and what the diodes see of them."""
     own = sensor(size)
     operator = CaptureOperator(replace(own, optics=replace(own.optics, views=PUPIL)))
-    seen, given = (np.arange(n) - (n - 1) / 2 for n in (PUPIL, VIEWS))
-    for seed in seeds:
-        view = _plane(seed, size) if seed % 3 == 2 else _leaves(seed, size, BLUR * (seed % 3))
-        field, truth = (
-            np.array([[view(dv, du) for du in steps] for dv in steps]) for steps in (seen * VIEWS / PUPIL, given)
-        )
-        yield Shot(truth * cells(VIEWS)[..., None, None], operator.forward(field))
+    for view in (_view(seed, size) for seed in seeds):
+        yield Shot(_truth(view), operator.forward(_field(view, _offsets(PUPIL) * VIEWS / PUPIL)))
+
+
+def _view(seed: int, size: int) -> View:
+    return _plane(seed, size) if seed % 3 == 2 else _leaves(seed, size, BLUR * (seed % 3))
+
+
+def _truth(view: View) -> Values:
+    return _field(view, _offsets(VIEWS)) * cells(VIEWS)[..., None, None]
+
+
+def _field(view: View, steps: Values) -> Values:
+    """Views at ``steps`` both ways."""
+    return np.array([[view(dv, du) for du in steps] for dv in steps])
+
+
+def _offsets(count: int) -> Values:
+    return np.arange(count) - (count - 1) / 2
 
 
 def _leaves(seed: int, size: int, blur: float) -> View:

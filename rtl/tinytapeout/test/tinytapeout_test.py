@@ -1,15 +1,21 @@
 """The wrappers from their pins against the golden models: as Verilog, or as the netlists of --netlist."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from talbot.models.chip import golden_frame
 from talbot.models.digital.amp_ctrl import waveform
 from talbot.models.digital.divider import quad_divide
-from talbot.models.parameters import AmpTiming, SensorParameters
+from talbot.models.digital.pattern import PatternEnd
+from talbot.models.parameters import AmpTiming, SensorParameters, Window
 from talbot.rtl.export import translate
-from talbot.rtl.tinytapeout.host import ADDRESS, EXAMPLES, SHOW, WAIT, divisions, row, simulate
+from talbot.rtl.tinytapeout.golden import EXAMPLES, PATTERN_FRAME, transfers
+from talbot.rtl.tinytapeout.host import ADDRESS, SHOW, WAIT, divisions, frame, row, simulate
 
-DIVIDER, AMP_CTRL = EXAMPLES
+DIVIDER, AMP_CTRL, CHIP = EXAMPLES
+TRIMS = [3, -2, 511, -512] * 6
 PINS = ("pixel_reset", "shutter", "ref_ctl", "integrate", "cm_reset", "read", "sample", "busy")
 
 
@@ -67,6 +73,25 @@ class TestAmpCtrlIcarus:
                 "tap": int(uio[2:4], 2),
             }
             assert pins == {name: int(expected[name][k]) if name in expected else 0 for name in pins}, k
+
+
+class TestChipIcarus:
+    verilog = "icarus"
+
+    @pytest.mark.parametrize(
+        "asked",
+        [PATTERN_FRAME, replace(PATTERN_FRAME, mode="edge", phase=False, threshold=3, window=Window(0, 1, 2, 3))],
+        ids=["tof", "edge"],
+    )
+    def test_the_frame_is_the_golden_chip_s(self, host, asked):
+        sensor = SensorParameters()
+        samples = np.zeros((4, *sensor.shape, 2))
+        expected = golden_frame(samples, sensor, asked, PatternEnd(*sensor.shape, sensor.tile)).stream
+        said = [line.split() for line in host(CHIP, frame(transfers(asked, TRIMS))) if " " in line and line[0] in "01x"]
+        sent = bytes(int(data, 2) for flags, data in said if flags[1] == "1")  # link_val
+        assert sent == expected
+        busy = [flags[0] for flags, _ in said]
+        assert busy[-1] == "0" and "1" in busy and not any("x" in flags for flags, _ in said)
 
 
 def test_the_examples_run(host, tmp_path):

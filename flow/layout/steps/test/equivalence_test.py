@@ -90,6 +90,7 @@ def test_the_netlist_is_proven_with_its_constant_register_shown_by_induction(mad
         "registers": 5,
         "constant_registers": 1,
         "double_registers": 0,
+        "idle_registers": 0,
     }
 
 
@@ -135,6 +136,15 @@ def test_a_register_that_nothing_reads_is_compared_where_it_is(made, source, res
     spare = Instance("spare_reg", "dff_x1", {"clk": "clk", "i": source, "q": "spare"})
     rtl = RTL.replace("endmodule", "  reg spare;\n  always @(posedge clk) spare <= count[1];\nendmodule")
     assert verdict(made, replace(netlist, instances=(*netlist.instances, spare)), rtl)["equivalence"] == result
+
+
+@pytest.mark.parametrize("read, result", (("lost & count[3] & ~count[3]", "proven"), ("lost & count[3]", "failed")))
+def test_a_register_without_effect_may_hold_anything(made, read, result):
+    """It is in the Verilog's cone of an output, and neither a constant nor a double: the netlist lacks it."""
+    rtl = RTL.replace("| never", f"| never | ({read})").replace("odd;", "odd, lost;", 1)
+    rtl = rtl.replace("odd <=", "lost <= step[1] ^ step[0];\n    odd <=")
+    found = verdict(made, Netlist.read(made / "netlist.json"), rtl)
+    assert (found["equivalence"], found["idle_registers"]) == (result, 1)
 
 
 def test_a_flip_flop_that_is_no_register_is_named(made):

@@ -1,0 +1,31 @@
+"""What the step compiles is what router and extraction call: a real layout's steps compile nothing more."""
+
+import json
+from types import ModuleType
+
+from numba.core.dispatcher import Dispatcher
+
+from talbot.flow.layout.parasitics import bins, capacitance, shapes, trees
+from talbot.flow.layout.parasitics.test.extract_test import ROUTE, nets, top
+from talbot.flow.layout.route import grid, index
+from talbot.flow.layout.route.test import route_test
+from talbot.flow.layout.steps.compiled import Compiled
+
+LOOPS = bins, capacitance, shapes, trees, grid, index
+
+
+def compiled(module: ModuleType) -> dict[str, int]:
+    """How often each loop of a module was compiled in this process."""
+    found = vars(module).values()
+    return {loop.__name__: len(loop.signatures) for loop in found if isinstance(loop, Dispatcher)}
+
+
+def test_a_layout_after_it_compiles_nothing(tmp_path):
+    rules = tmp_path / "rules.json"
+    rules.write_text(json.dumps(route_test.LIBRARY_RULES))
+    assert Compiled().run({"rules": rules}, {}) == {}
+    before = [compiled(module) for module in LOOPS]
+    nets(tmp_path, top(*ROUTE))
+    route_test.test_through_congestion(1)
+    assert [compiled(module) for module in LOOPS] == before
+    assert all(any(module.values()) for module in before)
