@@ -30,6 +30,7 @@ from .row_drivers import TOP, VIA, VIA_PAD, VIA_PITCH, chip_pin
 from .strip import FOURTH, TRUNK
 
 NAME = "column_amplifiers"
+BOXES = ("column",)  # cells that LVS compares once
 # Nets that a column or the band has from outside of the chip; lines across that no column is on
 OUTSIDE = {"dark": "input", "reference": "input", "start": "input", "start_a": "input", "level": "output"}
 SOURCE = "ibias_columns"
@@ -116,10 +117,6 @@ def draw_column_amplifiers(
         if pin.name in OUTSIDE or pin.name == SOURCE:
             draw_way(turned, columns, "ibias" if pin.name == SOURCE else pin.name, round(pin.at_um / PITCH))
             canvas.wire(FOURTH, pin.at_um - TRUNK / 2, 0, pin.at_um + TRUNK / 2, band.height)
-    for inner in (columns.column.cell, band.cell.cell):
-        for index in canvas.layout.layer_indexes():
-            for text in list(inner.shapes(index).each(db.Shapes.STexts)):
-                inner.shapes(index).erase(text)
     lying = db.Trans(3, False, 0, canvas.snap(height))
     canvas.cell.insert(db.CellInstArray(turned.cell.cell_index(), lying))
     canvas.cell.insert(db.CellInstArray(band.cell.cell.cell_index(), db.Trans()))
@@ -165,7 +162,8 @@ def _supplies(canvas: Canvas, block: Block, columns: Columns, band: Band, room: 
             for low, high in pieces:
                 canvas.wire(TOP, x - wide / 2, low, x + wide / 2, high)
             for y in joints[net]:
-                _vias(canvas, x, y, wide)
+                if any(low < y < high for low, high in pieces):
+                    _vias(canvas, x, y, wide)
             west = max((other for other in others if other < x), default=None)
             east = min((other for other in others if other > x), default=width - 1.0)
             begin = x - wide / 2 if west is None else west + STRAP / 2 + APART

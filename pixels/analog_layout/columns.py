@@ -22,6 +22,7 @@ from .column import (
     PAD,
     PITCH,
     SINGLE,
+    WAYS,
     ColumnPlan,
     as_cell,
     column_plan,
@@ -66,11 +67,17 @@ def column_nets(number: int, lanes: int = LANES) -> tuple[str, ...]:
 def draw_columns(
     layout: "db.Layout", masks: AnalogMasks, sizes: ColumnSizes, count: int, extra: Iterable[str] = ()
 ) -> Columns:
-    """Draw ``count`` of them. extra: nets that have a line across, and no column."""
+    """Draw ``count`` of them, a column with its ports' names, for LVS. extra: nets that have a line across, and no column."""
     d = devices(sizes)
     plan = column_plan(d, sizes, masks, extra)
     canvas = Canvas(layout, "column", masks.base)
     one = as_cell(canvas, d, plan, draw_column(canvas, masks, plan))
+    for net in one.ports:
+        if net in WAYS:
+            canvas.label(FOURTH, net, 0.2, WAYS[net])
+        elif net not in plan.joints:
+            track = next(track for track in one.tracks if track.net == net)
+            canvas.label(THIRD, net, track.left + 0.3, track.y)
     whole = Canvas(layout, "columns", masks.base)
     step = db.Vector(0, whole.snap(PITCH))
     whole.cell.insert(db.CellInstArray(one.cell.cell_index(), db.Trans(), step, db.Vector(1, 0), count, 1))
