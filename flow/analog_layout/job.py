@@ -23,9 +23,8 @@ from talbot.pixels.analog_layout.amplifier import amplifier_cell
 from talbot.pixels.analog_layout.bias import bias_cell
 from talbot.pixels.analog_layout.cells import Cell, comparator_cell
 from talbot.pixels.analog_layout.column import column_cell
-from talbot.pixels.analog_layout.converters import Converters
 from talbot.pixels.analog_layout.lane import lane_cell
-from talbot.pixels.analog_layout.row_drivers import RowDrivers, row_cell
+from talbot.pixels.analog_layout.row_drivers import row_cell
 from talbot.pixels.analog_layout.switch import switch_cell
 from talbot.pixels.circuits.amplifier import AmplifierSizes, AmplifierSpec
 from talbot.pixels.circuits.column_sizes import ColumnSizes
@@ -46,7 +45,7 @@ from .extract import Extracted, Nets, extract
 from .measure import Measured, measure
 from .row import Row
 from .switch import Gaps
-from .write import drawn_blocks
+from .write import DrawnBlock, drawn_blocks
 
 STEPS = "draw", "drc", "lvs", "extract", "measure", "report"
 KINDS = "gds", "spice", "extracted.spice", "lyrdb", "lvsdb"
@@ -79,7 +78,7 @@ def make(
     spec, own = amplifier_of(setup, sizes)
     made = cells(masks, sizes, own, spec.lanes, column_of(setup)[1])
     blocks = drawn_blocks(pdk)
-    drawn: dict[str, Cell | Converters | RowDrivers] = {**made, **blocks}
+    drawn: dict[str, Cell | DrawnBlock] = {**made, **blocks}
     names = [f"{name}.{kind}" for name in drawn for kind in KINDS if name in made or kind != "extracted.spice"]
     names += [f"{name}.lef" for name in blocks]
     with staged(out, (*names, *page.NAMES, "summary.json")) as folder:
@@ -92,7 +91,7 @@ def make(
         rules = {name: drc(folder / f"{name}.gds", pdk, folder / f"{name}.lyrdb") for name in drawn}
         note("lvs")
         same = {
-            name: lvs(folder / f"{name}.gds", cell.spice(masks), pdk, folder / f"{name}.lvsdb")
+            name: lvs(folder / f"{name}.gds", cell.spice(masks), pdk, folder / f"{name}.lvsdb", cell.boxes)
             for name, cell in drawn.items()
         }
         differ = {name: differences(folder / f"{name}.lvsdb") for name, match in same.items() if not match}
@@ -133,7 +132,7 @@ def _extracted(made: dict[str, Cell], masks: AnalogMasks, corner: str) -> dict[s
 
 
 def _cell(
-    cell: Cell | Converters | RowDrivers, rules: dict[str, int], same: bool, found: tuple[Extracted, Nets] | None
+    cell: Cell | DrawnBlock, rules: dict[str, int], same: bool, found: tuple[Extracted, Nets] | None
 ) -> dict[str, Any]:
     box = cell.cell.dbbox()
     out = {

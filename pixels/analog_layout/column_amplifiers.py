@@ -11,6 +11,7 @@ band. The pins in the south-east are none of the black box: the die has pins for
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from typing import ClassVar
 
 from talbot.base.gds import db
 from talbot.models.parameters import ArrayParameters, ChipParameters, ParameterError
@@ -30,7 +31,6 @@ from .row_drivers import TOP, VIA, VIA_PAD, VIA_PITCH, chip_pin
 from .strip import FOURTH, TRUNK
 
 NAME = "column_amplifiers"
-BOXES = ("column",)  # cells that LVS compares once
 # Nets that a column or the band has from outside of the chip; lines across that no column is on
 OUTSIDE = {"dark": "input", "reference": "input", "start": "input", "start_a": "input", "level": "output"}
 SOURCE = "ibias_columns"
@@ -47,7 +47,9 @@ ACROSS, HEIGHTS = 6.0, {"vss": 27.0, "vdd": 37.0}  # of the straps across the ba
 
 @dataclass(frozen=True)
 class ColumnAmplifiers:
-    """The drawn block. columns, band: its parts."""
+    """The drawn block. columns, band: its parts. boxes: cells that LVS compares once."""
+
+    boxes: ClassVar[tuple[str, ...]] = ("column",)
 
     block: Block
     layout: "db.Layout"

@@ -67,7 +67,7 @@ def column_nets(number: int, lanes: int = LANES) -> tuple[str, ...]:
 def draw_columns(
     layout: "db.Layout", masks: AnalogMasks, sizes: ColumnSizes, count: int, extra: Iterable[str] = ()
 ) -> Columns:
-    """Draw ``count`` of them, a column with its ports' names, for LVS. extra: nets that have a line across, and no column."""
+    """Draw ``count`` of them, and the names of a column's ports. extra: nets that have a line across, and no column."""
     d = devices(sizes)
     plan = column_plan(d, sizes, masks, extra)
     canvas = Canvas(layout, "column", masks.base)

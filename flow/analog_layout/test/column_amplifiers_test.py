@@ -1,4 +1,4 @@
-"""The block of all columns keeps the rules and is its circuit; faults planted between, over and in columns are found."""
+"""All columns keep the rules and are their circuit; faults planted between, over and in columns are found."""
 
 import shutil
 from importlib.util import find_spec
@@ -15,7 +15,7 @@ from talbot.flow.analog_layout.checks import differences, drc, lvs
 from talbot.flow.analog_layout.test.planted import changed
 from talbot.models.parameters import ArrayParameters, ChipParameters
 from talbot.pixels.analog_layout.column import PITCH
-from talbot.pixels.analog_layout.column_amplifiers import BOXES, draw_column_amplifiers
+from talbot.pixels.analog_layout.column_amplifiers import draw_column_amplifiers
 from talbot.pixels.circuits.column_sizes import ColumnSpec, size
 from talbot.platforms.analog import analog_masks
 from talbot.platforms.sky130 import analog as process
@@ -36,7 +36,7 @@ def found(block, folder, change=lambda layout, top: None):
     """What LVS finds once ``change`` was made to the block's cells; None: nothing."""
     made, path = block
     bad, report = changed(path, folder / "bad.gds", change), folder / "bad.lvsdb"
-    return None if lvs(bad, made.spice(MASKS), "sky130", report, BOXES) else differences(report)
+    return None if lvs(bad, made.spice(MASKS), "sky130", report, made.boxes) else differences(report)
 
 
 def over(block, top, mask, number, box):
@@ -67,7 +67,7 @@ def test_all_columns_are_their_circuit_and_one_with_anothers_code_is_not(block, 
     made, path = block
     text = made.spice(MASKS)
     other = text.replace(" group_2 ", " group_3 ", 1)
-    assert other != text and not lvs(path, other, "sky130", tmp_path / "other.lvsdb", BOXES)
+    assert other != text and not lvs(path, other, "sky130", tmp_path / "other.lvsdb", made.boxes)
 
 
 def inner(block, net):

@@ -125,7 +125,7 @@ def pin_map(runner: Runner, options: Options, part: Path) -> None:
     total, found = package.leads(json.loads(runner.paths["die_plan.plan"].read_text()))
     if crossed := package.crossings(found):
         raise StepError(f"package: the bond wires of {' and '.join(crossed[0])} cross")
-    volt = {lead.signal: package.volts(lead.signal, process, pixel.supply_v, pixel.gate_v) for lead in found}
+    volt = {lead.signal: package.volts(lead, process, pixel.supply_v, pixel.gate_v) for lead in found}
     cells = (*process.signals.values(), *process.supplies.values())
     clamps = package.protection(runner.paths["die_pads.spice"].read_text(), cells)
     (part / PACKAGE[0]).write_text(package.table(total, found, volt, clamps))
