@@ -35,6 +35,7 @@ from .strip import (
     RAIL_TRUNK,
     SECOND,
     THIRD,
+    TRACK,
     TRACK_PITCH,
     Plan,
     Strip,
@@ -58,7 +59,7 @@ PAD = 0.19, 0.33  # half of the third metal at those vias: its least area
 UNDER = 0.28  # width of the lines under the plates
 OUT, EXIT, JOGS = 0.35, 3.2, (2.2, 3.0)  # from a strip's end to its lines' vias; to a plate; to what leaves above
 IN = 0.1  # of the first track's via: the rails are joined beside the strip
-WAYS = {"column_a": 2.5, "column_b": 7.5, "cin_b": 2.0, "cin_a": 4.0}  # y of what leaves on the fourth metal
+WAYS = {"column_a": 2.5, "column_b": 7.5, "cin_b": 4.0, "cin_a": 2.0}  # y of what leaves on the fourth metal
 RAILS = 1  # the metal of the rails
 LANES = 8
 GROUPED = {"group": GROUPS, "k": PLACES} | {f"{name}_{d}": LANES for name in ("lane", "sense") for d in "ab"}
@@ -248,14 +249,14 @@ PIECES = (
             "vbp": 5,
             "vcp": 10,
             "seln": 2,
-            "cin_a": 3,
-            "cin_b": 1,
+            "cin_a": 0,
+            "cin_b": 4,
             "back_b.x": 6,
             "back_b.kick": 7,
             "back_b.tap0.inner": 8,
             "back_b.tap0.outer": 9,
-            "back_b.f": 12,
-            "back_b.below": 0,
+            "start": 12,
+            "back_b.f": 10,
             "back_b.out": 11,
             "sense_b": 11,
             "back_a.kick": 3,
@@ -385,15 +386,14 @@ def _strip(
     """A strip, and the lines over it that are not ``known``."""
     count = max(len(piece.n), len(piece.p))
     n, p = ([d.get(name) for name in row] + [None] * (count - len(row)) for row in (piece.n, piece.p))
-    lowest = [net for net in piece.west if piece.fixed.get(net) == 0]
+    ways = (("column_a", "column_b"), ("cin_a", "cin_b"))[number] if number < 2 else ()
+    lowest = [net for net in (*piece.west, *ways) if piece.fixed.get(net) == 0]
     row_n, row_p, right = in_columns(list(zip(n, p, strict=True)), left + ROOM * len(lowest), ROOM)
     ends: dict[str, tuple[float, ...]] = {net: (left + (IN if net in lowest else -OUT),) for net in piece.west}
     ends |= {net: (*ends.get(net, ()), right + OUT) for net in piece.east}
     ends |= {net: (*ends.get(net, ()), left + 0.5, right - 0.5) for net in piece.shields}
     present = {net for one in (*row_n, *row_p) for net in one.device.transistor.nodes}
-    if number < 2:
-        ways = ("column_a", "column_b") if number == 0 else ("cin_a", "cin_b")
-        ends |= {net: (left - jog,) for net, jog in zip(ways, JOGS, strict=True)}
+    ends |= {net: (left + IN if net in lowest else left - jog,) for net, jog in zip(ways, JOGS, strict=False)}
     plain = Plan(row_n, row_p, left, right, ends)
     for net, other in piece.over.items():
         ends[net] = (*ends.get(net, ()), *plain.spans()[other])
@@ -498,6 +498,10 @@ def _leave(canvas: Canvas, made: ColumnPlan, strips: Sequence[Strip], number: in
         if number < 2:
             x, y, to = plan.left - jog, tracks[net], WAYS[net]
             first = 0.0 if number == 0 else min(one.left for one in made.plates if one.cap.upper == net) + PATCH_IN
+            if _lowest(y):  # passes the rail's joint on the second track
+                end, y = plan.left + IN, snap(y + TRACK_PITCH)
+                canvas.wire(THIRD, x - TRACK / 2, y - TRACK / 2, end + TRACK / 2, y + TRACK / 2)
+                canvas.wire(THIRD, end - TRACK / 2, tracks[net], end + TRACK / 2, y)
             canvas.stack(x, y, THIRD, FOURTH)
             canvas.wire(FOURTH, x - LINE / 2, min(y, to) - LINE / 2, x + LINE / 2, max(y, to) + LINE / 2)
             canvas.wire(FOURTH, first, to - LINE / 2, x + LINE / 2, to + LINE / 2)
