@@ -24,7 +24,7 @@ from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.analog import AnalogMasks
 
 from . import flat
-from .array import AROUND, TAB, VIA_IN
+from .array import AROUND, VIA_IN
 from .cells import Cell, new_canvas
 from .device import Device, snap
 from .flat import Plate, Tap
@@ -163,7 +163,7 @@ PIECES = (
             "vbp": 5,
             "edgen": 6,
             "half": 7,
-            "out_b": 8,
+            "out_b": 9,
             "vcp": 10,
             "column_b": 11,
             "edge": 12,
@@ -465,8 +465,8 @@ def _plate(canvas: Canvas, masks: AnalogMasks, plate: Drawn) -> None:
     """A capacitor without its lines."""
     low, high = plate.cap.low, plate.cap.high
     canvas.box(masks.mim, plate.left, low, plate.right, high)
-    tabs = {1: AROUND, -1: AROUND} | {plate.way: TAB}
-    canvas.wire(THIRD, plate.left - tabs[-1], low - AROUND, plate.right + tabs[1], high + AROUND)
+    # No tab at the vias' end: lines of others pass above
+    canvas.wire(THIRD, plate.left - AROUND, low - AROUND, plate.right + AROUND, high + AROUND)
     ends = _patch(plate)
     left, right = plate.left + PATCH_IN, plate.right - PATCH_IN
     canvas.wire(FOURTH, left, ends[0], right, ends[1])
@@ -549,8 +549,7 @@ def as_cell(canvas: Canvas, d: Mapping[str, Device], made: ColumnPlan, strips: S
     for cap, left, right in made.plates:
         edges = right - left, cap.high - cap.low
         plates.append(Plate(cap.name, cap.upper, cap.lower, edges[0] * edges[1], 2 * sum(edges)))
-        near = (right + VIA_IN) if cap.from_east else (left - VIA_IN)
-        taps.append(Tap(cap.name, 1, near, (cap.low + cap.high) / 2))
+        taps.append(Tap(cap.name, 1, (left + right) / 2, (cap.low + cap.high) / 2))
     terminals = tuple(one for strip in strips for one in strip.terminals)
     tracks = tuple(one for strip in strips for one in strip.tracks)
     return Cell(canvas.layout, canvas.cell, PINS, tuple(d.values()), tuple(plates), terminals, tuple(taps), tracks)
