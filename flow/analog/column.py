@@ -73,7 +73,7 @@ class ColumnResult:
 
     start: V of both diodes at which a column without light leaves its lanes at their references. slope: V of the
     lane's line over the ideal one; mean: of both diodes' mean, in the modes with codes 0..255. inl: peak off a straight
-    line through WELLS. full: lost at FULL of a well. other: of the second diode by the first's light. settling: s of
+    line through WELLS. full: lost at FULL of a well. other: of a diode by the other's light, the larger. settling: s of
     the turn until half an LSB, the slowest. droop: until the last column's turn. energy: J a pixel. idle: A of a column
     in which nothing happens.
     """
@@ -100,6 +100,7 @@ def measure(
     end, lsb = turn_of(spec) + spec.cycle, spec.lsb
     with opened(setup, spec, sizes, corner, start, circuit=circuit) as spice:
         waves = [sample(spice, spec, corner, part * spec.fall, 0.0) for part in (*WELLS, FULL)]
+        second = sample(spice, spec, corner, 0.0, WELLS[-1] * spec.fall)
         late = sample(spice, spec, corner, WELLS[-1] * spec.fall, 0.0, wait=spec.wait)
         runs, repeated = runs + spice.runs, repeated + spice.repeated
     out = np.array([wave.at("far_a", end) for wave in waves])
@@ -116,7 +117,10 @@ def measure(
         inl=float(np.abs(out[:-1] - offset - slope * wanted).max() / lsb),
         full=float((out[-1] - offset + slope * spec.swing * FULL) / lsb),
         mean=mean,
-        other=abs(waves[len(WELLS) - 1].at("far_b", end) - waves[0].at("far_b", end)) / lsb,
+        other=max(
+            abs(wave.at(f"far_{d}", end) - waves[0].at(f"far_{d}", end)) / lsb
+            for d, wave in (("b", waves[len(WELLS) - 1]), ("a", second))
+        ),
         settling=max(settling(wave, spec) for wave in (*waves, light)),
         droop=max(abs(one) for one in moved) / lsb,
         energy=_energy(waves[2], spec, corner),

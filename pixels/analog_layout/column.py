@@ -24,7 +24,7 @@ from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.analog import AnalogMasks
 
 from . import flat
-from .array import AROUND, TAB, VIA_IN
+from .array import AROUND, VIA_IN
 from .cells import Cell, new_canvas
 from .device import Device, snap
 from .flat import Plate, Tap
@@ -35,6 +35,8 @@ from .strip import (
     RAIL_TRUNK,
     SECOND,
     THIRD,
+    TRACK,
+    TRACK_PITCH,
     Plan,
     Strip,
     draw_rails,
@@ -46,7 +48,7 @@ from .strip import (
 # um
 PITCH, BETWEEN = 10.0, 1.2  # of the columns; of the rails' middles of two columns
 ROWS, ROW_IN = 13, 0.2  # of tracks in a strip; of the first from a rail's middle
-WIDE = 8.2  # of a plate across the column
+WIDE, HALVES = 8.2, 1.48  # of a plate across the column; between two that are over each other
 LINE, LANE = 0.4, 0.6  # widths of what crosses all columns, and of the lanes' lines
 STEP, LEAST = 0.2, 0.4  # of the places of these; between two
 ROOM = 0.6  # beside each pair of devices, for its drops
@@ -56,7 +58,8 @@ PATCH_IN, VIAS = 0.3, 1.0  # of the metal over an upper plate from its edges; pi
 PAD = 0.19, 0.33  # half of the third metal at those vias: its least area
 UNDER = 0.28  # width of the lines under the plates
 OUT, EXIT, JOGS = 0.35, 3.2, (2.2, 3.0)  # from a strip's end to its lines' vias; to a plate; to what leaves above
-WAYS = {"column_a": 2.5, "column_b": 7.5, "cin_b": 2.0, "cin_a": 4.0}  # y of what leaves on the fourth metal
+IN = 0.1  # of the first track's via: the rails are joined beside the strip
+WAYS = {"column_a": 2.5, "column_b": 7.5, "cin_b": 4.0, "cin_a": 2.0}  # y of what leaves on the fourth metal
 RAILS = 1  # the metal of the rails
 LANES = 8
 GROUPED = {"group": GROUPS, "k": PLACES} | {f"{name}_{d}": LANES for name in ("lane", "sense") for d in "ab"}
@@ -68,6 +71,7 @@ class Piece:
     """A strip: its n and p transistors from the west; rows of the tracks of nets that leave it at a height of theirs.
 
     west, east: nets that leave it under the plates beside it. shields: quiet nets whose tracks are as long as it is.
+    over: nets whose tracks are as long as another's, between it and what it must not couple to.
     """
 
     n: tuple[str, ...]
@@ -76,12 +80,14 @@ class Piece:
     east: tuple[str, ...] = ()
     fixed: Mapping[str, int] = field(default_factory=dict)
     shields: tuple[str, ...] = ()
+    over: Mapping[str, str] = field(default_factory=dict)
 
 
 class Cap(NamedTuple):
     """A capacitor beside a strip: its plates' nets; the strip that its lines come from is in the east.
 
-    beside: F that the lines of both nets have already, as extracted.
+    beside: F that the lines of both nets have already, as extracted. low, high: y of the upper plate. above: it is over
+    the one before it, not in the east of it.
     """
 
     name: str
@@ -89,6 +95,9 @@ class Cap(NamedTuple):
     upper: str
     from_east: bool = False
     beside: float = 0.0
+    low: float = (PITCH - WIDE) / 2
+    high: float = (PITCH + WIDE) / 2
+    above: bool = False
 
 
 def _hold(d: str, t: int, from_east: bool = False) -> Cap:
@@ -105,7 +114,7 @@ def _tap_piece(t: int) -> Piece:
     tap, on = f"back_a.tap{t}.", f"on{t}."
     through = "back_a.x", "back_a.f", "seln", "start_a"
     own = f"{tap}inner", f"{tap}outer"
-    rows = {"back_a.x": 6, "back_a.f": 8, "seln": 4, "start_a": 3, own[0]: 7, own[1]: 9}
+    rows = {"back_a.x": 5, "start_a": 6, own[0]: 7, "back_a.f": 8, own[1]: 9, "seln": 2}
     return Piece(
         (f"{on}nb", f"{on}na", f"{tap}join", f"{tap}write", f"{tap}far_n"),
         (f"{on}pb", f"{on}pa", "", f"{tap}far_p", f"{tap}rest"),
@@ -121,42 +130,45 @@ PIECES = (
             "front_a.clear",
             "front_a.in",
             "front_a.cascode",
+            "front_b.clear",
+            "front_b.in",
+            "front_b.cascode",
             "quarter_a_n",
             "half_a_n",
             "half_rest",
             "quarter_b_n",
-            "front_b.cascode",
-            "front_b.in",
-            "front_b.clear",
         ),
         (
             "",
             "front_a.top",
             "front_a.cascode_p",
+            "",
+            "front_b.top",
+            "front_b.cascode_p",
             "quarter_a_p",
             "half_a_p",
             "",
             "quarter_b_p",
-            "front_b.cascode_p",
-            "front_b.top",
         ),
         ("out_a", "out_b"),
         ("out_a", "out_b", "quarter", "half", "cn", "vbp", "vcp"),
-        # The columns' lines beside what is quiet: an output beside the other diode's line would be its light in it
+        # An output that comes near the other diode's line would be its light in it: out_a passes the second diode's
+        # transistors below all that its line has, its line passes those of the first above all that out_a has
         {
-            "cn": 1,
-            "column_a": 2,
-            "edge": 3,
+            "out_a": 0,
+            "clear": 1,
+            "cn": 2,
+            "column_a": 3,
             "quarter": 4,
-            "out_a": 5,
-            "out_b": 6,
+            "vbp": 5,
+            "edgen": 6,
             "half": 7,
-            "edgen": 8,
-            "column_b": 9,
+            "out_b": 9,
             "vcp": 10,
-            "vbp": 11,
+            "column_b": 11,
+            "edge": 12,
         },
-        ("cn", "edge", "edgen", "vcp"),
+        ("cn", "clear", "edge", "edgen", "vcp", "vbp"),
     ),
     Piece(
         (
@@ -176,9 +188,9 @@ PIECES = (
             "select_n.na",
             "on0.nb",
             "go_b",
-            "back_a.enter",
             "stop_b",
             "back_b.onto_n",
+            "back_a.enter",
             "go_a",
             "back_a.in",
             "stop_a",
@@ -212,10 +224,10 @@ PIECES = (
             "select_n.pa",
             "",
             "",
-            "",
+            "back_b.onto_p",
             "on0.pb",
             "on0.pa",
-            "back_b.onto_p",
+            "",
             "",
             "select.p",
             "back_a.top",
@@ -231,35 +243,44 @@ PIECES = (
         ),
         ("back_b.tap0.inner", "back_b.tap0.outer", "back_b.x", "back_b.kick", "cn", "vbp", "vcp"),
         ("back_a.x", "back_a.f", "seln", "start_a", "back_a.tap0.inner", "back_a.tap0.outer", "back_a.kick"),
+        # Between x and what its sample is not to depend on: kick, start_a
         {
-            "cn": 1,
-            "vbp": 11,
+            "cn": 2,
+            "vbp": 5,
             "vcp": 10,
-            "seln": 4,
-            "back_b.x": 7,
+            "seln": 2,
+            "cin_a": 0,
+            "cin_b": 4,
+            "back_b.x": 6,
+            "back_b.kick": 7,
             "back_b.tap0.inner": 8,
             "back_b.tap0.outer": 9,
-            "back_b.kick": 6,
-            "cin_a": 5,
-            "cin_b": 2,
-            "back_a.x": 6,
-            "back_a.f": 8,
+            "start": 12,
+            "back_b.f": 10,
+            "back_b.out": 11,
+            "sense_b": 11,
+            "back_a.kick": 3,
+            "back_a.x": 5,
+            "start_a": 6,
             "back_a.tap0.inner": 7,
+            "back_a.f": 8,
             "back_a.tap0.outer": 9,
-            "back_a.kick": 2,
-            "start_a": 3,
         },
+        over={"back_b.kick": "back_b.tap0.inner", "start_a": "back_a.x"},
     ),
     *map(_tap_piece, range(1, TAPS)),
 )
 # Between the strips, and at both ends of the column
 CAPS = (
-    (Cap("front_a.f", "out_a", "column_a", True, 0.6e-15), Cap("front_b.f", "out_b", "column_b", True, 0.6e-15)),
     (
-        Cap("in_b", "out_b", "cin_b"),
+        Cap("front_a.f", "out_a", "column_a", True, 0.6e-15, high=(PITCH - HALVES) / 2),
+        Cap("front_b.f", "out_b", "column_b", True, 0.6e-15, low=(PITCH + HALVES) / 2, above=True),
+    ),
+    (
         Cap("in_a", "out_a", "cin_a"),
         Cap("in_quarter", "quarter", "cin_a"),
         Cap("in_half", "half", "cin_a"),
+        Cap("in_b", "out_b", "cin_b"),
         _kick("b", True),
         _hold("b", 0, True),
     ),
@@ -301,12 +322,12 @@ class ColumnPlan:
     free: tuple[str, ...] = ()
 
 
-def length_um(farad: float, masks: AnalogMasks) -> float:
-    """Of a plate WIDE um across. Raises ParameterError where it would be under 1 um."""
+def length_um(farad: float, masks: AnalogMasks, wide: float = WIDE) -> float:
+    """Of a plate ``wide`` um across. Raises ParameterError where it would be under 1 um."""
     area, edge = masks.mim_area, masks.mim_edge
-    found = snap((farad * 1e15 - 2 * edge * WIDE) / (area * WIDE + 2 * edge))
+    found = snap((farad * 1e15 - 2 * edge * wide) / (area * wide + 2 * edge))
     if found < 1:
-        raise ParameterError(f"capacitor = {farad:g} F: must be 1 um long at the least, {WIDE:g} um wide")
+        raise ParameterError(f"capacitor = {farad:g} F: must be 1 um long at the least, {wide:g} um wide")
     return found
 
 
@@ -332,9 +353,10 @@ def column_plan(
     lines, joints = dict[str, float](), dict[str, tuple[float, ...]]()
     for number, group in enumerate(CAPS):
         for k, cap in enumerate(group):
-            x = snap(x + PLATE_AT * (k > 0))
-            plates.append(Drawn(cap, x, snap(x + length_um(farads[cap.name] - cap.beside, masks))))
-            x = plates[-1].right
+            left = plates[-1].left if cap.above else snap(x + PLATE_AT * (k > 0))
+            length = length_um(farads[cap.name] - cap.beside, masks, cap.high - cap.low)
+            plates.append(Drawn(cap, left, snap(left + length)))
+            x = max(x, plates[-1].right) if cap.above else plates[-1].right
         if number == len(PIECES):
             break
         piece = PIECES[number]
@@ -364,15 +386,17 @@ def _strip(
     """A strip, and the lines over it that are not ``known``."""
     count = max(len(piece.n), len(piece.p))
     n, p = ([d.get(name) for name in row] + [None] * (count - len(row)) for row in (piece.n, piece.p))
-    row_n, row_p, right = in_columns(list(zip(n, p, strict=True)), left, ROOM)
-    ends: dict[str, tuple[float, ...]] = dict.fromkeys(piece.west, (left - OUT,))
+    ways = (("column_a", "column_b"), ("cin_a", "cin_b"))[number] if number < 2 else ()
+    lowest = [net for net in (*piece.west, *ways) if piece.fixed.get(net) == 0]
+    row_n, row_p, right = in_columns(list(zip(n, p, strict=True)), left + ROOM * len(lowest), ROOM)
+    ends: dict[str, tuple[float, ...]] = {net: (left + (IN if net in lowest else -OUT),) for net in piece.west}
     ends |= {net: (*ends.get(net, ()), right + OUT) for net in piece.east}
     ends |= {net: (*ends.get(net, ()), left + 0.5, right - 0.5) for net in piece.shields}
     present = {net for one in (*row_n, *row_p) for net in one.device.transistor.nodes}
-    if number < 2:
-        ways = ("column_a", "column_b") if number == 0 else ("cin_a", "cin_b")
-        ends |= {net: (left - jog,) for net, jog in zip(ways, JOGS, strict=True)}
+    ends |= {net: (left + IN if net in lowest else left - jog,) for net, jog in zip(ways, JOGS, strict=False)}
     plain = Plan(row_n, row_p, left, right, ends)
+    for net, other in piece.over.items():
+        ends[net] = (*ends.get(net, ()), *plain.spans()[other])
     lines = _lines(plain, {net for net in present if names(net)[0] not in known}, left, right, number)
     for net in present & (GROUPED.keys() | set(SINGLE)):
         if names(net)[0] in lines:
@@ -439,10 +463,10 @@ def draw_column(canvas: Canvas, masks: AnalogMasks, made: ColumnPlan) -> list[St
 
 def _plate(canvas: Canvas, masks: AnalogMasks, plate: Drawn) -> None:
     """A capacitor without its lines."""
-    low, high = (PITCH - WIDE) / 2, (PITCH + WIDE) / 2
+    low, high = plate.cap.low, plate.cap.high
     canvas.box(masks.mim, plate.left, low, plate.right, high)
-    tabs = {1: AROUND, -1: AROUND} | {plate.way: TAB}
-    canvas.wire(THIRD, plate.left - tabs[-1], low - AROUND, plate.right + tabs[1], high + AROUND)
+    # No tab at the vias' end: lines of others pass above
+    canvas.wire(THIRD, plate.left - AROUND, low - AROUND, plate.right + AROUND, high + AROUND)
     ends = _patch(plate)
     left, right = plate.left + PATCH_IN, plate.right - PATCH_IN
     canvas.wire(FOURTH, left, ends[0], right, ends[1])
@@ -463,7 +487,7 @@ def _patch(plate: Drawn) -> tuple[float, float]:
     if plate.cap.upper in WAYS:
         y = WAYS[plate.cap.upper]
         return y - 0.5, y + 0.5
-    return (5.2, 8.8) if plate.cap.from_east else (1.2, 8.8)
+    return (4.8, 8.8) if plate.cap.from_east else (1.2, 8.8)
 
 
 def _leave(canvas: Canvas, made: ColumnPlan, strips: Sequence[Strip], number: int, strip: Strip) -> None:
@@ -474,6 +498,10 @@ def _leave(canvas: Canvas, made: ColumnPlan, strips: Sequence[Strip], number: in
         if number < 2:
             x, y, to = plan.left - jog, tracks[net], WAYS[net]
             first = 0.0 if number == 0 else min(one.left for one in made.plates if one.cap.upper == net) + PATCH_IN
+            if _lowest(y):  # passes the rail's joint on the second track
+                end, y = plan.left + IN, snap(y + TRACK_PITCH)
+                canvas.wire(THIRD, x - TRACK / 2, y - TRACK / 2, end + TRACK / 2, y + TRACK / 2)
+                canvas.wire(THIRD, end - TRACK / 2, tracks[net], end + TRACK / 2, y)
             canvas.stack(x, y, THIRD, FOURTH)
             canvas.wire(FOURTH, x - LINE / 2, min(y, to) - LINE / 2, x + LINE / 2, max(y, to) + LINE / 2)
             canvas.wire(FOURTH, first, to - LINE / 2, x + LINE / 2, to + LINE / 2)
@@ -481,12 +509,12 @@ def _leave(canvas: Canvas, made: ColumnPlan, strips: Sequence[Strip], number: in
         beside = CAPS.index(next(group for group in CAPS if plate.cap in group)) - (not plate.cap.from_east)
         if beside != number:
             continue
-        start = plan.left - OUT if plate.cap.from_east else plan.right + OUT
         for net, at in ((plate.cap.lower, VIA_IN), (plate.cap.upper, PAD_AT)):
             if net in WAYS:
                 continue
-            x, y = plate.near + plate.way * at, tracks[net]
-            canvas.stack(start, y, SECOND, THIRD)
+            west = plan.left + (IN if _lowest(tracks[net]) else -OUT)
+            start = west if plate.cap.from_east else plan.right + OUT
+            x, y = plate.near + plate.way * at, _way(canvas, tracks[net], start)
             canvas.wire(SECOND, min(x, start), y - half, max(x, start), y + half)
             canvas.stack(x, y, SECOND, THIRD if net == plate.cap.lower else FOURTH)
             if net == plate.cap.upper:
@@ -502,14 +530,26 @@ def _leave(canvas: Canvas, made: ColumnPlan, strips: Sequence[Strip], number: in
                 canvas.stack(x, y, SECOND, THIRD)
 
 
+def _lowest(track: float) -> bool:
+    """Whether a track is the first one, beside a rail's joint in the west."""
+    return track < BETWEEN / 2 + ROW_IN + TRACK_PITCH / 2
+
+
+def _way(canvas: Canvas, track: float, x: float) -> float:
+    """Y at which a net of ``track`` leaves a strip under the plates: of the first track the second's, for the rail."""
+    y = snap(track + TRACK_PITCH) if _lowest(track) else track
+    canvas.stack(x, track, SECOND, THIRD)
+    canvas.wire(SECOND, x - UNDER / 2, track, x + UNDER / 2, y + UNDER / 2)
+    return y
+
+
 def as_cell(canvas: Canvas, d: Mapping[str, Device], made: ColumnPlan, strips: Sequence[Strip]) -> Cell:
     """The drawn column with its circuit's names."""
     plates, taps = list[Plate](), list[Tap]()
     for cap, left, right in made.plates:
-        edges = right - left, WIDE
+        edges = right - left, cap.high - cap.low
         plates.append(Plate(cap.name, cap.upper, cap.lower, edges[0] * edges[1], 2 * sum(edges)))
-        near = (right + VIA_IN) if cap.from_east else (left - VIA_IN)
-        taps.append(Tap(cap.name, 1, near, PITCH / 2))
+        taps.append(Tap(cap.name, 1, (left + right) / 2, (cap.low + cap.high) / 2))
     terminals = tuple(one for strip in strips for one in strip.terminals)
     tracks = tuple(one for strip in strips for one in strip.tracks)
     return Cell(canvas.layout, canvas.cell, PINS, tuple(d.values()), tuple(plates), terminals, tuple(taps), tracks)
