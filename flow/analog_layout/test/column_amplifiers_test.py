@@ -98,6 +98,10 @@ def test_what_reaches_into_a_column_is_found(block, tmp_path):
         x = box.center().x
         over(block, top, MASKS.base.poly, 200, (x - 0.075, box.bottom - 0.2, x + 0.075, box.top + 0.2))
 
+    def well(layout, top):
+        top.shapes(layout.layer(*MASKS.base.well)).insert(db.DBox(2000, 80, 2005, 90))
+
+    assert any(name.startswith("column: net") for name in found(block, tmp_path, well))
     assert any(name.startswith("column: pin") for name in found(block, tmp_path, neighbours))
     assert any(name.startswith("column: pin") for name in found(block, tmp_path, to_a_line))
     assert "column: device back_a.in" in found(block, tmp_path, gate)

@@ -113,7 +113,7 @@ def lay_out_die(
         pin_map(runner, options, part)
         layout = render(runner.paths["die_gds.gds"], tech)
         layout.image.save(part / f"{SENSOR}.png")
-        shown = [picture(blocks, "Blocks; hatched: black box, no circuit")]
+        shown = [picture(blocks, "Blocks; hatched: black box, no circuit" if black_boxes else "Blocks")]
         shown.append(picture(part / PACKAGE[1], "Package and bond wires, to scale"))
         write_report(part, folder, summary, lines, layout, shown)
     return folder / "summary.json", lines
