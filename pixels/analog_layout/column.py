@@ -49,7 +49,7 @@ from .strip import (
 PITCH, BETWEEN = 10.0, 1.2  # of the columns; of the rails' middles of two columns
 ROWS, ROW_IN = 13, 0.2  # of tracks in a strip; of the first from a rail's middle
 WIDE, HALVES = 8.2, 1.48  # of a plate across the column; between two that are over each other
-LINE, LANE = 0.4, 0.6  # widths of what crosses all columns, and of the lanes' lines
+LINE, LANE, NARROW = 0.4, 0.6, 0.3  # widths of what crosses all columns, of the lanes' lines, of what passes plates
 STEP, LEAST = 0.2, 0.4  # of the places of these; between two
 ROOM = 0.6  # beside each pair of devices, for its drops
 FIRST = 1.5  # of the first plate from the array
@@ -59,7 +59,7 @@ PAD = 0.19, 0.33  # half of the third metal at those vias: its least area
 UNDER = 0.28  # width of the lines under the plates
 OUT, EXIT, JOGS = 0.35, 3.2, (2.2, 3.0)  # from a strip's end to its lines' vias; to a plate; to what leaves above
 IN = 0.1  # of the first track's via: the rails are joined beside the strip
-WAYS = {"column_a": 2.5, "column_b": 7.5, "cin_b": 4.0, "cin_a": 2.0}  # y of what leaves on the fourth metal
+WAYS = {"column_a": 1.7, "column_b": 8.3, "cin_b": 4.0, "cin_a": 2.0}  # y of what leaves on the fourth metal
 RAILS = 1  # the metal of the rails
 LANES = 8
 GROUPED = {"group": GROUPS, "k": PLACES} | {f"{name}_{d}": LANES for name in ("lane", "sense") for d in "ab"}
@@ -163,12 +163,13 @@ PIECES = (
             "vbp": 5,
             "edgen": 6,
             "half": 7,
-            "out_b": 9,
-            "vcp": 10,
-            "column_b": 11,
-            "edge": 12,
+            "vcp": 9,
+            "out_b": 10,
+            "edge": 11,
+            "column_b": 12,
         },
         ("cn", "clear", "edge", "edgen", "vcp", "vbp"),
+        {"edgen": "column_a", "vbp": "column_a"},
     ),
     Piece(
         (
@@ -188,8 +189,8 @@ PIECES = (
             "select_n.na",
             "on0.nb",
             "go_b",
-            "stop_b",
             "back_b.onto_n",
+            "stop_b",
             "back_a.enter",
             "go_a",
             "back_a.in",
@@ -223,8 +224,8 @@ PIECES = (
             "",
             "select_n.pa",
             "",
-            "",
             "back_b.onto_p",
+            "",
             "on0.pb",
             "on0.pa",
             "",
@@ -247,16 +248,16 @@ PIECES = (
         {
             "cn": 2,
             "vbp": 5,
-            "vcp": 10,
+            "vcp": 9,
             "seln": 2,
             "cin_a": 0,
             "cin_b": 4,
             "back_b.x": 6,
             "back_b.kick": 7,
             "back_b.tap0.inner": 8,
-            "back_b.tap0.outer": 9,
+            "back_b.tap0.outer": 10,
             "start": 12,
-            "back_b.f": 10,
+            "back_b.f": 9,
             "back_b.out": 11,
             "sense_b": 11,
             "back_a.kick": 3,
@@ -282,7 +283,7 @@ CAPS = (
         Cap("in_half", "half", "cin_a"),
         Cap("in_b", "out_b", "cin_b"),
         _kick("b", True),
-        _hold("b", 0, True),
+        _hold("b", 0, True)._replace(lower="back_b.tap0.inner", upper="back_b.tap0.outer"),  # cin_a passes above
     ),
     (_kick("a"), _hold("a", 0)),
     *((_hold("a", t),) for t in range(1, TAPS)),
@@ -447,6 +448,9 @@ def draw_column(canvas: Canvas, masks: AnalogMasks, made: ColumnPlan) -> list[St
     ends = made.strips[0].left, made.strips[-1].right
     for rail in (y, PITCH - y):  # beside the plates from strip to strip
         canvas.wire(RAILS, ends[0], rail - RAIL_HALF, ends[1], rail + RAIL_HALF)
+    first = made.strips[0]  # below what passes the fronts beside the next column's outputs
+    canvas.wire(THIRD, first.left - RAIL_AT - RAIL_TRUNK / 2, -TRACK / 2, first.right, TRACK / 2)
+    canvas.wire(THIRD, first.left - RAIL_AT - RAIL_TRUNK / 2, 0, first.left - RAIL_AT + RAIL_TRUNK / 2, y)
     for x in made.joints["vss"] + made.joints["vdd"]:
         canvas.wire(FOURTH, x - RAIL_TRUNK / 2, 0, x + RAIL_TRUNK / 2, PITCH)
     for net in SINGLE:
@@ -504,7 +508,7 @@ def _leave(canvas: Canvas, made: ColumnPlan, strips: Sequence[Strip], number: in
                 canvas.wire(THIRD, end - TRACK / 2, tracks[net], end + TRACK / 2, y)
             canvas.stack(x, y, THIRD, FOURTH)
             canvas.wire(FOURTH, x - LINE / 2, min(y, to) - LINE / 2, x + LINE / 2, max(y, to) + LINE / 2)
-            canvas.wire(FOURTH, first, to - LINE / 2, x + LINE / 2, to + LINE / 2)
+            canvas.wire(FOURTH, first, to - NARROW / 2, x + LINE / 2, to + NARROW / 2)
     for plate in made.plates:
         beside = CAPS.index(next(group for group in CAPS if plate.cap in group)) - (not plate.cap.from_east)
         if beside != number:
