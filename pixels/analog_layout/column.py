@@ -448,9 +448,6 @@ def draw_column(canvas: Canvas, masks: AnalogMasks, made: ColumnPlan) -> list[St
     ends = made.strips[0].left, made.strips[-1].right
     for rail in (y, PITCH - y):  # beside the plates from strip to strip
         canvas.wire(RAILS, ends[0], rail - RAIL_HALF, ends[1], rail + RAIL_HALF)
-    first = made.strips[0]  # below what passes the fronts beside the next column's outputs
-    canvas.wire(THIRD, first.left - RAIL_AT - RAIL_TRUNK / 2, -TRACK / 2, first.right, TRACK / 2)
-    canvas.wire(THIRD, first.left - RAIL_AT - RAIL_TRUNK / 2, 0, first.left - RAIL_AT + RAIL_TRUNK / 2, y)
     for x in made.joints["vss"] + made.joints["vdd"]:
         canvas.wire(FOURTH, x - RAIL_TRUNK / 2, 0, x + RAIL_TRUNK / 2, PITCH)
     for net in SINGLE:
@@ -463,6 +460,13 @@ def draw_column(canvas: Canvas, masks: AnalogMasks, made: ColumnPlan) -> list[St
     for number, strip in enumerate(strips):
         _leave(canvas, made, strips, number, strip)
     return strips
+
+
+def draw_ground(canvas: Canvas, made: ColumnPlan, y: float, end: float) -> None:
+    """The ground's line up to x = ``end`` south of a column whose edge is at ``y``: below what passes the fronts there."""
+    west = made.strips[0].left - RAIL_AT - RAIL_TRUNK / 2
+    canvas.wire(THIRD, west, y - TRACK / 2, end, y + TRACK / 2)
+    canvas.wire(THIRD, west, y, west + RAIL_TRUNK, y + BETWEEN / 2)
 
 
 def _plate(canvas: Canvas, masks: AnalogMasks, plate: Drawn) -> None:
@@ -564,6 +568,7 @@ def column_cell(masks: AnalogMasks, sizes: ColumnSizes) -> Cell:
     d, canvas = devices(sizes), new_canvas(masks, "column")
     plan = column_plan(d, sizes, masks)
     made = as_cell(canvas, d, plan, draw_column(canvas, masks, plan))
+    draw_ground(canvas, plan, 0.0, plan.strips[0].right)
     for net in PINS:
         if net in ("column_a", "column_b"):
             canvas.label(FOURTH, net, 0.2, WAYS[net])

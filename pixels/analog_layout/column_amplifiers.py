@@ -15,7 +15,7 @@ from typing import ClassVar
 
 from talbot.base.gds import db
 from talbot.models.parameters import ArrayParameters, ChipParameters, ParameterError
-from talbot.pixels.blocks import AnalogSizes, Block, Pin, blocks
+from talbot.pixels.blocks import DEEP_UM, AnalogSizes, Block, Pin, blocks
 from talbot.pixels.circuits.column_block import BANK_INPUTS, BANK_OUTPUTS
 from talbot.pixels.circuits.column_sizes import ColumnSizes
 from talbot.pixels.footprints import draw_pins, lef
@@ -23,9 +23,9 @@ from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.analog import AnalogMasks
 
 from .cells import new_canvas
-from .column import LANES, PITCH
+from .column import LANES, LINE, PITCH, WAYS
 from .column_band import Band, draw_band
-from .columns import END, Columns, column_nets, draw_columns, draw_way
+from .columns import END, Columns, column_nets, draw_columns, draw_grounds, draw_way
 from .device import snap
 from .row_drivers import TOP, VIA, VIA_PAD, VIA_PITCH, chip_pin
 from .strip import FOURTH, TRUNK
@@ -112,13 +112,21 @@ def draw_column_amplifiers(
     block = frame(array, chip, replace(room, columns_um=height))
     turned = Canvas(canvas.layout, "columns_and_ways", masks.base)
     turned.cell.insert(db.CellInstArray(columns.cell.cell_index(), db.Trans()))
+    vias: dict[int, list[float]] = {}
     for net, numbers in band.ways.items():
         for k, number in enumerate(numbers):
-            draw_way(turned, columns, own.get(net, net), number, k if net in lanes else None)
+            found = draw_way(turned, columns, own.get(net, net), number, k if net in lanes else None)
+            vias.setdefault(number, []).extend(found)
     for pin in block.pins:
         if pin.name in OUTSIDE or pin.name == SOURCE:
-            draw_way(turned, columns, "ibias" if pin.name == SOURCE else pin.name, round(pin.at_um / PITCH))
+            number = round(pin.at_um / PITCH)
+            found = draw_way(turned, columns, "ibias" if pin.name == SOURCE else pin.name, number)
+            vias.setdefault(number, []).extend(found)
             canvas.wire(FOURTH, pin.at_um - TRUNK / 2, 0, pin.at_um + TRUNK / 2, band.height)
+    draw_grounds(turned, columns, vias)
+    for pin in block.pins:
+        if pin.side == "north":
+            _join(turned, pin)
     lying = db.Trans(3, False, 0, canvas.snap(height))
     canvas.cell.insert(db.CellInstArray(turned.cell.cell_index(), lying))
     canvas.cell.insert(db.CellInstArray(band.cell.cell.cell_index(), db.Trans()))
@@ -126,6 +134,12 @@ def draw_column_amplifiers(
     draw_pins(canvas.layout, canvas.cell, block, masks.base.name, room.supply_um)
     canvas.box(masks.base.outline, 0, 0, block.width_um, block.height_um)
     return ColumnAmplifiers(block, canvas.layout, canvas.cell, columns, band, chip.lanes)
+
+
+def _join(canvas: Canvas, pin: Pin) -> None:
+    """A column's line, where it is in the column, and the array's pin."""
+    at = pin.at_um // PITCH * PITCH + WAYS[pin.name.split("[")[0]]
+    canvas.wire(FOURTH, 0, min(at, pin.at_um) - LINE / 2, DEEP_UM, max(at, pin.at_um) + LINE / 2)
 
 
 def frame(array: ArrayParameters, chip: ChipParameters, room: AnalogSizes) -> Block:

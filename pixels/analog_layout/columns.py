@@ -3,7 +3,7 @@
 What goes on to the south is on the second metal between two columns, at a multiple of their pitch: a `way`.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from talbot.base.gds import db
@@ -28,11 +28,13 @@ from .column import (
     column_plan,
     devices,
     draw_column,
+    draw_ground,
     names,
 )
 from .strip import FOURTH, SECOND, THIRD
 
 WAY, END = 0.2, 1.0  # um, width of a way; where it goes up, beyond the columns
+BESIDE = 0.35  # um, of the ground's lines from a way's vias
 
 
 @dataclass(frozen=True)
@@ -98,8 +100,11 @@ def draw_columns(
     return Columns(whole.cell, one, plan, count)
 
 
-def draw_way(canvas: Canvas, made: Columns, net: str, number: int, only: int | None = None) -> None:
-    """From the lines of a net, or from one of them, to END beyond the columns, south of column ``number``."""
+def draw_way(canvas: Canvas, made: Columns, net: str, number: int, only: int | None = None) -> list[float]:
+    """From the lines of a net, or from one of them, to END beyond the columns, south of column ``number``.
+
+    Returns x of its vias.
+    """
     lines, y, half = made.lines(net), number * PITCH, WAY / 2
     lines = lines if only is None else lines[only : only + 1]
     end = made.plan.right + END
@@ -107,3 +112,11 @@ def draw_way(canvas: Canvas, made: Columns, net: str, number: int, only: int | N
     for x in (*lines, end):
         canvas.stack(x, y, SECOND, FOURTH)
         canvas.wire(THIRD, x - PAD[1], y - PAD[0], x + PAD[1], y + PAD[0])
+    return [*lines, end]
+
+
+def draw_grounds(canvas: Canvas, made: Columns, vias: Mapping[int, Sequence[float]]) -> None:
+    """The ground's line between every two columns, up to the first of the ways' vias there. vias: x, by column."""
+    for number in range(1, made.count):
+        ends = (x - PAD[1] - BESIDE for x in vias.get(number, ()))
+        draw_ground(canvas, made.plan, number * PITCH, min((*ends, made.plan.strips[0].right)))
