@@ -59,8 +59,8 @@ class ColumnSpec:
         Of a lane's line along the block, 1e-16..1e-10 F, 1..1e5 ohm.
     input : float
         F of the lane's amplifier at it, 1e-15..1e-10.
-    columns : int
-        At a lane's line, 1..10000.
+    columns, array : int
+        At a lane's line, and in all, 1..10000.
     ready : float
         S from the select until the line is within ``settling``: what the lane's amplifier leaves of the cycle.
     settling : float
@@ -95,6 +95,7 @@ class ColumnSpec:
     ohm: float = 1200.0
     input: float = UNITS * CELL
     columns: int = 48
+    array: int = 384
     ready: float = 50e-9
     settling: float = 0.5
     slope: float = 0.05
@@ -118,6 +119,7 @@ class ColumnSpec:
         check_int("read", self.read, 4, 65535)
         check_real("ohm", self.ohm, 1, 1e5)
         check_int("columns", self.columns, 1, 10_000)
+        check_int("array", self.array, 1, 10_000)
         check_real("ready", self.ready, 1e-9, self.cycle)
         for name in ("settling", "inl", "droop"):
             check_real(name, getattr(self, name), 0.01, 16)
@@ -150,6 +152,7 @@ class ColumnSpec:
             wire=array.cols * drawn.row_farad,
             ohm=array.cols * drawn.row_ohm / 2,  # a line of twice the width
             columns=columns,
+            array=array.cols,
             noise=(sensor.electrical.full_well / 2) ** 0.5,
             wait=columns * 10 / chip.f_clk,
             energy=one_digit(energy.pixel_array / rate),
