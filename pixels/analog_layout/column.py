@@ -58,6 +58,7 @@ PATCH_IN, VIAS = 0.3, 1.0  # of the metal over an upper plate from its edges; pi
 PAD = 0.19, 0.33  # half of the third metal at those vias: its least area
 UNDER = 0.28  # width of the lines under the plates
 OUT, EXIT, JOGS = 0.35, 3.2, (2.2, 3.0)  # from a strip's end to its lines' vias; to a plate; to what leaves above
+SHIELD = 0.3  # of a line of vss at a column's edge
 IN = 0.1  # of the first track's via: the rails are joined beside the strip
 WAYS = {"column_a": 1.7, "column_b": 8.3, "cin_b": 4.0, "cin_a": 2.0}  # y of what leaves on the fourth metal
 RAILS = 1  # the metal of the rails
@@ -449,7 +450,7 @@ def draw_column(canvas: Canvas, masks: AnalogMasks, made: ColumnPlan) -> list[St
     for rail in (y, PITCH - y):  # beside the plates from strip to strip
         canvas.wire(RAILS, ends[0], rail - RAIL_HALF, ends[1], rail + RAIL_HALF)
     first = made.strips[0]  # below what passes the fronts beside the next column's outputs
-    canvas.wire(THIRD, first.left - RAIL_AT - RAIL_TRUNK / 2, -TRACK / 2, first.right, TRACK / 2)
+    canvas.wire(THIRD, first.left - RAIL_AT - RAIL_TRUNK / 2, 0, first.right, SHIELD)
     canvas.wire(THIRD, first.left - RAIL_AT - RAIL_TRUNK / 2, 0, first.left - RAIL_AT + RAIL_TRUNK / 2, y)
     for x in made.joints["vss"] + made.joints["vdd"]:
         canvas.wire(FOURTH, x - RAIL_TRUNK / 2, 0, x + RAIL_TRUNK / 2, PITCH)
