@@ -11,6 +11,7 @@ The wells are as much larger than nominal as the capacitors are at a corner, so 
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from types import ModuleType
 
 import numpy as np
@@ -22,7 +23,15 @@ from talbot.models.parameters.electrical import BOLTZMANN
 from talbot.pixels.circuits import column as columns
 from talbot.pixels.circuits.amplifier import BIAS
 from talbot.pixels.circuits.column import BIASES, CONTROLS, SUPPLIES, column
-from talbot.pixels.circuits.column_block import CASCODES, CLEAR, cascode_lines, column_bias, lane_end, lane_line
+from talbot.pixels.circuits.column_block import (
+    CASCODES,
+    CLEAR,
+    OUTSIDE,
+    cascode_lines,
+    column_bias,
+    lane_end,
+    lane_line,
+)
 from talbot.pixels.circuits.column_sizes import EFFICIENCY, FRONT, LANE, ColumnSizes, ColumnSpec
 from talbot.pixels.circuits.netlist import Capacitor, Circuit, Instance, Transistor
 from talbot.pixels.circuits.row_driver import THICK
@@ -37,6 +46,7 @@ GAP = 1e-9  # s between controls that must not be high together: gate delays of 
 REST = 1  # cycles before the read, and between it and the turn
 WELLS = 0.0, 0.2, 0.4, 0.6, 0.8  # of a full well: a straight line through these
 BOTH = 0.8, 0.4  # of a full well, of the diodes whose mean is measured
+SETTLED = 20e-6  # s until the bias alone is at rest
 TRIMS = 2  # steps to the trimmed level
 FULL = 0.98  # of a full well: what is lost there
 LIGHT = 1e-6  # s in which the wells get their charge, while they are at no line
@@ -191,7 +201,7 @@ def noise(spec: ColumnSpec, sizes: ColumnSizes, process: ModuleType, celsius: fl
 
 
 def bench(sizes: ColumnSizes, spec: ColumnSpec) -> Circuit:
-    """A column with bias, lines and wells; `own` are its pins."""
+    """A column with bias, its part of what is outside of the chip at that, lines and wells; `own` are its pins."""
     quiet: dict[str, str] = NAMES | {name: "vdd" if high else "vss" for name, high in QUIET.items()}
     parts = [
         Instance("column", column(sizes), tuple(quiet.get(name) or name for name in map(columns.line, columns.PINS))),
@@ -199,7 +209,8 @@ def bench(sizes: ColumnSizes, spec: ColumnSpec) -> Circuit:
         Instance("lines", column_bias(sizes), ("ibias", *BIASES, "level", "vdd_bias", "vss")),
         Instance("cascodes", cascode_lines(), cascode_lines().ports),
     ]
-    devices, capacitors = list[Transistor](), list[Capacitor]()
+    devices = list[Transistor]()
+    capacitors = [Capacitor(f"outside_{name}", name, f"rest_{name}", OUTSIDE / spec.array) for name in BIASES]
     for d, reference in (("a", "reference"), ("b", "dark")):
         turn = ("turn", "turnn") if d == "a" else ("turnb", "turnbn")
         end = (f"far_{d}", reference, *turn, "vbl", "vcp", *SUPPLIES)
@@ -219,8 +230,22 @@ def bench(sizes: ColumnSizes, spec: ColumnSpec) -> Circuit:
         "start",
         "start_a",
     )
-    own += ("dark", "reference", "far_a", "far_b", "vdd_bias", "vdd_own", *SUPPLIES)
+    own += ("dark", "reference", "far_a", "far_b", "vdd_bias", "vdd_own", *(f"rest_{name}" for name in BIASES))
+    own += SUPPLIES
     return Circuit("bench", own, tuple(devices), tuple(capacitors), instances=tuple(parts))
+
+
+@cache
+def at_rest(setup: Setup, sizes: ColumnSizes, corner: Corner) -> dict[str, float]:
+    """V of the bias's lines."""
+    parts = (
+        Instance("bias", bias(), ("ibias", "vdd", "vss")),
+        Instance("lines", column_bias(sizes), ("ibias", *BIASES, "level", "vdd", "vss")),
+    )
+    lines = deck(Circuit("rest", (*BIASES, "level", "vdd", "vss"), instances=parts), setup, corner)
+    with simulator(lines, (), BIASES, corner, settings=EXACT) as spice:
+        wave = spice.transient({}, {}, SETTLED, SETTLED / 20)
+    return {name: wave.at(name, SETTLED) for name in BIASES}
 
 
 def opened(
@@ -234,7 +259,10 @@ def opened(
     more: Sequence[str] = (),
     circuit: Circuit | None = None,
 ) -> Simulator:
-    """An ngspice process of the bench. image: the first lane's reference is the middle. seed: of mismatch."""
+    """An ngspice process of the bench. image: the first lane's reference is the middle. seed: of mismatch.
+
+    What is outside of the chip at the bias has its level from the begin on: it would take milliseconds.
+    """
     lines = deck(circuit or bench(sizes, spec), setup, corner, seed=seed)
     lines.append(f".model filling sw vt={corner.supply / 2:g} vh=0 ron=1000 roff=1e15")
     ampere = spec.well * setup.scale(corner) / LIGHT
@@ -242,6 +270,7 @@ def opened(
         lines += [f"Sreset_{d} well_{d} level fill 0 filling", f"Glight_{d} well_{d} 0 x_{d} 0 {ampere:.9g}"]
     rails = {"start_a": start[0], "start": start[1], "dark": spec.dark, "reference": spec.dark - image * spec.swing / 4}
     rails |= {"vdd_bias": corner.supply, "vdd_own": corner.supply}
+    rails |= {f"rest_{name}": volt for name, volt in at_rest(setup, sizes, corner).items()}
     return simulator(lines, DRIVEN, ("far_a", "far_b", "level", *more), corner, rails, EXACT)
 
 

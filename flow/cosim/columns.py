@@ -14,7 +14,7 @@ from talbot.flow.analog.amplifier import COLUMNS, EXACT
 from talbot.flow.analog.column import GAP, ROW
 from talbot.models.parameters import ELEMENTARY_CHARGE, AmpTiming
 from talbot.pixels.circuits.column import BIASES, PINS, TAPS, column, line
-from talbot.pixels.circuits.column_block import cascode_lines, clear_pulse, column_bias, lane_end, lane_line
+from talbot.pixels.circuits.column_block import OUTSIDE, cascode_lines, clear_pulse, column_bias, lane_end, lane_line
 from talbot.pixels.circuits.column_sizes import FULL, ColumnSizes, ColumnSpec, size
 from talbot.pixels.circuits.netlist import Capacitor, Circuit, Transistor
 from talbot.pixels.circuits.row_driver import THICK
@@ -29,7 +29,6 @@ TIMING = AmpTiming()  # of a row with these columns: the holder has 16 cycles in
 CELSIUS = 25.0
 BEFORE = {"line_{d}{c}": 0.5, "xcolumn{c}.cin_{d}": 1.6}  # V of what floats, since the row before was read
 TRIMS = 2  # steps to the trimmed level
-LEVEL = 100e-9  # F at the wells' level, outside of the chip: a row's wells take 12 pC as they are reset
 SOURCE = "vbn", "vbp", "source", "start", "part_1", "part_2", "part_3"  # nodes of a bias
 RESTING = (*BIASES, "level", "ibias_columns", *(f"xcolumn_source.{name}" for name in SOURCE))
 
@@ -87,7 +86,7 @@ def lines(
         f"Vreference reference 0 {spec.dark - (not edge) * CODES / 2 * spec.lsb:.9g}",
         *(f"V{name} {name} 0 {volts:.9g}" for name, volts in zip(("start_a", "start"), start, strict=True)),
         *([".ic " + " ".join(f"v({name})={volts:.6g}" for name, volts in resting.items())] if rest else []),
-        f"Clevel level 0 {LEVEL:g}",
+        *(f"Coutside_{name} {name} 0 {OUTSIDE:g}" for name in (*BIASES, "level")),
         "Xcolumn_source ibias_columns vdd 0 bias",
         f"Xcolumn_bias ibias_columns {' '.join(BIASES)} level vdd 0 column_bias",
         f"Xcascodes vcn reads readsn {own['edge']} {own['edgen']} cn vcnb 0 cascode_lines",

@@ -58,6 +58,7 @@ PATCH_IN, VIAS = 0.3, 1.0  # of the metal over an upper plate from its edges; pi
 PAD = 0.19, 0.33  # half of the third metal at those vias: its least area
 UNDER = 0.28  # width of the lines under the plates
 OUT, EXIT, JOGS = 0.35, 3.2, (2.2, 3.0)  # from a strip's end to its lines' vias; to a plate; to what leaves above
+SHIELD = 0.3  # of a line of vss at a column's edge
 IN = 0.1  # of the first track's via: the rails are joined beside the strip
 WAYS = {"column_a": 1.7, "column_b": 8.3, "cin_b": 4.0, "cin_a": 2.0}  # y of what leaves on the fourth metal
 RAILS = 1  # the metal of the rails
@@ -463,9 +464,9 @@ def draw_column(canvas: Canvas, masks: AnalogMasks, made: ColumnPlan) -> list[St
 
 
 def draw_ground(canvas: Canvas, made: ColumnPlan, y: float, end: float) -> None:
-    """The ground's line up to x = ``end`` south of a column whose edge is at ``y``: below what passes the fronts there."""
+    """The ground's line up to x = ``end`` in the south of a column whose edge is at ``y``: beside what passes the fronts."""
     west = made.strips[0].left - RAIL_AT - RAIL_TRUNK / 2
-    canvas.wire(THIRD, west, y - TRACK / 2, end, y + TRACK / 2)
+    canvas.wire(THIRD, west, y, end, y + SHIELD)
     canvas.wire(THIRD, west, y, west + RAIL_TRUNK, y + BETWEEN / 2)
 
 

@@ -3,7 +3,7 @@
 north     column_a, column_b of each column
           the columns, turned: their strips' lines run from west to east
           band: bank, bias, the ends of the lanes' lines
-south     the chip's pins | lane_a, lane_b of each lane | dark, reference, start, start_a, level, ibias_columns
+south     the chip's pins | lane_a, lane_b of each lane | pins of OUTSIDE and SOURCE
 
 Supplies are straps of the top metal over the columns, in turn the supply's and the ground's; between them, across the
 band. The pins in the south-east are none of the black box: the die has pins for them.
@@ -16,6 +16,7 @@ from typing import ClassVar
 from talbot.base.gds import db
 from talbot.models.parameters import ArrayParameters, ChipParameters, ParameterError
 from talbot.pixels.blocks import DEEP_UM, AnalogSizes, Block, Pin, blocks
+from talbot.pixels.circuits.column import BIASES
 from talbot.pixels.circuits.column_block import BANK_INPUTS, BANK_OUTPUTS
 from talbot.pixels.circuits.column_sizes import ColumnSizes
 from talbot.pixels.footprints import draw_pins, lef
@@ -32,7 +33,7 @@ from .strip import FOURTH, TRUNK
 
 NAME = "column_amplifiers"
 # Nets that a column or the band has from outside of the chip; lines across that no column is on
-OUTSIDE = {"dark": "input", "reference": "input", "start": "input", "start_a": "input", "level": "output"}
+OUTSIDE = dict.fromkeys(("dark", "reference", "start", "start_a"), "input") | dict.fromkeys((*BIASES, "level"), "output")
 SOURCE = "ibias_columns"
 EXTRA = ("turn", "turnn", "turnb", "turnbn", "vbl", "reference", "dark", "ibias")
 OUTWARD = (*BANK_OUTPUTS, "ibias", "vbp", "vcp", "vcn", "vbl", "level", "reference", "dark")

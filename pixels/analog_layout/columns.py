@@ -116,7 +116,7 @@ def draw_way(canvas: Canvas, made: Columns, net: str, number: int, only: int | N
 
 
 def draw_grounds(canvas: Canvas, made: Columns, vias: Mapping[int, Sequence[float]]) -> None:
-    """The ground's line between every two columns, up to the first of the ways' vias there. vias: x, by column."""
-    for number in range(1, made.count):
+    """The ground's line in the south of each column, up to the first of the ways' vias there. vias: x, by column."""
+    for number in range(made.count):
         ends = (x - PAD[1] - BESIDE for x in vias.get(number, ()))
         draw_ground(canvas, made.plan, number * PITCH, min((*ends, made.plan.strips[0].right)))

@@ -12,7 +12,11 @@ from .row_driver import nand_of
 POWER = ("p", LENGTH)
 BRANCH = 1.25e-6  # A, of each branch of the bias
 DECOUPLING = 5e-12  # F at each of its lines
-STACK, STACK_P = (0.42, ("n_lvt", 5.0)), (0.42, ("p", 2.0))  # um, of the diodes that make the cascodes' gates
+# F outside of the chip at each, and at level: all columns' outputs end at once as a row ends, 10 fC each at vcp, and a
+# fronts' offset of 20 uV of vbp is an LSB. What selected cascodes' gates take of vcn is lost: some uA
+OUTSIDE = 100e-9
+GATES = 8  # branches of the bias at vcn
+STACK, STACK_P = (2.5, ("n_lvt", 5.0)), (0.42, ("p", 2.0))  # um, of the diodes that make the cascodes' gates
 LEG = 0.8  # um, of a branch of the bias
 SECTIONS = 12  # of a lane's line
 GROUPS, PLACES = 8, 6  # lines of a group, of a place in the tile
@@ -48,7 +52,7 @@ def column_bias(sizes: ColumnSizes) -> Circuit:
         p("vbl_top", "vbl_high vbl vdd", drawn(lane.top / PARTS), LANE_TOP),
         p("vbl_cascode", "vbl vcp vbl_high", drawn(lane.cascode_p / PARTS), CASCODE_P),
         p("vcp", "vcp vcp vdd", *STACK_P),
-        *feed("vcn", "vcn"),
+        *feed("vcn", "vcn", GATES * BRANCH),
         n("vcn", "vcn vcn vss", *STACK),
         *feed("level", "level", front.current),
         n("level_in", "level_low level vss", front.input, FRONT),

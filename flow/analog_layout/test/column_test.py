@@ -12,13 +12,16 @@ if not shutil.which("klayout"):
 
 from talbot.base.gds import db, write_gds
 from talbot.flow.analog_layout.checks import drc, lvs
+from talbot.flow.analog_layout.extract import extract
 from talbot.flow.analog_layout.test.planted import changed
 from talbot.models.parameters import ChipParameters
 from talbot.pixels.analog_layout.column import column_cell
 from talbot.pixels.analog_layout.column_band import draw_band
+from talbot.pixels.circuits.column import TAPS
 from talbot.pixels.circuits.column_block import BANK_INPUTS, BANK_OUTPUTS
 from talbot.pixels.circuits.column_sizes import ColumnSpec, size
 from talbot.platforms.analog import analog_masks
+from talbot.platforms.coriolis import coriolis_platform
 from talbot.platforms.sky130 import analog as process
 
 MASKS = analog_masks("sky130")
@@ -65,6 +68,16 @@ def test_a_column_is_its_circuit_and_faults_are_found(column, tmp_path):
         )
 
     assert not lvs(changed(path, tmp_path / "cut.gds", cut), text, "sky130", tmp_path / "cut.lvsdb")
+
+
+def test_what_a_sample_depends_on_is_apart_from_what_it_must_not(column):
+    """F between nets: 0.04 fF of an output to the other diode's line, of 31 fF, is half an LSB of its light."""
+    _, nets = extract(column[0], MASKS, coriolis_platform("sky130").wires["typ"], resistance=False)
+    most = {("column_b", "out_a"): 0.02, ("column_a", "out_b"): 0.02, ("cin_a", "out_b"): 0.15}
+    most |= {(f"back_{d}.f", f"back_{d}.x"): 0.5 for d in "ab"}
+    most |= {(f"back_a.tap{t}.inner", "back_a.x"): 0.6 for t in range(TAPS)}
+    assert all(pair[0] < pair[1] for pair in most)  # as the pairs of nets are
+    assert {pair for pair, limit in most.items() if nets.couplings.get(pair, 0.0) > limit * 1e-15} == set()
 
 
 @pytest.mark.slow

@@ -12,7 +12,7 @@ from talbot.platforms.pads import PadProcess
 
 from .ring import OUTSIDE
 
-LEADS = 48, 64, 80, 100, 128  # of a QFN, as many on each side
+LEADS = 48, 64, 80, 100, 128, 144  # of a QFN, as many on each side
 PITCH_MM, CORNER_MM, LEAD_MM = 0.5, 1.0, 0.6  # of the leads; from the body's corner to the first; length of a lead
 ORDER = "west", "south", "east", "north"  # counterclockwise from lead 1, the north one of the west
 Point = tuple[float, float]

@@ -49,7 +49,16 @@ def test_specification_is_the_sensors():
 
 
 @pytest.mark.parametrize(
-    "changes", [{"fall": 0.8}, {"dark": float("nan")}, {"settle": 3}, {"ready": 1e-6}, {"slope": 0}, {"columns": 0.5}]
+    "changes",
+    [
+        {"fall": 0.8},
+        {"dark": float("nan")},
+        {"settle": 3},
+        {"ready": 1e-6},
+        {"slope": 0},
+        {"columns": 0.5},
+        {"array": 0},
+    ],
 )
 def test_a_limit_out_of_range_is_refused_by_name(changes):
     with pytest.raises(ParameterError, match=f"{next(iter(changes))} = "):

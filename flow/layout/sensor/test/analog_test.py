@@ -59,7 +59,7 @@ def test_a_block_takes_the_place_of_its_black_box(black_boxes, tmp_path):
 def test_every_block_that_is_drawn_is_on_the_die(tmp_path):
     found, names, extra, drawn = files(tmp_path, "sky130")
     assert names == [] and drawn == BLOCKS
-    references = {"dark", "reference", "start", "start_a", "level", "ibias_columns"}
+    references = {"dark", "reference", "start", "start_a", "level", "vbp", "vcp", "vcn", "vbl", "ibias_columns"}
     assert set(extra) == {"refp", "refn", "vcm", "vref", "amp_on"} | references
     assert all(path.parent != tmp_path for path in found.values())
 

@@ -39,8 +39,8 @@ def test_leads_are_counterclockwise_from_the_north_of_the_west():
 def test_the_fullest_side_decides_the_package():
     names = [f"n{k}" for k in range(17)]
     assert package.leads(plan(south=names, west=["a"]))[0] == 80
-    with pytest.raises(StepError, match="package: 33 pads on a side, 32 leads at most"):
-        package.leads(plan(south=[f"n{k}" for k in range(33)]))
+    with pytest.raises(StepError, match="package: 37 pads on a side, 36 leads at most"):
+        package.leads(plan(south=[f"n{k}" for k in range(37)]))
 
 
 def test_two_leads_swapped_cross():
