@@ -464,7 +464,7 @@ def draw_column(canvas: Canvas, masks: AnalogMasks, made: ColumnPlan) -> list[St
 
 
 def draw_ground(canvas: Canvas, made: ColumnPlan, y: float, end: float) -> None:
-    """The ground's line to x = ``end`` in the south of a column whose edge is at ``y``: beside what passes the fronts."""
+    """The ground's line to x = ``end`` in the south of a column with its edge at ``y``: beside what passes the fronts."""
     west = made.strips[0].left - RAIL_AT - RAIL_TRUNK / 2
     canvas.wire(THIRD, west, y, end, y + SHIELD)
     canvas.wire(THIRD, west, y, west + RAIL_TRUNK, y + BETWEEN / 2)
