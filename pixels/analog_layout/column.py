@@ -449,9 +449,10 @@ def draw_column(canvas: Canvas, masks: AnalogMasks, made: ColumnPlan) -> list[St
     ends = made.strips[0].left, made.strips[-1].right
     for rail in (y, PITCH - y):  # beside the plates from strip to strip
         canvas.wire(RAILS, ends[0], rail - RAIL_HALF, ends[1], rail + RAIL_HALF)
-    first = made.strips[0]  # below what passes the fronts beside the next column's outputs
-    canvas.wire(THIRD, first.left - RAIL_AT - RAIL_TRUNK / 2, 0, first.right, SHIELD)
-    canvas.wire(THIRD, first.left - RAIL_AT - RAIL_TRUNK / 2, 0, first.left - RAIL_AT + RAIL_TRUNK / 2, y)
+    for plan in made.strips[:2]:  # beside the column below: its outputs would be light in the lowest track
+        joint = plan.left - RAIL_AT - RAIL_TRUNK / 2
+        canvas.wire(THIRD, joint, 0, plan.right, SHIELD)
+        canvas.wire(THIRD, joint, 0, joint + RAIL_TRUNK, y)
     for x in made.joints["vss"] + made.joints["vdd"]:
         canvas.wire(FOURTH, x - RAIL_TRUNK / 2, 0, x + RAIL_TRUNK / 2, PITCH)
     for net in SINGLE:
