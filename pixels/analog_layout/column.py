@@ -463,11 +463,16 @@ def draw_column(canvas: Canvas, masks: AnalogMasks, made: ColumnPlan) -> list[St
     return strips
 
 
-def draw_ground(canvas: Canvas, made: ColumnPlan, y: float, end: float) -> None:
-    """The ground's line to x = ``end`` in the south of a column with its edge at ``y``: beside what passes the fronts."""
-    west = made.strips[0].left - RAIL_AT - RAIL_TRUNK / 2
-    canvas.wire(THIRD, west, y, end, y + SHIELD)
-    canvas.wire(THIRD, west, y, west + RAIL_TRUNK, y + BETWEEN / 2)
+def draw_ground(canvas: Canvas, made: ColumnPlan, y: float, vias: Sequence[float] = ()) -> None:
+    """The ground's lines in the south of a column whose edge is at ``y``: the outputs of the one below would be light.
+
+    vias: x of others' there, before which a line ends.
+    """
+    for plan in made.strips[:2]:
+        joint = plan.left - RAIL_AT - RAIL_TRUNK / 2
+        ends = [x - PAD[1] - LEAST for x in vias if joint < x < plan.right + PAD[1] + LEAST]
+        canvas.wire(THIRD, joint, y, min((*ends, plan.right)), y + SHIELD)
+        canvas.wire(THIRD, joint, y, joint + RAIL_TRUNK, y + BETWEEN / 2)
 
 
 def _plate(canvas: Canvas, masks: AnalogMasks, plate: Drawn) -> None:
@@ -569,7 +574,7 @@ def column_cell(masks: AnalogMasks, sizes: ColumnSizes) -> Cell:
     d, canvas = devices(sizes), new_canvas(masks, "column")
     plan = column_plan(d, sizes, masks)
     made = as_cell(canvas, d, plan, draw_column(canvas, masks, plan))
-    draw_ground(canvas, plan, 0.0, plan.strips[0].right)
+    draw_ground(canvas, plan, 0.0)
     for net in PINS:
         if net in ("column_a", "column_b"):
             canvas.label(FOURTH, net, 0.2, WAYS[net])

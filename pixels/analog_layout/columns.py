@@ -34,7 +34,6 @@ from .column import (
 from .strip import FOURTH, SECOND, THIRD
 
 WAY, END = 0.2, 1.0  # um, width of a way; where it goes up, beyond the columns
-BESIDE = 0.35  # um, of the ground's lines from a way's vias
 
 
 @dataclass(frozen=True)
@@ -116,7 +115,6 @@ def draw_way(canvas: Canvas, made: Columns, net: str, number: int, only: int | N
 
 
 def draw_grounds(canvas: Canvas, made: Columns, vias: Mapping[int, Sequence[float]]) -> None:
-    """The ground's line in the south of each column, up to the first of the ways' vias there. vias: x, by column."""
+    """The ground's lines in the south of each column, up to the first of the ways' vias there. vias: x, by column."""
     for number in range(made.count):
-        ends = (x - PAD[1] - BESIDE for x in vias.get(number, ()))
-        draw_ground(canvas, made.plan, number * PITCH, min((*ends, made.plan.strips[0].right)))
+        draw_ground(canvas, made.plan, number * PITCH, vias.get(number, ()))
