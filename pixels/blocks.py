@@ -30,6 +30,7 @@ COLUMNS_IN = {
     "group": GROUP_BITS,
     "k": K_BITS,
     "sub": 2,
+    "hold": 1,
 }
 MARGIN_UM, DEEP_UM = 5.0, 2.0  # of pins from a block's corners; how far a pin reaches into its block
 CONTROL_PITCH_UM = 4.0  # of the column amplifiers' control pins

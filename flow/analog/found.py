@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from .amplifier import AmplifierResult
+from .column import ColumnResult
 from .comparator import Decisions
 from .lane import LaneResult
 from .noise import Noise
@@ -31,3 +32,6 @@ class Found:
     amplifier_noise: AmplifierNoise
     supports: dict[str, SupportResult]
     rows: dict[str, RowDriverResult]
+    columns: dict[str, ColumnResult]
+    column_noise: dict[str, float]
+    column_offsets: list[float]

@@ -19,14 +19,17 @@ from talbot.models.parameters.electrical import AMPLIFIER
 from talbot.pixels.circuits import amplifier as amplifiers
 from talbot.pixels.circuits import lane as lanes
 from talbot.pixels.circuits.amplifier import AmplifierSizes, AmplifierSpec
+from talbot.pixels.circuits.column_sizes import ColumnSizes, ColumnSpec
+from talbot.pixels.circuits.column_sizes import size as column_size
 from talbot.pixels.circuits.lane import LaneSizes
 from talbot.pixels.circuits.row_driver import RowDriverSpec
 from talbot.pixels.circuits.specification import LaneSpec
 from talbot.pixels.circuits.support import SupportSpec
 
-from . import amplifier, comparator, lane, linearity, row_driver, spread, support
+from . import amplifier, column, comparator, lane, linearity, row_driver, spread, support
 from . import noise as noises
 from .amplifier import AmplifierResult
+from .column import ColumnResult
 from .comparator import BATCH, Decisions, interval
 from .deck import Setup, deck, process_of
 from .found import TYPICAL, Found
@@ -46,6 +49,7 @@ ALL = (
 )
 CORNER_SETS = {"all": ALL, "quick": QUICK, "typical": (TYPICAL,)}
 ARRAYS = 1000  # drawn capacitor arrays
+COLUMNS = 40  # most columns that are drawn: a transient takes 5 s
 
 
 def corners_of(text: str) -> tuple[str, ...]:
@@ -77,6 +81,12 @@ def amplifier_of(setup: Setup, lane: LaneSizes) -> tuple[AmplifierSpec, Amplifie
     spec = AmplifierSpec.of()
     load = amplifier.load_of(setup, lane, Corner.parse(TYPICAL))
     return spec, amplifiers.size(spec, load, process_of(setup.pdk))
+
+
+def column_of(setup: Setup) -> tuple[ColumnSpec, ColumnSizes]:
+    """Specification and sizes of the column amplifiers of the default sensor."""
+    spec = ColumnSpec.of()
+    return spec, column_size(spec, process_of(setup.pdk))
 
 
 def make(
@@ -117,13 +127,13 @@ def make(
     note("report")
     rows = datasheet(setup.spec, found, len(found.offsets))
     counts = [*found.decisions.values(), *found.lanes.values(), *found.amplifiers.values(), *found.supports.values()]
-    counts += found.rows.values()
+    counts += [*found.rows.values(), *found.columns.values()]
     summary = {
         "pdk": pdk,
         "corners": list(corners),
         "draws": len(found.offsets),
         "specification": asdict(setup.spec),
-        "sizes": asdict(sizes) | {"amplifier": asdict(sizes_a.ota)},
+        "sizes": asdict(sizes) | {"amplifier": asdict(sizes_a.ota)} | column_widths(setup),
         "rows": [asdict(row) | {"passes": row.passes} for row in rows],
         "failed": [f"{row.circuit}: {row.name}" for row in rows if not row.passes],
         "transients": sum(one.runs for one in counts),
@@ -139,6 +149,13 @@ def make(
     if table:
         write(table, json.dumps(summary["converter"], indent=1, allow_nan=False) + "\n")
     return summary
+
+
+def column_widths(setup: Setup) -> dict[str, dict[str, float]]:
+    """Widths (um) of each of a column's stages, for the datasheet."""
+    _, sizes = column_of(setup)
+    stages = {"front": sizes.front, "back": sizes.back, "lane": sizes.lane}
+    return {f"column {name}": {k: v for k, v in asdict(one).items() if k != "current"} for name, one in stages.items()}
 
 
 def measured(
@@ -182,6 +199,16 @@ def measured(
         for name, corner in places.items()
     ]
     rows = run(driving, STORE, "row driver", workers)
+    spec_c, sizes_c = column_of(setup)
+    given_c = repr((setup, spec_c, sizes_c))
+    amplifying = [
+        Job(f"column-{name}", column.measure, (setup, spec_c, sizes_c, corner), (given_c, name))
+        for name, corner in places.items()
+    ]
+    columns = {
+        name: from_json(ColumnResult, one)
+        for name, one in zip(places, run(amplifying, STORE, "columns", workers), strict=True)
+    }
     note("mismatch")
     typical = places[TYPICAL]
     batches = range(1, -(-draws // BATCH) + 1)
@@ -193,6 +220,16 @@ def measured(
         for k in range(1, BATCH * len(batches) + 1)
     ]
     amplifier_draws = [from_json(Drawn, one) for one in run(more, STORE, "amplifiers", workers)]
+    unlike = [
+        Job(
+            f"column-draw-{k}",
+            column.offset,
+            (setup, spec_c, sizes_c, typical, columns[TYPICAL].start, k),
+            (given_c, columns[TYPICAL].start, k),
+        )
+        for k in range(1, min(draws, COLUMNS) + 1)
+    ]
+    column_offsets = run(unlike, STORE, "columns drawn", workers)
     note("noise")
     closed = amplifier.ktc(setup, sizes_a, typical)
     quiet = Job(
@@ -225,6 +262,9 @@ def measured(
         amplifier_noise,
         {name: from_json(SupportResult, one) for name, one in zip(places, supports, strict=True)},
         {name: from_json(RowDriverResult, one) for name, one in zip(places, rows, strict=True)},
+        columns,
+        {name: column.noise(spec_c, sizes_c, process_of(setup.pdk), one.temperature) for name, one in places.items()},
+        column_offsets,
     )
 
 

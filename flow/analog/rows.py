@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from talbot.pixels.circuits.amplifier import BIAS, AmplifierSpec
+from talbot.pixels.circuits.column_sizes import ColumnSpec
 from talbot.pixels.circuits.row_driver import RowDriverSpec
 from talbot.pixels.circuits.specification import LaneSpec
 from talbot.pixels.circuits.support import SupportSpec
@@ -68,6 +69,7 @@ def datasheet(spec: LaneSpec, found: Found, draws: int) -> list[Row]:
         ),
         corners("lane", "energy of a decision", "pJ", energies, share),
         *_amplifier(found),
+        *_columns(found),
         *_row_driver(found.rows),
         *_support(found.supports),
     ]
@@ -103,6 +105,39 @@ def _amplifier(found: Found) -> list[Row]:
         row("energy of a sample, off between samples", "pJ", "energy", 1e12 * spec.energy, 1e12),
         row("energy of a sample, never off", "pJ", "always", None, 1e12),
         row("current while off", "uA", "off", None, 1e6),
+    ]
+
+
+def _columns(found: Found) -> list[Row]:
+    """The rows of a column; LSB are those of the lane's converter in edge mode."""
+    spec = ColumnSpec.of()
+
+    def row(
+        name: str, unit: str, values: dict[str, float], most: float | None = None, least: float | None = None
+    ) -> Row:
+        return over_corners("column", name, unit, values.items(), TYPICAL, least, most)
+
+    def each(field: str, scale: float = 1.0) -> dict[str, float]:
+        return {corner: scale * getattr(one, field) for corner, one in found.columns.items()}
+
+    slopes = {corner: 100 * max(abs(one.slope - 1), abs(one.mean - 1)) for corner, one in found.columns.items()}
+    rms, _, high = interval(found.column_offsets)
+    over = f"{len(found.column_offsets)} draws, max: 95 % interval"
+    return [
+        row("slope, off by", "%", slopes, 100 * spec.slope),
+        row("slope of a diode", "", each("slope")),
+        row("slope of both diodes' mean", "", each("mean")),
+        row("INL", "LSB", each("inl"), spec.inl),
+        row("lost at 98 % of a full well", "LSB", each("full")),
+        row("by the other diode's light", "LSB", each("other"), spec.settling),
+        row("settling to half an LSB", "ns", each("settling", 1e9), 1e9 * spec.cycle),
+        row("droop until the last column's turn", "LSB", each("droop"), spec.droop),
+        row("noise of a diode, closed form", "e", found.column_noise, spec.noise),
+        Row("column", "offset of a difference, rms", "LSB", rms, None, high, most=spec.offset, over=over),
+        row("energy of a pixel", "pJ", each("energy", 1e12), 1e12 * spec.energy),
+        row("current of a column at rest", "nA", each("idle", 1e9)),
+        row("level that is trimmed, first diode", "V", {name: one.start[0] for name, one in found.columns.items()}),
+        row("level that is trimmed, second diode", "V", {name: one.start[1] for name, one in found.columns.items()}),
     ]
 
 

@@ -11,8 +11,9 @@ import numpy as np
 
 from talbot.base.files import check_folder, staged
 from talbot.base.gds import write_gds
+from talbot.flow.analog.column import ColumnResult
 from talbot.flow.analog.deck import Setup, process_of
-from talbot.flow.analog.job import amplifier_of, setup_of
+from talbot.flow.analog.job import amplifier_of, column_of, setup_of
 from talbot.flow.analog.lane import inl
 from talbot.flow.analog.linearity import inl_dnl, levels
 from talbot.flow.analog.row_driver import RowDriverResult
@@ -21,11 +22,12 @@ from talbot.models.parameters import ArrayParameters
 from talbot.pixels.analog_layout.amplifier import amplifier_cell
 from talbot.pixels.analog_layout.bias import bias_cell
 from talbot.pixels.analog_layout.cells import Cell, comparator_cell
-from talbot.pixels.analog_layout.converters import Converters
+from talbot.pixels.analog_layout.column import column_cell
 from talbot.pixels.analog_layout.lane import lane_cell
-from talbot.pixels.analog_layout.row_drivers import RowDrivers, row_cell
+from talbot.pixels.analog_layout.row_drivers import row_cell
 from talbot.pixels.analog_layout.switch import switch_cell
 from talbot.pixels.circuits.amplifier import AmplifierSizes, AmplifierSpec
+from talbot.pixels.circuits.column_sizes import ColumnSizes
 from talbot.pixels.circuits.dac import BITS
 from talbot.pixels.circuits.lane import LaneSizes
 from talbot.pixels.circuits.row_driver import RowDriverSpec
@@ -35,7 +37,7 @@ from talbot.platforms.analog import AnalogMasks, analog_masks
 from talbot.platforms.coriolis import coriolis_platform
 from talbot.platforms.wires import wire_corner
 
-from . import amplifier, row_driver, switch
+from . import amplifier, column, row_driver, switch
 from .amplifier import Amplified
 from .beside import Pair, beside
 from .checks import differences, drc, lvs
@@ -43,13 +45,15 @@ from .extract import Extracted, Nets, extract
 from .measure import Measured, measure
 from .row import Row
 from .switch import Gaps
-from .write import drawn_blocks
+from .write import DrawnBlock, drawn_blocks
 
 STEPS = "draw", "drc", "lvs", "extract", "measure", "report"
 KINDS = "gds", "spice", "extracted.spice", "lyrdb", "lvsdb"
 
 
-def cells(masks: AnalogMasks, sizes: LaneSizes, amplifier: AmplifierSizes, lanes: int) -> dict[str, Cell]:
+def cells(
+    masks: AnalogMasks, sizes: LaneSizes, amplifier: AmplifierSizes, lanes: int, column: ColumnSizes
+) -> dict[str, Cell]:
     """What is drawn and extracted, by name. lanes: that share a bias."""
     return {
         "comparator": comparator_cell(masks, sizes.comparator),
@@ -57,6 +61,7 @@ def cells(masks: AnalogMasks, sizes: LaneSizes, amplifier: AmplifierSizes, lanes
         "amplifier": amplifier_cell(masks, amplifier),
         "bias": bias_cell(masks, lanes),
         "row": row_cell(masks, ArrayParameters()),
+        "column": column_cell(masks, column),
         "non_overlap": switch_cell(masks),
     }
 
@@ -71,9 +76,9 @@ def make(
     check_folder("out", out)
     masks, (setup, sizes) = analog_masks(pdk), setup_of(pdk)
     spec, own = amplifier_of(setup, sizes)
-    made = cells(masks, sizes, own, spec.lanes)
+    made = cells(masks, sizes, own, spec.lanes, column_of(setup)[1])
     blocks = drawn_blocks(pdk)
-    drawn: dict[str, Cell | Converters | RowDrivers] = {**made, **blocks}
+    drawn: dict[str, Cell | DrawnBlock] = {**made, **blocks}
     names = [f"{name}.{kind}" for name in drawn for kind in KINDS if name in made or kind != "extracted.spice"]
     names += [f"{name}.lef" for name in blocks]
     with staged(out, (*names, *page.NAMES, "summary.json")) as folder:
@@ -86,7 +91,7 @@ def make(
         rules = {name: drc(folder / f"{name}.gds", pdk, folder / f"{name}.lyrdb") for name in drawn}
         note("lvs")
         same = {
-            name: lvs(folder / f"{name}.gds", cell.spice(masks), pdk, folder / f"{name}.lvsdb")
+            name: lvs(folder / f"{name}.gds", cell.spice(masks), pdk, folder / f"{name}.lvsdb", cell.boxes)
             for name, cell in drawn.items()
         }
         differ = {name: differences(folder / f"{name}.lvsdb") for name, match in same.items() if not match}
@@ -127,7 +132,7 @@ def _extracted(made: dict[str, Cell], masks: AnalogMasks, corner: str) -> dict[s
 
 
 def _cell(
-    cell: Cell | Converters | RowDrivers, rules: dict[str, int], same: bool, found: tuple[Extracted, Nets] | None
+    cell: Cell | DrawnBlock, rules: dict[str, int], same: bool, found: tuple[Extracted, Nets] | None
 ) -> dict[str, Any]:
     box = cell.cell.dbbox()
     out = {
@@ -177,6 +182,10 @@ def _measured(
         yield from _rows(setup.spec, lane)
     for row in beside("row driver", measure_row, RowDriverResult, (setup, driven), circuits("row"), workers):
         yield from row_driver.rows(driven, row)
+    spec_c, sizes_c = column_of(setup)
+    found = beside("column", column.measure, ColumnResult, (setup, spec_c, sizes_c), circuits("column"), workers)
+    for one in found:
+        yield from column.rows(spec_c, one)
     for gaps in beside("switch drivers", switch.measure, Gaps, (setup, support), circuits("non_overlap"), workers):
         yield from switch.rows(support, gaps)
     given = setup, *amplifiers, sizes

@@ -30,6 +30,11 @@ PICTURES = {
         "On the pixels' pitch: decoders, gates and the latch in the west, six level shifters under thick oxide in the "
         "east, and the lines at their places.",
     ),
+    "column": (
+        "A column, lying",
+        "On the pixels' pitch: in the west the feedback of both charge amplifiers and their strip, their coupling "
+        "capacitors, the strip of both second stages, then each tap of the first diode with its capacitor.",
+    ),
     "non_overlap": ("The switch drivers", "Two loops of a gate and its delays about the inverter between them."),
     "amplifier": (
         "The amplifier",

@@ -11,8 +11,10 @@ from talbot.base.command import main
 from talbot.base.files import staged
 from talbot.base.gds import write_gds
 from talbot.base.steps import StepError
-from talbot.flow.analog.job import amplifier_of, setup_of
+from talbot.flow.analog.job import amplifier_of, column_of, setup_of
 from talbot.models.parameters import ArrayParameters, ChipParameters
+from talbot.pixels.analog_layout.column_amplifiers import NAME as COLUMNS
+from talbot.pixels.analog_layout.column_amplifiers import ColumnAmplifiers, draw_column_amplifiers
 from talbot.pixels.analog_layout.converters import NAME as CONVERTERS
 from talbot.pixels.analog_layout.converters import Converters, draw_converters
 from talbot.pixels.analog_layout.row_drivers import NAME as ROWS
@@ -22,13 +24,16 @@ from talbot.platforms.analog import analog_masks
 
 from .checks import differences, lvs
 
+DrawnBlock = Converters | RowDrivers | ColumnAmplifiers
 
-def drawn_blocks(pdk: str) -> dict[str, Converters | RowDrivers]:
-    """The converters and the rows' drivers, by name, for the default array and chip. Raises ParameterError."""
+
+def drawn_blocks(pdk: str) -> dict[str, DrawnBlock]:
+    """Converters, rows' drivers, column amplifiers, by name, for the default array and chip. Raises ParameterError."""
     masks, (setup, sizes), room = analog_masks(pdk), setup_of(pdk), AnalogSizes()
     return {
         CONVERTERS: draw_converters(masks, sizes, amplifier_of(setup, sizes)[1], ChipParameters(), room),
         ROWS: draw_row_drivers(masks, ArrayParameters(), room),
+        COLUMNS: draw_column_amplifiers(masks, column_of(setup)[1], ArrayParameters(), ChipParameters(), room),
     }
 
 
@@ -40,7 +45,7 @@ def write(out: Path, pdk: str) -> None:
             (part / f"{name}.lef").write_text(block.lef(masks))
             write_gds(block.layout, part / f"{name}.gds", block.cell)
             report = part / f"{name}.lvsdb"
-            if not lvs(part / f"{name}.gds", block.spice(masks), pdk, report):
+            if not lvs(part / f"{name}.gds", block.spice(masks), pdk, report, block.boxes):
                 raise StepError(f"{name}: the layout is not the circuit: {', '.join(differences(report)[:5])}")
 
 

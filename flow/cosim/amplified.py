@@ -39,14 +39,16 @@ def column_volts(spec: LaneSpec, sizes: AmplifierSizes, gain: float) -> float:
     return gain * spec.lsb / sizes.gain
 
 
-def lane_lines(lane: int, drive: Drive, supply: float) -> list[str]:
-    """The amplifier of a lane from its columns cola, colb to its input. drive: makes a control of the lane's sample."""
+def lane_lines(lane: int, drive: Drive, supply: float, dark: bool = True) -> list[str]:
+    """The amplifier of a lane from its columns cola, colb to its input. drive: makes a control of the lane's sample.
+
+    dark: between samples its columns are at column_dark; else something else puts them there.
+    """
     reset = drive(f"amplifier_reset{lane}", 0.0, fall=AFTER, low=supply)
-    dark = drive(f"amplifier_dark{lane}", 0.0, rise=COLUMNS / 2, fall=2 * AFTER, low=supply)
     code = ("vdd" if UNITS >> k & 1 else "0" for k in reversed(range(TRIM_BITS)))
     pins = f"cola{lane} colb{lane} vdd {reset}", " ".join(code), f"in{lane} ref ibias{lane} vdd 0 amplifier"
-    return [
-        f"Xamplifier{lane} {' '.join(pins)}",
-        f"Xbias{lane} ibias{lane} vdd 0 bias",
-        *(f"Xdark{d}{lane} column_dark col{d}{lane} {dark} vdd 0 selector" for d in "ab"),
-    ]
+    lines = [f"Xamplifier{lane} {' '.join(pins)}", f"Xbias{lane} ibias{lane} vdd 0 bias"]
+    if dark:
+        on = drive(f"amplifier_dark{lane}", 0.0, rise=COLUMNS / 2, fall=2 * AFTER, low=supply)
+        lines += [f"Xdark{d}{lane} column_dark col{d}{lane} {on} vdd 0 selector" for d in "ab"]
+    return lines

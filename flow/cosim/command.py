@@ -22,6 +22,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     add("--reltol", default="1e-4", help="ngspice's relative tolerance, 1e-8..0.1")
     add("--method", default="trap", help="ngspice's integration, trap or gear")
     add("--ideal-amplifier", action="store_true", help="edge mode: the lanes' difference amplifiers are arithmetic")
+    add("--own-columns", action="store_true", help="the column amplifiers are transistors, in all modes")
     add("--study", action="store_true", help="error against run time on one sample, beside an off-line reference, too")
     add("--faults", action="store_true", help="faults planted in the circuit, and what the codes say of each, too")
     add("--out", type=Path, help="folder for the results (default: build/cosim)")
@@ -55,7 +56,8 @@ def run(options: Namespace) -> int:
         RowRequest(
             mode=mode,
             types=min(types, 2) if mode == "tof" else types,
-            amplifier=mode == "edge" and not options.ideal_amplifier,
+            amplifier=options.own_columns or (mode == "edge" and not options.ideal_amplifier),
+            columns=options.own_columns,
             **shared,
         )
         for mode in modes

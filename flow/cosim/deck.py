@@ -8,12 +8,14 @@ from talbot.cells.corner import Corner
 from talbot.models.parameters import check_real
 from talbot.pixels.circuits import lane as lanes_of
 from talbot.pixels.circuits.amplifier import AmplifierSizes, AmplifierSpec
+from talbot.pixels.circuits.column_sizes import ColumnSpec, size
 from talbot.pixels.circuits.gates import LENGTH, inverter
 from talbot.pixels.circuits.netlist import Circuit, Instance, Transistor
 from talbot.pixels.circuits.specification import CODES, LaneSpec
 from talbot.platforms.sky130 import analog
 
 from . import amplified, pixels
+from . import columns as own_columns
 from .accuracy import Accuracy
 from .faults import Fault
 
@@ -31,7 +33,7 @@ class RowOfPixels:
     """Pixels of a row.
 
     diodes: (a, b) in LSB of each column and tap; cols: of the array; integration: s. amplified: both diodes' samples go
-    to the lanes' amplifiers, else their difference or sum to the lanes.
+    to the lanes' amplifiers, else their difference or sum to the lanes. columns: the column amplifiers are transistors.
     """
 
     diodes: Mapping[int, Mapping[int, tuple[float, float]]]
@@ -40,6 +42,7 @@ class RowOfPixels:
     integration: float
     sizes: pixels.PixelSizes = pixels.PixelSizes()
     amplified: bool = False
+    columns: bool = False
 
 
 @dataclass(frozen=True)
@@ -109,6 +112,7 @@ def build(
     amplifier = amplified.sized("sky130", spec, sizes) if row and row.amplified else None
     if amplifier:
         circuits |= {one.name: one for one in amplified.circuits(amplifier[1])}
+    if amplifier and not (row and row.columns):
         body.append(f"Vdark column_dark 0 {amplifier[0].reset_level:g}")
     for i in served:
         one = fault.of_lane(sound, i) if fault else sound
@@ -122,10 +126,10 @@ def build(
         body += [f"Xlane{i} {' '.join(pins)} {one.name}", f"Cin{i} in{i} 0 50f"]
         deck.saved += [f"q{i}", f"in{i}", *(f"xlane{i}.{node}" for node in LANE_NODES)]
         if amplifier:
-            body += amplified.lane_lines(i, partial(_source, deck, bit=i), spec.supply)
+            body += amplified.lane_lines(i, partial(_source, deck, bit=i), spec.supply, not (row and row.columns))
             deck.saved += [f"cola{i}", f"colb{i}"]
     level = 0.5 * (spec.refp + spec.refn)
-    for (column, sub), value in sorted(values.items()):
+    for (column, sub), value in sorted(values.items()) if not (row and row.columns) else ():
         name, into = f"{column}_{sub}", column // tile_cols % lanes
         # The chip's position is stable for a cycle after hold. A switch that opens with the lane's sample leaves its
         # charge in it: 0.66 LSB at value 40
@@ -135,7 +139,9 @@ def build(
         body += [f"Xselect{one} column{one} {to} {on} vdd 0 selector" for one, to in ways]
         if row is None:
             body.append(f"Vcolumn{name} column{name} 0 {level + (value - MIDDLE * unsigned) * spec.lsb:.9g}")
-    if row is not None:
+    if row is not None and row.columns:
+        circuits |= _columns(deck, body, row, unsigned, spec, lanes, tile_cols, timing, fault)
+    elif row is not None:
         circuits |= {one.name: one for one in (pixels.pixel(row.sizes), pixels.clear(), pixels.sampler())}
         own = pixels.amplifier(row.sizes)
         body += _row(deck, row, unsigned, spec, level, amplifier, fault)
@@ -172,6 +178,33 @@ def build(
         ".end",
     ]
     return deck
+
+
+def _columns(
+    deck: Deck,
+    body: list[str],
+    row: RowOfPixels,
+    unsigned: bool,
+    spec: LaneSpec,
+    lanes: int,
+    tile_cols: int,
+    timing: Timing,
+    fault: Fault | None,
+) -> dict[str, Circuit]:
+    """Lines of the pixels and their column amplifiers in transistors into ``body``; what they call."""
+    column = ColumnSpec.of()
+    sizes = size(column, analog)
+    swapped = frozenset(fault.where if fault and fault.kind == "diodes" else ())
+    cut = fault.where[0] if fault and fault.kind == "row" else None
+    start, rest = own_columns.trimmed(column, not unsigned, timing.period, spec.supply)
+    taps = {c: row.diodes[c] for c in deck.columns}
+    of_lane = {c: c // tile_cols % lanes for c in deck.columns}
+    given = (not unsigned, row.integration, column, sizes, row.sizes, start, rest, swapped, cut)
+    body += own_columns.lines(taps, of_lane, *given)
+    first = 10 * lanes + SUBS * row.cols
+    own_columns.drive(partial(_source, deck), deck.columns, deck.lanes, first, spec.supply)
+    deck.saved += [f"xcolumn{c}.out_{d}" for c in deck.columns for d in "ab"]
+    return {one.name: one for one in own_columns.circuits(column, sizes)}
 
 
 def _row(

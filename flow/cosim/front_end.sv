@@ -8,6 +8,11 @@
 //              SUBS x COLS            column c, sub-sample s at the lane's input while it samples (bit SUBS c + s)
 //              1, 1, 1                the row's reset line, its read line, the columns' amplifiers cleared
 //              SUBS                   the amplifiers' outputs are sampled, of each tap
+//              1                      the row's read, both halves
+//              1                      the row's read or a lane's sample
+//              3 SUBS                 the row's read, its signal half or a lane's sample, of each tap; each sub-sample at
+//                                     the pins
+//              COLS                   column c is selected while its lane samples
 `default_nettype none
 `ifndef BALANCE_BITS
 `define BALANCE_BITS 10
@@ -30,7 +35,8 @@ module Afe #(
     output wire        [LANES-1:0]         comparator
 );
   localparam int SUBS = 4, LAST = 10;                   // decisions of a conversion, with those of the window
-  localparam int ROW = 10 * LANES + SUBS * COLS, BITS = ROW + 3 + SUBS;
+  localparam int ROW = 10 * LANES + SUBS * COLS, MORE = ROW + 3 + SUBS, OWN = MORE + 2 + 3 * SUBS;
+  localparam int BITS = OWN + COLS;
 
   reg [LANES-1:0] answers  /*verilator public_flat_rw*/;
   wire [BITS-1:0] controls  /*verilator public_flat_rd*/;
@@ -59,6 +65,13 @@ module Afe #(
   assign integrating = Bench.integrate;
   assign tap = Bench.chip.tap;
   assign controls[ROW+:3] = {Bench.read & Bench.chip.ref_ctl, reads, Bench.pixel_reset};
+  assign controls[MORE] = Bench.read;
+  assign controls[MORE+1] = Bench.read | hold;
+  for (genvar t = 0; t < SUBS; t++) begin : of_tap
+    assign controls[MORE+2+t] = Bench.read && int'(tap) == t;
+    assign controls[MORE+2+SUBS+t] = (reads && int'(tap) == t) || (hold && int'(sub) == t);
+    assign controls[MORE+2+2*SUBS+t] = int'(sub) == t;
+  end
   for (genvar t = 0; t < SUBS; t++) begin : sampling
     assign controls[ROW+3+t] = reads && Bench.chip.sample && int'(tap) == t;
   end
@@ -87,6 +100,8 @@ module Afe #(
   end
 
   for (genvar c = 0; c < COLS; c++) begin : column      // column c is at position k of the tile column of its lane
+    assign controls[OWN+c] = hold && en[c/TILE_COLS%LANES] && int'(k) == c % TILE_COLS
+        && int'(group) == c / TILE_COLS / LANES;
     for (genvar s = 0; s < SUBS; s++) begin : sub_sample
       assign controls[10*LANES+SUBS*c+s] = hold && en[c/TILE_COLS%LANES] && int'(k) == c % TILE_COLS
           && int'(group) == c / TILE_COLS / LANES && int'(sub) == s;

@@ -13,6 +13,7 @@
 //   +answers=NODES the comparators' outputs, of each lane in order, separated by commas; "-" of a lane without a circuit
 //   +cycles=FILE   what was asked and answered in each cycle of the circuit, as text
 //   +points=FILE   every time point, binary doubles: time and the saved vectors, whose names are the first line
+//   +uic=1         no operating point: the transient begins with the netlist's .ic
 //   +max_cycles=N  exit status 4 where the frame has not ended by then; 5 where ngspice gives up
 // The others are the bench's (flow/simulate/bench.sv).
 #include <algorithm>
@@ -282,7 +283,8 @@ int main(int argc, char** argv) {
   top->eval();
   while (!AFE(running)) tick();  // the host's configuration
   char command[128];
-  std::snprintf(command, sizeof command, "tran %g %g 0 %g", step, stop, step);
+  const char* from = argument("uic=").empty() ? "" : " uic";
+  std::snprintf(command, sizeof command, "tran %g %g 0 %g%s", step, stop, step, from);
   began = std::chrono::steady_clock::now();
   ngSpice_Command(command);
   std::fprintf(stderr, "the transient ended before the frame, in cycle %llu of the circuit\n",

@@ -127,6 +127,7 @@ def _run(
         head = " ".join(f"{one:.9g}" for one in seconds)
         (folder / "drive").write_text("\n".join([head, *deck.drive, ""]))
         more = [f"+{file}={folder / file}" for file in ("deck", "drive", "cycles", "points", "lockstep")]
+        uic = ["+uic=1"] if any(line.startswith(".ic ") for line in deck.lines) else []
         with _watched(folder / "cycles", note):
             done = run_frame(
                 binary,
@@ -134,7 +135,7 @@ def _run(
                 folder / "converter",
                 script,
                 max_cycles=max_cycles,
-                more=[*more, f"+answers={','.join(deck.answers)}", *(["+whole=1"] if whole else [])],
+                more=[*more, f"+answers={','.join(deck.answers)}", *(["+whole=1"] if whole else []), *uic],
             )
         time, waves = _points(folder / "points")
         stats = json.loads((folder / "lockstep").read_text())

@@ -27,6 +27,7 @@ from talbot.pixels.circuits.specification import LaneSpec
 
 from . import lockstep
 from .accuracy import Accuracy
+from .columns import TIMING
 from .deck import LANE_NODES, Deck, RowOfPixels, Timing, build
 from .faults import Fault
 
@@ -63,8 +64,10 @@ class RowRequest:
     whole : bool
         Every cycle of the integration is simulated, not one in place of all.
     amplifier : bool
-        The lanes' difference amplifiers are in the circuit: edge mode with its pixels, a clock that is high for what
-        the amplifier asks.
+        The lanes' difference amplifiers are in the circuit: edge mode with its pixels, or any with ``columns``; a clock
+        that is high for what the amplifier asks.
+    columns : bool
+        The column amplifiers are transistors, too, and each half of the row's read takes 16 cycles.
     """
 
     mode: str = "image"
@@ -79,6 +82,7 @@ class RowRequest:
     t_int: int = 20000
     whole: bool = False
     amplifier: bool = False
+    columns: bool = False
     timing: Timing = Timing()
     accuracy: Accuracy = Accuracy()
     spec: LaneSpec = LaneSpec()
@@ -91,8 +95,10 @@ class RowRequest:
         check_int("threshold", self.threshold, 0, 127)
         check_int("t_int", self.t_int, 1, 65535)
         check_int("seed", self.seed, 0, 2**32 - 1)
-        if self.amplifier and (self.mode != "edge" or not self.pixels):
-            raise ParameterError("amplifier = True: must be False but in mode edge with pixels")
+        if self.columns and not self.amplifier:
+            raise ParameterError("columns = True: must be False without amplifier")
+        if self.amplifier and not (self.pixels and (self.mode == "edge" or self.columns)):
+            raise ParameterError("amplifier = True: must be False but in mode edge with pixels, or with columns")
 
     @cached_property
     def clock(self) -> Timing:
@@ -107,12 +113,13 @@ class RowRequest:
         sensor = asked.sensor
         mask = sum(1 << kind for kind in set(sensor.tile.order[: self.types]))
         edge = self.mode == "edge"
+        timing = replace(SHORT_TIMING, t_settle=TIMING.t_settle, t_read=TIMING.t_read) if self.columns else SHORT_TIMING
         frame = FrameParameters(
             window=sensor.full_window,
             mode=self.mode,
             mask=mask,
             threshold=self.threshold if edge else 0,
-            timing=replace(SHORT_TIMING, t_int=self.t_int, n_cm=0),
+            timing=replace(timing, t_int=self.t_int, n_cm=0),
         )
         return sensor, frame
 
@@ -167,7 +174,9 @@ class RowRequest:
             c: {tap: (float(row[0, c, 0]), float(row[0, c, 1])) for tap, row in enumerate(self.samples)}
             for c in range(self.cols)
         }
-        return RowOfPixels(diodes, self.cols, GAIN, self.t_int * self.timing.period, amplified=self.amplifier)
+        return RowOfPixels(
+            diodes, self.cols, GAIN, self.t_int * self.timing.period, amplified=self.amplifier, columns=self.columns
+        )
 
 
 @dataclass(frozen=True)

@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import ClassVar
 
 from talbot.base.gds import db, write_gds
 from talbot.pixels.circuits.comparator import ComparatorSizes, comparator
@@ -22,12 +23,13 @@ MARGIN = 2.0  # of a cell beyond its rails, um
 class Cell:
     """A drawn cell.
 
-    ports: in the order of its pins. devices: its transistors in fingers. plates: its capacitors. terminals: of its
-    transistors. tracks: of its nets, of a cell with one strip. taps: of its capacitors, as `Array` has them, under the
-    names of ``plates``. matched: units of ``unit`` F of fringe capacitors between two nets, in the order of their
-    names. resistors: drawn ones, and their ``ends``.
+    boxes: cells in it that LVS compares once: none. ports: in the order of its pins. devices: its transistors in
+    fingers. plates: its capacitors. terminals: of its transistors. tracks: of its nets, of a cell with one strip.
+    taps: of its capacitors, as `Array` has them, under the names of ``plates``. matched: units of ``unit`` F of
+    fringe capacitors between two nets, in the order of their names. resistors: drawn ones, and their ``ends``.
     """
 
+    boxes: ClassVar[tuple[str, ...]] = ()
     layout: "db.Layout"
     cell: "db.Cell"
     ports: tuple[str, ...]

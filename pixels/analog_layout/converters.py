@@ -15,6 +15,7 @@ the east, where the pins are: the ground's line passes between lanes and amplifi
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from typing import ClassVar
 
 from talbot.base.gds import db
 from talbot.models.parameters import ChipParameters, ParameterError
@@ -52,7 +53,9 @@ SUPPLIES = {"vdd": "vddc", "vss": "vssa"}
 
 @dataclass(frozen=True)
 class Converters:
-    """The drawn block. parts: its cells, each with the nets of the ports of its instances."""
+    """The drawn block. parts: its cells, each with the nets of the ports of its instances. boxes: none for LVS."""
+
+    boxes: ClassVar[tuple[str, ...]] = ()
 
     block: Block
     layout: "db.Layout"

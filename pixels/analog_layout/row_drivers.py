@@ -10,6 +10,7 @@ south    the chip's pins
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import ClassVar
 
 from talbot.base.gds import db
 from talbot.models.parameters import ArrayParameters, ParameterError
@@ -46,7 +47,9 @@ VIA, VIA_PITCH, VIA_PAD = 0.8, 1.6, 0.59  # um: of the top metal's vias; half of
 
 @dataclass(frozen=True)
 class RowDrivers:
-    """The drawn block. row, bank: its cells. rows: how many."""
+    """The drawn block. row, bank: its cells. rows: how many. boxes: cells that LVS compares once."""
+
+    boxes: ClassVar[tuple[str, ...]] = ("row",)
 
     block: Block
     layout: "db.Layout"
@@ -104,11 +107,16 @@ def row_cell(masks: AnalogMasks, array: ArrayParameters, room: AnalogSizes | Non
     d, canvas = devices(row()), new_canvas(masks, "row")
     _, plan = _plan(d, array, room or AnalogSizes())
     made = as_cell(canvas, d, draw_row(canvas, masks, plan))
+    _names(canvas, made)
+    canvas.box(masks.base.outline, plan.logic.left - RAIL_ENDS, 0, plan.right, PITCH)
+    return made
+
+
+def _names(canvas: Canvas, made: Cell) -> None:
+    """A row's ports, each on its track."""
     for track in made.tracks:
         if track.net in made.ports:
             canvas.label(THIRD, track.net, track.left + 0.3, track.y)
-    canvas.box(masks.base.outline, plan.logic.left - RAIL_ENDS, 0, plan.right, PITCH)
-    return made
 
 
 def draw_row_drivers(masks: AnalogMasks, array: ArrayParameters, room: AnalogSizes | None = None) -> RowDrivers:
@@ -124,10 +132,7 @@ def draw_row_drivers(masks: AnalogMasks, array: ArrayParameters, room: AnalogSiz
     bank_canvas, row_canvas = (Canvas(canvas.layout, name, masks.base) for name in ("row_bank", "row"))
     bank, height = draw_bank(bank_canvas, masks, plan)
     made = as_cell(row_canvas, d, draw_row(row_canvas, masks, plan))
-    for inner in (bank.cell, made.cell):
-        for index in canvas.layout.layer_indexes():
-            for text in list(inner.shapes(index).each(db.Shapes.STexts)):
-                inner.shapes(index).erase(text)
+    _names(row_canvas, made)
     moved = (pin if pin.side == "south" else replace(pin, at_um=pin.at_um + height) for pin in plain.pins)
     block = Block(NAME, plain.width_um, round(plain.height_um + height, 3), tuple(moved))
     x, y, pitch = canvas.snap(plan.west), canvas.snap(height), canvas.snap(PITCH)

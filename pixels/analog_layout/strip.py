@@ -53,7 +53,8 @@ class Plan:
     n, p: rows. left, right: its ends, um. axis: of its symmetry, or None. split, twisted: pairs of nets that are mirror
     images, the western one first. through: x up to which the
     tracks of nets that meet other strips go, too. rails: nets without tracks, the lower rail's first. quiet: nets whose
-    tracks are together, away from the others. least_um: of its height.
+    tracks are together, away from the others. least_um: of its height. fixed: rows of nets that go on in other strips
+    at the same height; least_rows: of tracks, that there always are. track_in: um from a rail's middle to the first.
     """
 
     n: tuple[Placed, ...]
@@ -67,6 +68,9 @@ class Plan:
     rails: tuple[str, ...] = ("vss", "vdd")
     quiet: frozenset[str] = frozenset()
     least_um: float = 0.0
+    fixed: Mapping[str, int] = field(default_factory=dict)
+    least_rows: int = 0
+    track_in: float = TRACK_IN
 
     @property
     def height_um(self) -> float:
@@ -74,7 +78,7 @@ class Plan:
         heights = [max((placed.device.finger_um for placed in row), default=0.0) for row in (self.n, self.p)]
         between = MIDDLE if self.n and self.p else OPEN_ENDS
         devices = 2 * RAIL + sum(heights) + between
-        return max(devices, 2 * TRACK_IN + TRACK_PITCH * (len(self._rows()) - 1), self.least_um)
+        return max(devices, 2 * self.track_in + TRACK_PITCH * (len(self._rows()) - 1), self.least_um)
 
     def placed(self) -> tuple[Placed, ...]:
         """All devices."""
@@ -105,8 +109,12 @@ class Plan:
             for nets in (pair, pair[::-1])[: 1 if pair in self.split else 2]:
                 rows.append([(net, *end) for net, end in zip(nets, ends, strict=True)])
         paired = {net for pair in (*self.split, *self.twisted) for net in pair}
+        rows += [[] for _ in range(self.least_rows - len(rows))]
+        for net in self.fixed.keys() & spans.keys():
+            rows[self.fixed[net]].append((net, *spans[net]))
+        paired |= self.fixed.keys()
         for kind in (spans.keys() & self.quiet - paired, spans.keys() - self.quiet - paired):
-            fixed = len(rows)
+            fixed = 0 if self.least_rows else len(rows)
             for net in sorted(kind, key=lambda net: (spans[net][0] - spans[net][1], net)):
                 a, b = spans[net]
                 fitting = (row for row in rows[fixed:] if all(b + 1 < c or d + 1 < a for _, c, d in row))

@@ -36,7 +36,7 @@ CELL_MISMATCH = 0.0183 * 0.85105 * math.sqrt(0.50527)  # rms, relative, of one f
 SHARED = 0.28  # um of diffusion between two gates
 TABLES = Path(__file__).with_name("gm_id.json")  # written by `make analog GM_ID=`: flow/analog/tables.py
 # (role, length in um) of the transistors in it
-SIZED = (("p_lvt", 0.5), ("p", 0.5), ("n_lvt", 0.5), ("n_lvt", 1.0))
+SIZED = (("p_lvt", 0.5), ("p", 0.5), ("p", 2.0), ("n", 0.5), ("n", 1.0), ("n_lvt", 0.5), ("n_lvt", 1.0))
 # sky130_fd_pr__res_generic_nd, n+ diffusion: ohm a square at the process's ends and between, 1/K and 1/K2
 RESISTOR_SHEET, RESISTOR_AT, RESISTOR_TEMPERATURE = {"ss": 132.0, "ff": 108.0}, 30.0, (1.422e-3, 0.657e-6)
 RESISTOR_TYPICAL = 120.0

@@ -71,9 +71,9 @@ def test_all_rows_are_their_circuit_and_a_row_with_anothers_code_is_found(tmp_pa
     path, text = tmp_path / "rows.gds", made.spice(MASKS)
     write_gds(made.layout, path, made.cell)
     assert drc(path, "sky130", tmp_path / "rows.lyrdb") == {}
-    assert lvs(path, text, "sky130", tmp_path / "rows.lvsdb")
+    assert lvs(path, text, "sky130", tmp_path / "rows.lvsdb", made.boxes)
     other = text.replace("amp_low3 ", "amp_low4 ", 1)
-    assert other != text and not lvs(path, other, "sky130", tmp_path / "other.lvsdb")
+    assert other != text and not lvs(path, other, "sky130", tmp_path / "other.lvsdb", made.boxes)
 
 
 def test_the_block_fits_its_frame(tmp_path):

@@ -9,15 +9,15 @@ from talbot.platforms.layers import GdsLayer
 from ..netlist.netlist import SUPPLIES, Netlist
 
 
-def hierarchical(deck: str, active: GdsLayer) -> str:
-    """The LVS deck, cell by cell instead of flat. active: layer of transistors and taps.
+def hierarchical(deck: str, *active: GdsLayer) -> str:
+    """The LVS deck, cell by cell instead of flat. active: layers of transistors and taps.
 
     The substrate must then be in every cell and not around all of them: it is where something active is on it, and
     one net everywhere, as the wafer is.
     """
     changes = (
         (r"^flat$", "deep"),
-        (r"^_wafer = extent.*$", f"_wafer = input{active}"),
+        (r"^_wafer = extent.*$", "_wafer = " + " + ".join(f"input{layer}" for layer in active)),
         (r"^connect\((substrate__\w+), _wafer\)$", r'connect_global(\1, "SUBSTRATE")'),
     )
     for pattern, text in changes:

@@ -18,7 +18,8 @@ from .plan import BLOCKS
 KINDS = "lef", "gds"
 ARRAY = "pixel_array"
 # Modules that write the drawn blocks, and these
-DRAWINGS = {"talbot.pixels.layout.write": (ARRAY,), "talbot.flow.analog_layout.write": ("row_driver", "adc_lanes")}
+CIRCUITS = "row_driver", "column_amplifiers", "adc_lanes"
+DRAWINGS = {"talbot.pixels.layout.write": (ARRAY,), "talbot.flow.analog_layout.write": CIRCUITS}
 STORE = BUILD / "drawn"
 
 

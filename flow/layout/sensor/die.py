@@ -113,7 +113,7 @@ def lay_out_die(
         pin_map(runner, options, part)
         layout = render(runner.paths["die_gds.gds"], tech)
         layout.image.save(part / f"{SENSOR}.png")
-        shown = [picture(blocks, "Blocks; hatched: black box, no circuit")]
+        shown = [picture(blocks, "Blocks; hatched: black box, no circuit" if black_boxes else "Blocks")]
         shown.append(picture(part / PACKAGE[1], "Package and bond wires, to scale"))
         write_report(part, folder, summary, lines, layout, shown)
     return folder / "summary.json", lines
@@ -125,7 +125,7 @@ def pin_map(runner: Runner, options: Options, part: Path) -> None:
     total, found = package.leads(json.loads(runner.paths["die_plan.plan"].read_text()))
     if crossed := package.crossings(found):
         raise StepError(f"package: the bond wires of {' and '.join(crossed[0])} cross")
-    volt = {lead.signal: package.volts(lead.signal, process, pixel.supply_v, pixel.gate_v) for lead in found}
+    volt = {lead.signal: package.volts(lead, process, pixel.supply_v, pixel.gate_v) for lead in found}
     cells = (*process.signals.values(), *process.supplies.values())
     clamps = package.protection(runner.paths["die_pads.spice"].read_text(), cells)
     (part / PACKAGE[0]).write_text(package.table(total, found, volt, clamps))

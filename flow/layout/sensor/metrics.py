@@ -20,12 +20,12 @@ PADS = "pad_drc_violations", "pads_unmatched"
 LOADS = "wire_pf", "worst_load_pf", "worst_load", "worst_delay_ns", "worst_delay", "loads_over"
 SLACKS = [name for name in DieSta.metrics if name != "f_max_mhz"]  # by corner
 SHOWN = 12  # nets in the summary, those with the largest loads
+BOXES_NOT_CHECKED = "insides of the black boxes: outlines with pins, no circuit; they have no rule, netlist or current"
 NOT_CHECKED = (
-    "insides of the black boxes: outlines with pins, no circuit; they have no rule, netlist or current",
     "pixels of the drawn array: rules and LVS of make pixel-layout, of a small array of the same cells",
     "pads: rules and LVS of each cell; no ESD pulse is simulated",
-    "density and fill over the black boxes and in the channel: only the chip is filled",
-    "antennas on the highest metal of the channel: whether a net's driver has the diffusion for it; in the black boxes",
+    "density and fill outside of the chip",
+    "antennas on the highest metal of the channel: whether a net's driver has the diffusion for it",
     "coupling of the die's nets to blocks and bars; nets to the abutting rows, columns and lanes have no length here",
     "IR drop of other supplies than the drawn array's",
     "hold at the analog blocks, and their setup: the constraints leave them a share of the period",
@@ -61,7 +61,7 @@ def summarize(name: str, options: Options, runner: Runner, black_boxes: Sequence
         "f_max_mhz": min((found["f_max_mhz"] for found in sta.values()), default=None),
         **{key: metrics.get(key) for key in DROPS},
         "largest_loads": dict(sorted(loads.items(), key=lambda item: -item[1])[:SHOWN]),
-        "not_checked": list(NOT_CHECKED),
+        "not_checked": [*([BOXES_NOT_CHECKED] if black_boxes else []), *NOT_CHECKED],
         **{name: {step: record[name] for step, record in records.items()} for name in ("wall_s", "peak_mib")},
         "tools": dict(sorted(tools.items())),
     }

@@ -12,7 +12,7 @@ from talbot.platforms.pads import PadProcess
 
 from .ring import OUTSIDE
 
-LEADS = 48, 64, 80, 100, 128  # of a QFN, as many on each side
+LEADS = 48, 64, 80, 100, 128, 144  # of a QFN, as many on each side
 PITCH_MM, CORNER_MM, LEAD_MM = 0.5, 1.0, 0.6  # of the leads; from the body's corner to the first; length of a lead
 ORDER = "west", "south", "east", "north"  # counterclockwise from lead 1, the north one of the west
 Point = tuple[float, float]
@@ -102,12 +102,14 @@ def _cross(one: Wire, other: Wire) -> bool:
     return all(turn(a, b[0]) * turn(a, b[1]) < 0 for a, b in ((one, other), (other, one)))
 
 
-def volts(name: str, process: PadProcess, analog_v: float, reset_v: float) -> float | None:
-    """Level of a lead; None of an analog signal, which is any up to the clamps' supply."""
+def volts(lead: Lead, process: PadProcess, analog_v: float, reset_v: float) -> float | None:
+    """Level of a lead; None of an analog signal, whose pad has no level of its own."""
+    if lead.cell == process.signals["analog"]:
+        return None
     known = {"vdd": process.core_v, "vddc": process.core_v, "vdda": analog_v, "vddr": reset_v} | dict.fromkeys(
         ("vss", "vssa", "vssio"), 0.0
     )
-    return known.get(name, process.pad_v)
+    return known.get(lead.signal, process.pad_v)
 
 
 def table(total: int, found: Sequence[Lead], volt: Mapping[str, float | None], clamps: Mapping[str, str]) -> str:

@@ -48,7 +48,7 @@ class DieParameters:
     """
 
     width_um: float = field(default=5000.0, metadata={"unit": "um", "range": (50, 3e4)})
-    height_um: float = field(default=5650.0, metadata={"unit": "um", "range": (50, 3e4)})
+    height_um: float = field(default=5860.0, metadata={"unit": "um", "range": (50, 3e4)})
     ring_um: float = field(default=203.0, metadata={"unit": "um", "range": (20, 1000)})
     edge_um: float = field(default=10.0, metadata={"unit": "um", "range": (2, 200)})
     bar_um: float = field(default=20.0, metadata={"unit": "um", "range": (4, 30)})

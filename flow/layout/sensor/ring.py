@@ -151,7 +151,7 @@ class Pads:
 
 
 def function(net: str, driven: bool) -> str:
-    """Of the pad of a signal: 'output' of what a block drives, 'input' of the host's others, else 'analog'."""
+    """Of the pad of a signal: 'output' of what the chip drives, 'input' of the host's others, else 'analog'."""
     return "output" if driven else "input" if net in INPUTS else "analog"
 
 

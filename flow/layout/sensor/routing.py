@@ -135,7 +135,7 @@ def _pads(
     Analog signals are behind the host's, across the border of the ring's segments. Raises StepError.
     """
     kinds = {
-        net: function(net, driver(blocks, ends)[0] != "die") for net, ends in routed.items() if ("die", net) in ends
+        net: function(net, driver(blocks, ends)[0] == CORE) for net, ends in routed.items() if ("die", net) in ends
     }
     ranks = {net: place for place, net in enumerate(SIGNALS)}
     out = sorted(kinds, key=lambda net: (kinds[net] == "analog", ranks.get(net, len(ranks)), net))

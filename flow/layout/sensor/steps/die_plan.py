@@ -63,7 +63,7 @@ class DiePlan(Step[DiePlanParameters]):
             for net, found in made.routes.items()
             for branch in found
             if branch.block == "die"
-            for kind in [ring.function(net, driver(made.blocks, made.nets[net])[0] != "die")]
+            for kind in [ring.function(net, driver(made.blocks, made.nets[net])[0] == CORE)]
             for offset in [ring.middle(pads.core_pin(kind))]
         ]
         lines = supplies.crossing(made.blocks, p.die, top_metal(p.pdk), "adc_lanes")

@@ -1,5 +1,6 @@
 """A user's analog blocks in place of the black boxes: used when they fit, refused in one line when they do not."""
 
+import json
 import re
 import shutil
 
@@ -10,6 +11,7 @@ from talbot.flow.layout.sensor.analog import check, files
 from talbot.flow.layout.sensor.plan import BLOCKS
 from talbot.models.parameters import ParameterError
 from talbot.platforms.coriolis import coriolis_platform
+from talbot.platforms.pads import pad_process
 
 from . import small
 
@@ -56,9 +58,10 @@ def test_a_block_takes_the_place_of_its_black_box(black_boxes, tmp_path):
 @pytest.mark.slow
 def test_every_block_that_is_drawn_is_on_the_die(tmp_path):
     found, names, extra, drawn = files(tmp_path, "sky130")
-    assert names == ["column_amplifiers"] and drawn == ("pixel_array", "row_driver", "adc_lanes")
-    assert set(extra) == {"refp", "refn", "vcm", "vref", "amp_on"}
-    assert all((path.parent == tmp_path) == (name.split(".")[0] in names) for name, path in found.items())
+    assert names == [] and drawn == BLOCKS
+    references = {"dark", "reference", "start", "start_a", "level", "vbp", "vcp", "vcn", "vbl", "ibias_columns"}
+    assert set(extra) == {"refp", "refn", "vcm", "vref", "amp_on"} | references
+    assert all(path.parent != tmp_path for path in found.values())
 
 
 @pytest.mark.parametrize(
@@ -119,6 +122,18 @@ def test_a_pin_of_its_own_is_one_of_the_die(tmp_path):
     layout.write(str(given["adc_lanes.gds"]))
     with pytest.raises(StepError, match="adc_lanes.gds has the top cells adc; its LEF is of adc_lanes"):
         small.connectivity(given, tmp_path)
+
+
+def test_what_an_analog_block_drives_has_an_analog_pad(tmp_path):
+    given = small.files(tmp_path)
+    path = given["adc_lanes.lef"]
+    text = with_reference(path.read_text())
+    path.write_text(text.replace("PIN vref\n    DIRECTION INPUT", "PIN vref\n    DIRECTION OUTPUT"))
+    small.plan(given, tmp_path, extra=("vref",))
+    ring = json.loads(given["die_plan.plan"].read_text())["ring"]
+    (cell,) = (place["cell"] for place in ring if place["name"] == "pad_vref")
+    assert cell == pad_process("sky130").signals["analog"]
+    assert "output vref;" in given["die_plan.verilog"].read_text()
 
 
 def test_the_drawn_array_is_a_block_of_the_die(tmp_path):

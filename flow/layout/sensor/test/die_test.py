@@ -224,8 +224,8 @@ def test_blocks_that_the_die_has_no_room_for(made, tmp_path):
     [
         (lambda text: text.replace("END busy", "END busy\n" + EXTRA), "more = a pin of core alone"),
         (
-            lambda text: re.sub(r"(?s)  PIN hold\n.*?END hold\n", "", text),
-            "hold = a pin of adc_lanes alone: must be one",
+            lambda text: re.sub(r"(?s)  PIN unsigned_\n.*?END unsigned_\n", "", text),
+            "unsigned_ = a pin of adc_lanes alone: must be one",
         ),
         (lambda text: text.replace("busy", "bussy"), "busy = a pin of die alone"),
         (

@@ -1,9 +1,12 @@
 """The pin map: leads by hand, wires that do not cross, pads without a clamp."""
 
+from dataclasses import replace
+
 import pytest
 
 from talbot.base.steps import StepError
 from talbot.flow.layout.sensor import package
+from talbot.platforms.pads import pad_process
 
 DIE = [4_000_000, 4_000_000]
 
@@ -36,8 +39,8 @@ def test_leads_are_counterclockwise_from_the_north_of_the_west():
 def test_the_fullest_side_decides_the_package():
     names = [f"n{k}" for k in range(17)]
     assert package.leads(plan(south=names, west=["a"]))[0] == 80
-    with pytest.raises(StepError, match="package: 33 pads on a side, 32 leads at most"):
-        package.leads(plan(south=[f"n{k}" for k in range(33)]))
+    with pytest.raises(StepError, match="package: 37 pads on a side, 36 leads at most"):
+        package.leads(plan(south=[f"n{k}" for k in range(37)]))
 
 
 def test_two_leads_swapped_cross():
@@ -72,3 +75,11 @@ def test_a_pad_without_a_clamp_is_named():
 
 def test_numbers_of_supply_pads_are_not_of_the_lead():
     assert package.signal("pad_vdd_2") == "vdd" and package.signal("pad_link_data[3]") == "link_data[3]"
+
+
+def test_an_analog_signal_has_no_level_of_its_pad():
+    """What is to be 1.8 V or less at an analog pad is not said to be the pads' 3.3 V."""
+    process = pad_process("sky130")
+    _, found = package.leads(plan(south=["clk", "vref"]))
+    clk, vref = found[0], replace(found[1], cell=process.signals["analog"])
+    assert package.volts(clk, process, 3.3, 5.0) == 3.3 and package.volts(vref, process, 3.3, 5.0) is None

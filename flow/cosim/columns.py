@@ -1,0 +1,191 @@
+"""The column amplifiers of one row in transistors, for the deck of a co-simulation: pixels/circuits/column.py.
+
+Their lines are driven as the block's bank drives them, its gates' delays as delays of the drive; the pulse that ends by
+itself is the bank's own circuit. Row lines have 3.3 V, wells are reset to the level of the block's bias.
+"""
+
+from collections.abc import Mapping, Sequence
+from functools import cache
+
+import numpy as np
+
+from talbot.cells.spice.engine import Simulator
+from talbot.flow.analog.amplifier import COLUMNS, EXACT
+from talbot.flow.analog.column import GAP, ROW
+from talbot.models.parameters import ELEMENTARY_CHARGE, AmpTiming
+from talbot.pixels.circuits.column import BIASES, PINS, TAPS, column, line
+from talbot.pixels.circuits.column_block import OUTSIDE, cascode_lines, clear_pulse, column_bias, lane_end, lane_line
+from talbot.pixels.circuits.column_sizes import FULL, ColumnSizes, ColumnSpec, size
+from talbot.pixels.circuits.netlist import Capacitor, Circuit, Transistor
+from talbot.pixels.circuits.row_driver import THICK
+from talbot.pixels.circuits.specification import CODES
+from talbot.pixels.circuits.support import bias
+from talbot.platforms.sky130 import analog
+
+from .amplified import AFTER, Drive
+from .pixels import PixelSizes
+
+TIMING = AmpTiming()  # of a row with these columns: the holder has 16 cycles in each half
+CELSIUS = 25.0
+BEFORE = {"line_{d}{c}": 0.5, "xcolumn{c}.cin_{d}": 1.6}  # V of what floats, since the row before was read
+TRIMS = 2  # steps to the trimmed level
+SOURCE = "vbn", "vbp", "source", "start", "part_1", "part_2", "part_3"  # nodes of a bias
+RESTING = (*BIASES, "level", "ibias_columns", *(f"xcolumn_source.{name}" for name in SOURCE))
+
+
+def circuits(spec: ColumnSpec, sizes: ColumnSizes) -> tuple[Circuit, ...]:
+    """All that the lines of a deck call."""
+    parts = column(sizes), column_bias(sizes), clear_pulse(sizes), lane_end(sizes), lane_line(sizes, spec), bias()
+    return (*parts, cascode_lines(), pixel(spec))
+
+
+def pixel(spec: ColumnSpec) -> Circuit:
+    """Two wells of thick-oxide transistors. Pins: a b column_a column_b reset read level vss."""
+    small = ("n_thick", 0.42, THICK)
+    return Circuit(
+        "thick_pixel",
+        ("a", "b", "column_a", "column_b", "reset", "read", "level", "vss"),
+        tuple(
+            one
+            for d in ("a", "b")
+            for one in (
+                Transistor(f"reset_{d}", d, "reset", "level", "vss", *small),
+                Transistor(f"read_{d}", d, "read", f"column_{d}", "vss", *small),
+            )
+        ),
+        tuple(Capacitor(f"well_{d}", d, "vss", spec.well) for d in ("a", "b")),
+    )
+
+
+def lines(
+    diodes: Mapping[int, Mapping[int, tuple[float, float]]],
+    lanes: Mapping[int, int],
+    edge: bool,
+    integration: float,
+    spec: ColumnSpec,
+    sizes: ColumnSizes,
+    pixels: PixelSizes,
+    start: tuple[float, float],
+    rest: Mapping[str, float],
+    swapped: frozenset[int] = frozenset(),
+    cut: int | None = None,
+) -> list[str]:
+    """Lines of the deck; see `drive` for their controls. lanes: of each column; the lanes' lines end at cola0, colb0.
+
+    diodes: (a, b) in LSB of each column and tap. edge: lanes get both diodes, else the mean. start: V of start_a and
+    start, trimmed.
+    rest: V of RESTING, with which it begins: an operating point of so many nodes that float takes minutes.
+    swapped: columns whose diodes are on each other's line. cut: column from which on the row's read line is open.
+    """
+    own = {"edge": "vdd" if edge else "0", "edgen": "0" if edge else "vdd", "k": "vdd", "vss": "0", "ref": "row_ref"}
+    resting = dict(rest)
+    for lane in set(lanes.values()) if rest else ():  # the bias of its amplifier is at the same levels
+        resting |= {f"xbias{lane}.{name}": rest[f"xcolumn_source.{name}"] for name in SOURCE}
+    deck = [
+        f"Vdark dark 0 {spec.dark:g}",
+        f"Vreference reference 0 {spec.dark - (not edge) * CODES / 2 * spec.lsb:.9g}",
+        *(f"V{name} {name} 0 {volts:.9g}" for name, volts in zip(("start_a", "start"), start, strict=True)),
+        *([".ic " + " ".join(f"v({name})={volts:.6g}" for name, volts in resting.items())] if rest else []),
+        *(f"Coutside_{name} {name} 0 {OUTSIDE:g}" for name in (*BIASES, "level")),
+        "Xcolumn_source ibias_columns vdd 0 bias",
+        f"Xcolumn_bias ibias_columns {' '.join(BIASES)} level vdd 0 column_bias",
+        f"Xcascodes vcn reads readsn {own['edge']} {own['edgen']} cn vcnb 0 cascode_lines",
+        "Xclear row_ref row_refn clear vbp vdd 0 clear_pulse",
+    ]
+    for lane in sorted(set(lanes.values())):
+        for d, reference in (("a", "reference"), ("b", "dark")):
+            turn = f"turn{lane} turnn{lane}" if d == "a" or edge else "0 vdd"
+            deck.append(f"Xend{d}{lane} col{d}{lane} {reference} {turn} vbl vcp vdd 0 lane_end")
+            deck.append(f"Xlines{d}{lane} lane{d}{lane} sense{d}{lane} col{d}{lane} 0 lane_line")
+    before = {"reset": "reset_row", "read": "read_row"}
+    for c, taps in diodes.items():
+        for name, near in before.items():
+            ohm = pixels.cut if name == "read" and c == cut else pixels.line_resistance
+            deck += [f"R{name}{c} {near} {name}{c} {ohm:g}", f"C{name}{c} {name}{c} 0 {pixels.line_capacitance:g}"]
+            before[name] = f"{name}{c}"
+        names = ("b", "a") if c in swapped else ("a", "b")
+        ends = " ".join(f"line_{d}{c}" for d in names)
+        deck.append(f"Xpixel{c} well_a{c} well_b{c} {ends} reset{c} read{c} level 0 thick_pixel")
+        deck += [f"Cline_{d}{c} line_{d}{c} 0 {spec.line:g}" for d in "ab"]
+        floats = {name.format(d=d, c=c): volts for name, volts in BEFORE.items() for d in "ab"}
+        deck.append(".ic " + " ".join(f"v({name})={volts:g}" for name, volts in floats.items()))
+        lane = lanes[c]
+        nodes = own | {f"column_{d}": f"line_{d}{c}" for d in "ab"} | {"group": f"turn_column{c}"}
+        nodes |= {f"{name}_{d}": f"{name}{d}{lane}" for name in ("lane", "sense") for d in "ab"}
+        deck.append(f"Xcolumn{c} {' '.join(nodes.get(pin, pin) for pin in map(line, PINS))} column")
+        for tap, pair in taps.items():
+            for diode, value in zip("ab", pair, strict=True):
+                ampere = value / FULL * spec.full_well * ELEMENTARY_CHARGE / integration
+                deck.append(f"Gphoto{diode}{c}_{tap} well_{diode}{c} 0 light{tap} 0 {ampere:.9g}")
+    return deck
+
+
+def drive(source: Drive, columns: Sequence[int], lanes: Sequence[int], first: int, high: float) -> None:
+    """Makes every control. first: the bit of the row's reset; what follows it is as in front_end.sv."""
+    more = first + 3 + TAPS
+    source("reset_row", ROW, first)
+    source("read_row", ROW, first + 1, rise=GAP, fall=10 * GAP)
+    source("row_ref", high, first + 2)
+    source("row_refn", 0.0, first + 2, low=high)
+    source("sig", high, first + 1, rise=GAP, fall=GAP)
+    source("sign", 0.0, first + 1, low=high, rise=GAP, fall=GAP)
+    source("reads", high, more, fall=2 * GAP)
+    source("readsn", 0.0, more, low=high, fall=2 * GAP)
+    source("idle", 0.0, more + 1, low=high, fall=3 * AFTER)
+    for t in range(TAPS):
+        source(f"w{t}", high, more + 2 + t)
+        source(f"f{t}", high, more + 2 + TAPS + t, rise=GAP, fall=3 * AFTER)
+        source(f"fn{t}", 0.0, more + 2 + TAPS + t, low=high, rise=GAP, fall=3 * AFTER)
+        source(f"unasked{t}", 0.0, more + 2 + 2 * TAPS + t, low=high)
+        source(f"light{t}", 1.0, -1)
+    for c in columns:
+        source(f"turn_column{c}", high, more + 2 + 3 * TAPS + c, rise=COLUMNS, fall=2 * AFTER)
+    for lane in lanes:
+        source(f"turn{lane}", high, lane, rise=COLUMNS / 2, fall=2 * AFTER)
+        source(f"turnn{lane}", 0.0, lane, low=high, rise=COLUMNS / 2, fall=2 * AFTER)
+
+
+@cache
+def trimmed(spec: ColumnSpec, edge: bool, cycle: float, high: float) -> tuple[tuple[float, float], dict[str, float]]:
+    """V of start_a and start at which a pixel without light leaves its lanes at dark, of the bias's lines at rest.
+
+    Simulated TRIMS times. Raises ToolError.
+    """
+    sizes, pixels = size(spec, analog), PixelSizes()
+    reset, read, ends = 2, 6, 6 + spec.settle + spec.read
+    turn = ends + 2
+    halves = range(read, read + spec.settle), range(read + spec.settle, ends)
+    more = 3 + TAPS
+    on = {0: range(1, reset + 1), 1: halves[1], 2: halves[0], more: range(read, ends)}
+    on |= {more + 1: [*range(read, ends), turn], more + 2: range(read, ends), more + 2 + TAPS: [*halves[1], turn]}
+    on |= {more + 2 + 2 * TAPS: range(turn + 2), more + 2 + 3 * TAPS: [turn]}
+    lane_bit = 100  # the lane's own, none of the row's
+    on[lane_bit] = [turn]
+    waves: dict[str, list[tuple[float, float]]] = {}
+
+    def source(name: str, up: float, bit: int, rise: float = 0.0, fall: float = 0.0, low: float = 0.0) -> str:
+        points, now = [(0.0, low)], low
+        for k in range(turn + 2):
+            level = up if k in on.get(bit, ()) else low
+            if level != now:
+                at = k * cycle + (rise if level == up else fall)
+                points += [(at, now), (at + 1e-10, level)]
+                now = level
+        waves[name] = points
+        return name
+
+    drive(source, (0,), (lane_bit,), 0, high)
+    parts = circuits(spec, sizes)
+    inner = {one.name: one for part in parts for one in part.circuits().values()}
+    deck = [*analog.cards("tt", set().union(*(one.sizes() for one in parts))), ".param cscale=1 rscale=1"]
+    deck += [line for one in inner.values() for line in one.own_lines(analog)]
+    outs, found = [f"col{d}{lane_bit}" for d in "ab"], dict[str, float]()
+    start = spec.dark, spec.dark
+    for _ in range(TRIMS):
+        own = lines({0: {0: (0.0, 0.0)}}, {0: lane_bit}, edge, 1.0, spec, sizes, pixels, start, {})
+        with Simulator([*deck, *own], tuple(waves), (*outs, *RESTING), {"vdd": high}, CELSIUS, EXACT) as spice:
+            wave = spice.transient(waves, dict.fromkeys(outs, spec.input), (turn + 1) * cycle, cycle / 5)
+        end = float(np.nextafter((turn + 1) * cycle, 0))
+        a, b = (v + (spec.dark - wave.at(out, end)) / sizes.follows for v, out in zip(start, outs, strict=True))
+        start, found = (a, b), {name: wave.at(name, 0.0) for name in RESTING}
+    return start, {"vdd": high} | found

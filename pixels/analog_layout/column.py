@@ -1,0 +1,590 @@
+"""A column on the pixels' pitch, lying: the array in the west, the converters in the east; n transistors at y = 0.
+
+    column_a ---- Cf Cf | front strip |  Cin  Cin  Cin  | back strip | Chold Chold Chold Chold Chold
+    column_b ----       |             |                 |            |
+
+    rail vdd   ================
+               p  transistors of both charge amplifiers; of the second stages, the taps, the decoder
+    rail vss   ================
+
+Capacitors are metal-insulator-metal, their lower plates at what is driven. Under them run lines of the second metal,
+each at its track's height in the strip that it comes from. What crosses all columns is on the fourth metal over the
+strips: a column has a via at its own of the lanes' lines, of the groups' and of the places'.
+"""
+
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from talbot.models.parameters import ParameterError
+from talbot.pixels.circuits.column import CONTROLS, OF_TAPS, PINS, TAPS, TWICE, column
+from talbot.pixels.circuits.column_block import GROUPS, PLACES
+from talbot.pixels.circuits.column_sizes import FINGER, ColumnSizes
+from talbot.pixels.layout.canvas import Canvas
+from talbot.platforms.analog import AnalogMasks
+
+from . import flat
+from .array import AROUND, VIA_IN
+from .cells import Cell, new_canvas
+from .device import Device, snap
+from .flat import Plate, Tap
+from .strip import (
+    FOURTH,
+    RAIL_AT,
+    RAIL_HALF,
+    RAIL_TRUNK,
+    SECOND,
+    THIRD,
+    TRACK,
+    TRACK_PITCH,
+    Plan,
+    Strip,
+    draw_rails,
+    draw_rows,
+    in_columns,
+    join_rails,
+)
+
+# um
+PITCH, BETWEEN = 10.0, 1.2  # of the columns; of the rails' middles of two columns
+ROWS, ROW_IN = 13, 0.2  # of tracks in a strip; of the first from a rail's middle
+WIDE, HALVES = 8.2, 1.48  # of a plate across the column; between two that are over each other
+LINE, LANE, NARROW = 0.4, 0.6, 0.3  # widths of what crosses all columns, of the lanes' lines, of what passes plates
+STEP, LEAST = 0.2, 0.4  # of the places of these; between two
+ROOM = 0.6  # beside each pair of devices, for its drops
+FIRST = 1.5  # of the first plate from the array
+PAD_AT, PLATE_AT = 1.06, 1.86  # of an upper plate's vias from that plate; of the next plate from it
+PATCH_IN, VIAS = 0.3, 1.0  # of the metal over an upper plate from its edges; pitch of its vias
+PAD = 0.19, 0.33  # half of the third metal at those vias: its least area
+UNDER = 0.28  # width of the lines under the plates
+OUT, EXIT, JOGS = 0.35, 3.2, (2.2, 3.0)  # from a strip's end to its lines' vias; to a plate; to what leaves above
+SHIELD = 0.3  # of a line of vss at a column's edge
+IN = 0.1  # of the first track's via: the rails are joined beside the strip
+WAYS = {"column_a": 1.7, "column_b": 8.3, "cin_b": 4.0, "cin_a": 2.0}  # y of what leaves on the fourth metal
+RAILS = 1  # the metal of the rails
+LANES = 8
+GROUPED = {"group": GROUPS, "k": PLACES} | {f"{name}_{d}": LANES for name in ("lane", "sense") for d in "ab"}
+SINGLE = (*CONTROLS, *OF_TAPS, "vbp", "vcp", "level", "start", *TWICE)
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A strip: its n and p transistors from the west; rows of the tracks of nets that leave it at a height of theirs.
+
+    west, east: nets that leave it under the plates beside it. shields: quiet nets whose tracks are as long as it is.
+    over: nets whose tracks are as long as another's, between it and what it must not couple to.
+    """
+
+    n: tuple[str, ...]
+    p: tuple[str, ...]
+    west: tuple[str, ...] = ()
+    east: tuple[str, ...] = ()
+    fixed: Mapping[str, int] = field(default_factory=dict)
+    shields: tuple[str, ...] = ()
+    over: Mapping[str, str] = field(default_factory=dict)
+
+
+class Cap(NamedTuple):
+    """A capacitor beside a strip: its plates' nets; the strip that its lines come from is in the east.
+
+    beside: F that the lines of both nets have already, as extracted. low, high: y of the upper plate. above: it is over
+    the one before it, not in the east of it.
+    """
+
+    name: str
+    lower: str
+    upper: str
+    from_east: bool = False
+    beside: float = 0.0
+    low: float = (PITCH - WIDE) / 2
+    high: float = (PITCH + WIDE) / 2
+    above: bool = False
+
+
+def _hold(d: str, t: int, from_east: bool = False) -> Cap:
+    tap = f"back_{d}.tap{t}."
+    return Cap(f"{tap}hold", f"{tap}outer", f"{tap}inner", from_east, 4e-15 if t else 6e-15)
+
+
+def _kick(d: str, from_east: bool = False) -> Cap:
+    return Cap(f"back_{d}.kick", f"back_{d}.kick", f"back_{d}.x", from_east)
+
+
+def _tap_piece(t: int) -> Piece:
+    """The strip of a tap of the first diode, with its part of the decoder."""
+    tap, on = f"back_a.tap{t}.", f"on{t}."
+    through = "back_a.x", "back_a.f", "seln", "start_a"
+    own = f"{tap}inner", f"{tap}outer"
+    rows = {"back_a.x": 5, "start_a": 6, own[0]: 7, "back_a.f": 8, own[1]: 9, "seln": 2}
+    return Piece(
+        (f"{on}nb", f"{on}na", f"{tap}join", f"{tap}write", f"{tap}far_n"),
+        (f"{on}pb", f"{on}pa", "", f"{tap}far_p", f"{tap}rest"),
+        through,
+        (*(through if t < TAPS - 1 else ()), *own),
+        rows,
+    )
+
+
+PIECES = (
+    Piece(
+        (
+            "front_a.clear",
+            "front_a.in",
+            "front_a.cascode",
+            "front_b.clear",
+            "front_b.in",
+            "front_b.cascode",
+            "quarter_a_n",
+            "half_a_n",
+            "half_rest",
+            "quarter_b_n",
+        ),
+        (
+            "",
+            "front_a.top",
+            "front_a.cascode_p",
+            "",
+            "front_b.top",
+            "front_b.cascode_p",
+            "quarter_a_p",
+            "half_a_p",
+            "",
+            "quarter_b_p",
+        ),
+        ("out_a", "out_b"),
+        ("out_a", "out_b", "quarter", "half", "cn", "vbp", "vcp"),
+        # An output that comes near the other diode's line would be its light in it: out_a passes the second diode's
+        # transistors below all that its line has, its line passes those of the first above all that out_a has
+        {
+            "out_a": 0,
+            "clear": 1,
+            "cn": 2,
+            "column_a": 3,
+            "quarter": 4,
+            "vbp": 5,
+            "edgen": 6,
+            "half": 7,
+            "vcp": 9,
+            "out_b": 10,
+            "edge": 11,
+            "column_b": 12,
+        },
+        ("cn", "clear", "edge", "edgen", "vcp", "vbp"),
+        {"edgen": "column_a", "vbp": "column_a"},
+    ),
+    Piece(
+        (
+            "back_b.enter",
+            "back_b.cascode",
+            "back_b.reset",
+            "back_b.tap0.write",
+            "back_b.tap0.far_n",
+            "back_b.tie",
+            "back_b.in",
+            "back_b.low",
+            "back_b.tap0.join",
+            "on0.na",
+            "back_b.own_n",
+            "back_b.drive",
+            "select_n.nb",
+            "select_n.na",
+            "on0.nb",
+            "go_b",
+            "back_b.onto_n",
+            "stop_b",
+            "back_a.enter",
+            "go_a",
+            "back_a.in",
+            "stop_a",
+            "back_a.drive",
+            "back_a.tap0.join",
+            "back_a.cascode",
+            "back_a.reset",
+            "back_a.own_n",
+            "back_a.tap0.write",
+            "back_a.tie",
+            "select.n",
+            "back_a.onto_n",
+            "back_a.low",
+            "back_a.tap0.far_n",
+        ),
+        (
+            "back_b.top",
+            "back_b.cascode_p",
+            "",
+            "back_b.tap0.far_p",
+            "",
+            "back_b.tap0.rest",
+            "back_b.high",
+            "",
+            "",
+            "back_b.own_p",
+            "",
+            "select_n.pb",
+            "",
+            "",
+            "select_n.pa",
+            "",
+            "back_b.onto_p",
+            "",
+            "on0.pb",
+            "on0.pa",
+            "",
+            "",
+            "select.p",
+            "back_a.top",
+            "",
+            "back_a.cascode_p",
+            "back_a.own_p",
+            "",
+            "",
+            "back_a.onto_p",
+            "back_a.tap0.far_p",
+            "back_a.high",
+            "back_a.tap0.rest",
+        ),
+        ("back_b.tap0.inner", "back_b.tap0.outer", "back_b.x", "back_b.kick", "cn", "vbp", "vcp"),
+        ("back_a.x", "back_a.f", "seln", "start_a", "back_a.tap0.inner", "back_a.tap0.outer", "back_a.kick"),
+        # Between x and what its sample is not to depend on: kick, start_a
+        {
+            "cn": 2,
+            "vbp": 5,
+            "vcp": 9,
+            "seln": 2,
+            "cin_a": 0,
+            "cin_b": 4,
+            "back_b.x": 6,
+            "back_b.kick": 7,
+            "back_b.tap0.inner": 8,
+            "back_b.tap0.outer": 10,
+            "start": 12,
+            "back_b.f": 9,
+            "back_b.out": 11,
+            "sense_b": 11,
+            "back_a.kick": 3,
+            "back_a.x": 5,
+            "start_a": 6,
+            "back_a.tap0.inner": 7,
+            "back_a.f": 8,
+            "back_a.tap0.outer": 9,
+        },
+        over={"back_b.kick": "back_b.tap0.inner", "start_a": "back_a.x"},
+    ),
+    *map(_tap_piece, range(1, TAPS)),
+)
+# Between the strips, and at both ends of the column
+CAPS = (
+    (
+        Cap("front_a.f", "out_a", "column_a", True, 0.6e-15, high=(PITCH - HALVES) / 2),
+        Cap("front_b.f", "out_b", "column_b", True, 0.6e-15, low=(PITCH + HALVES) / 2, above=True),
+    ),
+    (
+        Cap("in_a", "out_a", "cin_a"),
+        Cap("in_quarter", "quarter", "cin_a"),
+        Cap("in_half", "half", "cin_a"),
+        Cap("in_b", "out_b", "cin_b"),
+        _kick("b", True),
+        _hold("b", 0, True)._replace(lower="back_b.tap0.inner", upper="back_b.tap0.outer"),  # cin_a passes above
+    ),
+    (_kick("a"), _hold("a", 0)),
+    *((_hold("a", t),) for t in range(1, TAPS)),
+)
+
+
+class Drawn(NamedTuple):
+    """A plate that is to be drawn: x of its ends."""
+
+    cap: Cap
+    left: float
+    right: float
+
+    @property
+    def near(self) -> float:
+        """X of the end that its lines come from."""
+        return self.right if self.cap.from_east else self.left
+
+    @property
+    def way(self) -> int:
+        """From there away from the plate."""
+        return 1 if self.cap.from_east else -1
+
+
+@dataclass(frozen=True)
+class ColumnPlan:
+    """Where everything of a column is, um.
+
+    lines: x of what crosses all columns. joints: x of the supplies that do. plates: of the capacitors. right: its end.
+    """
+
+    strips: tuple[Plan, ...]
+    lines: Mapping[str, float]
+    joints: Mapping[str, tuple[float, ...]]
+    plates: tuple[Drawn, ...]
+    right: float
+    free: tuple[str, ...] = ()
+
+
+def length_um(farad: float, masks: AnalogMasks, wide: float = WIDE) -> float:
+    """Of a plate ``wide`` um across. Raises ParameterError where it would be under 1 um."""
+    area, edge = masks.mim_area, masks.mim_edge
+    found = snap((farad * 1e15 - 2 * edge * wide) / (area * wide + 2 * edge))
+    if found < 1:
+        raise ParameterError(f"capacitor = {farad:g} F: must be 1 um long at the least, {wide:g} um wide")
+    return found
+
+
+def devices(sizes: ColumnSizes) -> dict[str, Device]:
+    """All transistors of a column, in fingers that fit its pitch."""
+    return {t.name: Device.of(t, FINGER) for t in flat.transistors(column(sizes))}
+
+
+def names(net: str) -> tuple[str, ...]:
+    """Lines that cross all columns, of a pin of a column."""
+    return tuple(f"{net}{k}" for k in range(GROUPED[net])) if net in GROUPED else (net,)
+
+
+def column_plan(
+    d: Mapping[str, Device], sizes: ColumnSizes, masks: AnalogMasks, extra: Iterable[str] = ()
+) -> ColumnPlan:
+    """Plan a column. extra: names of lines across, beside those of its nets.
+
+    Raises ParameterError where a strip has more nets than tracks, or a line no place.
+    """
+    farads = {c.name: c.value for c in flat.capacitors(column(sizes))}
+    x, plates, strips = FIRST, list[Drawn](), list[Plan]()
+    lines, joints = dict[str, float](), dict[str, tuple[float, ...]]()
+    for number, group in enumerate(CAPS):
+        for k, cap in enumerate(group):
+            left = plates[-1].left if cap.above else snap(x + PLATE_AT * (k > 0))
+            length = length_um(farads[cap.name] - cap.beside, masks, cap.high - cap.low)
+            plates.append(Drawn(cap, left, snap(left + length)))
+            x = max(x, plates[-1].right) if cap.above else plates[-1].right
+        if number == len(PIECES):
+            break
+        piece = PIECES[number]
+        left = snap(x + EXIT + (JOGS[1] - JOGS[0] + PAD_AT if group[-1].upper in WAYS or number == 1 else 0.0))
+        strip, found = _strip(piece, d, left, number, lines)
+        strips.append(strip)
+        lines |= found
+        joints |= {"vss": (*joints.get("vss", ()), strip.left - RAIL_AT)}
+        joints |= {"vdd": (*joints.get("vdd", ()), strip.right + RAIL_AT)}
+        x = strip.right + EXIT
+    if lacking := {line for net in (*GROUPED, *SINGLE) for line in names(net)} - lines.keys():
+        raise ParameterError(f"column: line {min(lacking)} must have a place")
+    wide = {name: LANE if net.startswith(("lane", "sense")) else LINE for net in GROUPED for name in names(net)}
+    for name in extra:
+        taken = [(at, (wide.get(own, LINE) + LINE) / 2 + LEAST) for own, at in lines.items()]
+        places = (snap(s.left + STEP * k) for s in strips for k in range(2, int((s.right - s.left) / STEP) - 1))
+        free = (place for place in places if all(abs(place - at) >= apart - 1e-9 for at, apart in taken))
+        lines[name] = next(free, -1.0)
+        if lines[name] < 0:
+            raise ParameterError(f"column strips: must have room for line {name}")
+    return ColumnPlan(tuple(strips), lines, joints, tuple(plates), snap(x + PAD_AT), tuple(extra))
+
+
+def _strip(
+    piece: Piece, d: Mapping[str, Device], left: float, number: int, known: Collection[str]
+) -> tuple[Plan, dict[str, float]]:
+    """A strip, and the lines over it that are not ``known``."""
+    count = max(len(piece.n), len(piece.p))
+    n, p = ([d.get(name) for name in row] + [None] * (count - len(row)) for row in (piece.n, piece.p))
+    ways = (("column_a", "column_b"), ("cin_a", "cin_b"))[number] if number < 2 else ()
+    lowest = [net for net in (*piece.west, *ways) if piece.fixed.get(net) == 0]
+    row_n, row_p, right = in_columns(list(zip(n, p, strict=True)), left + ROOM * len(lowest), ROOM)
+    ends: dict[str, tuple[float, ...]] = {net: (left + (IN if net in lowest else -OUT),) for net in piece.west}
+    ends |= {net: (*ends.get(net, ()), right + OUT) for net in piece.east}
+    ends |= {net: (*ends.get(net, ()), left + 0.5, right - 0.5) for net in piece.shields}
+    present = {net for one in (*row_n, *row_p) for net in one.device.transistor.nodes}
+    ends |= {net: (left + IN if net in lowest else left - jog,) for net, jog in zip(ways, JOGS, strict=False)}
+    plain = Plan(row_n, row_p, left, right, ends)
+    for net, other in piece.over.items():
+        ends[net] = (*ends.get(net, ()), *plain.spans()[other])
+    lines = _lines(plain, {net for net in present if names(net)[0] not in known}, left, right, number)
+    for net in present & (GROUPED.keys() | set(SINGLE)):
+        if names(net)[0] in lines:
+            ends[net] = (*ends.get(net, ()), lines[names(net)[0]], lines[names(net)[-1]])
+    plan = Plan(
+        row_n, row_p, left, right, ends, least_um=PITCH - BETWEEN, fixed=piece.fixed, least_rows=ROWS, track_in=ROW_IN
+    )
+    if plan.height_um > PITCH - BETWEEN + 1e-9:
+        rows = round((plan.height_um - (PITCH - BETWEEN)) / 0.7) + ROWS
+        raise ParameterError(f"column strip {number} = {rows} tracks: must be {ROWS} at most")
+    return plan, lines
+
+
+def _lines(plan: Plan, present: set[str], left: float, right: float, number: int) -> dict[str, float]:
+    """X of the lines over a strip: those of a group together, each as near as may be to the gates on it."""
+    spans, taken, found = plan.spans(), list[tuple[float, float]](), dict[str, float]()
+    own = sorted((set(GROUPED) | set(SINGLE)) & present)
+    own.sort(key=lambda net: (-len(names(net)), spans[net][1] - spans[net][0]))
+    places = [snap(left + STEP * k) for k in range(2, int((right - left) / STEP) - 1)]
+    for net in own:
+        half = (LANE if net.startswith(("lane", "sense")) else LINE) / 2
+        pitch, count = 2 * half + LEAST, len(names(net))
+        low, high = spans[net]
+        middle = (low + high) / 2 - pitch * (count - 1) / 2
+
+        def free(x: float, half: float = half, pitch: float = pitch, count: int = count) -> bool:
+            ends = x - half, x + pitch * (count - 1) + half
+            return ends[1] <= right - 0.2 and all(
+                ends[1] + LEAST <= a + 1e-9 or b + LEAST <= ends[0] + 1e-9 for a, b in taken
+            )
+
+        place = min(filter(free, places), key=lambda x: abs(x - middle), default=None)
+        if place is None:
+            raise ParameterError(f"column strip {number} = {right - left:.0f} um: must have room for line {net}")
+        taken.append((place - half, place + pitch * (count - 1) + half))
+        found |= {line: snap(place + pitch * k) for k, line in enumerate(names(net))}
+    return found
+
+
+def draw_column(canvas: Canvas, masks: AnalogMasks, made: ColumnPlan) -> list[Strip]:
+    """A column, its south edge at y = 0, with its part of the supplies that cross all columns, and vias to lines."""
+    y, strips = BETWEEN / 2, list[Strip]()
+    for plan in made.strips:
+        strip = draw_rows(canvas, masks, plan, y)
+        draw_rails(canvas, masks, plan, y)
+        join_rails(canvas, [strip])
+        strips.append(strip)
+    ends = made.strips[0].left, made.strips[-1].right
+    for rail in (y, PITCH - y):  # beside the plates from strip to strip
+        canvas.wire(RAILS, ends[0], rail - RAIL_HALF, ends[1], rail + RAIL_HALF)
+    for x in made.joints["vss"] + made.joints["vdd"]:
+        canvas.wire(FOURTH, x - RAIL_TRUNK / 2, 0, x + RAIL_TRUNK / 2, PITCH)
+    for net in SINGLE:
+        for strip in strips:
+            for track in strip.tracks:
+                if track.net == net and track.left <= made.lines[net] <= track.right:
+                    canvas.stack(made.lines[net], track.y, THIRD, FOURTH)
+    for plate in made.plates:
+        _plate(canvas, masks, plate)
+    for number, strip in enumerate(strips):
+        _leave(canvas, made, strips, number, strip)
+    return strips
+
+
+def draw_ground(canvas: Canvas, made: ColumnPlan, y: float, vias: Sequence[float] = ()) -> None:
+    """The ground's lines in the south of a column whose edge is at ``y``: the outputs of the one below would be light.
+
+    vias: x of others' there, before which a line ends.
+    """
+    for plan in made.strips[:2]:
+        joint = plan.left - RAIL_AT - RAIL_TRUNK / 2
+        ends = [x - PAD[1] - LEAST for x in vias if joint < x < plan.right + PAD[1] + LEAST]
+        canvas.wire(THIRD, joint, y, min((*ends, plan.right)), y + SHIELD)
+        canvas.wire(THIRD, joint, y, joint + RAIL_TRUNK, y + BETWEEN / 2)
+
+
+def _plate(canvas: Canvas, masks: AnalogMasks, plate: Drawn) -> None:
+    """A capacitor without its lines."""
+    low, high = plate.cap.low, plate.cap.high
+    canvas.box(masks.mim, plate.left, low, plate.right, high)
+    # No tab at the vias' end: lines of others pass above
+    canvas.wire(THIRD, plate.left - AROUND, low - AROUND, plate.right + AROUND, high + AROUND)
+    ends = _patch(plate)
+    left, right = plate.left + PATCH_IN, plate.right - PATCH_IN
+    canvas.wire(FOURTH, left, ends[0], right, ends[1])
+    for x in steps(left, right):
+        for y in steps(*ends):
+            canvas.square(masks.base.vias[THIRD].gds, x, y, 0.2)
+
+
+def steps(low: float, high: float) -> Iterator[float]:
+    """Places of vias in a piece of metal."""
+    count = max(1, int((high - low - 0.4) / VIAS) + 1)
+    for k in range(count):
+        yield snap((low + high) / 2 + (k - (count - 1) / 2) * VIAS)
+
+
+def _patch(plate: Drawn) -> tuple[float, float]:
+    """Y of the metal over an upper plate: beside the lines of others that pass."""
+    if plate.cap.upper in WAYS:
+        y = WAYS[plate.cap.upper]
+        return y - 0.5, y + 0.5
+    return (4.8, 8.8) if plate.cap.from_east else (1.2, 8.8)
+
+
+def _leave(canvas: Canvas, made: ColumnPlan, strips: Sequence[Strip], number: int, strip: Strip) -> None:
+    """What leaves a strip: on the fourth metal in the west, or on the second under the plates."""
+    plan, half = strip.plan, UNDER / 2
+    tracks = {net: track.y for track in strip.tracks for net in [track.net]}
+    for net, jog in zip(("column_a", "column_b") if number == 0 else ("cin_a", "cin_b"), JOGS, strict=True):
+        if number < 2:
+            x, y, to = plan.left - jog, tracks[net], WAYS[net]
+            first = 0.0 if number == 0 else min(one.left for one in made.plates if one.cap.upper == net) + PATCH_IN
+            if _lowest(y):  # passes the rail's joint on the second track
+                end, y = plan.left + IN, snap(y + TRACK_PITCH)
+                canvas.wire(THIRD, x - TRACK / 2, y - TRACK / 2, end + TRACK / 2, y + TRACK / 2)
+                canvas.wire(THIRD, end - TRACK / 2, tracks[net], end + TRACK / 2, y)
+            canvas.stack(x, y, THIRD, FOURTH)
+            canvas.wire(FOURTH, x - LINE / 2, min(y, to) - LINE / 2, x + LINE / 2, max(y, to) + LINE / 2)
+            canvas.wire(FOURTH, first, to - NARROW / 2, x + LINE / 2, to + NARROW / 2)
+    for plate in made.plates:
+        beside = CAPS.index(next(group for group in CAPS if plate.cap in group)) - (not plate.cap.from_east)
+        if beside != number:
+            continue
+        for net, at in ((plate.cap.lower, VIA_IN), (plate.cap.upper, PAD_AT)):
+            if net in WAYS:
+                continue
+            west = plan.left + (IN if _lowest(tracks[net]) else -OUT)
+            start = west if plate.cap.from_east else plan.right + OUT
+            x, y = plate.near + plate.way * at, _way(canvas, tracks[net], start)
+            canvas.wire(SECOND, min(x, start), y - half, max(x, start), y + half)
+            canvas.stack(x, y, SECOND, THIRD if net == plate.cap.lower else FOURTH)
+            if net == plate.cap.upper:
+                canvas.wire(THIRD, x - PAD[0], y - PAD[1], x + PAD[0], y + PAD[1])
+                ends = x, plate.near - plate.way * PATCH_IN
+                canvas.wire(FOURTH, min(ends), y - LINE / 2, max(ends), y + LINE / 2)
+    if number + 1 < len(strips):
+        after = strips[number + 1]
+        for net in set(PIECES[number].east) & set(PIECES[number + 1].west):
+            y, x0, x1 = tracks[net], plan.right + OUT, after.plan.left - OUT
+            canvas.wire(SECOND, x0, y - half, x1, y + half)
+            for x in (x0, x1):
+                canvas.stack(x, y, SECOND, THIRD)
+
+
+def _lowest(track: float) -> bool:
+    """Whether a track is the first one, beside a rail's joint in the west."""
+    return track < BETWEEN / 2 + ROW_IN + TRACK_PITCH / 2
+
+
+def _way(canvas: Canvas, track: float, x: float) -> float:
+    """Y at which a net of ``track`` leaves a strip under the plates: of the first track the second's, for the rail."""
+    y = snap(track + TRACK_PITCH) if _lowest(track) else track
+    canvas.stack(x, track, SECOND, THIRD)
+    canvas.wire(SECOND, x - UNDER / 2, track, x + UNDER / 2, y + UNDER / 2)
+    return y
+
+
+def as_cell(canvas: Canvas, d: Mapping[str, Device], made: ColumnPlan, strips: Sequence[Strip]) -> Cell:
+    """The drawn column with its circuit's names."""
+    plates, taps = list[Plate](), list[Tap]()
+    for cap, left, right in made.plates:
+        edges = right - left, cap.high - cap.low
+        plates.append(Plate(cap.name, cap.upper, cap.lower, edges[0] * edges[1], 2 * sum(edges)))
+        taps.append(Tap(cap.name, 1, (left + right) / 2, (cap.low + cap.high) / 2))
+    terminals = tuple(one for strip in strips for one in strip.terminals)
+    tracks = tuple(one for strip in strips for one in strip.tracks)
+    return Cell(canvas.layout, canvas.cell, PINS, tuple(d.values()), tuple(plates), terminals, tuple(taps), tracks)
+
+
+def column_cell(masks: AnalogMasks, sizes: ColumnSizes) -> Cell:
+    """A column alone, its pins named where its lines are: what is checked and extracted."""
+    d, canvas = devices(sizes), new_canvas(masks, "column")
+    plan = column_plan(d, sizes, masks)
+    made = as_cell(canvas, d, plan, draw_column(canvas, masks, plan))
+    draw_ground(canvas, plan, 0.0)
+    for net in PINS:
+        if net in ("column_a", "column_b"):
+            canvas.label(FOURTH, net, 0.2, WAYS[net])
+        elif net in SINGLE:
+            canvas.wire(FOURTH, plan.lines[net] - LINE / 2, 0, plan.lines[net] + LINE / 2, PITCH)
+            canvas.label(FOURTH, net, plan.lines[net], 0.2)
+        elif net in GROUPED:
+            track = next(one for one in made.tracks if one.net == net)
+            canvas.label(THIRD, net, track.left + 0.3, track.y)
+    for net, y in (("vss", BETWEEN / 2), ("vdd", PITCH - BETWEEN / 2)):
+        canvas.label(RAILS, net, plan.strips[0].left, y)
+    canvas.box(masks.base.outline, 0, 0, plan.right, PITCH)
+    return made

@@ -1,0 +1,206 @@
+"""The column amplifiers of the die: all columns with their lines, and south of them what drives these.
+
+north     column_a, column_b of each column
+          the columns, turned: their strips' lines run from west to east
+          band: bank, bias, the ends of the lanes' lines
+south     the chip's pins | lane_a, lane_b of each lane | pins of OUTSIDE and SOURCE
+
+Supplies are straps of the top metal over the columns, in turn the supply's and the ground's; between them, across the
+band. The pins in the south-east are none of the black box: the die has pins for them.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+from talbot.base.gds import db
+from talbot.models.parameters import ArrayParameters, ChipParameters, ParameterError
+from talbot.pixels.blocks import DEEP_UM, AnalogSizes, Block, Pin, blocks
+from talbot.pixels.circuits.column import BIASES
+from talbot.pixels.circuits.column_block import BANK_INPUTS, BANK_OUTPUTS
+from talbot.pixels.circuits.column_sizes import ColumnSizes
+from talbot.pixels.footprints import draw_pins, lef
+from talbot.pixels.layout.canvas import Canvas
+from talbot.platforms.analog import AnalogMasks
+
+from .cells import new_canvas
+from .column import LANES, LINE, PITCH, WAYS
+from .column_band import Band, draw_band
+from .columns import END, Columns, column_nets, draw_columns, draw_grounds, draw_way
+from .device import snap
+from .row_drivers import TOP, VIA, VIA_PAD, VIA_PITCH, chip_pin
+from .strip import FOURTH, TRUNK
+
+NAME = "column_amplifiers"
+# Nets that a column or the band has from outside of the chip; lines across that no column is on
+OUTSIDE = dict.fromkeys(("dark", "reference", "start", "start_a"), "input")
+OUTSIDE |= dict.fromkeys((*BIASES, "level"), "output")
+SOURCE = "ibias_columns"
+EXTRA = ("turn", "turnn", "turnb", "turnbn", "vbl", "reference", "dark", "ibias")
+OUTWARD = (*BANK_OUTPUTS, "ibias", "vbp", "vcp", "vcn", "vbl", "level", "reference", "dark")
+NETS = {"vdd": "vddc", "vss": "vssa"}
+# um
+OVERLAP = 0.3  # of a way and what it meets in the band
+EAST = 4  # columns from the converters to the first pin in the south-east, and between these
+STRAP, STRAPS, APART = 8.0, 400.0, 6.0  # of the top metal over the columns: width, from one to the next; beside another
+EDGE = 3.0, 2.5  # of the supply's first strap in the west: width, middle
+ACROSS, HEIGHTS = 6.0, {"vss": 27.0, "vdd": 37.0}  # of the straps across the band
+
+
+@dataclass(frozen=True)
+class ColumnAmplifiers:
+    """The drawn block. columns, band: its parts. boxes: cells that LVS compares once."""
+
+    boxes: ClassVar[tuple[str, ...]] = ("column",)
+
+    block: Block
+    layout: "db.Layout"
+    cell: "db.Cell"
+    columns: Columns
+    band: Band
+    lanes: int
+
+    @property
+    def count(self) -> int:
+        """Transistors."""
+        return self.columns.count * self.columns.column.count + self.band.cell.count
+
+    def spice(self, masks: AnalogMasks) -> str:
+        """Its text for LVS; pins that it does not use are none of its ports."""
+        column, band = self.columns.column, self.band.cell
+        parts = [(column, column_nets(k, self.lanes)) for k in range(self.columns.count)]
+        parts.append((band, band_nets(band.ports)))
+        used = {net for _, nets in parts for net in nets}
+        ports = dict.fromkeys(pin.name for pin in self.block.pins if pin.name in used)
+        lines = [f"X{k} {' '.join(nets)} {cell.cell.name}" for k, (cell, nets) in enumerate(parts)]
+        top = [f".subckt {NAME} {' '.join(ports)}", *lines, f".ends {NAME}", ""]
+        return column.spice(masks) + band.spice(masks) + "\n".join(top)
+
+    def lef(self, masks: AnalogMasks) -> str:
+        """Its LEF: all metals taken."""
+        return lef(self.block, masks.base.name, AnalogSizes().supply_um, [metal.lef for metal in masks.base.metals])
+
+
+def band_nets(ports: Iterable[str]) -> tuple[str, ...]:
+    """The block's nets at the ports of the band."""
+    own = NETS | {name: chip_pin(name) for name in BANK_INPUTS} | {"ibias": SOURCE}
+    own |= {f"lane_{d}{lane}": f"lane_{d}[{lane}]" for d in "ab" for lane in range(LANES)}
+    return tuple(own.get(port, port) for port in ports)
+
+
+def draw_column_amplifiers(
+    masks: AnalogMasks,
+    sizes: ColumnSizes,
+    array: ArrayParameters,
+    chip: ChipParameters,
+    room: AnalogSizes | None = None,
+) -> ColumnAmplifiers:
+    """Draw all columns and what drives them. Raises ParameterError where they do not fit."""
+    room = room or AnalogSizes()
+    if abs(1e6 * array.pitch - PITCH) > 1e-6:
+        raise ParameterError(f"pitch = {array.pitch:g}: must be {PITCH * 1e-6:g} m, that of the drawn columns")
+    if chip.lanes != LANES:
+        raise ParameterError(f"lanes = {chip.lanes}: must be {LANES}, the lines over the drawn columns")
+    canvas = new_canvas(masks, NAME)
+    columns = draw_columns(canvas.layout, masks, sizes, array.cols, EXTRA)
+    plain = frame(array, chip, room)
+    south = {pin.name: pin.at_um for pin in plain.pins if pin.side == "south"}
+    own = {name: chip_pin(name) for name in BANK_INPUTS}
+    own |= {f"lane_{d}{lane}": f"lane_{d}[{lane}]" for d in "ab" for lane in range(LANES)}
+    pins = {name: south[pin] for name, pin in own.items()}
+    lanes = [name for name in own if name.startswith("lane_")]
+    band = draw_band(canvas.layout, masks, sizes, LANES, pins, (*OUTWARD, *lanes))
+    height = snap(band.height - OVERLAP + END + columns.plan.right)
+    block = frame(array, chip, replace(room, columns_um=height))
+    turned = Canvas(canvas.layout, "columns_and_ways", masks.base)
+    turned.cell.insert(db.CellInstArray(columns.cell.cell_index(), db.Trans()))
+    vias: dict[int, list[float]] = {}
+    for net, numbers in band.ways.items():
+        for k, number in enumerate(numbers):
+            found = draw_way(turned, columns, own.get(net, net), number, k if net in lanes else None)
+            vias.setdefault(number, []).extend(found)
+    for pin in block.pins:
+        if pin.name in OUTSIDE or pin.name == SOURCE:
+            number = round(pin.at_um / PITCH)
+            found = draw_way(turned, columns, "ibias" if pin.name == SOURCE else pin.name, number)
+            vias.setdefault(number, []).extend(found)
+            canvas.wire(FOURTH, pin.at_um - TRUNK / 2, 0, pin.at_um + TRUNK / 2, band.height)
+    draw_grounds(turned, columns, vias)
+    for pin in block.pins:
+        if pin.side == "north":
+            _join(turned, pin)
+    lying = db.Trans(3, False, 0, canvas.snap(height))
+    canvas.cell.insert(db.CellInstArray(turned.cell.cell_index(), lying))
+    canvas.cell.insert(db.CellInstArray(band.cell.cell.cell_index(), db.Trans()))
+    _supplies(canvas, block, columns, band, room)
+    draw_pins(canvas.layout, canvas.cell, block, masks.base.name, room.supply_um)
+    canvas.box(masks.base.outline, 0, 0, block.width_um, block.height_um)
+    return ColumnAmplifiers(block, canvas.layout, canvas.cell, columns, band, chip.lanes)
+
+
+def _join(canvas: Canvas, pin: Pin) -> None:
+    """A column's line, where it is in the column, and the array's pin."""
+    at = pin.at_um // PITCH * PITCH + WAYS[pin.name.split("[")[0]]
+    canvas.wire(FOURTH, 0, min(at, pin.at_um) - LINE / 2, DEEP_UM, max(at, pin.at_um) + LINE / 2)
+
+
+def frame(array: ArrayParameters, chip: ChipParameters, room: AnalogSizes) -> Block:
+    """The black box's frame, with pins in the south-east."""
+    block = next(one for one in blocks(array, chip, room) if one.name == NAME)
+    first = max(pin.at_um for pin in block.pins if pin.side == "south") + room.bias_um + room.lane_um
+    number = round(first / PITCH)
+    names = {**OUTSIDE, SOURCE: "input"}
+    extra = (Pin(name, way, "south", PITCH * (number + EAST * k)) for k, (name, way) in enumerate(names.items(), 1))
+    return replace(block, pins=(*block.pins, *extra))
+
+
+def _supplies(canvas: Canvas, block: Block, columns: Columns, band: Band, room: AnalogSizes) -> None:
+    """Straps over the columns, in turn; between them across the band; pins to the nearest."""
+    width, height, half = block.width_um, block.height_um, room.supply_um / 2
+    last = int((width - STRAPS / 2) / STRAPS)
+    straps = {
+        "vdd": [(EDGE[1], EDGE[0]), *((20.0 + STRAPS * k, STRAP) for k in range(1, last + 1))],
+        "vss": [(20.0 + STRAPS * (k + 0.5), STRAP) for k in range(last)],
+    }
+    pins = {(pin.name, pin.side): pin.at_um for pin in block.pins if pin.supply}
+    cuts: dict[float, float] = {}
+    for net, supply in NETS.items():
+        first, final = straps[net][0][0], straps[net][-1][0]
+        for side, ends in (("west", (0.0, first + EDGE[0] / 2)), ("east", (final - EDGE[0] / 2, width))):
+            at = pins[supply, side]
+            canvas.wire(TOP, ends[0], at - half, ends[1], at + half)
+            cuts |= {x: at for x, _ in straps["vdd"] if net == "vss" and ends[0] < x < ends[1]}
+    joints = {net: [height - x for x in columns.plan.joints[net]] for net in NETS}
+    for net, found in straps.items():
+        others = sorted(x for other, xs in straps.items() if other != net for x, _ in xs)
+        for x, wide in found:
+            pieces = [(1.0, height - 1.0)]
+            if x in cuts:
+                pieces = [(1.0, cuts[x] - half - 2.0), (cuts[x] + half + 2.0, height - 1.0)]
+            for low, high in pieces:
+                canvas.wire(TOP, x - wide / 2, low, x + wide / 2, high)
+            for y in joints[net]:
+                if any(low < y < high for low, high in pieces):
+                    _vias(canvas, x, y, wide)
+            west = max((other for other in others if other < x), default=None)
+            east = min((other for other in others if other > x), default=width - 1.0)
+            begin = x - wide / 2 if west is None else west + STRAP / 2 + APART
+            if west is not None and west == EDGE[1]:
+                begin = west + EDGE[0] / 2 + 1.7
+            y = HEIGHTS[net]
+            canvas.wire(TOP, begin, y - ACROSS / 2, east - STRAP / 2 - APART, y + ACROSS / 2)
+    for net, found in band.joints.items():
+        y = HEIGHTS[net]
+        for x, low, high in found:
+            canvas.wire(FOURTH, x - 0.5, min(low, y - ACROSS / 2), x + 0.5, max(high, y + ACROSS / 2))
+            canvas.wire(FOURTH, x - VIA_PAD, y - ACROSS / 2, x + VIA_PAD, y + ACROSS / 2)
+            for step in (-1, 0, 1):
+                canvas.square(canvas.process.vias[FOURTH].gds, x, y + VIA_PITCH * step, VIA)
+
+
+def _vias(canvas: Canvas, x: float, y: float, wide: float) -> None:
+    """Vias of a strap to what joins the columns' rails, in a row along that."""
+    count = int((wide - 1.5) / VIA_PITCH) + 1
+    for k in range(count):
+        canvas.square(canvas.process.vias[FOURTH].gds, snap(x + (k - (count - 1) / 2) * VIA_PITCH), y, VIA)
+    canvas.wire(FOURTH, x - wide / 2, y - VIA_PAD, x + wide / 2, y + VIA_PAD)

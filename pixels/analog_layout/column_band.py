@@ -1,0 +1,303 @@
+"""South of all columns: what drives their lines, their bias, the ends of the lanes' lines.
+
+north    ways between the columns, at multiples of their pitch
+         the bank's strips          | the bias | its lines' capacitors | the lanes' ends, one strip
+south    the chip's pins            | ibias                            | lane_a, lane_b of each lane
+
+All nets between strips, pins and ways are on the fourth metal, each at places of its own.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+from talbot.base.gds import db
+from talbot.models.parameters import ParameterError
+from talbot.pixels.circuits.column import BIASES
+from talbot.pixels.circuits.column_block import band
+from talbot.pixels.circuits.column_sizes import FINGER, ColumnSizes
+from talbot.pixels.circuits.netlist import Transistor
+from talbot.pixels.layout.canvas import Canvas
+from talbot.platforms.analog import AnalogMasks
+
+from . import flat
+from .array import AROUND, TAB, VIA_IN
+from .cells import Cell
+from .column import PATCH_IN, PITCH, steps
+from .comparator import BETWEEN_STRIPS
+from .device import Device, snap
+from .row_driver import legs
+from .strip import (
+    FOURTH,
+    RAIL_AT,
+    RAIL_HALF,
+    RAIL_TRUNK,
+    SECOND,
+    THIRD,
+    TRUNK,
+    Placed,
+    Plan,
+    Strip,
+    draw_strip,
+    in_columns,
+    trunk,
+)
+
+# um
+SOUTH, NORTH = 4.0, 3.0  # from the block's edge to the lowest rail; from the highest to the columns
+WEST = 8.0  # of the bank's strips
+ROOM = 0.6  # beside each pair of devices
+APART = 0.95  # least between middles of what crosses strips
+BIAS, PARTS_OF = 540.0, 3  # of the capacitors of the bias's lines: x of the first, parts of each
+PLATE, PLATE_PITCH, PLATE_UP = 28.0, 30.0, 1.9  # of a part: width, pitch, from the rail
+RAMP, RAMP_AT, RAMP_WIDE, RAMP_UP = (
+    "bank.clear.ramp",
+    15.0,
+    40.0,
+    1.5,
+)  # of the pulse's: net, place of that, width, from the rail
+STRIPS, BANK, ASIDE = 2, 500.0, 20.0  # of the bank: strips, its east end; of the bias from there
+
+Pair = tuple[Device | None, Device | None]
+
+
+@dataclass
+class Group:
+    """Strips above each other. rows: of n and p transistors, and their ends. at: x of what leaves, by net: to the north
+    (ways), to the south (pins), from strip to strip (inner), to capacitors (plates)."""
+
+    left: float
+    right: float
+    rows: list[tuple[Sequence[Placed], Sequence[Placed], float]]
+    ways: dict[str, list[float]] = field(default_factory=dict)
+    pins: dict[str, float] = field(default_factory=dict)
+    inner: dict[str, float] = field(default_factory=dict)
+    plates: dict[str, list[float]] = field(default_factory=dict)
+    strips: list[Strip] = field(default_factory=list)
+
+    def of(self, net: str) -> list[float]:
+        """X of a net."""
+        found = [*self.ways.get(net, ()), *self.plates.get(net, ()), self.pins.get(net), self.inner.get(net)]
+        return [x for x in found if x is not None]
+
+    def middles(self) -> dict[str, float]:
+        """The middle of each net."""
+        found: dict[str, list[float]] = {}
+        for n, p, _ in self.rows:
+            for net, ends in Plan(tuple(n), tuple(p), self.left, self.right, {}).spans().items():
+                found.setdefault(net, []).extend(ends)
+        return {net: (min(ends) + max(ends)) / 2 for net, ends in found.items()}
+
+    def free(self, x: float, step: float, first: float = 0.0) -> float:
+        """The place nearest to ``x``, of those a step apart, that has none beside it. Raises ParameterError."""
+        taken = [*(at for xs in self.ways.values() for at in xs), *self.pins.values(), *self.inner.values()]
+        taken += [at for xs in self.plates.values() for at in xs]
+        places = (snap(first + step * k) for k in range(int(self.right / step) + 1))
+        free = [at for at in places if at > self.left and all(abs(at - other) >= APART for other in taken)]
+        if not free:
+            raise ParameterError(f"column band from {self.left:.0f} um: must have room for its lines")
+        return min(free, key=lambda at: abs(at - x))
+
+    def draw(self, canvas: Canvas, masks: AnalogMasks, height: float) -> None:
+        """Its strips, with what joins their nets and rails, to the south edge and to ``height``."""
+        tracks = [track for strip in self.strips for track in strip.tracks]
+        for net in dict.fromkeys(track.net for track in tracks):
+            for x in self.of(net):
+                beyond = [0.0] if self.pins.get(net) == x else [height] if x in self.ways.get(net, ()) else []
+                trunk(canvas, tracks, net, x, *beyond)
+
+    def place(self, canvas: Canvas, masks: AnalogMasks) -> float:
+        """Draw the strips; returns the middle of the highest rail."""
+        y = SOUTH
+        for n, p, _ in self.rows:
+            present = {net for one in (*n, *p) for net in one.device.transistor.nodes}
+            reach = {net: self.of(net) for net in present if self.of(net)}
+            plan = Plan(tuple(n), tuple(p), self.left, self.right, reach)
+            self.strips.append(draw_strip(canvas, masks, plan, snap(y)))
+            y = self.strips[-1].y + self.strips[-1].plan.height_um + BETWEEN_STRIPS
+        return y - BETWEEN_STRIPS
+
+
+@dataclass(frozen=True)
+class Band:
+    """The drawn band. height: um. ways: numbers of the columns north of which a net's way is, by net."""
+
+    cell: Cell
+    height: float
+    ways: Mapping[str, tuple[int, ...]]
+    joints: Mapping[str, Sequence[tuple[float, float, float]]]
+
+
+def bank_rows(sizes: ColumnSizes, d: Mapping[str, Device]) -> list[list[Pair]]:
+    """The bank's pairs of devices, in strips of about one length."""
+    circuit = next(one.circuit for one in band(sizes, 1).instances if one.name == "bank")
+    pairs: list[Pair] = []
+    for one in circuit.instances:
+        if one.name == "clear":  # in the west, below its capacitor
+            own = [pair for name in ("over", "clear_n", "clear") for pair in legs(d, f"bank.clear.{name}")]
+            pairs = [(d["bank.clear.stay"], d["bank.clear.charge"]), *own, *pairs]
+        elif one.name == "cascodes":
+            pairs += [(d[f"bank.cascodes.{name}"], None) for name in ("read", "unread", "second", "none")]
+        else:
+            pairs += legs(d, f"bank.{one.name}")
+    share = -(-len(pairs) // STRIPS)
+    return [pairs[k : k + share] for k in range(0, len(pairs), share)]
+
+
+def draw_band(
+    layout: "db.Layout",
+    masks: AnalogMasks,
+    sizes: ColumnSizes,
+    lanes: int,
+    pins: Mapping[str, float],
+    outward: Sequence[str],
+) -> Band:
+    """Draw it, its south edge at y = 0.
+
+    pins: x of the pins in the south by net. outward: nets that have ways; a lane's two have two each. Raises
+    ParameterError.
+    """
+    d = {t.name: _device(t) for t in flat.transistors(band(sizes, lanes))}
+    canvas = Canvas(layout, "column_band", masks.base)
+    bank = Group(WEST, BANK, [in_columns(row, WEST, ROOM) for row in bank_rows(sizes, d)])
+    bank.inner[RAMP] = RAMP_AT
+    bias = Group(BANK + ASIDE, BIAS + PLATE_PITCH * PARTS_OF * len(BIASES) + 5.0, [_bias(d, BANK + ASIDE)])
+    for k, net in enumerate(net for net in BIASES for _ in range(PARTS_OF)):
+        bias.plates.setdefault(net, []).append(BIAS + (k + 0.5) * PLATE_PITCH)
+    first = snap(min(x for net, x in pins.items() if net.startswith("lane_")) - 2 * PITCH)
+    ends = Group(first, 0.0, [_ends(d, lanes, first)])
+    ends.right = snap(ends.rows[0][2] + 2 * PITCH)
+    groups = bank, bias, ends
+    for group in groups:
+        middles = group.middles()
+        group.pins |= {net: x for net, x in pins.items() if net in middles}
+        wanted = sorted((net for net in outward if net in middles), key=lambda net: middles[net])
+        for k, net in enumerate(wanted):
+            for _ in range(2 if net.startswith("lane_") else 1):
+                near = middles[net] if group is not bank else WEST + (k + 0.5) / len(wanted) * (BANK - WEST)
+                group.ways.setdefault(net, []).append(group.free(near, PLATE_PITCH if group is bias else PITCH))
+        for net, x in middles.items():
+            if sum(net in _nets(row) for row in group.rows) > 1 and not group.of(net):
+                group.inner[net] = group.free(x, 0.5, 0.25)
+    tops = [group.place(canvas, masks) for group in groups]
+    plates = [_ramp(canvas, masks, sizes, bank, tops[0])]
+    plates += _decoupling(canvas, masks, sizes, bias, tops[1])
+    ups = RAMP_UP + plates[0].area / RAMP_WIDE, PLATE_UP + plates[1].area / PLATE / PARTS_OF
+    height = snap(max(top + up for top, up in zip(tops, ups, strict=False)) + NORTH)
+    joints: dict[str, list[tuple[float, float, float]]] = {"vss": [], "vdd": []}
+    for group in groups:
+        group.draw(canvas, masks, height)
+        _rails(canvas, group.strips, joints)
+    terminals = tuple(one for group in groups for strip in group.strips for one in strip.terminals)
+    cell = Cell(canvas.layout, canvas.cell, band(sizes, lanes).ports, tuple(d.values()), tuple(plates), terminals)
+    ways = {net: [] for net in outward}
+    for group in groups:
+        for net, xs in group.ways.items():
+            ways[net] += [round(x / PITCH) for x in xs]
+    return Band(cell, height, {net: tuple(xs) for net, xs in ways.items()}, joints)
+
+
+def _nets(row: tuple[Sequence[Placed], Sequence[Placed], float]) -> set[str]:
+    return {net for one in (*row[0], *row[1]) for net in one.device.transistor.nodes} - {"vdd", "vss"}
+
+
+def _bias(d: Mapping[str, Device], left: float) -> tuple[Sequence, Sequence, float]:
+    """The bias's strip."""
+    own = [one for name, one in d.items() if name.startswith("bias.")]
+    n = [one for one in own if one.transistor.role.startswith("n")]
+    p = [one for one in own if one.transistor.role.startswith("p")]
+    count = max(len(n), len(p))
+    rows = list(zip([*n, *[None] * (count - len(n))], [*p, *[None] * (count - len(p))], strict=True))
+    return in_columns(rows, left, ROOM)
+
+
+def _ends(d: Mapping[str, Device], lanes: int, left: float) -> tuple[Sequence, Sequence, float]:
+    """The strip of the lanes' ends, each lane's at its pins."""
+    pairs: list[Pair] = []
+    for lane in range(lanes):
+        for diode in "ab":
+            name = f"end_{diode}{lane}."
+            pairs += [(d[f"{name}rest_n"], d[f"{name}rest_p"]), (None, d[f"{name}cascode_p"])]
+            pairs += [(None, d[f"{name}top"]), (None, d[f"{name}on"])]
+    n, p, x = [], [], left
+    for k, pair in enumerate(pairs):
+        more_n, more_p, end = in_columns([pair], x, ROOM)
+        n += more_n
+        p += more_p
+        x = snap(left + (k // 8 + 1) * 100.0) if k % 8 == 7 else end
+    return tuple(n), tuple(p), max(one.high for one in (*n, *p))
+
+
+def _rails(canvas: Canvas, strips: Sequence[Strip], joints: dict[str, list[tuple[float, float, float]]]) -> None:
+    """Join the rails of strips above each other: the ground's in the west, the supply's in the east."""
+    right = max(strip.plan.right for strip in strips)
+    for net, x in (("vss", strips[0].plan.left - RAIL_AT), ("vdd", right + RAIL_AT)):
+        ys = [strip.y + (strip.plan.height_um if net == "vdd" else 0.0) for strip in strips]
+        half = RAIL_TRUNK / 2
+        canvas.wire(FOURTH, x - half, min(ys) - half, x + half, max(ys) + half)
+        for strip, y in zip(strips, ys, strict=True):
+            canvas.wire(
+                1, min(strip.plan.right, x) - half, y - RAIL_HALF, max(x, strip.plan.left) + half, y + RAIL_HALF
+            )
+            for level in (SECOND, THIRD):
+                canvas.wire(level, x - half, y - RAIL_HALF, x + half, y + RAIL_HALF)
+            for side in (-0.25, 0.25):
+                canvas.stack(x + side, y, 1, FOURTH)
+        joints[net].append((x, min(ys) - half, max(ys) + half))
+
+
+def _device(t: Transistor) -> Device:
+    """A transistor in fingers whose contacts are on the grid."""
+    made = Device.of(t)
+    return made if round(made.finger_um / 0.005) % 2 == 0 else Device.of(t, FINGER)
+
+
+def _ramp(canvas: Canvas, masks: AnalogMasks, sizes: ColumnSizes, bank: Group, top: float) -> flat.Plate:
+    """The pulse's capacitor, above the bank's west: its upper plate's metal between two ways, the lower at ground."""
+    pulse = next(c for c in flat.capacitors(band(sizes, 1)) if c.name == "bank.clear.ramp")
+    left, low, high = WEST + 1.0, top + RAMP_UP, snap(top + RAMP_UP + _high(pulse.value, RAMP_WIDE, masks))
+    canvas.box(masks.mim, left, low, left + RAMP_WIDE, high)
+    ground = WEST - RAIL_AT
+    canvas.wire(THIRD, ground - 0.5, low - AROUND, left + RAMP_WIDE + AROUND, high + AROUND)
+    canvas.wire(FOURTH, ground - 0.5, SOUTH, ground + 0.5, high)
+    for y in steps(low, high):
+        canvas.square(masks.base.vias[THIRD].gds, ground, y, 0.2)
+    half = PITCH / 2 - 0.8
+    canvas.wire(FOURTH, RAMP_AT - half, low + PATCH_IN, RAMP_AT + half, high - PATCH_IN)
+    for x in steps(RAMP_AT - half, RAMP_AT + half):
+        for y in steps(low + PATCH_IN, high - PATCH_IN):
+            canvas.square(masks.base.vias[THIRD].gds, x, y, 0.2)
+    track = next(one for strip in bank.strips for one in strip.tracks if one.net == RAMP)
+    canvas.wire(FOURTH, RAMP_AT - TRUNK / 2, track.y, RAMP_AT + TRUNK / 2, low + 1)
+    return flat.Plate("bank.clear.ramp", RAMP, "vss", RAMP_WIDE * (high - low), 2 * (RAMP_WIDE + high - low))
+
+
+def _high(farad: float, wide: float, masks: AnalogMasks) -> float:
+    """Of a plate so wide, um."""
+    return snap((farad * 1e15 - 2 * masks.mim_edge * wide) / (masks.mim_area * wide + 2 * masks.mim_edge))
+
+
+def _decoupling(canvas: Canvas, masks: AnalogMasks, sizes: ColumnSizes, bias: Group, top: float) -> list[flat.Plate]:
+    """The capacitors of the bias's lines, between the places of ways above its strip."""
+    strip, found, x = bias.strips[0], list[flat.Plate](), BIAS
+    tracks = {track.net: track.y for track in strip.tracks}
+    for c in (c for c in flat.capacitors(band(sizes, 1)) if c.name.startswith("bias.c_")):
+        wide, low = PLATE, top + PLATE_UP
+        high = snap(low + _high(c.value / PARTS_OF, wide, masks))
+        for _ in range(PARTS_OF):
+            left, middle = x + (PLATE_PITCH - PLATE) / 2, x + PLATE_PITCH / 2
+            canvas.box(masks.mim, left, low, left + wide, high)
+            canvas.wire(THIRD, left - AROUND, low - TAB, left + wide + AROUND, high + AROUND)
+            ends = left + PATCH_IN, low + PATCH_IN, left + wide - PATCH_IN, high - PATCH_IN
+            canvas.wire(FOURTH, *ends)
+            for a in steps(ends[0], ends[2]):
+                for b in steps(ends[1], ends[3]):
+                    canvas.square(masks.base.vias[THIRD].gds, a, b, 0.2)
+            canvas.wire(FOURTH, middle - TRUNK / 2, tracks[c.a] - TRUNK / 2, middle + TRUNK / 2, low + 1)
+            rail, at = (top if c.b == "vdd" else strip.y), middle + 3.0
+            canvas.stack(at, low - VIA_IN, SECOND, THIRD)
+            canvas.wire(SECOND, at - 0.19, rail - 0.19, at + 0.19, low - VIA_IN + 0.19)
+            canvas.stack(at, rail, 1, SECOND)
+            x += PLATE_PITCH
+        count = PARTS_OF
+        found.append(flat.Plate(c.name, c.a, c.b, count * wide * (high - low), count * 2 * (wide + high - low)))
+    return found

@@ -1,0 +1,120 @@
+"""All columns side by side, lying: what crosses them, each one's vias to its own of the lanes', groups' and places'.
+
+What goes on to the south is on the second metal between two columns, at a multiple of their pitch: a `way`.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+from talbot.base.gds import db
+from talbot.pixels.circuits.column import PINS, SUPPLIES, line
+from talbot.pixels.circuits.column_block import LINES, taken
+from talbot.pixels.circuits.column_sizes import ColumnSizes
+from talbot.pixels.layout.canvas import Canvas
+from talbot.platforms.analog import AnalogMasks
+
+from .cells import Cell
+from .column import (
+    GROUPED,
+    LANE,
+    LANES,
+    LINE,
+    PAD,
+    PITCH,
+    SINGLE,
+    WAYS,
+    ColumnPlan,
+    as_cell,
+    column_plan,
+    devices,
+    draw_column,
+    draw_ground,
+    names,
+)
+from .strip import FOURTH, SECOND, THIRD
+
+WAY, END = 0.2, 1.0  # um, width of a way; where it goes up, beyond the columns
+
+
+@dataclass(frozen=True)
+class Columns:
+    """The drawn columns. cell: all, lying, column k from y = k PITCH on. column: one. count: how many."""
+
+    cell: "db.Cell"
+    column: Cell
+    plan: ColumnPlan
+    count: int
+
+    def lines(self, net: str) -> list[float]:
+        """X of the lines of one of the block's nets: of a lane's both, to the columns and back."""
+        if net.startswith("lane"):
+            kind, lane = net[:-1].split("[")
+            return [self.plan.lines[f"{name}{lane}"] for name in (kind, kind.replace("lane", "sense"))]
+        own = net.replace("_", "") if net in LINES else net
+        return [x for name, x in self.plan.lines.items() if line(name) == own]
+
+
+def column_nets(number: int, lanes: int = LANES) -> tuple[str, ...]:
+    """The block's nets at the ports of a column."""
+    lane, code = taken(number, lanes)
+    own = {f"column_{d}": f"column_{d}[{number}]" for d in "ab"}
+    own |= {f"{kind}_{d}": f"lane_{d}[{lane}]" for kind in ("lane", "sense") for d in "ab"}
+    own |= {name: f"{name}_{value}" for name, value in code.items()} | dict(
+        zip(SUPPLIES, ("vddc", "vssa"), strict=True)
+    )
+    return tuple(own.get(pin, pin) for pin in map(line, PINS))
+
+
+def draw_columns(
+    layout: "db.Layout", masks: AnalogMasks, sizes: ColumnSizes, count: int, extra: Iterable[str] = ()
+) -> Columns:
+    """Draw ``count`` of them, and the names of a column's ports. extra: nets that have a line across, and no column."""
+    d = devices(sizes)
+    plan = column_plan(d, sizes, masks, extra)
+    canvas = Canvas(layout, "column", masks.base)
+    one = as_cell(canvas, d, plan, draw_column(canvas, masks, plan))
+    for net in one.ports:
+        if net in WAYS:
+            canvas.label(FOURTH, net, 0.2, WAYS[net])
+        elif net not in plan.joints:
+            track = next(track for track in one.tracks if track.net == net)
+            canvas.label(THIRD, net, track.left + 0.3, track.y)
+    whole = Canvas(layout, "columns", masks.base)
+    step = db.Vector(0, whole.snap(PITCH))
+    whole.cell.insert(db.CellInstArray(one.cell.cell_index(), db.Trans(), step, db.Vector(1, 0), count, 1))
+    for net in (*GROUPED, *SINGLE, *plan.free):
+        wide = LANE if net.startswith(("lane", "sense")) else LINE
+        for name in names(net):
+            x = plan.lines[name]
+            whole.wire(FOURTH, x - wide / 2, 0, x + wide / 2, count * PITCH)
+    via = Canvas(layout, "column_code", masks.base)
+    via.stack(0, 0, THIRD, FOURTH)
+    tracks = {track.net: track.y for track in one.tracks if track.net in GROUPED}
+    for number in range(count):
+        lane, code = taken(number, LANES)
+        own = {net: code.get(net, lane) for net in GROUPED}
+        for net, k in own.items():
+            x, y = plan.lines[f"{net}{k}"], number * PITCH + tracks[net]
+            whole.cell.insert(db.CellInstArray(via.cell.cell_index(), db.Trans(whole.snap(x), whole.snap(y))))
+    return Columns(whole.cell, one, plan, count)
+
+
+def draw_way(canvas: Canvas, made: Columns, net: str, number: int, only: int | None = None) -> list[float]:
+    """From the lines of a net, or from one of them, to END beyond the columns, south of column ``number``.
+
+    Returns x of its vias.
+    """
+    lines, y, half = made.lines(net), number * PITCH, WAY / 2
+    lines = lines if only is None else lines[only : only + 1]
+    end = made.plan.right + END
+    canvas.wire(SECOND, min(lines) - half, y - half, end + half, y + half)
+    for x in (*lines, end):
+        canvas.stack(x, y, SECOND, FOURTH)
+        canvas.wire(THIRD, x - PAD[1], y - PAD[0], x + PAD[1], y + PAD[0])
+    return [*lines, end]
+
+
+def draw_grounds(canvas: Canvas, made: Columns, vias: Mapping[int, Sequence[float]]) -> None:
+    """The ground's lines in the south of each column, up to the first of the ways' vias there. vias: x, by column."""
+    for number in range(made.count):
+        draw_ground(canvas, made.plan, number * PITCH, vias.get(number, ()))
