@@ -7,7 +7,7 @@ from pathlib import Path
 from talbot.flow.frame import arguments as text
 from talbot.models.parameters import ParameterError
 
-STEPS = {"dictionary": 60, "network": 2500, "branches": 4000}
+STEPS = {"dictionary": 60, "network": 2500, "branches": 5000}
 FIRST = 1000  # seed of the first scene; those of the tests and figures are below
 
 
