@@ -89,7 +89,7 @@ def estimate(result: GoldenResult, method: str = BEST, prior: FieldPrior | None 
 
 
 def prior_of(result: GoldenResult, **rest: Any) -> FieldPrior:
-    """The prior of a frame: the noise of its sensor in its mean light, its contrast. rest: other fields of FieldPrior."""
+    """The prior of a frame: the noise of its sensor in its mean light, its contrast. rest: other of its fields."""
     asked = result.request
     timing = asked.frame.exposing
     light = result.decoded.samples.mean() / white_sum(asked.lit, timing)

@@ -1,8 +1,8 @@
 """Methods that give a light field back: PSNR against seconds a frame, from a raw frame of the golden chip at physical
 noise, and from its diodes ahead of the converter with Gaussian noise of 0.1 and 0.2, as [Jayasuriya2017, Tab. 3.2] has
-it: of Phi l (Eq. 3.5), where white has 25 by the 25 views of a diode 1 + m cos (Eq. 3.2), and of white. At physical noise
-with their strides, atoms, disparities and iterations, too, and with nothing left out of the mixture. The sum image in
-every view costs nothing. The thesis's points are of another scene (dragons), at 0, 0.1 and 0.2."""
+it: of Phi l (Eq. 3.5), where white has 25 by the 25 views of a diode 1 + m cos (Eq. 3.2), and of white; at physical
+noise with their strides, atoms, disparities and iterations, too, and with nothing left out of the mixture. The sum
+image in every view costs nothing. The thesis's points are of another scene (dragons), at 0, 0.1 and 0.2."""
 
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
@@ -26,7 +26,13 @@ from talbot.models.reconstruct.sparse import Coding, SparseEstimator
 
 WHITE = 25  # of Phi l
 # Standard deviation of a diode, of white; None is the chip's own frame
-NOISES = {"physical": None, "0.1 of white": 0.1, "0.2 of white": 0.2, "0.1 of Phi l": 0.1 / WHITE, "0.2 of Phi l": 0.2 / WHITE}
+NOISES = {
+    "physical": None,
+    "0.1 of white": 0.1,
+    "0.2 of white": 0.2,
+    "0.1 of Phi l": 0.1 / WHITE,
+    "0.2 of Phi l": 0.2 / WHITE,
+}
 SEED = 1  # of the noise
 # [Jayasuriya2017, Sec. 3.7], at noise 0, 0.1, 0.2
 THESIS: dict[str, list[tuple[float, float, str]]] = {

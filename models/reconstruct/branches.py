@@ -76,7 +76,13 @@ class Seen:
 
     @cached_property
     def back(self) -> Floats:
-        """The sum image in every view, Phi' of the differences, the noise's logarithm, float32 (3, 5, 5, rows, cols)."""
+        """What the convolutions see.
+
+        Returns
+        -------
+        float32 (3, 5, 5, rows, cols)
+            The sum image in every view, Phi' of the differences, the noise's logarithm.
+        """
         across = self._across - self._across.mean((1, 2), keepdims=True)
         across /= np.square(across).sum((1, 2), keepdims=True) + 1e-9
         turned = across.astype(np.float32)[self._kinds].transpose(2, 3, 0, 1) * self.difference

@@ -33,8 +33,8 @@ from .strip import FOURTH, TRUNK
 
 NAME = "column_amplifiers"
 # Nets that a column or the band has from outside of the chip; lines across that no column is on
-OUTSIDE = dict.fromkeys(("dark", "reference", "start", "start_a"), "input")
-OUTSIDE |= dict.fromkeys((*BIASES, "level"), "output")
+INPUTS, OUTPUTS = ("dark", "reference", "start", "start_a"), (*BIASES, "level")
+OUTSIDE = {**dict.fromkeys(INPUTS, "input"), **dict.fromkeys(OUTPUTS, "output")}
 SOURCE = "ibias_columns"
 EXTRA = ("turn", "turnn", "turnb", "turnbn", "vbl", "reference", "dark", "ibias")
 OUTWARD = (*BANK_OUTPUTS, "ibias", "vbp", "vcp", "vcn", "vbl", "level", "reference", "dark")

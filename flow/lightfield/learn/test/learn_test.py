@@ -111,7 +111,10 @@ def test_pytorch_and_numpy_are_one_pair_of_branches():
     pair = shot.pair[:, :rows, :cols]
     seen = Seen(pair, own, 0.05)
     patches = seen.patches(*(np.arange(branches.PATCHES) * period for period in (tile.rows, tile.cols)))
-    tensors = [torch.from_numpy(part[None]) for part in (patches.reshape(branches.PATCHES, branches.PATCHES, -1), seen.back.astype(np.float32))]
+    tensors = [
+        torch.from_numpy(part[None])
+        for part in (patches.reshape(branches.PATCHES, branches.PATCHES, -1), seen.back.astype(np.float32))
+    ]
     for kind in KINDS:
         weights = {
             key.partition("/")[2]: torch.from_numpy(value.astype(np.float32))

@@ -192,6 +192,7 @@ def test_bad_arguments(estimator):
     with pytest.raises(ParameterError, match="measured"):
         FieldEstimator(_sensor(), 5, PRIOR, measured=np.zeros(24, bool))
 
+
 def _rough(contrast, disparity, size, seed=3):
     """Light field of a plane with waves of all lengths, of this standard deviation, (5, 5, size, size)."""
     rng = np.random.default_rng(seed)
