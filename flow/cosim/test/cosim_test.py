@@ -126,7 +126,7 @@ def test_the_column_amplifiers_are_in_the_loop(mode):
     row = read_row(replace(SMALL, mode=mode, amplifier=True, columns=True))
     (sample,) = row.samples
     assert abs(row.at_lane[0]) < 1 and abs(sample.code - sample.expected) <= 1
-    assert row.run.attempts == 1 and row.deck.transistors > 600
+    assert row.run.attempts == 1 and row.deck.transistors > 400  # 337 with columns of arithmetic
 
 
 @library
