@@ -148,9 +148,16 @@ def trimmed(
     for _ in range(TRIMS):
         with opened(setup, spec, sizes, corner, start, circuit=circuit) as spice:
             wave = sample(spice, spec, corner, 0.0, 0.0)
-        a, b = (v + (spec.dark - wave.at(f"far_{d}", end)) / sizes.follows for v, d in zip(start, "ab", strict=True))
-        start = a, b
+        start = nearer(start, (wave.at("far_a", end), wave.at("far_b", end)), spec, sizes)
     return start
+
+
+def nearer(
+    start: tuple[float, float], lanes: tuple[float, float], spec: ColumnSpec, sizes: ColumnSizes
+) -> tuple[float, float]:
+    """V of `start_a` and `start` that bring ``lanes``, V of both without light, to their references."""
+    a, b = (volt + (spec.dark - lane) / sizes.follows for volt, lane in zip(start, lanes, strict=True))
+    return a, b
 
 
 def settling(wave: Wave, spec: ColumnSpec) -> float:

@@ -23,6 +23,7 @@ from talbot.pixels.analog_layout.amplifier import amplifier_cell
 from talbot.pixels.analog_layout.bias import bias_cell
 from talbot.pixels.analog_layout.cells import Cell, comparator_cell
 from talbot.pixels.analog_layout.column import column_cell
+from talbot.pixels.analog_layout.drawn_block import DrawnBlock
 from talbot.pixels.analog_layout.lane import lane_cell
 from talbot.pixels.analog_layout.row_drivers import row_cell
 from talbot.pixels.analog_layout.switch import switch_cell
@@ -45,7 +46,7 @@ from .extract import Extracted, Nets, extract
 from .measure import Measured, measure
 from .row import Row
 from .switch import Gaps
-from .write import DrawnBlock, drawn_blocks
+from .write import drawn_blocks
 
 STEPS = "draw", "drc", "lvs", "extract", "measure", "report"
 KINDS = "gds", "spice", "extracted.spice", "lyrdb", "lvsdb"

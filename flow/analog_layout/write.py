@@ -14,17 +14,16 @@ from talbot.base.steps import StepError
 from talbot.flow.analog.job import amplifier_of, column_of, setup_of
 from talbot.models.parameters import ArrayParameters, ChipParameters
 from talbot.pixels.analog_layout.column_amplifiers import NAME as COLUMNS
-from talbot.pixels.analog_layout.column_amplifiers import ColumnAmplifiers, draw_column_amplifiers
+from talbot.pixels.analog_layout.column_amplifiers import draw_column_amplifiers
 from talbot.pixels.analog_layout.converters import NAME as CONVERTERS
-from talbot.pixels.analog_layout.converters import Converters, draw_converters
+from talbot.pixels.analog_layout.converters import draw_converters
+from talbot.pixels.analog_layout.drawn_block import DrawnBlock
 from talbot.pixels.analog_layout.row_drivers import NAME as ROWS
-from talbot.pixels.analog_layout.row_drivers import RowDrivers, draw_row_drivers
+from talbot.pixels.analog_layout.row_drivers import draw_row_drivers
 from talbot.pixels.blocks import AnalogSizes
 from talbot.platforms.analog import analog_masks
 
 from .checks import differences, lvs
-
-DrawnBlock = Converters | RowDrivers | ColumnAmplifiers
 
 
 def drawn_blocks(pdk: str) -> dict[str, DrawnBlock]:

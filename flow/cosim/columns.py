@@ -11,24 +11,23 @@ import numpy as np
 
 from talbot.cells.spice.engine import Simulator
 from talbot.flow.analog.amplifier import COLUMNS, EXACT
-from talbot.flow.analog.column import GAP, ROW
+from talbot.flow.analog.column import GAP, ROW, TRIMS, nearer
 from talbot.models.parameters import ELEMENTARY_CHARGE, AmpTiming
 from talbot.pixels.circuits.column import BIASES, PINS, TAPS, column, line
 from talbot.pixels.circuits.column_block import OUTSIDE, cascode_lines, clear_pulse, column_bias, lane_end, lane_line
 from talbot.pixels.circuits.column_sizes import FULL, ColumnSizes, ColumnSpec, size
-from talbot.pixels.circuits.netlist import Capacitor, Circuit, Transistor
+from talbot.pixels.circuits.netlist import Circuit
 from talbot.pixels.circuits.row_driver import THICK
 from talbot.pixels.circuits.specification import CODES
 from talbot.pixels.circuits.support import bias
 from talbot.platforms.sky130 import analog
 
 from .amplified import AFTER, Drive
-from .pixels import PixelSizes
+from .pixels import PixelSizes, pixel
 
 TIMING = AmpTiming()  # of a row with these columns: the holder has 16 cycles in each half
 CELSIUS = 25.0
 BEFORE = {"line_{d}{c}": 0.5, "xcolumn{c}.cin_{d}": 1.6}  # V of what floats, since the row before was read
-TRIMS = 2  # steps to the trimmed level
 SOURCE = "vbn", "vbp", "source", "start", "part_1", "part_2", "part_3"  # nodes of a bias
 RESTING = (*BIASES, "level", "ibias_columns", *(f"xcolumn_source.{name}" for name in SOURCE))
 
@@ -36,25 +35,7 @@ RESTING = (*BIASES, "level", "ibias_columns", *(f"xcolumn_source.{name}" for nam
 def circuits(spec: ColumnSpec, sizes: ColumnSizes) -> tuple[Circuit, ...]:
     """All that the lines of a deck call."""
     parts = column(sizes), column_bias(sizes), clear_pulse(sizes), lane_end(sizes), lane_line(sizes, spec), bias()
-    return (*parts, cascode_lines(), pixel(spec))
-
-
-def pixel(spec: ColumnSpec) -> Circuit:
-    """Two wells of thick-oxide transistors. Pins: a b column_a column_b reset read level vss."""
-    small = ("n_thick", 0.42, THICK)
-    return Circuit(
-        "thick_pixel",
-        ("a", "b", "column_a", "column_b", "reset", "read", "level", "vss"),
-        tuple(
-            one
-            for d in ("a", "b")
-            for one in (
-                Transistor(f"reset_{d}", d, "reset", "level", "vss", *small),
-                Transistor(f"read_{d}", d, "read", f"column_{d}", "vss", *small),
-            )
-        ),
-        tuple(Capacitor(f"well_{d}", d, "vss", spec.well) for d in ("a", "b")),
-    )
+    return (*parts, cascode_lines(), pixel(spec.well, "n_thick", THICK))
 
 
 def lines(
@@ -105,7 +86,7 @@ def lines(
             before[name] = f"{name}{c}"
         names = ("b", "a") if c in swapped else ("a", "b")
         ends = " ".join(f"line_{d}{c}" for d in names)
-        deck.append(f"Xpixel{c} well_a{c} well_b{c} {ends} reset{c} read{c} level 0 thick_pixel")
+        deck.append(f"Xpixel{c} well_a{c} well_b{c} {ends} reset{c} read{c} level 0 pixel")
         deck += [f"Cline_{d}{c} line_{d}{c} 0 {spec.line:g}" for d in "ab"]
         floats = {name.format(d=d, c=c): volts for name, volts in BEFORE.items() for d in "ab"}
         deck.append(".ic " + " ".join(f"v({name})={volts:g}" for name, volts in floats.items()))
@@ -186,6 +167,6 @@ def trimmed(spec: ColumnSpec, edge: bool, cycle: float, high: float) -> tuple[tu
         with Simulator([*deck, *own], tuple(waves), (*outs, *RESTING), {"vdd": high}, CELSIUS, EXACT) as spice:
             wave = spice.transient(waves, dict.fromkeys(outs, spec.input), (turn + 1) * cycle, cycle / 5)
         end = float(np.nextafter((turn + 1) * cycle, 0))
-        a, b = (v + (spec.dark - wave.at(out, end)) / sizes.follows for v, out in zip(start, outs, strict=True))
-        start, found = (a, b), {name: wave.at(name, 0.0) for name in RESTING}
+        start = nearer(start, (wave.at(outs[0], end), wave.at(outs[1], end)), spec, sizes)
+        found = {name: wave.at(name, 0.0) for name in RESTING}
     return start, {"vdd": high} | found

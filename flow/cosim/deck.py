@@ -112,7 +112,8 @@ def build(
     amplifier = amplified.sized("sky130", spec, sizes) if row and row.amplified else None
     if amplifier:
         circuits |= {one.name: one for one in amplified.circuits(amplifier[1])}
-    if amplifier and not (row and row.columns):
+    charges = row is not None and row.columns  # the columns have amplifiers of their own
+    if amplifier and not charges:
         body.append(f"Vdark column_dark 0 {amplifier[0].reset_level:g}")
     for i in served:
         one = fault.of_lane(sound, i) if fault else sound
@@ -126,10 +127,10 @@ def build(
         body += [f"Xlane{i} {' '.join(pins)} {one.name}", f"Cin{i} in{i} 0 50f"]
         deck.saved += [f"q{i}", f"in{i}", *(f"xlane{i}.{node}" for node in LANE_NODES)]
         if amplifier:
-            body += amplified.lane_lines(i, partial(_source, deck, bit=i), spec.supply, not (row and row.columns))
+            body += amplified.lane_lines(i, partial(_source, deck, bit=i), spec.supply, not charges)
             deck.saved += [f"cola{i}", f"colb{i}"]
     level = 0.5 * (spec.refp + spec.refn)
-    for (column, sub), value in sorted(values.items()) if not (row and row.columns) else ():
+    for (column, sub), value in sorted(values.items()) if not charges else ():
         name, into = f"{column}_{sub}", column // tile_cols % lanes
         # The chip's position is stable for a cycle after hold. A switch that opens with the lane's sample leaves its
         # charge in it: 0.66 LSB at value 40
@@ -142,7 +143,7 @@ def build(
     if row is not None and row.columns:
         circuits |= _columns(deck, body, row, unsigned, spec, lanes, tile_cols, timing, fault)
     elif row is not None:
-        circuits |= {one.name: one for one in (pixels.pixel(row.sizes), pixels.clear(), pixels.sampler())}
+        circuits |= {one.name: one for one in (pixels.pixel(row.sizes.well), pixels.clear(), pixels.sampler())}
         own = pixels.amplifier(row.sizes)
         body += _row(deck, row, unsigned, spec, level, amplifier, fault)
         deck.saved += [f"out_{d}{c}" for c in columns for d in "ab"]

@@ -100,11 +100,10 @@ module Afe #(
   end
 
   for (genvar c = 0; c < COLS; c++) begin : column      // column c is at position k of the tile column of its lane
-    assign controls[OWN+c] = hold && en[c/TILE_COLS%LANES] && int'(k) == c % TILE_COLS
-        && int'(group) == c / TILE_COLS / LANES;
+    wire selected = hold && en[c/TILE_COLS%LANES] && int'(k) == c % TILE_COLS && int'(group) == c / TILE_COLS / LANES;
+    assign controls[OWN+c] = selected;
     for (genvar s = 0; s < SUBS; s++) begin : sub_sample
-      assign controls[10*LANES+SUBS*c+s] = hold && en[c/TILE_COLS%LANES] && int'(k) == c % TILE_COLS
-          && int'(group) == c / TILE_COLS / LANES && int'(sub) == s;
+      assign controls[10*LANES+SUBS*c+s] = selected && int'(sub) == s;
     end
   end
 endmodule

@@ -77,9 +77,9 @@ class PixelSizes:
         return self.full_well * ELEMENTARY_CHARGE / self.swing
 
 
-def pixel(sizes: PixelSizes) -> Circuit:
-    """Pins: a b column_a column_b reset read level vss."""
-    small = (0.42, LENGTH)
+def pixel(well: float, role: str = "n", length: float = LENGTH) -> Circuit:
+    """Two wells of ``well`` F, their transistors. Pins: a b column_a column_b reset read level vss."""
+    small = role, 0.42, length
     return Circuit(
         "pixel",
         ("a", "b", "column_a", "column_b", "reset", "read", "level", "vss"),
@@ -87,11 +87,11 @@ def pixel(sizes: PixelSizes) -> Circuit:
             one
             for d in ("a", "b")
             for one in (
-                Transistor(f"reset_{d}", d, "reset", "level", "vss", "n", *small),
-                Transistor(f"read_{d}", d, "read", f"column_{d}", "vss", "n", *small),
+                Transistor(f"reset_{d}", d, "reset", "level", "vss", *small),
+                Transistor(f"read_{d}", d, "read", f"column_{d}", "vss", *small),
             )
         ),
-        tuple(Capacitor(f"well_{d}", d, "vss", sizes.well) for d in ("a", "b")),
+        tuple(Capacitor(f"well_{d}", d, "vss", well) for d in ("a", "b")),
     )
 
 

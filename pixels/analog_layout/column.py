@@ -43,6 +43,7 @@ from .strip import (
     draw_rows,
     in_columns,
     join_rails,
+    name_track,
 )
 
 # um
@@ -324,6 +325,11 @@ class ColumnPlan:
     free: tuple[str, ...] = ()
 
 
+def line_um(net: str) -> float:
+    """Width of the lines of a net that cross all columns."""
+    return LANE if net.startswith(("lane", "sense")) else LINE
+
+
 def length_um(farad: float, masks: AnalogMasks, wide: float = WIDE) -> float:
     """Of a plate ``wide`` um across. Raises ParameterError where it would be under 1 um."""
     area, edge = masks.mim_area, masks.mim_edge
@@ -371,9 +377,8 @@ def column_plan(
         x = strip.right + EXIT
     if lacking := {line for net in (*GROUPED, *SINGLE) for line in names(net)} - lines.keys():
         raise ParameterError(f"column: line {min(lacking)} must have a place")
-    wide = {name: LANE if net.startswith(("lane", "sense")) else LINE for net in GROUPED for name in names(net)}
     for name in extra:
-        taken = [(at, (wide.get(own, LINE) + LINE) / 2 + LEAST) for own, at in lines.items()]
+        taken = [(at, (line_um(own) + LINE) / 2 + LEAST) for own, at in lines.items()]
         places = (snap(s.left + STEP * k) for s in strips for k in range(2, int((s.right - s.left) / STEP) - 1))
         free = (place for place in places if all(abs(place - at) >= apart - 1e-9 for at, apart in taken))
         lines[name] = next(free, -1.0)
@@ -419,7 +424,7 @@ def _lines(plan: Plan, present: set[str], left: float, right: float, number: int
     own.sort(key=lambda net: (-len(names(net)), spans[net][1] - spans[net][0]))
     places = [snap(left + STEP * k) for k in range(2, int((right - left) / STEP) - 1)]
     for net in own:
-        half = (LANE if net.startswith(("lane", "sense")) else LINE) / 2
+        half = line_um(net) / 2
         pitch, count = 2 * half + LEAST, len(names(net))
         low, high = spans[net]
         middle = (low + high) / 2 - pitch * (count - 1) / 2
@@ -481,12 +486,16 @@ def _plate(canvas: Canvas, masks: AnalogMasks, plate: Drawn) -> None:
     canvas.box(masks.mim, plate.left, low, plate.right, high)
     # No tab at the vias' end: lines of others pass above
     canvas.wire(THIRD, plate.left - AROUND, low - AROUND, plate.right + AROUND, high + AROUND)
-    ends = _patch(plate)
-    left, right = plate.left + PATCH_IN, plate.right - PATCH_IN
-    canvas.wire(FOURTH, left, ends[0], right, ends[1])
+    low, high = _patch(plate)
+    draw_patch(canvas, plate.left + PATCH_IN, low, plate.right - PATCH_IN, high)
+
+
+def draw_patch(canvas: Canvas, left: float, low: float, right: float, high: float) -> None:
+    """Metal over an upper plate, with vias to it."""
+    canvas.wire(FOURTH, left, low, right, high)
     for x in steps(left, right):
-        for y in steps(*ends):
-            canvas.square(masks.base.vias[THIRD].gds, x, y, 0.2)
+        for y in steps(low, high):
+            canvas.square(canvas.process.vias[THIRD].gds, x, y, 0.2)
 
 
 def steps(low: float, high: float) -> Iterator[float]:
@@ -582,8 +591,7 @@ def column_cell(masks: AnalogMasks, sizes: ColumnSizes) -> Cell:
             canvas.wire(FOURTH, plan.lines[net] - LINE / 2, 0, plan.lines[net] + LINE / 2, PITCH)
             canvas.label(FOURTH, net, plan.lines[net], 0.2)
         elif net in GROUPED:
-            track = next(one for one in made.tracks if one.net == net)
-            canvas.label(THIRD, net, track.left + 0.3, track.y)
+            name_track(canvas, next(one for one in made.tracks if one.net == net))
     for net, y in (("vss", BETWEEN / 2), ("vdd", PITCH - BETWEEN / 2)):
         canvas.label(RAILS, net, plan.strips[0].left, y)
     canvas.box(masks.base.outline, 0, 0, plan.right, PITCH)

@@ -19,7 +19,7 @@ from talbot.pixels.blocks import DEEP_UM, AnalogSizes, Block, Pin, blocks
 from talbot.pixels.circuits.column import BIASES
 from talbot.pixels.circuits.column_block import BANK_INPUTS, BANK_OUTPUTS
 from talbot.pixels.circuits.column_sizes import ColumnSizes
-from talbot.pixels.footprints import draw_pins, lef
+from talbot.pixels.footprints import draw_pins
 from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.analog import AnalogMasks
 
@@ -28,6 +28,7 @@ from .column import LANES, LINE, PITCH, WAYS
 from .column_band import Band, draw_band
 from .columns import END, Columns, column_nets, draw_columns, draw_grounds, draw_way
 from .device import snap
+from .drawn_block import DrawnBlock
 from .row_drivers import TOP, VIA, VIA_PAD, VIA_PITCH, chip_pin
 from .strip import FOURTH, TRUNK
 
@@ -48,14 +49,11 @@ ACROSS, HEIGHTS = 6.0, {"vss": 27.0, "vdd": 37.0}  # of the straps across the ba
 
 
 @dataclass(frozen=True)
-class ColumnAmplifiers:
-    """The drawn block. columns, band: its parts. boxes: cells that LVS compares once."""
+class ColumnAmplifiers(DrawnBlock):
+    """The drawn block. columns, band: its parts."""
 
     boxes: ClassVar[tuple[str, ...]] = ("column",)
 
-    block: Block
-    layout: "db.Layout"
-    cell: "db.Cell"
     columns: Columns
     band: Band
     lanes: int
@@ -75,10 +73,6 @@ class ColumnAmplifiers:
         lines = [f"X{k} {' '.join(nets)} {cell.cell.name}" for k, (cell, nets) in enumerate(parts)]
         top = [f".subckt {NAME} {' '.join(ports)}", *lines, f".ends {NAME}", ""]
         return column.spice(masks) + band.spice(masks) + "\n".join(top)
-
-    def lef(self, masks: AnalogMasks) -> str:
-        """Its LEF: all metals taken."""
-        return lef(self.block, masks.base.name, AnalogSizes().supply_um, [metal.lef for metal in masks.base.metals])
 
 
 def band_nets(ports: Iterable[str]) -> tuple[str, ...]:

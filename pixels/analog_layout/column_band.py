@@ -22,7 +22,7 @@ from talbot.platforms.analog import AnalogMasks
 from . import flat
 from .array import AROUND, TAB, VIA_IN
 from .cells import Cell
-from .column import PATCH_IN, PITCH, steps
+from .column import PATCH_IN, PITCH, draw_patch, length_um, steps
 from .comparator import BETWEEN_STRIPS
 from .device import Device, snap
 from .row_driver import legs
@@ -49,12 +49,8 @@ ROOM = 0.6  # beside each pair of devices
 APART = 0.95  # least between middles of what crosses strips
 BIAS, PARTS_OF = 540.0, 3  # of the capacitors of the bias's lines: x of the first, parts of each
 PLATE, PLATE_PITCH, PLATE_UP = 28.0, 30.0, 1.9  # of a part: width, pitch, from the rail
-RAMP, RAMP_AT, RAMP_WIDE, RAMP_UP = (
-    "bank.clear.ramp",
-    15.0,
-    40.0,
-    1.5,
-)  # of the pulse's: net, place of that, width, from the rail
+RAMP = "bank.clear.ramp"  # the pulse's capacitor, and its net
+RAMP_AT, RAMP_WIDE, RAMP_UP = 15.0, 40.0, 1.5  # of it: x of its net, width, from the rail
 STRIPS, BANK, ASIDE = 2, 500.0, 20.0  # of the bank: strips, its east end; of the bias from there
 
 Pair = tuple[Device | None, Device | None]
@@ -97,8 +93,8 @@ class Group:
             raise ParameterError(f"column band from {self.left:.0f} um: must have room for its lines")
         return min(free, key=lambda at: abs(at - x))
 
-    def draw(self, canvas: Canvas, masks: AnalogMasks, height: float) -> None:
-        """Its strips, with what joins their nets and rails, to the south edge and to ``height``."""
+    def draw(self, canvas: Canvas, height: float) -> None:
+        """What joins its strips' nets, to the south edge and to ``height``."""
         tracks = [track for strip in self.strips for track in strip.tracks]
         for net in dict.fromkeys(track.net for track in tracks):
             for x in self.of(net):
@@ -185,7 +181,7 @@ def draw_band(
     height = snap(max(top + up for top, up in zip(tops, ups, strict=False)) + NORTH)
     joints: dict[str, list[tuple[float, float, float]]] = {"vss": [], "vdd": []}
     for group in groups:
-        group.draw(canvas, masks, height)
+        group.draw(canvas, height)
         _rails(canvas, group.strips, joints)
     terminals = tuple(one for group in groups for strip in group.strips for one in strip.terminals)
     cell = Cell(canvas.layout, canvas.cell, band(sizes, lanes).ports, tuple(d.values()), tuple(plates), terminals)
@@ -253,8 +249,8 @@ def _device(t: Transistor) -> Device:
 
 def _ramp(canvas: Canvas, masks: AnalogMasks, sizes: ColumnSizes, bank: Group, top: float) -> flat.Plate:
     """The pulse's capacitor, above the bank's west: its upper plate's metal between two ways, the lower at ground."""
-    pulse = next(c for c in flat.capacitors(band(sizes, 1)) if c.name == "bank.clear.ramp")
-    left, low, high = WEST + 1.0, top + RAMP_UP, snap(top + RAMP_UP + _high(pulse.value, RAMP_WIDE, masks))
+    pulse = next(c for c in flat.capacitors(band(sizes, 1)) if c.name == RAMP)
+    left, low, high = WEST + 1.0, top + RAMP_UP, snap(top + RAMP_UP + length_um(pulse.value, masks, RAMP_WIDE))
     canvas.box(masks.mim, left, low, left + RAMP_WIDE, high)
     ground = WEST - RAIL_AT
     canvas.wire(THIRD, ground - 0.5, low - AROUND, left + RAMP_WIDE + AROUND, high + AROUND)
@@ -262,18 +258,10 @@ def _ramp(canvas: Canvas, masks: AnalogMasks, sizes: ColumnSizes, bank: Group, t
     for y in steps(low, high):
         canvas.square(masks.base.vias[THIRD].gds, ground, y, 0.2)
     half = PITCH / 2 - 0.8
-    canvas.wire(FOURTH, RAMP_AT - half, low + PATCH_IN, RAMP_AT + half, high - PATCH_IN)
-    for x in steps(RAMP_AT - half, RAMP_AT + half):
-        for y in steps(low + PATCH_IN, high - PATCH_IN):
-            canvas.square(masks.base.vias[THIRD].gds, x, y, 0.2)
+    draw_patch(canvas, RAMP_AT - half, low + PATCH_IN, RAMP_AT + half, high - PATCH_IN)
     track = next(one for strip in bank.strips for one in strip.tracks if one.net == RAMP)
     canvas.wire(FOURTH, RAMP_AT - TRUNK / 2, track.y, RAMP_AT + TRUNK / 2, low + 1)
-    return flat.Plate("bank.clear.ramp", RAMP, "vss", RAMP_WIDE * (high - low), 2 * (RAMP_WIDE + high - low))
-
-
-def _high(farad: float, wide: float, masks: AnalogMasks) -> float:
-    """Of a plate so wide, um."""
-    return snap((farad * 1e15 - 2 * masks.mim_edge * wide) / (masks.mim_area * wide + 2 * masks.mim_edge))
+    return flat.Plate(RAMP, RAMP, "vss", RAMP_WIDE * (high - low), 2 * (RAMP_WIDE + high - low))
 
 
 def _decoupling(canvas: Canvas, masks: AnalogMasks, sizes: ColumnSizes, bias: Group, top: float) -> list[flat.Plate]:
@@ -282,16 +270,12 @@ def _decoupling(canvas: Canvas, masks: AnalogMasks, sizes: ColumnSizes, bias: Gr
     tracks = {track.net: track.y for track in strip.tracks}
     for c in (c for c in flat.capacitors(band(sizes, 1)) if c.name.startswith("bias.c_")):
         wide, low = PLATE, top + PLATE_UP
-        high = snap(low + _high(c.value / PARTS_OF, wide, masks))
+        high = snap(low + length_um(c.value / PARTS_OF, masks, wide))
         for _ in range(PARTS_OF):
             left, middle = x + (PLATE_PITCH - PLATE) / 2, x + PLATE_PITCH / 2
             canvas.box(masks.mim, left, low, left + wide, high)
             canvas.wire(THIRD, left - AROUND, low - TAB, left + wide + AROUND, high + AROUND)
-            ends = left + PATCH_IN, low + PATCH_IN, left + wide - PATCH_IN, high - PATCH_IN
-            canvas.wire(FOURTH, *ends)
-            for a in steps(ends[0], ends[2]):
-                for b in steps(ends[1], ends[3]):
-                    canvas.square(masks.base.vias[THIRD].gds, a, b, 0.2)
+            draw_patch(canvas, left + PATCH_IN, low + PATCH_IN, left + wide - PATCH_IN, high - PATCH_IN)
             canvas.wire(FOURTH, middle - TRUNK / 2, tracks[c.a] - TRUNK / 2, middle + TRUNK / 2, low + 1)
             rail, at = (top if c.b == "vdd" else strip.y), middle + 3.0
             canvas.stack(at, low - VIA_IN, SECOND, THIRD)

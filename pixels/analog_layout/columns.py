@@ -16,9 +16,7 @@ from talbot.platforms.analog import AnalogMasks
 from .cells import Cell
 from .column import (
     GROUPED,
-    LANE,
     LANES,
-    LINE,
     PAD,
     PITCH,
     SINGLE,
@@ -29,9 +27,10 @@ from .column import (
     devices,
     draw_column,
     draw_ground,
+    line_um,
     names,
 )
-from .strip import FOURTH, SECOND, THIRD
+from .strip import FOURTH, SECOND, THIRD, name_track
 
 WAY, END = 0.2, 1.0  # um, width of a way; where it goes up, beyond the columns
 
@@ -77,16 +76,15 @@ def draw_columns(
         if net in WAYS:
             canvas.label(FOURTH, net, 0.2, WAYS[net])
         elif net not in plan.joints:
-            track = next(track for track in one.tracks if track.net == net)
-            canvas.label(THIRD, net, track.left + 0.3, track.y)
+            name_track(canvas, next(track for track in one.tracks if track.net == net))
     whole = Canvas(layout, "columns", masks.base)
     step = db.Vector(0, whole.snap(PITCH))
     whole.cell.insert(db.CellInstArray(one.cell.cell_index(), db.Trans(), step, db.Vector(1, 0), count, 1))
     for net in (*GROUPED, *SINGLE, *plan.free):
-        wide = LANE if net.startswith(("lane", "sense")) else LINE
+        half = line_um(net) / 2
         for name in names(net):
             x = plan.lines[name]
-            whole.wire(FOURTH, x - wide / 2, 0, x + wide / 2, count * PITCH)
+            whole.wire(FOURTH, x - half, 0, x + half, count * PITCH)
     via = Canvas(layout, "column_code", masks.base)
     via.stack(0, 0, THIRD, FOURTH)
     tracks = {track.net: track.y for track in one.tracks if track.net in GROUPED}

@@ -15,7 +15,6 @@ the east, where the pins are: the ground's line passes between lanes and amplifi
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import ClassVar
 
 from talbot.base.gds import db
 from talbot.models.parameters import ChipParameters, ParameterError
@@ -23,7 +22,7 @@ from talbot.pixels.blocks import DIODES, AnalogSizes, Block, Pin, blocks
 from talbot.pixels.circuits.amplifier import TRIM_BITS, AmplifierSizes
 from talbot.pixels.circuits.dac import BITS
 from talbot.pixels.circuits.lane import LaneSizes
-from talbot.pixels.footprints import WIDE_UM, draw_pins, lef
+from talbot.pixels.footprints import WIDE_UM, draw_pins
 from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.analog import AnalogMasks
 
@@ -31,6 +30,7 @@ from .amplifier import amplifier_cell
 from .bias import bias_cell
 from .cells import Cell, new_canvas
 from .channel import Channel, up
+from .drawn_block import DrawnBlock
 from .lane import lane_cell
 from .strip import FOURTH, RAIL_AT, SECOND, THIRD, TRUNK
 
@@ -52,14 +52,9 @@ SUPPLIES = {"vdd": "vddc", "vss": "vssa"}
 
 
 @dataclass(frozen=True)
-class Converters:
-    """The drawn block. parts: its cells, each with the nets of the ports of its instances. boxes: none for LVS."""
+class Converters(DrawnBlock):
+    """The drawn block. parts: its cells, each with the nets of the ports of its instances."""
 
-    boxes: ClassVar[tuple[str, ...]] = ()
-
-    block: Block
-    layout: "db.Layout"
-    cell: "db.Cell"
     parts: tuple[tuple[Cell, tuple[tuple[str, ...], ...]], ...]
 
     @property
@@ -77,10 +72,6 @@ class Converters:
         ]
         top = [f".subckt {NAME} {' '.join(ports)}", *lines, f".ends {NAME}", ""]
         return "".join(cell.spice(masks) for cell, _ in self.parts) + "\n".join(top)
-
-    def lef(self, masks: AnalogMasks) -> str:
-        """Its LEF: all metals taken."""
-        return lef(self.block, masks.base.name, AnalogSizes().supply_um, [metal.lef for metal in masks.base.metals])
 
 
 def frame(chip: ChipParameters, sizes: AnalogSizes) -> Block:

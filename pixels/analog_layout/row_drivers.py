@@ -27,16 +27,17 @@ from talbot.pixels.circuits.row_driver import (
     row,
     taken,
 )
-from talbot.pixels.footprints import draw_pins, lef
+from talbot.pixels.footprints import draw_pins
 from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.analog import AnalogMasks
 
 from .cells import Cell, new_canvas
 from .comparator import devices
 from .device import Device
+from .drawn_block import DrawnBlock
 from .row_bank import draw_bank
 from .row_driver import LINE, PITCH, RowPlan, as_cell, draw_row, row_plan
-from .strip import FOURTH, RAIL_ENDS, THIRD
+from .strip import FOURTH, RAIL_ENDS, THIRD, name_track
 
 NAME = "row_driver"
 TOP = 5
@@ -46,14 +47,11 @@ VIA, VIA_PITCH, VIA_PAD = 0.8, 1.6, 0.59  # um: of the top metal's vias; half of
 
 
 @dataclass(frozen=True)
-class RowDrivers:
-    """The drawn block. row, bank: its cells. rows: how many. boxes: cells that LVS compares once."""
+class RowDrivers(DrawnBlock):
+    """The drawn block. row, bank: its cells. rows: how many."""
 
     boxes: ClassVar[tuple[str, ...]] = ("row",)
 
-    block: Block
-    layout: "db.Layout"
-    cell: "db.Cell"
     row: Cell
     bank: Cell
     rows: int
@@ -70,10 +68,6 @@ class RowDrivers:
         lines.append(f"Xbank {' '.join(bank_nets())} {self.bank.cell.name}")
         top = [f".subckt {NAME} {' '.join(ports)}", *lines, f".ends {NAME}", ""]
         return self.row.spice(masks) + self.bank.spice(masks) + "\n".join(top)
-
-    def lef(self, masks: AnalogMasks) -> str:
-        """Its LEF: all metals taken."""
-        return lef(self.block, masks.base.name, AnalogSizes().supply_um, [metal.lef for metal in masks.base.metals])
 
 
 def chip_pin(name: str) -> str:
@@ -116,7 +110,7 @@ def _names(canvas: Canvas, made: Cell) -> None:
     """A row's ports, each on its track."""
     for track in made.tracks:
         if track.net in made.ports:
-            canvas.label(THIRD, track.net, track.left + 0.3, track.y)
+            name_track(canvas, track)
 
 
 def draw_row_drivers(masks: AnalogMasks, array: ArrayParameters, room: AnalogSizes | None = None) -> RowDrivers:

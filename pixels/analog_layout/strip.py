@@ -176,6 +176,11 @@ def draw_rows(canvas: Canvas, masks: AnalogMasks, plan: Plan, y: float) -> Strip
     return made
 
 
+def name_track(canvas: Canvas, track: Strap) -> None:
+    """The net's name on its track, for LVS."""
+    canvas.label(THIRD, track.net, track.left + 0.3, track.y)
+
+
 def draw_rails(canvas: Canvas, masks: AnalogMasks, plan: Plan, y: float) -> None:
     """A strip's rails with their taps, and its well."""
     base, top = masks.base, y + plan.height_um

@@ -127,8 +127,8 @@ class FieldPrior:
         if not squares:
             return self.contrast
         own = max(float(np.concatenate(squares).mean()) - noise**2, 0.0)
-        full = 2 * (1 - math.exp(-((LAG / self.length) ** self.fineness)))
-        share = ABOVE * math.sqrt(own / full) / self.contrast
+        same, away = self.covariance(np.zeros(2), np.array([0.0, LAG]))
+        share = ABOVE * math.sqrt(own / (2 * (same - away)))
         below = min(max(round(-2 * math.log2(share)), 0), STEPS) if share > 0 else STEPS
         return self.contrast * 2.0 ** (-below / 2)
 
