@@ -22,6 +22,7 @@ from talbot.pixels.circuits.specification import CODES
 from talbot.pixels.circuits.support import bias
 from talbot.platforms.sky130 import analog
 
+from . import extracted
 from .amplified import AFTER, Drive
 from .pixels import PixelSizes, pixel
 
@@ -127,10 +128,12 @@ def drive(source: Drive, columns: Sequence[int], lanes: Sequence[int], first: in
 
 
 @cache
-def trimmed(spec: ColumnSpec, edge: bool, cycle: float, high: float) -> tuple[tuple[float, float], dict[str, float]]:
+def trimmed(
+    spec: ColumnSpec, edge: bool, cycle: float, high: float, drawn: bool = False
+) -> tuple[tuple[float, float], dict[str, float]]:
     """V of start_a and start at which a pixel without light leaves its lanes at dark, of the bias's lines at rest.
 
-    Simulated TRIMS times. Raises ToolError.
+    Simulated TRIMS times. drawn: of the column as drawn. Raises ToolError.
     """
     sizes, pixels = size(spec, analog), PixelSizes()
     reset, read, ends = 2, 6, 6 + spec.settle + spec.read
@@ -156,7 +159,8 @@ def trimmed(spec: ColumnSpec, edge: bool, cycle: float, high: float) -> tuple[tu
         return name
 
     drive(source, (0,), (lane_bit,), 0, high)
-    parts = circuits(spec, sizes)
+    layouts = extracted.circuits() if drawn else {}
+    parts = [layouts.get(one.name, one) for one in circuits(spec, sizes)]
     inner = {one.name: one for part in parts for one in part.circuits().values()}
     deck = [*analog.cards("tt", set().union(*(one.sizes() for one in parts))), ".param cscale=1 rscale=1"]
     deck += [line for one in inner.values() for line in one.own_lines(analog)]
@@ -164,6 +168,7 @@ def trimmed(spec: ColumnSpec, edge: bool, cycle: float, high: float) -> tuple[tu
     start = spec.dark, spec.dark
     for _ in range(TRIMS):
         own = lines({0: {0: (0.0, 0.0)}}, {0: lane_bit}, edge, 1.0, spec, sizes, pixels, start, {})
+        own += extracted.rest_of_nets(own, layouts)
         with Simulator([*deck, *own], tuple(waves), (*outs, *RESTING), {"vdd": high}, CELSIUS, EXACT) as spice:
             wave = spice.transient(waves, dict.fromkeys(outs, spec.input), (turn + 1) * cycle, cycle / 5)
         end = float(np.nextafter((turn + 1) * cycle, 0))

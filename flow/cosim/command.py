@@ -2,6 +2,7 @@
 
 import json
 from argparse import ArgumentParser, Namespace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +24,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     add("--method", default="trap", help="ngspice's integration, trap or gear")
     add("--ideal-amplifier", action="store_true", help="edge mode: the lanes' difference amplifiers are arithmetic")
     add("--own-columns", action="store_true", help="the column amplifiers are transistors, in all modes")
+    add("--extracted", action="store_true", help="each row again, with the drawn circuits and their parasitics")
     add("--study", action="store_true", help="error against run time on one sample, beside an off-line reference, too")
     add("--faults", action="store_true", help="faults planted in the circuit, and what the codes say of each, too")
     add("--out", type=Path, help="folder for the results (default: build/cosim)")
@@ -62,6 +64,7 @@ def run(options: Namespace) -> int:
         )
         for mode in modes
     ]
+    asked += [replace(one, extracted=True) for one in asked if options.extracted]
     out = options.out or RESULTS / "cosim"
     check_folder("out", out)
     with Steps(STEPS, lines=True) as steps:
@@ -83,7 +86,7 @@ def run(options: Namespace) -> int:
 def _print(s: dict[str, Any], folder: Path) -> None:
     for row in s["rows"]:
         print(
-            f"{row['mode']}: {row['differing']} of {row['samples']} codes differ, by "
+            f"{row['mode']}{', as drawn' * row['extracted']}: {row['differing']} of {row['samples']} codes differ, by "
             f"{row['largest_difference_lsb']} LSB at most, {row['beyond']} beyond half an LSB and the noise; "
             f"{row['largest_error_at_lane_lsb']:.3f} LSB off at the lane at most, "
             f"its level {row['largest_error_of_level_lsb']:.3f}; "

@@ -14,7 +14,7 @@ from talbot.pixels.circuits.netlist import Circuit, Instance, Transistor
 from talbot.pixels.circuits.specification import CODES, LaneSpec
 from talbot.platforms.sky130 import analog
 
-from . import amplified, pixels
+from . import amplified, extracted, pixels
 from . import columns as own_columns
 from .accuracy import Accuracy
 from .faults import Fault
@@ -70,7 +70,8 @@ class Deck:
     """A netlist and its drive.
 
     answers: of each lane of the chip, the node of its decision, or "-". lanes, columns: those that are simulated.
-    lines: of the netlist. drive: those of +drive below its head. saved: nodes of the waves. supply: V.
+    lines: of the netlist. drive: those of +drive below its head. saved: nodes of the waves. supply: V. flat: lanes are
+    as extracted, without circuits in them.
     """
 
     answers: list[str]
@@ -82,6 +83,11 @@ class Deck:
     sources: list[str] = field(default_factory=list)
     transistors: int = 0
     supply: float = 1.8
+    flat: bool = False
+
+    def inside(self, lane: int) -> tuple[str, ...]:
+        """Names of LANE_NODES of a lane in the waves."""
+        return tuple(f"xlane{lane}.{node.removeprefix('x') if self.flat else node}" for node in LANE_NODES)
 
 
 def build(
@@ -95,16 +101,20 @@ def build(
     fault: Fault | None = None,
     everything: bool = False,
     row: "RowOfPixels | None" = None,
+    drawn: bool = False,
 ) -> Deck:
     """The circuit that reads one row.
 
     values: LSB at (column, sub-sample). lanes: of the chip; only those that serve one of these columns are built, with
-    ``everything`` all. unsigned: the range of all values; else -128..127. row: pixels in place of ideal columns.
+    ``everything`` all. unsigned: the range of all values; else -128..127. row: pixels in place of ideal columns. drawn:
+    circuits as drawn and extracted; without ``fault``.
     """
     columns = tuple(sorted({column for column, _ in values}))
     used = {column // tile_cols % lanes for column in columns}
     served = tuple(sorted(range(lanes) if everything else used))
-    deck = Deck([f"q{i}" if i in served else "-" for i in range(lanes)], served, columns, supply=spec.supply)
+    deck = Deck(
+        [f"q{i}" if i in served else "-" for i in range(lanes)], served, columns, supply=spec.supply, flat=drawn
+    )
     sizes = lanes_of.size(spec, analog)
     sound = lanes_of.sar_lane(sizes)
     body, own = [], []
@@ -125,7 +135,7 @@ def build(
             *(*reversed(bits), f"q{i}", "refp", "refn", "vcm", "vdd", "0"),
         ]
         body += [f"Xlane{i} {' '.join(pins)} {one.name}", f"Cin{i} in{i} 0 50f"]
-        deck.saved += [f"q{i}", f"in{i}", *(f"xlane{i}.{node}" for node in LANE_NODES)]
+        deck.saved += [f"q{i}", f"in{i}", *deck.inside(i)]
         if amplifier:
             body += amplified.lane_lines(i, partial(_source, deck, bit=i), spec.supply, not charges)
             deck.saved += [f"cola{i}", f"colb{i}"]
@@ -153,10 +163,12 @@ def build(
         for tap in range(SUBS):
             _source(deck, f"tap{tap}", spec.supply, first + 3 + tap)
             _source(deck, f"light{tap}", 1.0, -1)
+    layouts = extracted.circuits() if drawn else {}
+    circuits |= {name: layouts[name] for name in circuits.keys() & layouts.keys()}
     if not fault:
         for circuit in circuits.values():
             circuit.check(analog)
-    drawn = set().union(*(circuit.sizes() for circuit in circuits.values()))
+    all_sizes = set().union(*(circuit.sizes() for circuit in circuits.values()))
     called = [line.split()[-1] for line in body if line[0] == "X"]
     deck.transistors = sum(_count(circuits["charge_clear" if name == "charge" else name]) for name in called)
     supplies = {"refp": spec.refp, "refn": spec.refn, "vcm": spec.vcm, "ref": level}
@@ -165,7 +177,7 @@ def build(
         "* one row of a sensor",
         *accuracy.options,
         f".temp {CORNER.temperature:g}",
-        *analog.cards(CORNER.process, drawn),
+        *analog.cards(CORNER.process, all_sizes),
         ".param cscale=1 rscale=1",
         *dict.fromkeys(text for circuit in circuits.values() for text in _subcircuits(circuit)),
         *own,
@@ -175,6 +187,7 @@ def build(
         _breaks(timing),
         *deck.sources,
         *body,
+        *extracted.rest_of_nets(body, layouts),
         ".save " + " ".join(f"v({node})" for node in deck.saved),
         ".end",
     ]
@@ -197,7 +210,7 @@ def _columns(
     sizes = size(column, analog)
     swapped = frozenset(fault.where if fault and fault.kind == "diodes" else ())
     cut = fault.where[0] if fault and fault.kind == "row" else None
-    start, rest = own_columns.trimmed(column, not unsigned, timing.period, spec.supply)
+    start, rest = own_columns.trimmed(column, not unsigned, timing.period, spec.supply, deck.flat)
     taps = {c: row.diodes[c] for c in deck.columns}
     of_lane = {c: c // tile_cols % lanes for c in deck.columns}
     given = (not unsigned, row.integration, column, sizes, row.sizes, start, rest, swapped, cut)

@@ -8,7 +8,7 @@ import numpy as np
 from talbot.flow.frame.hardware import program as bench
 from talbot.flow.frame.hardware import simulate
 
-from . import lockstep
+from . import extracted, lockstep
 from .row import Row, RowRequest, read_row
 
 STEPS = ("build", "rows", "study", "report")
@@ -22,12 +22,15 @@ def rows(asked: Sequence[RowRequest], note: Callable[[str], None]) -> list[Row]:
         sensor, _ = one.frame
         key = one.cols, one.lanes
         programs[key] = programs.get(key) or lockstep.program(sensor, note)
+    if any(one.extracted for one in asked):
+        note("drawing and extracting the circuits")
+        extracted.circuits()
     note("rows")
     done = []
     for one in asked:
         row = read_row(one, note, programs[one.cols, one.lanes])
         seconds, cycles = row.run.stats["seconds"], row.run.stats["circuit_cycles"]
-        note(f"{one.mode}: {len(row.samples)} samples, {cycles} cycles of the circuit in {seconds:.1f} s")
+        note(f"{one.name}: {len(row.samples)} samples, {cycles} cycles of the circuit in {seconds:.1f} s")
         done.append(row)
     return done
 
@@ -46,6 +49,7 @@ def summary(row: Row) -> dict[str, Any]:
         "largest_error_at_lane_lsb": float(np.abs(row.at_lane).max(initial=0)),
         "largest_error_of_level_lsb": float(np.abs(row.level_off).max(initial=0)),
         "amplifier": row.request.amplifier,
+        "extracted": row.request.extracted,
         "decisions": int(decisions.sum()),
         "differing_decisions": int((run.cycles.answer != run.cycles.expected)[decisions].sum()),
         "undecided": int(np.isnan(row.decision[run.cycles.deciding]).sum()),

@@ -278,6 +278,8 @@ int main(int argc, char** argv) {
   ngSpice_Init_Sync(volts, nullptr, sync, nullptr, nullptr);
   char alone[] = "set num_threads=1";  // more wait for each other longer than they work
   ngSpice_Command(alone);
+  char simple[] = "optran 1 1 1 0 0 0";  // an operating point by a transient would go through `sync` and move the chip
+  ngSpice_Command(simple);
   if (ngSpice_Command(const_cast<char*>(("source " + argument("deck=")).c_str()))) return 5;
   top->reset = 1;
   top->eval();

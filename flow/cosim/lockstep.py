@@ -127,7 +127,7 @@ def _run(
         head = " ".join(f"{one:.9g}" for one in seconds)
         (folder / "drive").write_text("\n".join([head, *deck.drive, ""]))
         more = [f"+{file}={folder / file}" for file in ("deck", "drive", "cycles", "points", "lockstep")]
-        uic = ["+uic=1"] if any(line.startswith(".ic ") for line in deck.lines) else []
+        uic = ["+uic=1"] if deck.flat or any(line.startswith(".ic ") for line in deck.lines) else []
         with _watched(folder / "cycles", note):
             done = run_frame(
                 binary,

@@ -16,17 +16,20 @@ from .waves import write_vcd
 
 SHOWN = 12  # cycles in the picture of waves
 PAGE = "cosim.html"
+EXTRACTED = "-extracted"
 
 
 def names(modes: Sequence[str]) -> tuple[str, ...]:
     """Files of an earlier run that a new one replaces."""
-    return (PAGE, "summary.json", *(f"{mode}.vcd" for mode in modes))
+    return (PAGE, "summary.json", *(f"{mode}{part}.vcd" for mode in modes for part in ("", EXTRACTED)))
 
 
 def write(folder: Path, rows: Sequence[Row], s: Mapping[str, Any]) -> None:
     """Write everything but summary.json into ``folder``, which exists."""
     for row in rows:
-        write_vcd(folder / f"{row.request.mode}.vcd", row.run, row.request.timing.period)
+        write_vcd(
+            folder / f"{row.request.mode}{EXTRACTED * row.request.extracted}.vcd", row.run, row.request.timing.period
+        )
     sections = [
         Section("Rows", ABOUT, head=HEAD, rows=[_line(one) for one in s["rows"]]),
         *(_codes(row) for row in rows),
@@ -53,7 +56,7 @@ def _line(s: Mapping[str, Any]) -> tuple[str, ...]:
     numbers = (s["decisions"], s["differing_decisions"])
     more = (s["transistors"], s["circuit_cycles"], s["chip_cycles"], s["time_points"], s["attempts"])
     ns = f"{1e9 * s['slowest_decision_s']:.2f}"
-    name = f"{s['mode']}, with amplifiers" if s["amplifier"] else s["mode"]
+    name = s["mode"] + ", with amplifiers" * s["amplifier"] + ", as drawn" * s["extracted"]
     at_lane = f"{s['largest_error_at_lane_lsb']:.3f}"
     return (name, *codes, at_lane, *(f"{n:,}" for n in numbers), ns, *(f"{n:,}" for n in more), f"{s['seconds']:.1f}")
 
@@ -64,7 +67,7 @@ def _codes(row: Row) -> Section:
         (f"{x.column}", f"{x.sub}", f"{x.lane}", f"{x.value:.3f}", f"{x.code}", f"{x.expected}", _why(x))
         for x in row.samples
     ]
-    return Section(f"Codes: {row.request.mode}", head=head, rows=lines)
+    return Section(f"Codes: {row.request.name}", head=head, rows=lines)
 
 
 def _studies(s: Mapping[str, Any]) -> list[Section]:
@@ -142,9 +145,11 @@ def _waves(row: Row) -> Markup:
     micro = 1e6 * run.time[at]
     figure = Figure(figsize=(9.0, 4.2), layout="constrained")
     above, below = figure.subplots(2, 1, sharex=True)
-    for axes, pair in ((above, ("top", "other")), (below, ("xcomparator.outp", "xcomparator.outn"))):
+    nodes = row.deck.inside(lane)
+    for axes, pair in ((above, nodes[:2]), (below, nodes[2:])):
         for colour, node in zip(COLOURS, pair, strict=False):
-            axes.plot(micro, run.waves[f"xlane{lane}.{node}"][at], color=colour, linewidth=0.9, label=node)
+            label = node.partition(".")[2]
+            axes.plot(micro, run.waves[node][at], color=colour, linewidth=0.9, label=label)
         axes.legend(fontsize=8, frameon=False, loc="lower right", bbox_to_anchor=(1, 1), ncols=2)
         axes.set_ylabel("V", fontsize=9)
         axes.tick_params(labelsize=8)

@@ -28,7 +28,7 @@ from talbot.pixels.circuits.specification import LaneSpec
 from . import lockstep
 from .accuracy import Accuracy
 from .columns import TIMING
-from .deck import LANE_NODES, Deck, RowOfPixels, Timing, build
+from .deck import Deck, RowOfPixels, Timing, build
 from .faults import Fault
 
 MODES = ("edge", "image", "tof")
@@ -68,6 +68,8 @@ class RowRequest:
         that is high for what the amplifier asks.
     columns : bool
         The column amplifiers are transistors, too, and each half of the row's read takes 16 cycles.
+    extracted : bool
+        Lanes, amplifiers, biases and column amplifiers are as drawn, with their parasitics; without ``fault``.
     """
 
     mode: str = "image"
@@ -83,6 +85,7 @@ class RowRequest:
     whole: bool = False
     amplifier: bool = False
     columns: bool = False
+    extracted: bool = False
     timing: Timing = Timing()
     accuracy: Accuracy = Accuracy()
     spec: LaneSpec = LaneSpec()
@@ -95,10 +98,17 @@ class RowRequest:
         check_int("threshold", self.threshold, 0, 127)
         check_int("t_int", self.t_int, 1, 65535)
         check_int("seed", self.seed, 0, 2**32 - 1)
+        if self.extracted and self.fault:
+            raise ParameterError(f"fault = {self.fault.name}: must be none with extracted circuits")
         if self.columns and not self.amplifier:
             raise ParameterError("columns = True: must be False without amplifier")
         if self.amplifier and not (self.pixels and (self.mode == "edge" or self.columns)):
             raise ParameterError("amplifier = True: must be False but in mode edge with pixels, or with columns")
+
+    @property
+    def name(self) -> str:
+        """Of the row, for people."""
+        return self.mode + ", as drawn" * self.extracted
 
     @cached_property
     def clock(self) -> Timing:
@@ -166,6 +176,7 @@ class RowRequest:
             self.fault,
             self.everything,
             self._pixels if self.pixels else None,
+            self.extracted,
         )
 
     @property
@@ -225,7 +236,7 @@ class Row:
         """
         run, at_lane, clock, off = self.run, self.at_lane, self.request.clock, []
         for s, miss in zip(self.samples, at_lane, strict=True):
-            top, other = (run.waves[f"xlane{s.lane}.{node}"] for node in LANE_NODES[:2])
+            top, other = (run.waves[node] for node in self.deck.inside(s.lane)[:2])
             volts: dict[int, float] = {}
             for i in _search_of(run.cycles, _held(run.cycles, s.column, s.sub, self.request)[0], s.lane):
                 strobe = i * clock.period + clock.high - clock.edge
@@ -254,7 +265,7 @@ def read_row(asked: RowRequest, note: Callable[[str], None] = lambda text: None,
     binary = program or lockstep.program(sensor, note)
     run = lockstep.run(
         *(binary, asked.deck, frame, asked.samples, asked.front_end, asked.clock, asked.accuracy, asked.whole),
-        note=lambda text: note(f"{asked.mode}: {text}"),
+        note=lambda text: note(f"{asked.name}: {text}"),
     )
     codes = decode_stream(run.stream, sensor.tile)[0].samples[0]
     expected = golden_frame(asked.samples, sensor, frame, asked.front_end).codes[0]
@@ -300,7 +311,8 @@ def decision_times(run: lockstep.Run, deck: Deck, timing: Timing) -> npt.NDArray
     times = np.full(run.cycles.answer.shape, np.nan)
     half = 0.5 * deck.supply
     for lane in deck.lanes:
-        apart = np.abs(run.waves[f"xlane{lane}.xcomparator.outp"] - run.waves[f"xlane{lane}.xcomparator.outn"])
+        one, other = (run.waves[node] for node in deck.inside(lane)[2:])
+        apart = np.abs(one - other)
         for i in np.flatnonzero(run.cycles.deciding[:, lane]):
             strobe = i * timing.period + timing.high + 0.5 * timing.edge
             first, last = np.searchsorted(run.time, (strobe, (i + 1) * timing.period))

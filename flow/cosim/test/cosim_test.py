@@ -10,12 +10,14 @@ from talbot.base.tools import ToolError
 from talbot.flow.cosim import lockstep
 from talbot.flow.cosim.accuracy import Accuracy
 from talbot.flow.cosim.diagnose import code_of, value_of
+from talbot.flow.cosim.extracted import rest_of_nets
 from talbot.flow.cosim.faults import Fault
 from talbot.flow.cosim.row import Row, RowRequest, read_row
 from talbot.flow.cosim.waves import write_vcd
 from talbot.models.parameters import ParameterError
 from talbot.pixels.circuits.amplifier import AmplifierSpec
 from talbot.pixels.circuits.lane import sar_lane, size
+from talbot.pixels.circuits.netlist import Circuit, Resistor
 from talbot.pixels.circuits.specification import LaneSpec
 from talbot.platforms.sky130 import analog
 
@@ -135,6 +137,32 @@ def test_a_sum_does_not_depend_on_its_turn():
     """With 5 pF at the bias's lines alone it was 0.2 LSB less from turn to turn."""
     row = read_row(replace(SMALL, types=3, amplifier=True, columns=True))
     assert len(row.samples) == 3 and np.abs(row.at_lane).max() < 0.4 and not row.beyond.any()
+
+
+@library
+@pytest.mark.slow
+def test_the_drawn_circuits_are_in_the_loop():
+    """As drawn, with all parasitics: the plates' ends and the comparator's have other names in the waves."""
+    pytest.importorskip("klayout")
+    row = read_row(replace(SMALL, extracted=True))
+    assert abs(row.at_lane[0]) < 0.3 and abs(row.level_off[0]) < 0.26 and not row.beyond.any()
+    assert row.run.attempts == 1 and len(row.deck.lines) > 5000  # 160 of schematics, besides the models
+
+
+def test_every_node_of_a_drawn_net_begins_where_the_net_does():
+    ends = (
+        Resistor("w0", "cin", "cin__1", 5.0),
+        Resistor("w1", "cin__1", "cin__2", 5.0),
+        Resistor("w2", "x", "x_1", 5.0),
+    )
+    drawn = {"column": Circuit("column", ("x",), resistors=ends)}
+    body = ["Xcolumn3 a column", "Xother3 a other", ".ic v(xcolumn3.cin)=1.6 v(xother3.cin)=2"]
+    assert rest_of_nets(body, drawn) == [".ic v(xcolumn3.cin__1)=1.6", ".ic v(xcolumn3.cin__2)=1.6"]
+
+
+def test_faults_are_those_of_schematics():
+    with pytest.raises(ParameterError, match="fault = .*: must be none with extracted circuits"):
+        replace(SMALL, extracted=True, fault=Fault("row", (1,)))
 
 
 def test_columns_need_the_lanes_amplifiers():
