@@ -205,7 +205,8 @@ def noise(spec: ColumnSpec, sizes: ColumnSizes, process: ModuleType, celsius: fl
     driver = sizes.lane.input * gates["lane"]
     for gain, times, name, _, stage, feedback, inputs, load in stages:
         beta = feedback / (feedback + inputs + (stage.input * gates[name] if name == "front" else driver))
-        white = BOLTZMANN * (celsius + 273.15) * GAMMA * (1 + EFFICIENCY["top"] / EFFICIENCY[name])
+        source = EFFICIENCY["lane_top" if name == "lane" else "top"]
+        white = BOLTZMANN * (celsius + 273.15) * GAMMA * (1 + source / EFFICIENCY[name])
         total += times * gain**2 * white / (beta * (load + feedback * (1 - beta)))
     return total**0.5 / spec.swing * spec.full_well
 
@@ -311,7 +312,7 @@ def sample(
         "sig": pulse(middle + GAP, end + GAP),
         "sign": pulse(middle + GAP, end + GAP, high),
         "f0": both(middle + GAP, end + GAP, turn, turn + t + 2 * GAP),
-        "fn0": both(middle + GAP, end + GAP, turn, turn + t + 2 * GAP, high),
+        "fn0": both(begin, end + GAP, turn, turn + t + 2 * GAP, high),
         "idle": both(begin, end + 2 * GAP, turn, turn + t + 2 * GAP, high),
         "row": [(s, v / high * ROW) for s, v in pulse(middle + GAP, end + 10 * GAP)],
         "edge": [(0.0, 0.0 if image else high)],

@@ -146,7 +146,7 @@ def test_the_phases_of_a_row():
     assert all(quiet[name] for name in ("readsn", "fn0", "idle"))
     first = lines(read=True, ref_ctl=True, tap1=True)
     assert first["clear"] and first["ref"] and first["w2"] and not first["w0"] and not first["sig"]
-    assert first["fn2"] and not first["f2"] and not first["idle"]  # the far end is at start
+    assert not first["fn2"] and not first["f2"] and first["fn0"] and not first["idle"]  # the far end is at start, and f
     assert not lines(read=True, ref_ctl=True, ramp=True)["clear"]
     second = lines(read=True, tap1=True)
     assert second["sig"] and second["w2"] and second["f2"] and not second["fn2"] and not second["f0"]
