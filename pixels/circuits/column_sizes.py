@@ -24,8 +24,8 @@ FRONT, LANE, CASCODE = ("n", 1.0), ("n", 0.5), ("n_lvt", 0.5)
 TOP, CASCODE_P, LANE_TOP = ("p", 2.0), ("p", 0.5), ("p", 0.5)
 BACK_TOP = TOP
 EFFICIENCY = {"front": 21.0, "back": 22.0, "lane": 17.0, "cascode": 15.0, "cascode_p": 15.0, "lane_p": 11.0}
-# Of the sources: a charge amplifier's is one finger, as the bias's that it follows. In two of half the width it had 1.25
-# times the current as drawn (SKY130's narrow transistors)
+# Of the sources: a charge amplifier's is one finger, as the bias's that it follows. In two of half the width it had
+# 1.25 times the current at ff_125C_1v98, as drawn: SKY130's narrow transistors have more
 EFFICIENCY |= {"top": 8.0, "lane_top": 9.0}
 PARTS = 16  # of what drives the lane: a replica is one of them
 FULL = 127.5  # LSB of a diode whose well is full

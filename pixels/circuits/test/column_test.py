@@ -88,6 +88,12 @@ def test_inputs_of_the_charge_amplifiers_are_as_alike_as_the_offset_asks():
     assert size(replace(SPEC, offset=2.0), process).front.input == pytest.approx(4 * SIZES.front.input, rel=0.01)
 
 
+def test_a_charge_amplifiers_source_is_the_transistor_of_the_bias():
+    """One finger, with the same current: of other widths they are less alike than their ratio says."""
+    sources = {one.name: one.w for one in column_bias(SIZES).transistors if one.name.endswith("_top")}
+    assert sources["vbp_top"] == sources["level_top"] == SIZES.front.top < 2
+
+
 def test_the_feedback_is_the_well_less_what_is_lost():
     assert 0.97 < SIZES.feedback / (2 * SPEC.fall / SPEC.swing * SPEC.well) < 1
 
