@@ -205,7 +205,8 @@ def noise(spec: ColumnSpec, sizes: ColumnSizes, process: ModuleType, celsius: fl
     driver = sizes.lane.input * gates["lane"]
     for gain, times, name, _, stage, feedback, inputs, load in stages:
         beta = feedback / (feedback + inputs + (stage.input * gates[name] if name == "front" else driver))
-        white = BOLTZMANN * (celsius + 273.15) * GAMMA * (1 + EFFICIENCY["top"] / EFFICIENCY[name])
+        source = EFFICIENCY["lane_top" if name == "lane" else "top"]
+        white = BOLTZMANN * (celsius + 273.15) * GAMMA * (1 + source / EFFICIENCY[name])
         total += times * gain**2 * white / (beta * (load + feedback * (1 - beta)))
     return total**0.5 / spec.swing * spec.full_well
 
@@ -275,6 +276,7 @@ def opened(
 
     The bias's lines are held until a row is read, or what is outside of the chip at them would take milliseconds: where
     ngspice finds an operating point by a transient of its own, it ends long before.
+    The coupling capacitors begin empty, as leakage leaves them after a pause: the second stage has farthest to go.
     """
     lines = deck(circuit or bench(sizes, spec), setup, corner, seed=seed)
     lines.append(f".model filling sw vt={corner.supply / 2:g} vh=0 ron=1000 roff=1e15")
@@ -282,6 +284,7 @@ def opened(
     for d in "ab":
         lines += [f"Sreset_{d} well_{d} level fill 0 filling", f"Glight_{d} well_{d} 0 x_{d} 0 {ampere:.9g}"]
     lines += [f"Shold_{name} {name} rest_{name} fill 0 filling" for name in BIASES]
+    lines += [f"Sempty_{d} xcell.xcolumn.cin_{d} 0 fill 0 filling" for d in "ab"]
     rails = {"start_a": start[0], "start": start[1], "dark": spec.dark, "reference": spec.dark - image * spec.swing / 4}
     rails |= {"vdd_bias": corner.supply, "vdd_own": corner.supply}
     rails |= {f"rest_{name}": volt for name, volt in at_rest(setup, sizes, corner).items()}
@@ -307,11 +310,11 @@ def sample(
         "readsn": pulse(begin, end + 2 * GAP, high),
         "ref": pulse(begin, middle),
         "refn": pulse(begin, middle, high),
-        "w0": pulse(begin, end),
+        "w0": [(0.0, high), (end, high), (end + EDGE, 0.0)],  # from before on: its capacitor begins at level
         "sig": pulse(middle + GAP, end + GAP),
         "sign": pulse(middle + GAP, end + GAP, high),
         "f0": both(middle + GAP, end + GAP, turn, turn + t + 2 * GAP),
-        "fn0": both(middle + GAP, end + GAP, turn, turn + t + 2 * GAP, high),
+        "fn0": both(begin, end + GAP, turn, turn + t + 2 * GAP, high),
         "idle": both(begin, end + 2 * GAP, turn, turn + t + 2 * GAP, high),
         "row": [(s, v / high * ROW) for s, v in pulse(middle + GAP, end + 10 * GAP)],
         "edge": [(0.0, 0.0 if image else high)],
