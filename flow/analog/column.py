@@ -25,9 +25,9 @@ from talbot.pixels.circuits.amplifier import BIAS
 from talbot.pixels.circuits.column import BIASES, CONTROLS, SUPPLIES, column
 from talbot.pixels.circuits.column_block import (
     CASCODES,
-    CLEAR,
     OUTSIDE,
     cascode_lines,
+    clear_pulse,
     column_bias,
     lane_end,
     lane_line,
@@ -49,7 +49,9 @@ BOTH = 0.8, 0.4  # of a full well, of the diodes whose mean is measured
 SETTLED = 20e-6  # s until the bias alone is at rest
 TRIMS = 2  # steps to the trimmed level
 FULL = 0.98  # of a full well: what is lost there
-LIGHT = 1e-6  # s in which the wells get their charge, while they are at no line
+# s in which the wells get their charge, right before they are at their lines: a switch that is off leaks, which is the
+# pixel's (at ff_125C_1v98 three LSB a us of a well at 0.04 V, by its line)
+LIGHT = 0.1e-6
 QUIET = {
     f"{name}{t}": high
     for name, high in (("w", False), ("f", False), ("fn", True), ("unasked", True))
@@ -58,8 +60,9 @@ QUIET = {
 DRIVEN = (
     "group",
     "k",
-    *(name for name in CONTROLS if name not in CASCODES),
+    *(name for name in CONTROLS if name not in (*CASCODES, "clear")),
     "readsn",
+    "refn",
     "w0",
     "f0",
     "fn0",
@@ -202,7 +205,8 @@ def noise(spec: ColumnSpec, sizes: ColumnSizes, process: ModuleType, celsius: fl
     driver = sizes.lane.input * gates["lane"]
     for gain, times, name, _, stage, feedback, inputs, load in stages:
         beta = feedback / (feedback + inputs + (stage.input * gates[name] if name == "front" else driver))
-        white = BOLTZMANN * (celsius + 273.15) * GAMMA * (1 + EFFICIENCY["top"] / EFFICIENCY[name])
+        source = EFFICIENCY["lane_top" if name == "lane" else "top"]
+        white = BOLTZMANN * (celsius + 273.15) * GAMMA * (1 + source / EFFICIENCY[name])
         total += times * gain**2 * white / (beta * (load + feedback * (1 - beta)))
     return total**0.5 / spec.swing * spec.full_well
 
@@ -215,6 +219,7 @@ def bench(sizes: ColumnSizes, spec: ColumnSpec) -> Circuit:
         Instance("bias", bias(), ("ibias", "vdd_own", "vss")),
         Instance("lines", column_bias(sizes), ("ibias", *BIASES, "level", "vdd_bias", "vss")),
         Instance("cascodes", cascode_lines(), cascode_lines().ports),
+        Instance("clear", clear_pulse(sizes), ("ref", "refn", "clear", "vbp", "vdd_own", "vss")),
     ]
     devices = list[Transistor]()
     capacitors = [Capacitor(f"outside_{name}", name, f"rest_{name}", OUTSIDE / spec.array) for name in BIASES]
@@ -237,7 +242,8 @@ def bench(sizes: ColumnSizes, spec: ColumnSpec) -> Circuit:
         "start",
         "start_a",
     )
-    own += ("dark", "reference", "far_a", "far_b", "vdd_bias", "vdd_own", *(f"rest_{name}" for name in BIASES))
+    own += ("dark", "reference", "far_a", "far_b", "vdd_bias", "vdd_own")
+    own += (*BIASES, *(f"rest_{name}" for name in BIASES))
     own += SUPPLIES
     return Circuit("bench", own, tuple(devices), tuple(capacitors), instances=tuple(parts))
 
@@ -268,13 +274,17 @@ def opened(
 ) -> Simulator:
     """An ngspice process of the bench. image: the first lane's reference is the middle. seed: of mismatch.
 
-    What is outside of the chip at the bias has its level from the begin on: it would take milliseconds.
+    The bias's lines are held until a row is read, or what is outside of the chip at them would take milliseconds: where
+    ngspice finds an operating point by a transient of its own, it ends long before.
+    The coupling capacitors begin empty, as leakage leaves them after a pause: the second stage has farthest to go.
     """
     lines = deck(circuit or bench(sizes, spec), setup, corner, seed=seed)
     lines.append(f".model filling sw vt={corner.supply / 2:g} vh=0 ron=1000 roff=1e15")
     ampere = spec.well * setup.scale(corner) / LIGHT
     for d in "ab":
         lines += [f"Sreset_{d} well_{d} level fill 0 filling", f"Glight_{d} well_{d} 0 x_{d} 0 {ampere:.9g}"]
+    lines += [f"Shold_{name} {name} rest_{name} fill 0 filling" for name in BIASES]
+    lines += [f"Sempty_{d} xcell.xcolumn.cin_{d} 0 fill 0 filling" for d in "ab"]
     rails = {"start_a": start[0], "start": start[1], "dark": spec.dark, "reference": spec.dark - image * spec.swing / 4}
     rails |= {"vdd_bias": corner.supply, "vdd_own": corner.supply}
     rails |= {f"rest_{name}": volt for name, volt in at_rest(setup, sizes, corner).items()}
@@ -296,15 +306,15 @@ def sample(
         return [*pulse(start, stop, low), *pulse(again, off, low)[1:]]
 
     stimulus: dict[str, Points] = {
-        "clear": pulse(begin, begin + CLEAR),
         "reads": pulse(begin, end + 2 * GAP),
         "readsn": pulse(begin, end + 2 * GAP, high),
         "ref": pulse(begin, middle),
-        "w0": pulse(begin, end),
+        "refn": pulse(begin, middle, high),
+        "w0": [(0.0, high), (end, high), (end + EDGE, 0.0)],  # from before on: its capacitor begins at level
         "sig": pulse(middle + GAP, end + GAP),
         "sign": pulse(middle + GAP, end + GAP, high),
         "f0": both(middle + GAP, end + GAP, turn, turn + t + 2 * GAP),
-        "fn0": both(middle + GAP, end + GAP, turn, turn + t + 2 * GAP, high),
+        "fn0": both(begin, end + GAP, turn, turn + t + 2 * GAP, high),
         "idle": both(begin, end + 2 * GAP, turn, turn + t + 2 * GAP, high),
         "row": [(s, v / high * ROW) for s, v in pulse(middle + GAP, end + 10 * GAP)],
         "edge": [(0.0, 0.0 if image else high)],
@@ -319,7 +329,7 @@ def sample(
         "fill": [(0.0, high), (begin, high), (begin + EDGE, 0.0)],
     }
     for name, volts in (("x_a", a), ("x_b", b)):
-        stimulus[name] = [(s, v / high * volts) for s, v in pulse(begin + GAP, begin + GAP + LIGHT)]
+        stimulus[name] = [(s, v / high * volts) for s, v in pulse(middle - LIGHT, middle)]
     return spice.transient(stimulus, {}, turn + 2 * t, t / 5)
 
 

@@ -20,7 +20,7 @@ STACK, STACK_P = (2.5, ("n_lvt", 5.0)), (0.42, ("p", 2.0))  # um, of the diodes 
 LEG = 0.8  # um, of a branch of the bias
 SECTIONS = 12  # of a lane's line
 GROUPS, PLACES = 8, 6  # lines of a group, of a place in the tile
-CLEAR = 0.7e-6  # s in which the charge amplifiers are reset: their lines may come from 0 V
+CLEAR = 1.15e-6  # s in which the charge amplifiers are reset: until the second stages' capacitors are charged
 LATE = 4  # inverters by which what must end last does
 BANK_INPUTS = ("ref_ctl", "read", "tap0", "tap1", "mode0", "mode1", "hold")
 BANK_INPUTS += tuple(f"{name}{bit}" for name, bits in (("group", 3), ("k", 3), ("sub", 2)) for bit in range(bits))
@@ -36,7 +36,7 @@ def column_bias(sizes: ColumnSizes) -> Circuit:
     """
     front, lane = sizes.front, sizes.lane
 
-    def feed(name: str, node: str, amperes: float = BRANCH) -> tuple[Transistor, Transistor]:
+    def feed(name: str, node: str, amperes: float) -> tuple[Transistor, Transistor]:
         """A branch's current into a node."""
         times = amperes / front.current
         return (
@@ -46,9 +46,10 @@ def column_bias(sizes: ColumnSizes) -> Circuit:
 
     devices = [
         *(n(f"one{k}", "ibias ibias vss", LEG, FRONT) for k in range(round(BIAS / BRANCH))),
-        *(n(f"leg_{name}", f"{name} ibias vss", LEG, FRONT) for name in ("vbp", "vcp")),
+        n("leg_vbp", "vbp ibias vss", drawn(LEG * front.current / BRANCH), FRONT),
+        n("leg_vcp", "vcp ibias vss", LEG, FRONT),
         n("leg_vbl", "vbl ibias vss", drawn(LEG * lane.current / PARTS / BRANCH), FRONT),
-        *feed("vbp", "vbp"),
+        *feed("vbp", "vbp", front.current),
         p("vbl_top", "vbl_high vbl vdd", drawn(lane.top / PARTS), LANE_TOP),
         p("vbl_cascode", "vbl vcp vbl_high", drawn(lane.cascode_p / PARTS), CASCODE_P),
         p("vcp", "vcp vcp vdd", *STACK_P),
@@ -127,7 +128,8 @@ def clear_pulse(sizes: ColumnSizes) -> Circuit:
 
     Pins ref refn clear vbp vdd vss.
     """
-    width, farad = drawn(sizes.front.top * BRANCH / sizes.front.current), CLEAR * BRANCH / 0.75
+    # Half a charge amplifier's current, of less than half its width: narrow transistors have more
+    width, farad = drawn(0.37 * sizes.front.top), CLEAR * sizes.front.current / 2 / 0.75
     return Circuit(
         "clear_pulse",
         ("ref", "refn", "clear", "vbp", *SUPPLIES),
@@ -193,7 +195,8 @@ def bank(sizes: ColumnSizes) -> Circuit:
         gate(inverter(6), f"asked{t}", f"unasked{t}")
         ends = gate(nand(), "sig", f"now{t}", f"f{t}r"), gate(nand(), "turned", f"asked{t}", f"f{t}s")
         gate(inverter(6), gate(inverter(2), gate(nand(), *ends, f"f{t}_0"), f"f{t}_1"), f"f{t}")
-        gate(inverter(6), gate(inverter(2), f"f{t}_1", f"f{t}_2"), f"fn{t}")
+        # In the reference half too: f is at start then, or what it had in the turn before were in the sample
+        gate(inverter(6), gate(nand(2), f"f{t}_1", f"w{t}n", f"f{t}_2"), f"fn{t}")
     gate(inverter(6), gate(inverter(6), "hold", "turnn"), "turn")
     gate(inverter(6), gate(nand(6), "hold", "edge", "turnbn"), "turnb")
     decoded("group", GROUPS, 3, "group_", ("turn",))

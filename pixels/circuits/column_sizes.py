@@ -23,11 +23,14 @@ from .specification import LaneSpec, one_digit
 FRONT, LANE, CASCODE = ("n", 1.0), ("n", 0.5), ("n_lvt", 0.5)
 TOP, CASCODE_P, LANE_TOP = ("p", 2.0), ("p", 0.5), ("p", 0.5)
 BACK_TOP = TOP
-EFFICIENCY = {"front": 21.0, "back": 22.0, "lane": 17.0, "cascode": 15.0, "top": 9.0, "cascode_p": 15.0, "lane_p": 11.0}
+EFFICIENCY = {"front": 21.0, "back": 22.0, "lane": 17.0, "cascode": 15.0, "cascode_p": 15.0, "lane_p": 11.0}
+# Of the sources: a charge amplifier's is one finger, as the bias's that it follows. In two of half the width it had
+# 1.25 times the current at ff_125C_1v98, as drawn: SKY130's narrow transistors have more
+EFFICIENCY |= {"top": 8.0, "lane_top": 9.0}
 PARTS = 16  # of what drives the lane: a replica is one of them
 FULL = 127.5  # LSB of a diode whose well is full
 TIMES = 2.0  # Cin over Chold: the holder's gain
-EXPOSED = 0.006  # of a charge that the signal half may leave at the typical corner
+EXPOSED = 0.015  # of a charge that the signal half may leave at the typical corner
 # More of a charge is lost, as measured there, on the mean of the taps: 0.0023 in the first, less in those after it, in
 # whose reads the second diode's holder takes no charge
 BEYOND = 0.0005
@@ -250,17 +253,18 @@ def size(spec: ColumnSpec, process: ModuleType, hold: float = HOLD) -> ColumnSiz
 
     def stage(kind: tuple[str, float], name: str, top: tuple[str, float], gm: float, least: float = 0.0) -> Stage:
         amperes = gm / EFFICIENCY[name]
-        above = "lane_p" if name == "lane" else "cascode_p"
-        roles = (kind, name), (CASCODE, "cascode"), (top, "top"), (CASCODE_P, above)
+        source, above = ("lane_top", "lane_p") if name == "lane" else ("top", "cascode_p")
+        roles = (kind, name), (CASCODE, "cascode"), (top, source), (CASCODE_P, above)
         widths = [amperes / process.operating(*one, EFFICIENCY[role]).density for one, role in roles]
         return Stage(amperes, *(drawn(max(w, floor)) for w, floor in zip(widths, (least, 0, 0, 0), strict=True)))
 
     def gain(kind: tuple[str, float], name: str, top: tuple[str, float]) -> float:
         below = process.operating(*kind, EFFICIENCY[name]).gain
         below *= process.operating(*CASCODE, EFFICIENCY["cascode"]).gain
-        above = process.operating(*top, EFFICIENCY["top"]).gain
+        source = EFFICIENCY["lane_top" if name == "lane" else "top"]
+        above = process.operating(*top, source).gain
         above *= process.operating(*CASCODE_P, EFFICIENCY["cascode_p"]).gain
-        return 1 / (1 / below + EFFICIENCY["top"] / EFFICIENCY[name] / above)
+        return 1 / (1 / below + source / EFFICIENCY[name] / above)
 
     lost = EXPOSED + BEYOND + 1 / (beta * gain(FRONT, "front", TOP))
     lost += 1 / (back_beta * gain(LANE, "back", BACK_TOP))

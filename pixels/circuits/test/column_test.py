@@ -88,6 +88,12 @@ def test_inputs_of_the_charge_amplifiers_are_as_alike_as_the_offset_asks():
     assert size(replace(SPEC, offset=2.0), process).front.input == pytest.approx(4 * SIZES.front.input, rel=0.01)
 
 
+def test_a_charge_amplifiers_source_is_the_transistor_of_the_bias():
+    """One finger, with the same current: of other widths they are less alike than their ratio says."""
+    sources = {one.name: one.w for one in column_bias(SIZES).transistors if one.name.endswith("_top")}
+    assert sources["vbp_top"] == sources["level_top"] == SIZES.front.top < 2
+
+
 def test_the_feedback_is_the_well_less_what_is_lost():
     assert 0.97 < SIZES.feedback / (2 * SPEC.fall / SPEC.swing * SPEC.well) < 1
 
@@ -146,7 +152,7 @@ def test_the_phases_of_a_row():
     assert all(quiet[name] for name in ("readsn", "fn0", "idle"))
     first = lines(read=True, ref_ctl=True, tap1=True)
     assert first["clear"] and first["ref"] and first["w2"] and not first["w0"] and not first["sig"]
-    assert first["fn2"] and not first["f2"] and not first["idle"]  # the far end is at start
+    assert not first["fn2"] and not first["f2"] and first["fn0"] and not first["idle"]  # the far end is at start, and f
     assert not lines(read=True, ref_ctl=True, ramp=True)["clear"]
     second = lines(read=True, tap1=True)
     assert second["sig"] and second["w2"] and second["f2"] and not second["fn2"] and not second["f0"]
