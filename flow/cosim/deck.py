@@ -184,7 +184,6 @@ def build(
         f"Vdd vdd 0 {spec.supply:g}",
         *(f"V{name} {name}_out 0 {volts:g}" for name, volts in supplies.items()),
         *(f"R{name} {name}_out {name} {spec.reference_resistance:g}" for name in supplies),
-        _breaks(timing),
         *deck.sources,
         *body,
         *extracted.rest_of_nets(body, layouts),
@@ -257,12 +256,6 @@ def _subcircuits(circuit: Circuit) -> list[str]:
 def _count(circuit: Circuit) -> int:
     """Transistors in a circuit and those inside it."""
     return len(circuit.transistors) + sum(_count(one.circuit) for one in circuit.instances)
-
-
-def _breaks(timing: Timing) -> str:
-    """A source without a load whose corners are those of clock and strobe: ngspice lowers its order there."""
-    t = timing
-    return f"Vbreak break 0 PULSE(0 1 0 {t.edge:.9g} {t.edge:.9g} {t.high - t.edge:.9g} {t.period:.9g})"
 
 
 def _source(

@@ -64,6 +64,7 @@ def summary(row: Row) -> dict[str, Any]:
         "rejected_points": run.stats["rejected"],
         "attempts": run.attempts,
         "seconds": run.stats["seconds"],
+        "processor_seconds": run.stats["processor_seconds"],
         "circuit_cycles_per_s": run.stats["circuit_cycles"] / run.stats["seconds"],
         "codes": [
             {"column": s.column, "sub": s.sub, "value": s.value, "code": s.code, "model": s.expected}

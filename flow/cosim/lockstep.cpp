@@ -1,6 +1,7 @@
 // The chip's Verilog (Bench, in Verilator) and a circuit (ngspice as a shared library) in lock-step, in one process.
 //
-// ngspice's transient runs and calls back. Its time never passes a corner of what drives the circuit: a step is cut there.
+// ngspice's transient runs and calls back. Its time never passes a corner of what drives the circuit: a step is cut there,
+// and it is a breakpoint, at which ngspice lowers its order. A corner where nothing turns is none.
 // At the rising edge of the clock the comparators' outputs go to the chip, the chip's registers are clocked, and its pins
 // become ramps of the EXTERNAL sources. A cycle in which no switch of the circuit is closed and no comparator decides has
 // no time of the circuit. At the end of the frame the process ends from within the transient.
@@ -23,6 +24,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <set>
 #include <string>
 #include <unordered_map>
@@ -49,9 +51,11 @@ VBench* top;
 std::vector<Source> sources;
 std::unordered_map<std::string, Source*> by_name;
 double period, edge, step, stop, high, threshold = 0.9;
-std::vector<double> corners;     // of a cycle, s after its clock edge
+std::vector<double> events;      // of a cycle: its clock edge, clk's fall and the end of light, s
+std::set<double> corners;        // s, of what turns: begins and ends of ramps that are to come
 std::uint64_t ticks = 0, analog = 0, period_number = 0, limit = 1000000000, rejected = 0, accepted = 0;
-std::size_t corner = 0;          // the next one
+std::size_t event = 0;           // the next one
+bool begun = false;              // a ramp, right now
 bool started = false, was_busy = false, pixels = false, whole = false;
 std::uint64_t pending = 0;       // cycles of integration whose charge the circuit has not got
 unsigned shining = 0;            // the tap that they are of
@@ -61,6 +65,7 @@ std::vector<int> answer_at;      // of each lane, the vector
 std::vector<double> point;
 std::FILE *points = nullptr, *cycles = nullptr;
 std::chrono::steady_clock::time_point began;
+std::clock_t worked;
 
 std::string argument(const char* name) {
   const char* match = context->commandArgsPlusMatch(name);
@@ -84,6 +89,9 @@ void turn(Source& s, bool on, double time) {
   s.from = s.to;
   s.to = to;
   s.start = time + (on ? s.rise : s.fall);
+  for (const double at : {s.start, s.start + edge})
+    if (at <= time + EXACT) begun = true;
+    else if (corners.insert(at).second) ngSpice_SetBkpt(at);
 }
 
 void tick() {
@@ -110,6 +118,7 @@ bool quiet() {
 // The frame is over: the rest of the host's script needs no circuit.
 [[noreturn]] void finish() {
   const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - began;
+  const double processor = static_cast<double>(std::clock() - worked) / CLOCKS_PER_SEC;
   const auto of_frame = ticks;
   while (!top->done && !context->gotFinish()) tick();
   top->final();
@@ -119,8 +128,8 @@ bool quiet() {
     std::FILE* stats = std::fopen(name.c_str(), "w");
     if (!stats) std::_Exit(3);
     std::fprintf(stats,
-                 "{\"seconds\": %.6f, \"cycles\": %llu, \"circuit_cycles\": %llu, \"accepted\": %llu, \"rejected\": %llu}\n",
-                 spent.count(), static_cast<unsigned long long>(of_frame), static_cast<unsigned long long>(analog),
+                 "{\"seconds\": %.6f, \"processor_seconds\": %.6f, \"cycles\": %llu, \"circuit_cycles\": %llu, \"accepted\": %llu, \"rejected\": %llu}\n",
+                 spent.count(), processor, static_cast<unsigned long long>(of_frame), static_cast<unsigned long long>(analog),
                  static_cast<unsigned long long>(accepted), static_cast<unsigned long long>(rejected));
     std::fclose(stats);
   }
@@ -173,19 +182,31 @@ void clock_edge(double time) {
   for (Source& s : sources) if (s.bit != LIGHT) turn(s, !s.half && bit_of(AFE(controls), s.bit), time);
 }
 
-double due() { return static_cast<double>(period_number) * period + corners[corner]; }
+double due() { return static_cast<double>(period_number) * period + events[event]; }
+
+bool nothing_at(double moment) {
+  const auto turns = [&](const Source& s) {
+    if (moment == 0.5 * period && s.bit == LIGHT && s.to != s.low) return true;
+    return moment == high && s.half && bit_of(AFE(controls), s.bit);
+  };
+  return std::none_of(sources.begin(), sources.end(), turns);
+}
 
 void happen() {
-  if (corner == 0) clock_edge(due());
-  else if (corners[corner] == high)
+  const double now = due();
+  if (event == 0) clock_edge(now);
+  else if (events[event] == high)
     for (Source& s : sources)
-      if (s.half) turn(s, bit_of(AFE(controls), s.bit), due());
-  if (corners[corner] == 0.5 * period && pixels && !whole)
-    for (Source* s : light) turn(*s, false, due());
-  if (++corner == corners.size()) {
-    corner = 0;
-    ++period_number;
-  }
+      if (s.half) turn(s, bit_of(AFE(controls), s.bit), now);
+  if (events[event] == 0.5 * period && pixels && !whole)
+    for (Source* s : light) turn(*s, false, now);
+  do
+    if (++event == events.size()) {
+      event = 0;
+      ++period_number;
+    }
+  while (event && nothing_at(events[event]));
+  ngSpice_SetBkpt(due());
 }
 
 int sync(double time, double* delta, double, int redo, int, int location, void*) {
@@ -193,8 +214,12 @@ int sync(double time, double* delta, double, int redo, int, int location, void*)
     redo ? ++rejected : ++accepted;
     return 0;
   }
+  begun = false;
   while (time >= due() - EXACT) happen();
-  if (time + *delta > due()) *delta = due() - time;
+  while (!corners.empty() && time >= *corners.begin() - EXACT) corners.erase(corners.begin());
+  const double next = corners.empty() ? due() : std::min(due(), *corners.begin());
+  if (begun) *delta = std::min(*delta, 0.1 * edge);  // as after a breakpoint
+  if (time + *delta > next) *delta = next - time;
   return 0;
 }
 
@@ -245,10 +270,8 @@ bool read_drive(const std::string& name) {
   char text[256];
   int bit, half;
   double zero, one, rise, fall;
-  std::set<double> at = {0.0, high, 0.5 * period, 0.5 * period + edge};  // light ends in the middle
   while (std::fscanf(file, "%255s %d %lf %lf %d %lf %lf", text, &bit, &zero, &one, &half, &rise, &fall) == 7) {
     sources.push_back({text, static_cast<unsigned>(bit), zero, one, half != 0, rise, fall, zero, zero, -1.0});
-    for (const double begin : {(half ? high : 0.0) + rise, fall}) at.insert({begin, begin + edge});
   }
   std::fclose(file);
   for (Source& s : sources) by_name[s.name] = &s;
@@ -256,8 +279,8 @@ bool read_drive(const std::string& name) {
     if (const auto found = by_name.find("vlight" + std::to_string(t)); found != by_name.end()) light[t] = found->second;
   pixels = light[0] && light[1] && light[2] && light[3];
   whole = pixels && !argument("whole=").empty();
-  for (const double time : at)
-    if (corners.empty() || time > corners.back() + EXACT) corners.push_back(time);
+  const std::set<double> at = {0.0, high, 0.5 * period};
+  events.assign(at.begin(), at.end());
   return true;
 }
 }  // namespace
@@ -288,6 +311,7 @@ int main(int argc, char** argv) {
   const char* from = argument("uic=").empty() ? "" : " uic";
   std::snprintf(command, sizeof command, "tran %g %g 0 %g%s", step, stop, step, from);
   began = std::chrono::steady_clock::now();
+  worked = std::clock();
   ngSpice_Command(command);
   std::fprintf(stderr, "the transient ended before the frame, in cycle %llu of the circuit\n",
                static_cast<unsigned long long>(analog));
