@@ -117,11 +117,11 @@ def drive(source: Drive, columns: Sequence[int], lanes: Sequence[int], first: in
     for t in range(TAPS):
         source(f"w{t}", high, more + 2 + t)
         source(f"f{t}", high, more + 2 + TAPS + t, rise=GAP, fall=3 * AFTER)
-        source(f"fn{t}", 0.0, more + 2 + TAPS + t, low=high, rise=GAP, fall=3 * AFTER)
+        source(f"fn{t}", 0.0, more + 2 + 3 * TAPS + t, low=high, rise=GAP, fall=3 * AFTER)
         source(f"unasked{t}", 0.0, more + 2 + 2 * TAPS + t, low=high)
         source(f"light{t}", 1.0, -1)
     for c in columns:
-        source(f"turn_column{c}", high, more + 2 + 3 * TAPS + c, rise=COLUMNS, fall=2 * AFTER)
+        source(f"turn_column{c}", high, more + 2 + 4 * TAPS + c, rise=COLUMNS, fall=2 * AFTER)
     for lane in lanes:
         source(f"turn{lane}", high, lane, rise=COLUMNS / 2, fall=2 * AFTER)
         source(f"turnn{lane}", 0.0, lane, low=high, rise=COLUMNS / 2, fall=2 * AFTER)
@@ -142,7 +142,7 @@ def trimmed(
     more = 3 + TAPS
     on = {0: range(1, reset + 1), 1: halves[1], 2: halves[0], more: range(read, ends)}
     on |= {more + 1: [*range(read, ends), turn], more + 2: range(read, ends), more + 2 + TAPS: [*halves[1], turn]}
-    on |= {more + 2 + 2 * TAPS: range(turn + 2), more + 2 + 3 * TAPS: [turn]}
+    on |= {more + 2 + 2 * TAPS: range(turn + 2), more + 2 + 3 * TAPS: on[more + 1], more + 2 + 4 * TAPS: [turn]}
     lane_bit = 100  # the lane's own, none of the row's
     on[lane_bit] = [turn]
     waves: dict[str, list[tuple[float, float]]] = {}

@@ -10,8 +10,8 @@
 //              SUBS                   the amplifiers' outputs are sampled, of each tap
 //              1                      the row's read, both halves
 //              1                      the row's read or a lane's sample
-//              3 SUBS                 the row's read, its signal half or a lane's sample, of each tap; each sub-sample at
-//                                     the pins
+//              4 SUBS                 the row's read, its signal half or a lane's sample, of each tap; each sub-sample at
+//                                     the pins; the row's read or a lane's sample, of each tap
 //              COLS                   column c is selected while its lane samples
 `default_nettype none
 `ifndef BALANCE_BITS
@@ -35,7 +35,7 @@ module Afe #(
     output wire        [LANES-1:0]         comparator
 );
   localparam int SUBS = 4, LAST = 10;                   // decisions of a conversion, with those of the window
-  localparam int ROW = 10 * LANES + SUBS * COLS, MORE = ROW + 3 + SUBS, OWN = MORE + 2 + 3 * SUBS;
+  localparam int ROW = 10 * LANES + SUBS * COLS, MORE = ROW + 3 + SUBS, OWN = MORE + 2 + 4 * SUBS;
   localparam int BITS = OWN + COLS;
 
   reg [LANES-1:0] answers  /*verilator public_flat_rw*/;
@@ -71,6 +71,7 @@ module Afe #(
     assign controls[MORE+2+t] = Bench.read && int'(tap) == t;
     assign controls[MORE+2+SUBS+t] = (reads && int'(tap) == t) || (hold && int'(sub) == t);
     assign controls[MORE+2+2*SUBS+t] = int'(sub) == t;
+    assign controls[MORE+2+3*SUBS+t] = controls[MORE+2+t] | controls[MORE+2+SUBS+t];
   end
   for (genvar t = 0; t < SUBS; t++) begin : sampling
     assign controls[ROW+3+t] = reads && Bench.chip.sample && int'(tap) == t;
