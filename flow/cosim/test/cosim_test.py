@@ -13,7 +13,7 @@ from talbot.flow.cosim.diagnose import code_of, value_of
 from talbot.flow.cosim.faults import Fault
 from talbot.flow.cosim.row import Row, RowRequest, read_row
 from talbot.flow.cosim.waves import write_vcd
-from talbot.models.parameters import ParameterError
+from talbot.models.parameters import ParameterError, circuit_columns
 from talbot.pixels.circuits.amplifier import AmplifierSpec
 from talbot.pixels.circuits.lane import sar_lane, size
 from talbot.pixels.circuits.specification import LaneSpec
@@ -145,6 +145,20 @@ def test_a_sum_does_not_depend_on_its_turn():
     """With 5 pF at the bias's lines alone it was 0.2 LSB less from turn to turn."""
     row = read_row(replace(SMALL, types=3, amplifier=True, columns=True))
     assert len(row.samples) == 3 and np.abs(row.at_lane).max() < 0.4 and not row.beyond.any()
+
+
+@pytest.mark.parametrize(
+    ("mode", "taps"), [("edge", ["diode"]), ("image", ["sum"]), ("tof", ["sum"] + 3 * ["later_sum"])]
+)
+def test_the_model_has_the_columns_gains(mode: str, taps: list[str]):
+    """A value is as much smaller as `make analog` measured a column's gain."""
+    ideal = replace(SMALL, mode=mode)
+    asked = replace(ideal, amplifier=True, columns=True)
+    wanted = [getattr(circuit_columns(), name) for name in taps]
+    assert asked.delivered / asked.samples == pytest.approx(
+        np.broadcast_to(np.reshape(wanted, (-1, 1, 1, 1)), asked.samples.shape)
+    )
+    assert ideal.delivered is ideal.samples
 
 
 def test_columns_need_the_lanes_amplifiers():
