@@ -35,3 +35,4 @@ class Found:
     columns: dict[str, ColumnResult]
     column_noise: dict[str, float]
     column_offsets: list[float]
+    column_later: float

@@ -26,7 +26,7 @@ from talbot.pixels.circuits.row_driver import RowDriverSpec
 from talbot.pixels.circuits.specification import LaneSpec
 from talbot.pixels.circuits.support import SupportSpec
 
-from . import amplifier, column, comparator, lane, linearity, row_driver, spread, support
+from . import amplifier, column, comparator, lane, linearity, row_driver, spread, support, taps
 from . import noise as noises
 from .amplifier import AmplifierResult
 from .column import ColumnResult
@@ -230,6 +230,8 @@ def measured(
         for k in range(1, min(draws, COLUMNS) + 1)
     ]
     column_offsets = run(unlike, STORE, "columns drawn", workers)
+    given_t = setup, spec_c, sizes_c, typical, columns[TYPICAL].start
+    later = Job("column-later", taps.later_mean, given_t, (given_c, columns[TYPICAL].start))
     note("noise")
     closed = amplifier.ktc(setup, sizes_a, typical)
     quiet = Job(
@@ -265,6 +267,7 @@ def measured(
         columns,
         {name: column.noise(spec_c, sizes_c, process_of(setup.pdk), one.temperature) for name, one in places.items()},
         column_offsets,
+        run([later], STORE, "taps", workers)[0],
     )
 
 
@@ -288,6 +291,11 @@ def converter(spec: LaneSpec, sizes: LaneSizes, found: Found) -> dict[str, Any]:
             "unit_mismatch": round(sizes.dac.unit_mismatch, 6),
             **{name: round(value, 4) for name, value in zip(AMPLIFIER, bend, strict=True)},
         },
+        "columns": {
+            "diode": round(found.columns[TYPICAL].slope, 5),
+            "sum": round(found.columns[TYPICAL].mean, 5),
+            "later_sum": round(found.column_later, 5),
+        },
         "sources": {
             "inl": f"peak of {len(lane.CODES)} levels, by the decisions in ngspice, off the line through the ends",
             "dnl": "steps come from unit_mismatch",
@@ -296,6 +304,9 @@ def converter(spec: LaneSpec, sizes: LaneSizes, found: Found) -> dict[str, Any]:
             "ktc": "closed form of the lane's common plates, .noise of the amplifier in reset and signal",
             "unit_mismatch": f"{sizes.dac.source}",
             **dict.fromkeys(AMPLIFIER, fitted),
+            "diode": f"line through {len(column.WELLS)} charges of a column in ngspice, over the ideal one",
+            "sum": "of both diodes' charges, the first tap of a column in ngspice, over the ideal one",
+            "later_sum": "of the second tap",
         },
         "errors": {
             "inl": round(shape[2], 4),

@@ -92,7 +92,7 @@ def _print(s: dict[str, Any], folder: Path) -> None:
             f"its level {row['largest_error_of_level_lsb']:.3f}; "
             f"{row['differing_decisions']} of {row['decisions']} decisions; "
             f"slowest {1e9 * row['slowest_decision_s']:.2f} ns; {row['circuit_cycles']} cycles of "
-            f"{row['transistors']} transistors in {row['seconds']:.1f} s"
+            f"{row['transistors']} transistors in {row['seconds']:.1f} s, {row['processor_seconds']:.1f} of a processor"
         )
     for line in s["study"]:
         error = (

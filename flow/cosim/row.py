@@ -19,6 +19,7 @@ from talbot.models.parameters import (
     SensorParameters,
     check_choice,
     check_int,
+    circuit_columns,
     circuit_converter,
 )
 from talbot.models.parameters.electrical import AMPLIFIER
@@ -153,11 +154,20 @@ class RowRequest:
         return np.stack([(sums + differences) / 2, (sums - differences) / 2], -1)
 
     @cached_property
+    def delivered(self) -> npt.NDArray[np.float64]:
+        """`samples` as the column amplifiers give them: by their gains, as `make analog` measured a column."""
+        if not self.columns:
+            return self.samples
+        gains = circuit_columns()
+        taps = (gains.diode,) if self.mode == "edge" else (gains.sum, *[gains.later_sum] * (len(self.samples) - 1))
+        return self.samples * np.reshape(taps, (-1, 1, 1, 1))
+
+    @cached_property
     def values(self) -> dict[tuple[int, int], float]:
         """LSB at (column, sub-sample) of the row's pixels that are read."""
         sensor, frame = self.frame
-        read = golden_frame(self.samples, sensor, frame, self.front_end).read
-        values = self.front_end.values(self.samples, self.mode)
+        read = golden_frame(self.delivered, sensor, frame, self.front_end).read
+        values = self.front_end.values(self.delivered, self.mode)
         if self.front_end.converter:
             values = self.front_end.converter.amplified(values, self.mode != "edge")
         return {(int(c), s): float(values[s, 0, c]) for c in np.flatnonzero(read[0]) for s in range(len(values))}
@@ -264,11 +274,11 @@ def read_row(asked: RowRequest, note: Callable[[str], None] = lambda text: None,
     sensor, frame = asked.frame
     binary = program or lockstep.program(sensor, note)
     run = lockstep.run(
-        *(binary, asked.deck, frame, asked.samples, asked.front_end, asked.clock, asked.accuracy, asked.whole),
+        *(binary, asked.deck, frame, asked.delivered, asked.front_end, asked.clock, asked.accuracy, asked.whole),
         note=lambda text: note(f"{asked.name}: {text}"),
     )
     codes = decode_stream(run.stream, sensor.tile)[0].samples[0]
-    expected = golden_frame(asked.samples, sensor, frame, asked.front_end).codes[0]
+    expected = golden_frame(asked.delivered, sensor, frame, asked.front_end).codes[0]
     deck = asked.deck()
     found = []
     for (column, sub), value in asked.values.items():

@@ -23,7 +23,8 @@ SETTINGS = {
     "step 1 ns": Accuracy(step=1e-9),
 }
 PLANTED = (Fault("comparator", (0,)), Fault("capacitor", (1, 6)), Fault("diodes", (6,)), Fault("row", (1,)))
-FAULTY = RowRequest(mode="edge", cols=12, lanes=2, types=2)
+COARSE = Accuracy(reltol=1e-3, chgtol=1e-15)  # codes that a fault moves by far more
+FAULTY = RowRequest(mode="edge", cols=12, lanes=2, types=2, amplifier=True, columns=True, accuracy=COARSE)
 
 
 def accuracy(note: Callable[[str], None], asked: RowRequest = ONE) -> list[dict[str, Any]]:

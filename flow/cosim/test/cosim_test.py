@@ -14,7 +14,7 @@ from talbot.flow.cosim.extracted import rest_of_nets
 from talbot.flow.cosim.faults import Fault
 from talbot.flow.cosim.row import Row, RowRequest, read_row
 from talbot.flow.cosim.waves import write_vcd
-from talbot.models.parameters import ParameterError
+from talbot.models.parameters import ParameterError, circuit_columns
 from talbot.pixels.circuits.amplifier import AmplifierSpec
 from talbot.pixels.circuits.lane import sar_lane, size
 from talbot.pixels.circuits.netlist import Circuit, Resistor
@@ -173,6 +173,20 @@ def test_every_node_of_a_drawn_net_begins_where_the_net_does():
 def test_faults_are_those_of_schematics():
     with pytest.raises(ParameterError, match="fault = .*: must be none with extracted circuits"):
         replace(SMALL, extracted=True, fault=Fault("row", (1,)))
+
+
+@pytest.mark.parametrize(
+    ("mode", "taps"), [("edge", ["diode"]), ("image", ["sum"]), ("tof", ["sum"] + 3 * ["later_sum"])]
+)
+def test_the_model_has_the_columns_gains(mode: str, taps: list[str]):
+    """A value is as much smaller as `make analog` measured a column's gain."""
+    ideal = replace(SMALL, mode=mode)
+    asked = replace(ideal, amplifier=True, columns=True)
+    wanted = [getattr(circuit_columns(), name) for name in taps]
+    assert asked.delivered / asked.samples == pytest.approx(
+        np.broadcast_to(np.reshape(wanted, (-1, 1, 1, 1)), asked.samples.shape)
+    )
+    assert ideal.delivered is ideal.samples
 
 
 def test_columns_need_the_lanes_amplifiers():

@@ -6,7 +6,13 @@ from math import hypot
 
 import pytest
 
-from talbot.models.parameters import TYPICAL_CONVERTER, ConverterParameters, ParameterError, circuit_converter
+from talbot.models.parameters import (
+    TYPICAL_CONVERTER,
+    ConverterParameters,
+    ParameterError,
+    circuit_columns,
+    circuit_converter,
+)
 from talbot.models.parameters.circuit import TABLE
 
 WRITTEN = json.loads(TABLE.read_text())
@@ -14,7 +20,8 @@ WRITTEN = json.loads(TABLE.read_text())
 
 def test_every_value_has_a_source():
     names = {field.name for field in fields(ConverterParameters)} - {"seed"}
-    assert WRITTEN["parameters"].keys() == WRITTEN["sources"].keys() == names
+    assert WRITTEN["parameters"].keys() == names
+    assert WRITTEN["sources"].keys() == names | WRITTEN["columns"].keys()
     assert all(WRITTEN["sources"].values()) and WRITTEN["command"].startswith("make analog")
     assert all(0 <= error < 1 for error in WRITTEN["errors"].values())
 
@@ -36,3 +43,12 @@ def test_a_value_out_of_range_is_refused_by_name(tmp_path):
     file.write_text(json.dumps(WRITTEN | {"parameters": WRITTEN["parameters"] | {"ktc": -1}}))
     with pytest.raises(ParameterError, match="ktc = -1"):
         circuit_converter(file)
+    file.write_text(json.dumps(WRITTEN | {"columns": WRITTEN["columns"] | {"sum": 2}}))
+    with pytest.raises(ParameterError, match="sum = 2"):
+        circuit_columns(file)
+
+
+def test_columns_are_within_the_slope_that_they_were_sized_for():
+    found = circuit_columns()
+    assert all(0 < abs(gain - 1) < 0.05 for gain in (found.diode, found.sum, found.later_sum))
+    assert 0.002 < found.later_sum - found.sum < 0.005  # of 0.65 % of a half: the second diode's holder takes none
