@@ -15,6 +15,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     add = parser.add_argument
     add("--pdk", default="sky130", help="process: sky130")
     add("--corners", default="typical", help="as of talbot analog: all (21), quick (3), typical, or names")
+    add("--table", type=Path, help="also write the drawn column's gains: models/parameters/circuit_drawn.json")
     add("--workers", type=worker_count, default=-1, help="processes; -1: all cores")
     add("--out", type=Path, help="folder for the results (default: build/analog-layout/<pdk>)")
 
@@ -28,7 +29,7 @@ def run(options: Namespace) -> int:
 
     out = options.out or RESULTS / "analog-layout" / options.pdk
     with Steps(STEPS, lines=True) as steps:
-        summary = make(options.pdk, corners_of(options.corners), out, options.workers, steps.note)
+        summary = make(options.pdk, corners_of(options.corners), out, options.table, options.workers, steps.note)
     _print(summary, out)
     return 0 if summary["passed"] else 1
 

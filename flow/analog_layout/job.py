@@ -9,8 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from talbot.base.files import check_folder, staged
+from talbot.base.files import check_file, check_folder, staged, write
 from talbot.base.gds import write_gds
+from talbot.cells.corner import Corner
 from talbot.flow.analog.column import ColumnResult
 from talbot.flow.analog.deck import Setup, process_of
 from talbot.flow.analog.job import amplifier_of, column_of, setup_of
@@ -68,13 +69,23 @@ def cells(
 
 
 def make(
-    pdk: str, corners: Sequence[str], out: Path, workers: int = -1, note: Callable[[str], None] = lambda text: None
+    pdk: str,
+    corners: Sequence[str],
+    out: Path,
+    table: Path | None = None,
+    workers: int = -1,
+    note: Callable[[str], None] = lambda text: None,
 ) -> dict[str, Any]:
-    """Draw, check, measure and report into ``out``; returns the summary. Raises ParameterError, StepError."""
+    """Draw, check, measure and report into ``out``; returns the summary. Raises ParameterError, StepError.
+
+    table: file for the drawn column's gains at the first corner.
+    """
     from . import page  # Matplotlib: not before it is needed
 
     start = perf_counter()
     check_folder("out", out)
+    if table:
+        check_file("table", table)
     masks, (setup, sizes) = analog_masks(pdk), setup_of(pdk)
     spec, own = amplifier_of(setup, sizes)
     made = cells(masks, sizes, own, spec.lanes, column_of(setup)[1])
@@ -123,6 +134,11 @@ def make(
         note("report")
         page.write(folder, summary, masks.base)
         (folder / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n")
+    if table:
+        first = Corner.parse(corners[0])
+        columns = column.gains(setup, *column_of(setup), first, typical["column"][0])
+        text = {"command": f"make analog-layout, {corners[0]}", "columns": columns}
+        write(table, json.dumps(text, indent=1) + "\n")
     return summary
 
 

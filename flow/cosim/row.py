@@ -13,6 +13,7 @@ from talbot.models.afe import Converter, FrontEnd
 from talbot.models.chip import golden_frame
 from talbot.models.digital.stream import decode_stream
 from talbot.models.parameters import (
+    DRAWN,
     SHORT_TIMING,
     FrameParameters,
     ParameterError,
@@ -158,7 +159,7 @@ class RowRequest:
         """`samples` as the column amplifiers give them: by their gains, as `make analog` measured a column."""
         if not self.columns:
             return self.samples
-        gains = circuit_columns()
+        gains = circuit_columns(DRAWN) if self.extracted else circuit_columns()
         taps = (gains.diode,) if self.mode == "edge" else (gains.sum, *[gains.later_sum] * (len(self.samples) - 1))
         return self.samples * np.reshape(taps, (-1, 1, 1, 1))
 

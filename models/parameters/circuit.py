@@ -9,6 +9,7 @@ from .checks import check_real
 from .electrical import ConverterParameters
 
 TABLE = Path(__file__).with_name("circuit.json")
+DRAWN = Path(__file__).with_name("circuit_drawn.json")  # columns as drawn, written by `make analog-layout TABLE=`
 
 
 @cache
@@ -53,5 +54,8 @@ class ColumnGains:
 
 @cache
 def circuit_columns(table: Path = TABLE) -> ColumnGains:
-    """The column amplifiers as the circuit has them: "columns" of ``table``. Raises ParameterError."""
+    """The column amplifiers as the circuit has them, with DRAWN as the layout has: "columns" of ``table``.
+
+    Raises ParameterError.
+    """
     return ColumnGains(**json.loads(table.read_text())["columns"])
