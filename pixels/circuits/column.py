@@ -7,8 +7,8 @@
                                                 +-- start
 
     read    |_|‾‾‾‾‾‾‾‾‾‾‾|‾‾‾‾‾‾‾‾‾‾‾|________________
-    clear   |_|‾‾‾|____________________________________      the charge amplifier is reset
-    ref     |_|‾‾‾‾‾‾‾‾‾‾‾|____________________________      the holder is reset, Chold is from x to start
+    clear   |_|‾‾‾‾‾‾‾|________________________________      the charge amplifier is reset
+    ref     |_|‾‾‾‾‾‾‾‾‾‾‾|____________________________      the holder is reset, Chold is from x to start, as f is
     sig     |_____________|‾‾‾‾‾‾‾‾‾‾‾|________________      the row's wells are at the lines, the holder follows
     sel     |_____________________________|‾‾|_________      its column's turn: it drives the lane
 
