@@ -39,7 +39,12 @@ def circuit_converter(table: Path = TABLE) -> ConverterParameters:
 class ColumnGains:
     """Of the column amplifiers, over the ideal one, 0.5..1.5 each, common to all columns.
 
-    diode: where each diode has its line. sum, later_sum: of both diodes' charges, in the first tap and in later ones.
+    Attributes
+    ----------
+    diode : float
+        Where each diode has its line.
+    sum, later_sum : float
+        Of both diodes' charges, in the first tap and in later ones.
     """
 
     diode: float
@@ -54,8 +59,21 @@ class ColumnGains:
 
 @cache
 def circuit_columns(table: Path = TABLE) -> ColumnGains:
-    """The column amplifiers as the circuit has them, with DRAWN as the layout has: "columns" of ``table``.
+    """The column amplifiers as the circuit has them.
 
-    Raises ParameterError.
+    Parameters
+    ----------
+    table : path
+        JSON: "columns" has the fields of `ColumnGains`; DRAWN: as the layout has them.
+
+    Returns
+    -------
+    ColumnGains
+        At the typical corner.
+
+    Raises
+    ------
+    ParameterError
+        For a value out of range.
     """
     return ColumnGains(**json.loads(table.read_text())["columns"])
