@@ -18,7 +18,7 @@ from talbot.platforms.coriolis import coriolis_platform
 from talbot.platforms.pads import pad_process
 from talbot.platforms.pixel import pixel_process
 
-DIE = DieParameters(2800.0, 1800.0, pad_um=91.0)
+DIE = DieParameters(2800.0, 1800.0, pad_um=91.0, side_um=91.0, west=2, east=2)
 RULES = {
     "metals": {
         name: {"width": least, "space": least, "area": area}
