@@ -28,7 +28,7 @@ def _strips() -> Iterator[list[str]]:
         for group in ("mid", "low"):
             extra = CONTROLS if (side, group) == ("amp", "mid") else ()
             waits = ("ref_ctl_n", *(f"read_l{k}" for k in range(LATE))) if extra else ()
-            yield [*waits, *(f"{name}_{end}" for name in (*_codes(side, group), *extra) for end in "ns")]
+            yield [*(f"{name}_{end}" for name in (*_codes(side, group), *extra) for end in "ns"), *waits]
 
 
 def _codes(side: str, group: str) -> list[str]:

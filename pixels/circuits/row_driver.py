@@ -170,7 +170,7 @@ def bank() -> Circuit:
     """What drives the lines that cross all rows: predecoders of both addresses, buffers of the controls.
 
     Pins BANK_INPUTS, BANK_OUTPUTS, vdd vss. `<side>_<group><code>` is high where the group's bits are the code.
-    `read_line` waits for the end of `ref_ctl`: until then the column amplifiers are reset, and what a well gave is lost.
+    `read_line` waits for the end of `ref_ctl`: until then the columns are reset, and what a well gave is lost.
     """
     rails, parts = ("vdd", "vss"), list[Instance]()
     for side in SIDES:

@@ -50,7 +50,8 @@ def signal(net: str, branches: Sequence[Branch], y: int, tracks: Tracks, rules: 
             for level in range(PAD, STUB):
                 yield from via(net, edge, branch.end, level, rules)
             yield from islands(net, edge, branch.end, rules, PAD, STUB)
-            yield drawn(rules.layers[STUB], net, (first - pad, bottom, last + pad, top))
+            wide = max((top - bottom) // 2, tracks.stub // 2)
+            yield drawn(rules.layers[STUB], net, (first - pad, branch.end - wide, last + pad, branch.end + wide))
             yield from stack(net, branch.x, branch.end, rules)
         elif branch.block == "die" and branch.box:
             left, bottom, right, _ = branch.box

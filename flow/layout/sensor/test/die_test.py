@@ -63,6 +63,8 @@ def test_pads_of_signals_are_on_three_sides(made, tmp_path):
     for place in plan["ring"]:
         if place["name"].removeprefix("pad_") in SIGNALS[:2]:
             assert place["at"] > plan["channel"][1] and place["nets"]["vdd"] == "vdd"
+    ways = [shape for shape in plan["shapes"] if shape[0] in SIGNALS[:2] and shape[1:3] == [70, 20]]
+    assert min(min(right - left, top - bottom) for *_, left, bottom, right, top in ways) >= 300  # pins have less
     with pytest.raises(StepError, match="ring: the pad of clk is beside the channel"):
         small.plan(made[0] | {}, tmp_path, replace(small.DIE, trunk_pitch=25.0))
     with pytest.raises(StepError, match="ring: no room for the branches of 7 pads in the west"):

@@ -143,7 +143,7 @@ def pads(folder):
                     cut(3, 42, at, 0.2)
             if name in CORE_PINS:
                 pin, x = CORE_PINS[name]
-                draw(1, pin, x, 172.0, x + 0.3, 188.0)
+                draw(1, pin, x, 172.0, x + 0.29, 188.0)
     (folder / "pins.json").write_text(json.dumps(found))
     layout.write(str(folder / "pads.gds"))
 
