@@ -18,7 +18,8 @@ DIODES = "a", "b"
 ROW_BITS, GROUP_BITS, K_BITS, BALANCE_BITS, CODE_BITS = 10, 8, 3, 10, 8
 # Inputs of the blocks from the chip, bits each: phases of the amplifiers; position and trim as in pixels/afe.sv
 # The row driver keeps for each row whether it is open: set by `expose`, cleared by its own `integrate` or `pixel_reset`
-DRIVER_IN = {"amp_row": ROW_BITS, "reset_row": ROW_BITS, "expose": 1} | ROW_PHASES
+# and its `read` waits for the end of `ref_ctl`
+DRIVER_IN = {"amp_row": ROW_BITS, "reset_row": ROW_BITS, "expose": 1} | ROW_PHASES | {"ref_ctl": 1}
 COLUMNS_IN = {
     "ref_ctl": 1,
     "cm_reset": 1,

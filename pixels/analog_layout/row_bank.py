@@ -5,7 +5,7 @@ All nets between strips, and from the pins in the south, are on the fourth metal
 
 from collections.abc import Iterator, Sequence
 
-from talbot.pixels.circuits.row_driver import ADDRESS, BANK_INPUTS, BANK_OUTPUTS, CODES, CONTROLS, SIDES, bank
+from talbot.pixels.circuits.row_driver import ADDRESS, BANK_INPUTS, BANK_OUTPUTS, CODES, CONTROLS, LATE, SIDES, bank
 from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.analog import AnalogMasks
 
@@ -27,7 +27,8 @@ def _strips() -> Iterator[list[str]]:
         ]
         for group in ("mid", "low"):
             extra = CONTROLS if (side, group) == ("amp", "mid") else ()
-            yield [f"{name}_{end}" for name in (*_codes(side, group), *extra) for end in "ns"]
+            waits = ("ref_ctl_n", *(f"read_l{k}" for k in range(LATE))) if extra else ()
+            yield [*(f"{name}_{end}" for name in (*_codes(side, group), *extra) for end in "ns"), *waits]
 
 
 def _codes(side: str, group: str) -> list[str]:

@@ -41,6 +41,7 @@ from .strip import (
 # um
 PITCH, BETWEEN = 10.0, 1.2  # of the rows; of the rails' middles of two rows
 LINE, LINE_PITCH, LINE_APART = 0.4, 0.8, 0.9  # of what crosses all rows; from pins
+JOINT_APART, SHIFT = 1.1, 0.1  # of what joins rails from pins; steps by which the rows are farther west for it
 LEAST_WEST = 3.0  # of the rows in their block
 ROOM = 0.6  # beside each device, for its drops
 APART = 8.0  # of the level shifters from the logic's tracks: wells of two levels, rails and their joints
@@ -125,13 +126,15 @@ def row_plan(d: Mapping[str, Device], width: float, pins: Mapping[str, float]) -
     begin = round(end + APART, 2)
     tn, tp, right = in_columns(thick, begin, ROOM)
     first = right + RAIL_AT + JOG_FIRST
+    joints = {"vss": -RAIL_AT, "vdd": end + RAIL_AT, "vss_thick": begin - RAIL_AT, "vddr": right + RAIL_AT}
     whole = round(first + JOG * len(ROW_LINES) + PIN_END, 2)
+    while any(abs(x - (width - whole) - at) < JOINT_APART for x in pins.values() for at in joints.values()):
+        whole = round(whole + SHIFT, 2)
     west = round(width - whole, 3)
     if west < LEAST_WEST:
         raise ParameterError(f"row_driver_um = {width:g}: must be {whole + LEAST_WEST:g} at the least, the drawn row")
     pins = {name: round(x - west, 3) for name, x in pins.items()}
     lines = _lines(n, pins.values())
-    joints = {"vss": -RAIL_AT, "vdd": end + RAIL_AT, "vss_thick": begin - RAIL_AT, "vddr": right + RAIL_AT}
     reach: dict[str, tuple[float, ...]] = {name: (lines[name],) for name in CONTROLS}
     for side in SIDES:
         for group, count in CODES.items():

@@ -13,6 +13,7 @@ Pins of `row`: ROW_INPUTS, ROW_LINES, vdd (the chip's level) vddr (of the lines)
 """
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Self
 
 from talbot.models.parameters import ArrayParameters, SensorParameters, check_int, check_real, drawn_lines
@@ -157,7 +158,8 @@ def row() -> Circuit:
 
 ADDRESS = 10  # bits
 CODES = {"high": 6, "mid": 8, "low": 8}  # lines of a group: the highest of 384 rows is in the sixth group of 64
-BANK_INPUTS = (*(f"{side}_row{bit}" for side in SIDES for bit in range(ADDRESS)), *CONTROLS)
+BANK_INPUTS = (*(f"{side}_row{bit}" for side in SIDES for bit in range(ADDRESS)), *CONTROLS, "ref_ctl")
+LATE, LATE_LENGTH = 4, 1.0  # slow inverters, um of their gates: `read` comes after `ref_ctl`, with which it rises
 BANK_OUTPUTS = (
     *(f"{side}_{group}{code}" for side in SIDES for group, count in CODES.items() for code in range(count)),
     *(f"{name}_line" for name in CONTROLS),
@@ -168,6 +170,7 @@ def bank() -> Circuit:
     """What drives the lines that cross all rows: predecoders of both addresses, buffers of the controls.
 
     Pins BANK_INPUTS, BANK_OUTPUTS, vdd vss. `<side>_<group><code>` is high where the group's bits are the code.
+    `read_line` waits for the end of `ref_ctl`: until then the columns are reset, and what a well gave is lost.
     """
     rails, parts = ("vdd", "vss"), list[Instance]()
     for side in SIDES:
@@ -179,8 +182,13 @@ def bank() -> Circuit:
                 name = f"{side}_{group}{code}"
                 parts.append(Instance(f"{name}_n", nand_of(last - first), (*bits, f"{name}n", *rails)))
                 parts.append(Instance(f"{name}_s", inverter(6), (f"{name}n", name, *rails)))
+    parts.append(Instance("ref_ctl_n", inverter(), ("ref_ctl", "ref_ctln", *rails)))
+    late = ["read", *(f"read_late{k}" for k in range(LATE))]
+    for k, (a, y) in enumerate(pairwise(late)):
+        parts.append(Instance(f"read_l{k}", inverter(1, LATE_LENGTH), (a, y, *rails)))
     for name in CONTROLS:
-        parts.append(Instance(f"{name}_n", inverter(3), (name, f"{name}n", *rails)))
+        kind, *inputs = (nand(3), late[-1], "ref_ctln") if name == "read" else (inverter(3), name)
+        parts.append(Instance(f"{name}_n", kind, (*inputs, f"{name}n", *rails)))
         parts.append(Instance(f"{name}_s", inverter(12), (f"{name}n", f"{name}_line", *rails)))
     return Circuit("row_bank", (*BANK_INPUTS, *BANK_OUTPUTS, *rails), instances=tuple(parts))
 

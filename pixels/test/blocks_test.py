@@ -54,7 +54,7 @@ def test_converters_and_columns_have_the_ports_of_their_real_number_model():
     pins = widths(outer(columns) | outer(lanes))
     phases = {"ref_ctl": 1, "cm_reset": 1, "sample": 1, "read": 1, "tap": 2}
     assert len(ports) == 12 and pins == ports | phases
-    assert widths(outer(driver)) == {"amp_row": 10, "reset_row": 10, "expose": 1} | ROW_PHASES
+    assert widths(outer(driver)) == {"amp_row": 10, "reset_row": 10, "expose": 1, "ref_ctl": 1} | ROW_PHASES
     assert {name for name, way in outer(lanes).items() if way == "output"} == {f"comparator[{k}]" for k in range(8)}
 
 
@@ -109,5 +109,5 @@ def test_sizes_out_of_range(given, words):
 def test_pins_without_room():
     with pytest.raises(ParameterError, match="cols = 20: 200 um must have room for pins"):
         blocks(ArrayParameters(8, 20))
-    with pytest.raises(ParameterError, match="row_driver = 20 um wide: must have 1.5 um for each of its 27 pins"):
+    with pytest.raises(ParameterError, match="row_driver = 20 um wide: must have 1.5 um for each of its 28 pins"):
         blocks(sizes=AnalogSizes(row_driver_um=20))

@@ -8,7 +8,8 @@ import pytest
 
 from talbot.cells.corner import Corner
 from talbot.flow.analog import job, row_driver
-from talbot.pixels.circuits.row_driver import RowDriverSpec, row, row_line
+from talbot.flow.analog.deck import EDGE, deck, simulator
+from talbot.pixels.circuits.row_driver import RowDriverSpec, bank, row, row_line
 
 pytestmark = pytest.mark.skipif(not shutil.which("ngspice"), reason="needs ngspice (make tools)")
 SETUP, _ = job.setup_of("sky130")
@@ -51,3 +52,26 @@ def test_a_shifter_whose_holding_transistors_are_too_strong_is_found():
     (shifter,) = (one.circuit for one in row().instances if one.name == "read_l")
     strong = tuple(t._replace(w=10.0, l=0.5) if t.name in ("pa", "pb") else t for t in shifter.transistors)
     assert not measured(driver=row().replaced(replace(shifter, transistors=strong))).right
+
+
+@pytest.mark.parametrize("corner", [job.TYPICAL, "ff_n40C_1v98"])
+@pytest.mark.parametrize("late, rests", [(1e-9, True), (4e-9, False)])
+def test_a_read_that_is_before_its_reset_moves_no_row(corner, late, rests):
+    """Both rise with one edge; `ref_ctl` may be 1 ns behind. Of the laid out chip it is 0.4 ns before at the most."""
+    one, whole = Corner.parse(corner), bank()
+    own = tuple(part for part in whole.instances if part.name.startswith(("read_", "ref_ctl_")))
+    ports = "read", "ref_ctl", "read_line", "vdd", "vss"
+    circuit, at, end = replace(whole, ports=ports, instances=own), 5e-9, 25e-9
+    edges = {"read": [(at, one.supply)], "ref_ctl": [(at + late, one.supply), (end, 0.0)]}
+    driven = {}
+    for name, steps in edges.items():
+        points, level = [(0.0, 0.0)], 0.0
+        for time, to in steps:
+            points += [(time, level), (time + EDGE, to)]
+            level = to
+        driven[name] = points
+    with simulator(deck(circuit, SETUP, one), driven, ("read_line",), one) as spice:
+        wave = spice.transient(driven, {"read_line": 1.5e-12}, 35e-9, 1e-10)
+    peak = wave.voltage["read_line"][wave.time < end].max()
+    assert (peak < 0.01 * one.supply) == rests
+    assert wave.at("read_line", end + 5e-9) > 0.99 * one.supply

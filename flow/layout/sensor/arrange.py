@@ -3,6 +3,8 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
+from talbot.base.steps import StepError
+
 from .plan import CORE, ORIENTATIONS, Block, DieParameters, Terminal, nets, nm, stack, with_core
 from .ring import Pads
 from .routing import Branch, Tracks, branches, length, raised, side_room, split_nets, trunks
@@ -69,6 +71,8 @@ def arranged_as_is(
     numbers, begin = trunks(routes, tracks), nm(die.ring_um + die.edge_um + die.gap_um)
     count = max(numbers.values()) + 1
     height = begin + count * tracks.trunk_pitch + nm(die.gap_um)
+    if lowest := [net for net, one in routes.items() if any(b.side != "south" and b.end < height for b in one)]:
+        raise StepError(f"ring: the pad of {lowest[0]} is beside the channel")
     y = {net: begin + number * tracks.trunk_pitch for net, number in numbers.items()}
     high = with_core(placed, blocks[CORE], die, room, height)
     return Arranged(high, found, raised(routes, height), y, len(abutted), (begin, height), count)

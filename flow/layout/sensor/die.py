@@ -26,6 +26,7 @@ from . import package
 from .analog import ARRAY, files
 from .metrics import RULES, summarize
 from .picture import by_block
+from .plan import DieParameters
 from .steps.die_antenna import DieAntenna
 from .steps.die_connectivity import DieConnectivity
 from .steps.die_drc import DieDrc
@@ -47,14 +48,20 @@ RESULTS |= {"connectivity.json": "die_connectivity.report", "parasitics.json": "
 PACKAGE = f"{SENSOR}.pins.md", f"{SENSOR}.package.png", f"{SENSOR}.package.svg"
 
 
-def die_steps(chip: Design, options: Options, extra: Iterable[str] = (), drawn: Iterable[str] = ()) -> list[Step]:
-    """The die's steps in order. extra: see DiePlanParameters. drawn: see DieGdsParameters."""
+def die_steps(
+    chip: Design,
+    options: Options,
+    extra: Iterable[str] = (),
+    drawn: Iterable[str] = (),
+    die: DieParameters | None = None,
+) -> list[Step]:
+    """The die's steps in order. extra, die: see DiePlanParameters. drawn: see DieGdsParameters."""
     pdk, clock, io, drawn = options.pdk, chip.clock, chip.io, tuple(drawn)
     ns = {"input_ns": io.input_delay * clock.period_ns, "output_ns": io.output_delay * clock.period_ns}
     parasitics = DieParasiticsParameters(pdk, clock.port, load_pf=io.load_pf, **ns)
     return [
         DiePads(PdkParameters(pdk)),
-        DiePlan(DiePlanParameters(pdk, extra=tuple(extra))),
+        DiePlan(DiePlanParameters(pdk, die or DieParameters(), tuple(extra))),
         DieGds(DieGdsParameters(pdk, drawn)),
         DieConnectivity(PdkParameters(pdk)),
         DieParasitics(parasitics),
@@ -94,13 +101,14 @@ def lay_out_die(
     black_boxes: Sequence[str],
     extra: Iterable[str] = (),
     drawn: Iterable[str] = (),
+    die: DieParameters | None = None,
 ) -> tuple[Path, list[str]]:
     """Lay out the die around a chip that is laid out: (path of summary.json, limits broken).
 
     runner: its files are PARTS of the chip and those of the blocks; the results are beside its folder.
     """
     folder = runner.folder.parent
-    runner.run_all(die_steps(chip, options, extra, drawn))
+    runner.run_all(die_steps(chip, options, extra, drawn, die))
     summary = summarize(SENSOR, options, runner, black_boxes)
     lines, tech = broken(summary, RULES), coriolis_platform(options.pdk)
     tech = replace(tech, metals=(*tech.metals, top_metal(options.pdk).metal))

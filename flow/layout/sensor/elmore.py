@@ -71,7 +71,8 @@ def tree(
 ) -> tuple[list[Edge], dict[Terminal, Hashable]]:
     """Edges of a net, and the node of each terminal.
 
-    From the trunk lead a via and a branch to every pin; of the chip's pins, three vias and a stub follow.
+    From the trunk lead a via and a branch to every pin; of the chip's pins and of pads in the west and the east, three
+    vias and a stub follow.
     """
     names = [metal.name for metal in tech.metals]
 
@@ -89,7 +90,7 @@ def tree(
     for k, branch in enumerate(ranked):
         end = ("end", k)
         edges.append(edge(("trunk", k), end, BRANCH, abs(branch["end"] - y), tracks["branch"], (TRUNK,)))
-        if branch["block"] == CORE:
+        if branch["block"] == CORE or branch["side"] != "south":
             left, bottom, right, top = branch["box"]
             length = max(left - branch["x"], branch["x"] - right, 0)
             edges.append(edge(end, ("pin", k), STUB, length, top - bottom, range(STUB, BRANCH)))

@@ -9,6 +9,7 @@ from talbot.base.steps import Runner
 from talbot.flow.layout.options import Options
 from talbot.flow.layout.report.metrics import timing_basis
 
+from .package import leads
 from .plan import BLOCKS
 from .steps.die_sta import DieSta
 
@@ -43,6 +44,7 @@ def summarize(name: str, options: Options, runner: Runner, black_boxes: Sequence
     plan = json.loads(runner.paths["die_plan.plan"].read_text())
     nets = json.loads(runner.paths["die_parasitics.nets"].read_text())
     loads = {net: found["load_pf"] for net, found in nets.items()}
+    total, bonded = leads(plan)
     return {
         "design": name,
         "top": name,
@@ -55,6 +57,8 @@ def summarize(name: str, options: Options, runner: Runner, black_boxes: Sequence
         "black_boxes": list(black_boxes),
         "circuits": [block for block in BLOCKS if block not in black_boxes],
         **{key: metrics[key] for key in ROUTED + CHECKED + PADS + LOADS},
+        "leads": total,
+        "bond_wire_mm": round(max(lead.wire_mm for lead in bonded), 2),
         **dict.fromkeys(("equivalence", "gate_tests", "power_uw")),
         "timing_rests_on": f"the chip, its ports with the die's nets{extrapolated(sta)}; {timing_basis(options)}",
         **{key: {corner: found[key] for corner, found in sta.items()} or None for key in SLACKS},

@@ -42,9 +42,11 @@ class DieParameters:
     """Sizes of the die: the blocks of one of 5 x 5 mm [Jayasuriya2017, Sec. 3.5.1], and a ring of pads around them.
 
     ring: from the die's edge to what is inside of the pads. edge: from there to the first bar. bar: width of the
-    supplies' bars. gap: between bars, and between blocks that do not touch. pad: pitch of the signals' pads. bars: of
-    each supply over the chip. branch_pitch, trunk_pitch: of the routes, in their widths: coupling is most of a net's
-    capacitance where they are as near as rules allow.
+    supplies' bars. gap: between bars, and between blocks that do not touch. pad, side: pitch of the signals' pads
+    in the south, and in the west and the east. west: the first of SIGNALS that have theirs in the west. east: analog
+    signals that have theirs in the east, those whose pins are; all others' are in the south. Twenty on a side need 80
+    leads. bars: of each supply over the chip. branch_pitch, trunk_pitch: of the routes, in their
+    widths: coupling is most of a net's capacitance where they are as near as rules allow.
     """
 
     width_um: float = field(default=5000.0, metadata={"unit": "um", "range": (50, 3e4)})
@@ -53,7 +55,10 @@ class DieParameters:
     edge_um: float = field(default=10.0, metadata={"unit": "um", "range": (2, 200)})
     bar_um: float = field(default=20.0, metadata={"unit": "um", "range": (4, 30)})
     gap_um: float = field(default=10.0, metadata={"unit": "um", "range": (4, 200)})
-    pad_um: float = field(default=100.0, metadata={"unit": "um", "range": (2, 500)})
+    pad_um: float = field(default=150.0, metadata={"unit": "um", "range": (2, 500)})
+    side_um: float = field(default=100.0, metadata={"unit": "um", "range": (2, 500)})
+    west: int = field(default=7, metadata={"range": (0, len(SIGNALS) - 1)})
+    east: int = field(default=7, metadata={"range": (0, 50)})
     bars: int = 2
     branch_pitch: float = field(default=3.0, metadata={"range": (1, 25)})
     trunk_pitch: float = field(default=4.0, metadata={"range": (1, 25)})
@@ -139,6 +144,14 @@ class Block:
         shapes = [PinShape(pin, layer, box) for pin, boxes in self.pins.items() for layer, box in boxes]
         way = -1 if place < 2 else 1
         return [shape for shape in shapes if way * shape.box[place] >= way * self.box[place]]
+
+
+def bar(net: str, side: str, die: DieParameters) -> tuple[int, int]:
+    """The ends across its side of the bar of a supply in the west or the east."""
+    width = nm(die.bar_um)
+    begin = nm(die.ring_um + die.edge_um) + SUPPLIES.index(net) * (width + nm(die.gap_um))
+    left = begin if side == "west" else nm(die.width_um) - begin - width
+    return left, left + width
 
 
 def nm(um: float) -> int:

@@ -2,7 +2,9 @@
 
 The ring has four segments. In the south up to the last pin of the host, and in the west beside the chip, are the
 host's pins and the supplies of chip and pads. The pixels' supply is in the north and in the east beside the array, that
-of the analog circuits in the south-east and in the west above the chip. Fillers and corners continue the supplies'
+of the analog circuits, with the analog signals, in the south-east and in the west above the host's. In the west and the
+east signals are above the supplies of their segment: below, beside the channel, a way to a pad would meet its trunks.
+Fillers and corners continue the supplies'
 tracks through a segment; at a border those tracks continue that are of one net on both sides: at the host's segment the
 pads' ground alone, between the analog ones all but the supply. A supply's line on the top metal with another net's
 track before its own passes through a slot: there is no cell, all tracks continue below that metal. Pads are beside it.
@@ -155,11 +157,11 @@ def function(net: str, driven: bool) -> str:
     return "output" if driven else "input" if net in INPUTS else "analog"
 
 
-def signal(net: str, kind: str, at: int, process: PadProcess) -> Place:
-    """The pad of a signal, in the south."""
+def signal(net: str, kind: str, at: int, process: PadProcess, side: str = "south") -> Place:
+    """The pad of a signal."""
     outside = OUTSIDE + net
     tracks = ANALOG if kind == "analog" else DIGITAL
-    return Place(outside, process.signals[kind], "south", at, tracks | {CORE_PINS[kind]: net, "pad": outside})
+    return Place(outside, process.signals[kind], side, at, tracks | {CORE_PINS[kind]: net, "pad": outside})
 
 
 def supply(net: str, number: int, side: str, at: int, process: PadProcess, tracks: Mapping[str, str]) -> Place:
@@ -171,10 +173,10 @@ def supply(net: str, number: int, side: str, at: int, process: PadProcess, track
 def ring(pads: Pads, signals: Sequence[Place], ways: Iterable[Way] = ()) -> tuple[list[Place], list[Gap]]:
     """All cells of the ring but its corners, and the gaps: between the segments, and the slots of the lines ``ways``.
 
-    signals: pads in the south, digital ones before analog ones. Raises StepError where there is no room.
+    signals: pads, in the south digital ones before analog ones. Raises StepError where there is no room.
     """
     frame, process = pads.frame, pads.process
-    digital = [place for place in signals if "vddio" in place.nets.values()]
+    digital = [place for place in signals if place.side == "south" and "vddio" in place.nets.values()]
     low, _ = frame.span("west")
     end = max(place.at for place in digital) + frame.pad
     west, east = pads.borders["west"], pads.borders["east"]
@@ -186,8 +188,8 @@ def ring(pads: Pads, signals: Sequence[Place], ways: Iterable[Way] = ()) -> tupl
     ]
     slots = [_slot(way, pads) for way in ways if pads.crossed(way.net, way.side, way.low)]
     parts = [
-        ("west", low, west, BESIDE_CHIP, DIGITAL),
-        ("east", frame.span("east")[0], east, CIRCUITS_ON_SIDE, ANALOG),
+        ("west", low, lowest(signals, "west", west), BESIDE_CHIP, DIGITAL),
+        ("east", frame.span("east")[0], lowest(signals, "east", east), CIRCUITS_ON_SIDE, ANALOG),
         ("east", east + GAP, frame.span("east")[1], PIXELS_ON_SIDE, PIXELS),
         ("north", frame.span("north")[0] + GAP, frame.span("north")[1], PIXELS_ON_SIDE, PIXELS),
         ("west", west + GAP, frame.span("west")[1], CIRCUITS_ON_SIDE, ANALOG),
@@ -204,6 +206,11 @@ def ring(pads: Pads, signals: Sequence[Place], ways: Iterable[Way] = ()) -> tupl
             made.append(supply(net, count[net], side, at, process, tracks))
     gaps += slots
     return made + list(_fillers(frame, made, gaps, process)), gaps
+
+
+def lowest(signals: Iterable[Place], side: str, border: int) -> int:
+    """Where the signals' pads of a side begin, its border if there are none."""
+    return min((place.at for place in signals if place.side == side), default=border)
 
 
 def _slot(way: Way, pads: Pads) -> Gap:

@@ -8,8 +8,8 @@ from talbot.flow.layout.route.ports import LEVELS
 from talbot.flow.layout.route.rules import RoutingRules
 
 from .channel import check_apart, left_edge
-from .plan import CORE, SIGNALS, SUPPLIES, Block, Box, DieParameters, Terminal, check_way, driver, nm, touching
-from .ring import GAP, UM, Pads, function
+from .plan import CORE, SIGNALS, SUPPLIES, Block, Box, DieParameters, Terminal, bar, check_way, driver, nm, touching
+from .ring import BESIDE_CHIP, CIRCUITS_ON_SIDE, GAP, UM, Pads, function
 
 # Places in RoutingRules.layers. Branches are the highest: a net is connected only there, with its driver, so that no
 # gate has a trunk or a branch as an antenna before. Stubs are where the chip's ports are
@@ -22,8 +22,8 @@ Nets = Mapping[str, list[Terminal]]
 class Branch:
     """A pin's connection to its trunk.
 
-    x: of the vertical segment; end: y of its end at the pin. box: of the pin. A pin in the west
-    or the east has a stub from there to x.
+    x: of the vertical segment; end: y of its end at the pin. box: of the pin. side: of the die, where its pad is. A pin
+    in the west or the east, of the chip or of a pad, has a stub from there to x.
     """
 
     block: str
@@ -31,6 +31,7 @@ class Branch:
     x: int
     end: int
     box: Box | None = None
+    side: str = "south"
 
 
 @dataclass(frozen=True)
@@ -130,7 +131,7 @@ def _pads(
     tracks: Tracks,
     pads: Pads,
 ) -> Iterator[tuple[str, Branch]]:
-    """Pairs (net, Branch) of the signals' pads in the south, around the middle of the blocks' pins on these nets.
+    """Pairs (net, Branch) of the signals' pads; in the south around the middle of the blocks' pins on these nets.
 
     Analog signals are behind the host's, across the border of the ring's segments. Raises StepError.
     """
@@ -139,6 +140,10 @@ def _pads(
     }
     ranks = {net: place for place, net in enumerate(SIGNALS)}
     out = sorted(kinds, key=lambda net: (kinds[net] == "analog", ranks.get(net, len(ranks)), net))
+    analog = sorted((net for net in out if kinds[net] == "analog"), key=lambda net: -max(b.x for b in made[net]))
+    for side, nets, below in (("west", out[: die.west], BESIDE_CHIP), ("east", analog[: die.east], CIRCUITS_ON_SIDE)):
+        yield from _on_side(side, {net: kinds[net] for net in nets}, len(below), die, tracks, pads)
+        out = [net for net in out if net not in nets]
     taken = [branch.x for found in made.values() for branch in found]
     ends = [branch.x for net in out for branch in made[net]]
     pitch, middle, (low, high) = nm(die.pad_um), sum(ends) // max(len(ends), 1), pads.frame.span("south")
@@ -157,6 +162,26 @@ def _pads(
         box = at + offset - half, pads.frame.seal + bottom, at + offset + half, pads.frame.seal + top
         yield net, Branch("die", net, at + offset, pads.frame.inner + ABOVE, box)
         at = max(at + pitch, at + pads.frame.pad + UM)
+
+
+def _on_side(
+    side: str, kinds: Mapping[str, str], below: int, die: DieParameters, tracks: Tracks, pads: Pads
+) -> Iterator[tuple[str, Branch]]:
+    """Pairs (net, Branch) of the pads in the west or the east, from the north, above as many of supplies as ``below``.
+
+    The branches are where that side has no bar: the west has none of the pixels, the east none of the chip. Raises
+    StepError.
+    """
+    pitch, frame = max(nm(die.side_um), pads.frame.pad), pads.frame
+    low, high = bar("vdda" if side == "west" else "vdd", side, die)
+    if len(kinds) * tracks.branch_pitch > high - low:
+        raise StepError(f"ring: no room for the branches of {len(kinds)} pads in the {side}")
+    for k, (net, kind) in enumerate(kinds.items()):
+        at = frame.span(side)[0] + pitch * (below + len(kinds) - 1 - k) // UM * UM
+        left, bottom, right, top = pads.core_pin(kind)
+        middle, half = (left + right) // 10 * 5, min(right - left, 2 * STUB_HALF) // 2
+        box = frame.box(side, at, (middle - half, bottom, middle + half, frame.depth + ABOVE))
+        yield net, Branch("die", net, low + tracks.branch_pitch // 2 + k * tracks.branch_pitch, at + middle, box, side)
 
 
 def trunks(made: Mapping[str, list[Branch]], tracks: Tracks) -> dict[str, int]:
@@ -185,4 +210,5 @@ def length(found: Sequence[Branch], y: int) -> int:
 
 def stub(branch: Branch) -> int:
     """Length of the stub from a pin in the west or the east to its branch."""
-    return max(branch.box[0] - branch.x, branch.x - branch.box[2], 0) if branch.block == CORE and branch.box else 0
+    beside = branch.block == CORE or branch.side != "south"
+    return max(branch.box[0] - branch.x, branch.x - branch.box[2], 0) if beside and branch.box else 0

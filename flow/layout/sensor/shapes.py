@@ -41,6 +41,18 @@ def signal(net: str, branches: Sequence[Branch], y: int, tracks: Tracks, rules: 
             pad, _ = rules.vias[STUB].below
             yield drawn(rules.layers[STUB], net, (min(left, branch.x - pad), bottom, max(right, branch.x + pad), top))
             yield from stack(net, branch.x, branch.end, rules)
+        elif branch.side != "south" and branch.box:
+            left, bottom, right, top = branch.box
+            pad, _ = rules.vias[STUB].below
+            edge = right if branch.x > right else left
+            first, last = sorted((edge, branch.x))
+            yield drawn(rules.layers[PAD], net, branch.box)
+            for level in range(PAD, STUB):
+                yield from via(net, edge, branch.end, level, rules)
+            yield from islands(net, edge, branch.end, rules, PAD, STUB)
+            wide = max((top - bottom) // 2, tracks.stub // 2)
+            yield drawn(rules.layers[STUB], net, (first - pad, branch.end - wide, last + pad, branch.end + wide))
+            yield from stack(net, branch.x, branch.end, rules)
         elif branch.block == "die" and branch.box:
             left, bottom, right, _ = branch.box
             yield drawn(rules.layers[PAD], net, (left, bottom, right, branch.end))
@@ -52,7 +64,12 @@ def stack(net: str, x: int, y: int, rules: RoutingRules, low: int = STUB) -> Ite
     """Vias from ``low`` up to the branch; the metals between have their minimum areas."""
     for level in range(low, BRANCH):
         yield from via(net, x, y, level, rules)
-    for level in range(low + 1, BRANCH):
+    yield from islands(net, x, y, rules, low, BRANCH)
+
+
+def islands(net: str, x: int, y: int, rules: RoutingRules, low: int, high: int) -> Iterator[Shape]:
+    """Metal of the levels between ``low`` and ``high``, in a stack of vias, with its minimum area."""
+    for level in range(low + 1, high):
         layer, height = rules.layers[level], 2 * rules.vias[level - 1].above[1]
         half = -(-layer.area // (2 * height) // 5) * 5
         yield drawn(layer, net, (x - half, y - height // 2, x + half, y + height // 2))

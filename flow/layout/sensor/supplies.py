@@ -7,7 +7,7 @@ from talbot.base.steps import StepError
 from talbot.flow.layout.route.rules import Layer, RoutingRules
 from talbot.platforms.die import TopMetal
 
-from . import shapes
+from . import plan, shapes
 from .arrange import Arranged
 from .plan import ANALOG, CIRCUITS, CORE, DIGITAL, SUPPLIES, Block, Box, DieParameters, check_way, nm
 from .ring import Pads, Way
@@ -48,10 +48,10 @@ def supplies(
         for side in ("west", "east"):
             own = [line.box for line in lines if (line.net, line.side) == (net, side)]
             if own:
-                bar = _bar_ends(net, side, die)
+                ends = plan.bar(net, side, die)
                 tracks = [pads.track(net, side, len(rules.layers) - 1, (box[1], box[3])) for box in own]
-                boxes = [to_track(box, side, track or bar) for box, track in zip(own, tracks, strict=True)]
-                found += _bar(net, bar, boxes, rules.layers[-1], top)
+                boxes = [to_track(box, side, track or ends) for box, track in zip(own, tracks, strict=True)]
+                found += _bar(net, ends, boxes, rules.layers[-1], top)
                 for box, track in zip(boxes, tracks, strict=True):
                     if track:
                         found += vias(net, (track[0], box[1], track[1], box[3]), top)
@@ -86,14 +86,6 @@ def _straps(core: Block) -> list[tuple[str, int]]:
 
 def _lines(blocks: Mapping[str, Block], die: DieParameters, top: TopMetal) -> list[Line]:
     return [*_over_core(blocks[CORE], _straps(blocks[CORE]), die), *_from_blocks(blocks, die, top), *_in_north(die)]
-
-
-def _bar_ends(net: str, side: str, die: DieParameters) -> tuple[int, int]:
-    """The bar's ends across its side."""
-    bar = nm(die.bar_um)
-    begin = nm(die.ring_um + die.edge_um) + SUPPLIES.index(net) * (bar + nm(die.gap_um))
-    left = begin if side == "west" else nm(die.width_um) - begin - bar
-    return left, left + bar
 
 
 def _bar(net: str, bar: tuple[int, int], boxes: Sequence[Box], below: Layer, top: TopMetal) -> Iterator[Shape]:

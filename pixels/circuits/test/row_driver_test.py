@@ -110,3 +110,11 @@ def test_each_row_has_lines_of_its_own_and_the_bank_drives_them():
         high = {name for name in BANK_OUTPUTS if levels[name] and name.startswith("amp")}
         assert high == {f"amp_{group}{code}" for group, code in taken(number).items()}
         assert levels["read_line"] and not levels["tap0_line"]
+
+
+@pytest.mark.parametrize("read, ref_ctl", list(product((False, True), repeat=2)))
+def test_rows_are_read_once_the_columns_reset_has_ended(read, ref_ctl):
+    """The chip's `read` has two halves, and in the first, with `ref_ctl`, the charge amplifiers are reset."""
+    driven = dict.fromkeys(BANK_INPUTS, False) | {"read": read, "ref_ctl": ref_ctl}
+    levels = settled(bank(), driven)
+    assert levels["read_line"] == (read and not ref_ctl)

@@ -55,17 +55,20 @@ class DiePlan(Step[DiePlanParameters]):
         tracks = routing.Tracks.of(rules, p.die)
         pads = self.pads(json.loads(inputs["pads"].read_text()), {})
         made = arrange.arranged(blocks, p.die, tracks, layers, pads, p.extra)
-        borders = {"west": made.blocks[CORE].box[3], "east": made.blocks["pixel_array"].y}
-        pads = replace(pads, borders={side: y // ring.UM * ring.UM for side, y in borders.items()})
-        metal = supplies.metal(made, p.die, tracks, rules, top_metal(p.pdk), pads)
         signals = [
-            ring.signal(net, kind, branch.x - offset, pads.process)
+            ring.signal(net, kind, at - offset, pads.process, branch.side)
             for net, found in made.routes.items()
             for branch in found
             if branch.block == "die"
             for kind in [ring.function(net, driver(made.blocks, made.nets[net])[0] == CORE)]
             for offset in [ring.middle(pads.core_pin(kind))]
+            for at in [branch.x if branch.side == "south" else branch.end]
         ]
+        borders = {"west": made.blocks[CORE].box[3], "east": made.blocks["pixel_array"].y}
+        for place in (place for place in signals if place.side != "south"):
+            borders[place.side] = max(borders[place.side], place.at + pads.frame.pad)
+        pads = replace(pads, borders={side: y // ring.UM * ring.UM for side, y in borders.items()})
+        metal = supplies.metal(made, p.die, tracks, rules, top_metal(p.pdk), pads)
         lines = supplies.crossing(made.blocks, p.die, top_metal(p.pdk), "adc_lanes")
         taken = [branch.x for found in made.routes.values() for branch in found]
         field = decoupling.field(made.blocks, taken, p.die)

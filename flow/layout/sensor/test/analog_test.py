@@ -182,6 +182,7 @@ def test_the_drawn_rows_are_a_block_of_the_die(tmp_path):
     given["row_driver.lef"].write_text(made.lef(masks))
     write_gds(made.layout, given["row_driver.gds"], made.cell)
     assert (
-        small.plan(given, tmp_path, DieParameters(2960.0, 1800.0, pad_um=91.0))["abutted"] == 16 * 6 + 120 * 2 + 2 * 2
+        small.plan(given, tmp_path, DieParameters(2960.0, 1800.0, pad_um=91.0, side_um=91.0, west=2))["abutted"]
+        == 16 * 6 + 120 * 2 + 2 * 2
     )
     assert small.connectivity(given, tmp_path) == {"open_nets": 0, "shorts": 0, "lvs_match": True}

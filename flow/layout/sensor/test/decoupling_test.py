@@ -13,7 +13,7 @@ from . import small
 
 pytest.importorskip("klayout.db", reason="klayout: not installed")
 
-DIE = DieParameters(3000.0, 1800.0)
+DIE = DieParameters(3000.0, 1800.0, side_um=91.0, west=2)
 BLOCKS = {
     "adc_lanes": Block("adc_lanes", "adc_lanes", 400_000, 300_000, 200_000, 300_000, {}, {}),
     "column_amplifiers": Block("column_amplifiers", "column_amplifiers", 400_000, 600_000, 1_000_000, 100_000, {}, {}),

@@ -54,6 +54,23 @@ def test_every_net_is_found_again(made, tmp_path):
     assert made[0]["metrics"]["pads"] == len(SIGNALS) + 4 + 4 * 6
 
 
+def test_pads_of_signals_are_on_three_sides(made, tmp_path):
+    """The host's first ones in the west, analog ones in the east, above the supplies; ways meet no trunk."""
+    plan = made[1]
+    sides = {place["name"].removeprefix("pad_"): place["side"] for place in plan["ring"] if place["nets"]}
+    assert [net for net in SIGNALS if sides[net] == "west"] == list(SIGNALS[:2])
+    assert {sides[net] for net in SIGNALS[2:]} == {"south"}
+    for place in plan["ring"]:
+        if place["name"].removeprefix("pad_") in SIGNALS[:2]:
+            assert place["at"] > plan["channel"][1] and place["nets"]["vdd"] == "vdd"
+    ways = [shape for shape in plan["shapes"] if shape[0] in SIGNALS[:2] and shape[1:3] == [70, 20]]
+    assert min(min(right - left, top - bottom) for *_, left, bottom, right, top in ways) >= 300  # pins have less
+    with pytest.raises(StepError, match="ring: the pad of clk is beside the channel"):
+        small.plan(made[0] | {}, tmp_path, replace(small.DIE, trunk_pitch=25.0))
+    with pytest.raises(StepError, match="ring: no room for the branches of 7 pads in the west"):
+        small.plan(made[0] | {}, tmp_path, replace(small.DIE, west=7, bar_um=4.0))
+
+
 @pytest.mark.parametrize("height", [1770.0, 1800.0, 1990.0])
 def test_no_height_shorts_a_supply(made, tmp_path, height):
     """At any height pads are at other places beside the lines of the rows' supply."""

@@ -11,7 +11,7 @@ from talbot.flow.layout.options import Options
 from talbot.flow.layout.report.metrics import broken
 from talbot.flow.layout.sensor.die import lay_out_die
 from talbot.flow.layout.sensor.metrics import RULES
-from talbot.flow.layout.sensor.plan import BLOCKS
+from talbot.flow.layout.sensor.plan import BLOCKS, DieParameters
 from talbot.flow.layout.steps.library import Library
 from talbot.platforms.wires import CORNERS
 
@@ -33,11 +33,16 @@ def test_a_small_die(tmp_path):
         given[f"core.{name}"] = tmp_path / f"core.{name}"
         given[f"core.{name}"].write_text("")
     path, lines = lay_out_die(
-        DESIGNS["asp_chip"], Options(untimed=True), Runner(tmp_path / "out" / "steps", given, print), BLOCKS
+        DESIGNS["asp_chip"],
+        Options(untimed=True),
+        Runner(tmp_path / "out" / "steps", given, print),
+        BLOCKS,
+        die=DieParameters(west=2),
     )
     summary = json.loads(path.read_text())
     assert lines == [] and summary["lvs_match"] and summary["drc_violations"] == summary["antenna_violations"] == 0
     assert summary["equivalence"] is None and summary["gate_tests"] is None and summary["wns_ns"] is None
+    assert summary["leads"] == 64 and 2 < summary["bond_wire_mm"] <= 5
     assert summary["black_boxes"] == list(BLOCKS) and summary["routed"] == len(small.core_pins())
     present = {file.name for file in (tmp_path / "out").iterdir()}
     assert present == {
@@ -69,6 +74,7 @@ def test_a_small_die(tmp_path):
         ("lvs_match", False),
         ("drc_violations", 1),
         ("antenna_violations", None),
+        ("bond_wire_mm", 5.01),
         ("wns_ns", {"ss": -0.1}),
     ):
         assert [line.split(" ")[0] for line in broken(summary | {name: value}, RULES)] == [name]

@@ -5,7 +5,9 @@ from dataclasses import replace
 import pytest
 
 from talbot.base.steps import StepError
+from talbot.flow.layout.report.metrics import broken
 from talbot.flow.layout.sensor import package
+from talbot.flow.layout.sensor.metrics import RULES
 from talbot.platforms.pads import pad_process
 
 DIE = [4_000_000, 4_000_000]
@@ -41,6 +43,12 @@ def test_the_fullest_side_decides_the_package():
     assert package.leads(plan(south=names, west=["a"]))[0] == 80
     with pytest.raises(StepError, match="package: 37 pads on a side, 36 leads at most"):
         package.leads(plan(south=[f"n{k}" for k in range(37)]))
+
+
+def test_a_wire_that_is_too_long_breaks_a_limit():
+    """As of the die with 34 pads in the south: a package of 144 leads, wires of 9.8 mm."""
+    assert broken({"bond_wire_mm": 9.81}, {"bond_wire_mm": RULES["bond_wire_mm"]})
+    assert not broken({"bond_wire_mm": 4.4}, {"bond_wire_mm": RULES["bond_wire_mm"]})
 
 
 def test_two_leads_swapped_cross():

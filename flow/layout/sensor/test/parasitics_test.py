@@ -70,6 +70,20 @@ def test_a_net_by_hand(parasitics):
     assert min(slow, quick) > 0 and set(nets["tap[0]"]["delay_ns"]) == {"row_driver.tap[0]", "column_amplifiers.tap[0]"}
 
 
+def test_a_pad_in_the_west_has_a_stub(parasitics):
+    """clk: without the resistance of its stub it is quicker."""
+    plan, tech = parasitics[3], coriolis_platform("sky130")
+    route = plan["routes"]["clk"]
+    (pad,) = [branch for branch in route["branches"] if branch["block"] == "die"]
+    assert pad["side"] == "west" and pad["x"] > pad["box"][2]
+    near = [branch | {"box": [0, 0, pad["x"], 600]} if branch is pad else branch for branch in route["branches"]]
+    whole, without = (
+        elmore.net(found, route["y"], ("die", "clk"), plan["tracks"], tech, 0.01, 100.0)
+        for found in (route["branches"], near)
+    )
+    assert all(whole[end] > without[end] for end in whole) and ("core", "clk") in whole
+
+
 def test_delays_follow_the_capacitance(parasitics):
     """Twice the capacitance of the segments and no pins: twice the delay."""
     plan, tech = parasitics[3], coriolis_platform("sky130")

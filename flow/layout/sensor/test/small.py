@@ -18,7 +18,7 @@ from talbot.platforms.coriolis import coriolis_platform
 from talbot.platforms.pads import pad_process
 from talbot.platforms.pixel import pixel_process
 
-DIE = DieParameters(2800.0, 1800.0, pad_um=91.0)
+DIE = DieParameters(2800.0, 1800.0, pad_um=91.0, side_um=91.0, west=2, east=2)
 RULES = {
     "metals": {
         name: {"width": least, "space": least, "area": area}
@@ -143,7 +143,7 @@ def pads(folder):
                     cut(3, 42, at, 0.2)
             if name in CORE_PINS:
                 pin, x = CORE_PINS[name]
-                draw(1, pin, x, 172.0, x + 0.3, 188.0)
+                draw(1, pin, x, 172.0, x + 0.29, 188.0)
     (folder / "pins.json").write_text(json.dumps(found))
     layout.write(str(folder / "pads.gds"))
 
