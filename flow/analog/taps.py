@@ -25,9 +25,18 @@ def later_bench(sizes: ColumnSizes, spec: ColumnSpec) -> Circuit:
     return replace(made, instances=tuple(parts))
 
 
-def later_mean(setup: Setup, spec: ColumnSpec, sizes: ColumnSizes, corner: Corner, start: tuple[float, float]) -> float:
-    """`ColumnResult.mean` of a tap after the first. start: V, of the trimmed column."""
-    with opened(setup, spec, sizes, corner, start, True, circuit=later_bench(sizes, spec)) as spice:
+def later_mean(
+    setup: Setup,
+    spec: ColumnSpec,
+    sizes: ColumnSizes,
+    corner: Corner,
+    start: tuple[float, float],
+    drawn: Circuit | None = None,
+) -> float:
+    """`ColumnResult.mean` of a tap after the first. start: V, of the trimmed column. drawn: in place of the circuit."""
+    made = later_bench(sizes, spec)
+    circuit = made.replaced(drawn) if drawn else made
+    with opened(setup, spec, sizes, corner, start, True, circuit=circuit) as spice:
         dark, light = (sample(spice, spec, corner, a * spec.fall, b * spec.fall, True) for a, b in ((0.0, 0.0), BOTH))
     end = turn_of(spec) + spec.cycle
     return (dark.at("far_a", end) - light.at("far_a", end)) / (spec.swing * sum(BOTH) / 4)

@@ -45,8 +45,12 @@ def test_a_column_keeps_the_rules_and_faults_are_found(column, tmp_path):
         mim = layout.layer(*MASKS.mim)
         box = db.Region(top.shapes(mim)).bbox()
         top.shapes(mim).insert(db.Box(box.right - 500, box.bottom, box.right + 500, box.top))
+        metal = layout.layer(*MASKS.base.metals[3].gds)  # of another net, 1.19 um from a lower plate's end
+        top.shapes(metal).insert(db.Box(box.left - 1730, box.bottom, box.left - 1330, box.bottom + 1000))
 
-    assert "capm.3" in drc(changed(path, tmp_path / "bad.gds", faults), "sky130", tmp_path / "bad.lyrdb")
+    assert {"capm.3", "capm.2b_a"} <= drc(
+        changed(path, tmp_path / "bad.gds", faults), "sky130", tmp_path / "bad.lyrdb"
+    ).keys()
 
 
 def test_a_column_is_its_circuit_and_faults_are_found(column, tmp_path):
