@@ -41,8 +41,13 @@ class Settings:
 
     @property
     def retries(self) -> "tuple[Settings, ...]":
-        """What to try after these, in order: Gear's method, then also looser tolerances and more time."""
+        """What to try after these, in order.
+
+        Looser tolerances where these are tight; Gear's method; then the usual tolerances and more time, too.
+        """
+        looser = 5 * self.reltol
         return (
+            *([replace(self, reltol=looser)] if looser <= 1e-3 else []),
             replace(self, method="gear"),
             replace(self, method="gear", reltol=max(self.reltol, 1e-3), trtol=7.0, timeout=3 * self.timeout),
         )
