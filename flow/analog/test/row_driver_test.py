@@ -57,7 +57,7 @@ def test_a_shifter_whose_holding_transistors_are_too_strong_is_found():
 @pytest.mark.parametrize("corner", [job.TYPICAL, "ff_n40C_1v98"])
 @pytest.mark.parametrize("late, rests", [(1e-9, True), (4e-9, False)])
 def test_a_read_that_is_before_its_reset_moves_no_row(corner, late, rests):
-    """Both rise with one edge; `ref_ctl` may be 1 ns behind. On the die before this pin it was 0.32 ns ahead at the most."""
+    """Both rise with one edge; `ref_ctl` may be 1 ns behind. On the die before this pin it was 0.32 ns ahead"""
     one, whole = Corner.parse(corner), bank()
     own = tuple(part for part in whole.instances if part.name.startswith(("read_", "ref_ctl_")))
     ports = "read", "ref_ctl", "read_line", "vdd", "vss"
