@@ -169,6 +169,8 @@ def trimmed(
     for _ in range(TRIMS):
         own = lines({0: {0: (0.0, 0.0)}}, {0: lane_bit}, edge, 1.0, spec, sizes, pixels, start, {})
         own += extracted.rest_of_nets(own, layouts)
+        if found:  # or the search for an operating point may end elsewhere
+            own.append(".nodeset " + " ".join(f"v({name})={volts:.6g}" for name, volts in found.items()))
         with Simulator([*deck, *own], tuple(waves), (*outs, *RESTING), {"vdd": high}, CELSIUS, EXACT) as spice:
             wave = spice.transient(waves, dict.fromkeys(outs, spec.input), (turn + 1) * cycle, cycle / 5)
         end = float(np.nextafter((turn + 1) * cycle, 0))
