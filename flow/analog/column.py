@@ -41,7 +41,7 @@ from .deck import EDGE, SETTINGS, Setup, deck, simulator
 from .noise import GAMMA
 
 ROW = 3.3  # V of the row's lines: wells at the charge amplifiers' level ask for less than the drawn pixel's 5 V
-# At trtol 7 the same line was 0.15 LSB off from run to run, a third of a limit; at reltol 2e-5 half of the runs had a retry
+# At trtol 7 the same line was 0.15 LSB off from run to run, a third of a limit; at reltol 2e-5 half of the runs failed
 EXACT = replace(SETTINGS, reltol=1e-4, trtol=1.0)
 GAP = 1e-9  # s between controls that must not be high together: gate delays of the block's bank
 REST = 1  # cycles before the read, and between it and the turn
