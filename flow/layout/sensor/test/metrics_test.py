@@ -42,7 +42,7 @@ def test_a_small_die(tmp_path):
     summary = json.loads(path.read_text())
     assert lines == [] and summary["lvs_match"] and summary["drc_violations"] == summary["antenna_violations"] == 0
     assert summary["equivalence"] is None and summary["gate_tests"] is None and summary["wns_ns"] is None
-    assert summary["leads"] == 64 and 2 < summary["bond_wire_mm"] <= 5
+    assert summary["leads"] >= summary["pads"] and 0 < summary["bond_wire_mm"] <= 5
     assert summary["black_boxes"] == list(BLOCKS) and summary["routed"] == len(small.core_pins())
     present = {file.name for file in (tmp_path / "out").iterdir()}
     assert present == {
