@@ -32,7 +32,7 @@ from talbot.pixels.circuits.column_block import (
     lane_end,
     lane_line,
 )
-from talbot.pixels.circuits.column_sizes import EFFICIENCY, FRONT, LANE, ColumnSizes, ColumnSpec
+from talbot.pixels.circuits.column_sizes import EFFICIENCY, FRONT, LANE, ColumnSizes, ColumnSpec, source_of
 from talbot.pixels.circuits.netlist import Capacitor, Circuit, Instance, Transistor
 from talbot.pixels.circuits.row_driver import THICK
 from talbot.pixels.circuits.support import bias
@@ -121,9 +121,8 @@ def measure(
     wanted = -spec.swing * np.array(WELLS)
     slope, offset = np.polyfit(wanted, out[:-1], 1)
     with opened(setup, spec, sizes, corner, start, True, circuit=circuit) as spice:
-        dark, light = (sample(spice, spec, corner, a * spec.fall, b * spec.fall, True) for a, b in ((0.0, 0.0), BOTH))
+        mean, light = mean_of(spice, spec, corner)
         runs, repeated = runs + spice.runs, repeated + spice.repeated
-    mean = (dark.at("far_a", end) - light.at("far_a", end)) / (spec.swing * sum(BOTH) / 4)
     moved = [late.at(f"far_{d}", end + spec.wait) - waves[len(WELLS) - 1].at(f"far_{d}", end) for d in "ab"]
     return ColumnResult(
         start=start,
@@ -142,6 +141,13 @@ def measure(
         runs=runs,
         repeated=repeated,
     )
+
+
+def mean_of(spice: Simulator, spec: ColumnSpec, corner: Corner) -> tuple[float, Wave]:
+    """`ColumnResult.mean` of a bench that is `opened` for an image, and the transient with light."""
+    dark, light = (sample(spice, spec, corner, a * spec.fall, b * spec.fall, True) for a, b in ((0.0, 0.0), BOTH))
+    end = turn_of(spec) + spec.cycle
+    return (dark.at("far_a", end) - light.at("far_a", end)) / (spec.swing * sum(BOTH) / 4), light
 
 
 def trimmed(
@@ -206,8 +212,7 @@ def noise(spec: ColumnSpec, sizes: ColumnSizes, process: ModuleType, celsius: fl
     driver = sizes.lane.input * gates["lane"]
     for gain, times, name, _, stage, feedback, inputs, load in stages:
         beta = feedback / (feedback + inputs + (stage.input * gates[name] if name == "front" else driver))
-        source = EFFICIENCY["lane_top" if name == "lane" else "top"]
-        white = BOLTZMANN * (celsius + 273.15) * GAMMA * (1 + source / EFFICIENCY[name])
+        white = BOLTZMANN * (celsius + 273.15) * GAMMA * (1 + EFFICIENCY[source_of(name)] / EFFICIENCY[name])
         total += times * gain**2 * white / (beta * (load + feedback * (1 - beta)))
     return total**0.5 / spec.swing * spec.full_well
 

@@ -291,11 +291,7 @@ def converter(spec: LaneSpec, sizes: LaneSizes, found: Found) -> dict[str, Any]:
             "unit_mismatch": round(sizes.dac.unit_mismatch, 6),
             **{name: round(value, 4) for name, value in zip(AMPLIFIER, bend, strict=True)},
         },
-        "columns": {
-            "diode": round(found.columns[TYPICAL].slope, 5),
-            "sum": round(found.columns[TYPICAL].mean, 5),
-            "later_sum": round(found.column_later, 5),
-        },
+        "columns": taps.gains(found.columns[TYPICAL], found.column_later),
         "sources": {
             "inl": f"peak of {len(lane.CODES)} levels, by the decisions in ngspice, off the line through the ends",
             "dnl": "steps come from unit_mismatch",

@@ -7,7 +7,7 @@ from talbot.pixels.circuits import column as columns
 from talbot.pixels.circuits.column_sizes import ColumnSizes, ColumnSpec
 from talbot.pixels.circuits.netlist import Circuit
 
-from .column import BOTH, QUIET, bench, opened, sample, turn_of
+from .column import QUIET, ColumnResult, bench, mean_of, opened
 from .deck import Setup
 
 OF_TAP = "w", "f", "fn", "unasked"  # the lines that each tap has
@@ -37,6 +37,9 @@ def later_mean(
     made = later_bench(sizes, spec)
     circuit = made.replaced(drawn) if drawn else made
     with opened(setup, spec, sizes, corner, start, True, circuit=circuit) as spice:
-        dark, light = (sample(spice, spec, corner, a * spec.fall, b * spec.fall, True) for a, b in ((0.0, 0.0), BOTH))
-    end = turn_of(spec) + spec.cycle
-    return (dark.at("far_a", end) - light.at("far_a", end)) / (spec.swing * sum(BOTH) / 4)
+        return mean_of(spice, spec, corner)[0]
+
+
+def gains(found: ColumnResult, later: float) -> dict[str, float]:
+    """What `models.parameters.circuit_columns` reads. later: `later_mean`."""
+    return {"diode": round(found.slope, 5), "sum": round(found.mean, 5), "later_sum": round(later, 5)}

@@ -6,7 +6,6 @@ from talbot.cells.corner import Corner
 from talbot.flow.analog import column
 from talbot.flow.analog.column import ColumnResult
 from talbot.flow.analog.deck import Setup
-from talbot.flow.analog.taps import later_mean
 from talbot.pixels.circuits.column_sizes import ColumnSizes, ColumnSpec
 from talbot.pixels.circuits.netlist import Circuit
 
@@ -20,13 +19,6 @@ def measure(
     """Everything of a column; drawn: in place of the circuit."""
     bench = column.bench(sizes, spec).replaced(drawn) if drawn else None
     return column.measure(setup, spec, sizes, corner, bench)
-
-
-def gains(setup: Setup, spec: ColumnSpec, sizes: ColumnSizes, corner: Corner, drawn: Circuit) -> dict[str, float]:
-    """What `models.parameters.circuit_columns` reads, of the drawn column."""
-    found = measure(setup, spec, sizes, corner, drawn)
-    later = later_mean(setup, spec, sizes, corner, found.start, drawn)
-    return {name: round(gain, 5) for name, gain in (("diode", found.slope), ("sum", found.mean), ("later_sum", later))}
 
 
 def rows(spec: ColumnSpec, found: Pair[ColumnResult]) -> Iterator[Row]:

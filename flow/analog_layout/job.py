@@ -19,6 +19,7 @@ from talbot.flow.analog.lane import inl
 from talbot.flow.analog.linearity import inl_dnl, levels
 from talbot.flow.analog.row_driver import RowDriverResult
 from talbot.flow.analog.row_driver import measure as measure_row
+from talbot.flow.analog.taps import gains, later_mean
 from talbot.models.parameters import ArrayParameters
 from talbot.pixels.analog_layout.amplifier import amplifier_cell
 from talbot.pixels.analog_layout.bias import bias_cell
@@ -135,9 +136,10 @@ def make(
         page.write(folder, summary, masks.base)
         (folder / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n")
     if table:
-        first = Corner.parse(corners[0])
-        columns = column.gains(setup, *column_of(setup), first, typical["column"][0])
-        text = {"command": f"make analog-layout, {corners[0]}", "columns": columns}
+        first, circuit = corners[0], typical["column"][0]
+        (pair,) = _columns(setup, {first: [circuit]}, workers)  # measured above: it is read
+        later = later_mean(setup, *column_of(setup), Corner.parse(first), pair.layout.start, circuit)
+        text = {"command": f"make analog-layout, {first}", "columns": gains(pair.layout, later)}
         write(table, json.dumps(text, indent=1) + "\n")
     return summary
 
@@ -199,15 +201,18 @@ def _measured(
         yield from _rows(setup.spec, lane)
     for row in beside("row driver", measure_row, RowDriverResult, (setup, driven), circuits("row"), workers):
         yield from row_driver.rows(driven, row)
-    spec_c, sizes_c = column_of(setup)
-    found = beside("column", column.measure, ColumnResult, (setup, spec_c, sizes_c), circuits("column"), workers)
-    for one in found:
-        yield from column.rows(spec_c, one)
+    for one in _columns(setup, circuits("column"), workers):
+        yield from column.rows(column_of(setup)[0], one)
     for gaps in beside("switch drivers", switch.measure, Gaps, (setup, support), circuits("non_overlap"), workers):
         yield from switch.rows(support, gaps)
     given = setup, *amplifiers, sizes
     for both in beside("amplifier", amplifier.measure, Amplified, given, circuits("amplifier", "bias"), workers):
         yield from amplifier.rows(amplifiers[0], both)
+
+
+def _columns(setup: Setup, drawn: Mapping[str, Sequence[Extracted]], workers: int) -> Iterator[Pair[ColumnResult]]:
+    """A column at every corner."""
+    return beside("column", column.measure, ColumnResult, (setup, *column_of(setup)), drawn, workers)
 
 
 def _rows(spec: LaneSpec, found: Pair[Measured]) -> Iterator[Row]:

@@ -86,7 +86,7 @@ def run(options: Namespace) -> int:
 def _print(s: dict[str, Any], folder: Path) -> None:
     for row in s["rows"]:
         print(
-            f"{row['mode']}{', as drawn' * row['extracted']}: {row['differing']} of {row['samples']} codes differ, by "
+            f"{row['name']}: {row['differing']} of {row['samples']} codes differ, by "
             f"{row['largest_difference_lsb']} LSB at most, {row['beyond']} beyond half an LSB and the noise; "
             f"{row['largest_error_at_lane_lsb']:.3f} LSB off at the lane at most, "
             f"its level {row['largest_error_of_level_lsb']:.3f}; "

@@ -42,6 +42,7 @@ def summary(row: Row) -> dict[str, Any]:
     decisions = run.cycles.deciding & np.isin(np.arange(run.cycles.answer.shape[1]), row.deck.lanes)
     return {
         "mode": row.request.mode,
+        "name": row.request.name,
         "samples": len(row.samples),
         "differing": int((off != 0).sum()),
         "largest_difference_lsb": int(np.abs(off).max(initial=0)),

@@ -56,7 +56,7 @@ def _line(s: Mapping[str, Any]) -> tuple[str, ...]:
     numbers = (s["decisions"], s["differing_decisions"])
     more = (s["transistors"], s["circuit_cycles"], s["chip_cycles"], s["time_points"], s["attempts"])
     ns = f"{1e9 * s['slowest_decision_s']:.2f}"
-    name = s["mode"] + ", with amplifiers" * s["amplifier"] + ", as drawn" * s["extracted"]
+    name = s["name"] + ", with amplifiers" * s["amplifier"]
     at_lane = f"{s['largest_error_at_lane_lsb']:.3f}"
     return (name, *codes, at_lane, *(f"{n:,}" for n in numbers), ns, *(f"{n:,}" for n in more), f"{s['seconds']:.1f}")
 

@@ -225,6 +225,11 @@ SLACK = 20e-9  # s of the signal half until the row's line is up
 WAKE = 8e-9  # s of a column's turn until its transistors conduct
 
 
+def source_of(name: str) -> str:
+    """The name in EFFICIENCY of a stage's source of current."""
+    return "lane_top" if name == "lane" else "top"
+
+
 def size(spec: ColumnSpec, process: ModuleType, hold: float = HOLD) -> ColumnSizes:
     """Sizes for ``spec`` from the process's tables of gm/Id.
 
@@ -253,15 +258,15 @@ def size(spec: ColumnSpec, process: ModuleType, hold: float = HOLD) -> ColumnSiz
 
     def stage(kind: tuple[str, float], name: str, top: tuple[str, float], gm: float, least: float = 0.0) -> Stage:
         amperes = gm / EFFICIENCY[name]
-        source, above = ("lane_top", "lane_p") if name == "lane" else ("top", "cascode_p")
-        roles = (kind, name), (CASCODE, "cascode"), (top, source), (CASCODE_P, above)
+        above = "lane_p" if name == "lane" else "cascode_p"
+        roles = (kind, name), (CASCODE, "cascode"), (top, source_of(name)), (CASCODE_P, above)
         widths = [amperes / process.operating(*one, EFFICIENCY[role]).density for one, role in roles]
         return Stage(amperes, *(drawn(max(w, floor)) for w, floor in zip(widths, (least, 0, 0, 0), strict=True)))
 
     def gain(kind: tuple[str, float], name: str, top: tuple[str, float]) -> float:
         below = process.operating(*kind, EFFICIENCY[name]).gain
         below *= process.operating(*CASCODE, EFFICIENCY["cascode"]).gain
-        source = EFFICIENCY["lane_top" if name == "lane" else "top"]
+        source = EFFICIENCY[source_of(name)]
         above = process.operating(*top, source).gain
         above *= process.operating(*CASCODE_P, EFFICIENCY["cascode_p"]).gain
         return 1 / (1 / below + source / EFFICIENCY[name] / above)
