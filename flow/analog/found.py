@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from .amplifier import AmplifierResult
 from .column import ColumnResult
 from .comparator import Decisions
+from .curves import ColumnFit
 from .lane import LaneResult
 from .noise import Noise
 from .row_driver import RowDriverResult
@@ -35,4 +36,4 @@ class Found:
     columns: dict[str, ColumnResult]
     column_noise: dict[str, float]
     column_offsets: list[float]
-    column_later: float
+    column_fit: ColumnFit

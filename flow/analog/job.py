@@ -26,11 +26,12 @@ from talbot.pixels.circuits.row_driver import RowDriverSpec
 from talbot.pixels.circuits.specification import LaneSpec
 from talbot.pixels.circuits.support import SupportSpec
 
-from . import amplifier, column, comparator, lane, linearity, row_driver, spread, support, taps
+from . import amplifier, column, comparator, curves, lane, linearity, row_driver, spread, support
 from . import noise as noises
 from .amplifier import AmplifierResult
 from .column import ColumnResult
 from .comparator import BATCH, Decisions, interval
+from .curves import ColumnFit
 from .deck import Setup, deck, process_of
 from .found import TYPICAL, Found
 from .lane import LaneResult, inl
@@ -230,8 +231,8 @@ def measured(
         for k in range(1, min(draws, COLUMNS) + 1)
     ]
     column_offsets = run(unlike, STORE, "columns drawn", workers)
-    given_t = setup, spec_c, sizes_c, typical, columns[TYPICAL].start
-    later = Job("column-later", taps.later_mean, given_t, (given_c, columns[TYPICAL].start))
+    given_f = setup, spec_c, sizes_c, typical, columns[TYPICAL].start
+    curves_c = Job("column-curves", curves.fitted, given_f, (given_c, columns[TYPICAL].start))
     note("noise")
     closed = amplifier.ktc(setup, sizes_a, typical)
     quiet = Job(
@@ -267,7 +268,7 @@ def measured(
         columns,
         {name: column.noise(spec_c, sizes_c, process_of(setup.pdk), one.temperature) for name, one in places.items()},
         column_offsets,
-        run([later], STORE, "taps", workers)[0],
+        from_json(ColumnFit, run([curves_c], STORE, "curves", workers)[0]),
     )
 
 
@@ -291,7 +292,7 @@ def converter(spec: LaneSpec, sizes: LaneSizes, found: Found) -> dict[str, Any]:
             "unit_mismatch": round(sizes.dac.unit_mismatch, 6),
             **{name: round(value, 4) for name, value in zip(AMPLIFIER, bend, strict=True)},
         },
-        "columns": taps.gains(found.columns[TYPICAL], found.column_later),
+        "columns": asdict(found.column_fit.curves),
         "sources": {
             "inl": f"peak of {len(lane.CODES)} levels, by the decisions in ngspice, off the line through the ends",
             "dnl": "steps come from unit_mismatch",
@@ -300,9 +301,7 @@ def converter(spec: LaneSpec, sizes: LaneSizes, found: Found) -> dict[str, Any]:
             "ktc": "closed form of the lane's common plates, .noise of the amplifier in reset and signal",
             "unit_mismatch": f"{sizes.dac.source}",
             **dict.fromkeys(AMPLIFIER, fitted),
-            "diode": f"line through {len(column.WELLS)} charges of a column in ngspice, over the ideal one",
-            "sum": "of both diodes' charges, the first tap of a column in ngspice, over the ideal one",
-            "later_sum": "of the second tap",
+            **curves.SOURCES,
         },
         "errors": {
             "inl": round(shape[2], 4),
@@ -315,6 +314,7 @@ def converter(spec: LaneSpec, sizes: LaneSizes, found: Found) -> dict[str, Any]:
             "amplifier_settling": round(found.amplifiers[TYPICAL].left, 4),
             "settling": round(_left(spec, found.lanes[TYPICAL]), 6),
             "droop": round(found.lanes[TYPICAL].droop, 4),
+            "columns": found.column_fit.error,
         },
     }
 

@@ -19,7 +19,7 @@ from talbot.flow.analog.lane import inl
 from talbot.flow.analog.linearity import inl_dnl, levels
 from talbot.flow.analog.row_driver import RowDriverResult
 from talbot.flow.analog.row_driver import measure as measure_row
-from talbot.flow.analog.taps import gains, later_mean
+from talbot.flow.analog.curves import SOURCES, fitted
 from talbot.models.parameters import ArrayParameters
 from talbot.pixels.analog_layout.amplifier import amplifier_cell
 from talbot.pixels.analog_layout.bias import bias_cell
@@ -138,8 +138,9 @@ def make(
     if table:
         first, circuit = corners[0], typical["column"][0]
         (pair,) = _columns(setup, {first: [circuit]}, workers)  # measured above: it is read
-        later = later_mean(setup, *column_of(setup), Corner.parse(first), pair.layout.start, circuit)
-        text = {"command": f"make analog-layout, {first}", "columns": gains(pair.layout, later)}
+        fit = fitted(setup, *column_of(setup), Corner.parse(first), pair.layout.start, circuit)
+        text = {"command": f"make analog-layout, {first}", "columns": asdict(fit.curves), "sources": SOURCES}
+        text |= {"errors": {"columns": fit.error}}
         write(table, json.dumps(text, indent=1) + "\n")
     return summary
 

@@ -156,12 +156,15 @@ class RowRequest:
 
     @cached_property
     def delivered(self) -> npt.NDArray[np.float64]:
-        """`samples` as the column amplifiers give them: by their gains, as `make analog` measured a column."""
+        """`samples` as the column amplifiers give them: by their curves, as `make analog` measured a column."""
         if not self.columns:
             return self.samples
-        gains = circuit_columns(DRAWN) if self.extracted else circuit_columns()
-        taps = (gains.diode,) if self.mode == "edge" else (gains.sum, *[gains.later_sum] * (len(self.samples) - 1))
-        return self.samples * np.reshape(taps, (-1, 1, 1, 1))
+        curves = circuit_columns(DRAWN) if self.extracted else circuit_columns()
+        diodes = FULL * curves.delivered(self.samples / FULL)
+        if self.mode == "edge":
+            return diodes
+        sums = (curves.sum, *[curves.later_sum] * (len(diodes) - 1))
+        return diodes * np.reshape(sums, (-1, 1, 1, 1))
 
     @cached_property
     def values(self) -> dict[tuple[int, int], float]:

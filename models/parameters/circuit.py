@@ -5,7 +5,11 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from .checks import check_real
+import numpy as np
+import numpy.typing as npt
+from scipy.interpolate import PchipInterpolator
+
+from .checks import ParameterError, check_real
 from .electrical import ConverterParameters
 
 TABLE = Path(__file__).with_name("circuit.json")
@@ -36,39 +40,76 @@ def circuit_converter(table: Path = TABLE) -> ConverterParameters:
 
 
 @dataclass(frozen=True)
-class ColumnGains:
-    """Of the column amplifiers, over the ideal one, 0.5..1.5 each, common to all columns.
+class ColumnCurves:
+    """Of the column amplifiers, common to all columns.
 
     Attributes
     ----------
-    diode : float
-        Where each diode has its line.
+    fills : tuple of float
+        Of a full well, rising from 0, to 1 at most.
+    a, b : tuple of float
+        What reaches the lane of a diode that is so full, as a part of a full well; 0 first, at most 1.5.
+    a_other, b_other : tuple of float
+        What the diode's lane has where the other one is so full, -0.5..0.5.
     sum, later_sum : float
-        Of both diodes' charges, in the first tap and in later ones.
+        More of both diodes' sum than their lanes have, in the first tap and in later ones, 0.5..1.5.
     """
 
-    diode: float
+    fills: tuple[float, ...]
+    a: tuple[float, ...]
+    b: tuple[float, ...]
+    a_other: tuple[float, ...]
+    b_other: tuple[float, ...]
     sum: float
     later_sum: float
 
     def __post_init__(self) -> None:
-        check_real("diode", self.diode, 0.5, 1.5)
+        if not (len(self.fills) > 1 and self.fills[0] == 0 and (np.diff(self.fills) > 0).all()):
+            raise ParameterError(f"fills = {self.fills}: must rise from 0")
+        ranges = {"fills": (0, 1), "a": (0, 1.5), "b": (0, 1.5), "a_other": (-0.5, 0.5), "b_other": (-0.5, 0.5)}
+        for name, (low, high) in ranges.items():
+            values = getattr(self, name)
+            if len(values) != len(self.fills) or values[0] != 0:
+                raise ParameterError(f"{name} = {values}: must be {len(self.fills)} numbers, the first 0")
+            for value in values:
+                check_real(name, value, low, high)
         check_real("sum", self.sum, 0.5, 1.5)
         check_real("later_sum", self.later_sum, 0.5, 1.5)
 
+    def delivered(self, diodes: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        """What the lanes have of both diodes.
+
+        Parameters
+        ----------
+        diodes : ndarray
+            Charges (..., 2), of a full well, 0..1.
+
+        Returns
+        -------
+        ndarray
+            (..., 2), of a full well: monotone cubics through the curves' points, the last one beyond `fills`.
+        """
+        own, other = diodes, diodes[..., ::-1]
+        parts = [
+            PchipInterpolator(self.fills, curve)(filled[..., d])
+            for curves, filled in (((self.a, self.b), own), ((self.a_other, self.b_other), other))
+            for d, curve in enumerate(curves)
+        ]
+        return np.stack([parts[0] + parts[2], parts[1] + parts[3]], -1)
+
 
 @cache
-def circuit_columns(table: Path = TABLE) -> ColumnGains:
+def circuit_columns(table: Path = TABLE) -> ColumnCurves:
     """The column amplifiers as the circuit has them.
 
     Parameters
     ----------
     table : path
-        JSON: "columns" has the fields of `ColumnGains`; DRAWN: as the layout has them.
+        JSON: "columns" has the fields of `ColumnCurves`; DRAWN: as the layout has them.
 
     Returns
     -------
-    ColumnGains
+    ColumnCurves
         At the typical corner.
 
     Raises
@@ -76,4 +117,5 @@ def circuit_columns(table: Path = TABLE) -> ColumnGains:
     ParameterError
         For a value out of range.
     """
-    return ColumnGains(**json.loads(table.read_text())["columns"])
+    written = json.loads(table.read_text())["columns"]
+    return ColumnCurves(**{name: tuple(one) if isinstance(one, list) else one for name, one in written.items()})

@@ -4,10 +4,12 @@ import json
 from dataclasses import fields
 from math import hypot
 
+import numpy as np
 import pytest
 
 from talbot.models.parameters import (
     TYPICAL_CONVERTER,
+    ColumnCurves,
     ConverterParameters,
     ParameterError,
     circuit_columns,
@@ -50,5 +52,23 @@ def test_a_value_out_of_range_is_refused_by_name(tmp_path):
 
 def test_columns_are_within_the_slope_that_they_were_sized_for():
     found = circuit_columns()
-    assert all(0 < abs(gain - 1) < 0.05 for gain in (found.diode, found.sum, found.later_sum))
+    half = found.delivered(np.array([[0.5, 0.0], [0.0, 0.5]]))
+    assert half == pytest.approx(0.5 * np.eye(2), abs=0.5 * 0.05) and (half[[0, 1], [1, 0]] != 0).all()
     assert 0.002 < found.later_sum - found.sum < 0.005  # of 0.65 % of a half: the second diode's holder takes none
+
+
+def test_a_diode_has_its_own_curve_and_what_the_other_leaves():
+    curves = ColumnCurves((0.0, 0.5, 1.0), (0.0, 0.5, 0.9), (0.0, 0.4, 0.8), (0.0, 0.01, 0.02), (0.0, 0.0, 0.0), 1.0, 1.0)
+    found = curves.delivered(np.array([[[1.0, 0.0], [0.0, 1.0]], [[0.5, 0.5], [0.0, 0.0]]]))
+    assert found == pytest.approx(np.array([[[0.9, 0.0], [0.02, 0.8]], [[0.51, 0.4], [0.0, 0.0]]]))
+
+
+@pytest.mark.parametrize(
+    "wrong", [{"fills": (0.1, 0.5)}, {"fills": (0.0, 0.0)}, {"a": (0.0,)}, {"b": (0.1, 0.5)}, {"a_other": (0.0, 0.6)}]
+)
+def test_a_curve_that_is_none_is_refused_by_name(wrong):
+    sound = dict.fromkeys(("fills", "a", "b", "a_other", "b_other"), (0.0, 0.5)) | {"sum": 1.0, "later_sum": 1.0}
+    ColumnCurves(**sound)
+    (name,) = wrong
+    with pytest.raises(ParameterError, match=f"{name} = "):
+        ColumnCurves(**sound | wrong)
