@@ -13,13 +13,13 @@ from talbot.base.files import check_file, check_folder, staged, write
 from talbot.base.gds import write_gds
 from talbot.cells.corner import Corner
 from talbot.flow.analog.column import ColumnResult
+from talbot.flow.analog.curves import SOURCES, fitted
 from talbot.flow.analog.deck import Setup, process_of
 from talbot.flow.analog.job import amplifier_of, column_of, setup_of
 from talbot.flow.analog.lane import inl
 from talbot.flow.analog.linearity import inl_dnl, levels
 from talbot.flow.analog.row_driver import RowDriverResult
 from talbot.flow.analog.row_driver import measure as measure_row
-from talbot.flow.analog.curves import SOURCES, fitted
 from talbot.models.parameters import ArrayParameters
 from talbot.pixels.analog_layout.amplifier import amplifier_cell
 from talbot.pixels.analog_layout.bias import bias_cell

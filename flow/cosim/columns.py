@@ -24,7 +24,7 @@ from talbot.platforms.sky130 import analog
 
 from . import extracted
 from .amplified import AFTER, Drive
-from .pixels import PixelSizes, pixel
+from .pixels import PixelSizes, pixel, row_line
 
 TIMING = AmpTiming()  # of a row with these columns: the holder has 16 cycles in each half
 CELSIUS = 25.0
@@ -49,6 +49,7 @@ def lines(
     pixels: PixelSizes,
     start: tuple[float, float],
     rest: Mapping[str, float],
+    cols: int = 1,
     swapped: frozenset[int] = frozenset(),
     cut: int | None = None,
 ) -> list[str]:
@@ -57,7 +58,8 @@ def lines(
     diodes: (a, b) in LSB of each column and tap. edge: lanes get both diodes, else the mean. start: V of start_a and
     start, trimmed.
     rest: V of RESTING, with which it begins: an operating point of so many nodes that float takes minutes.
-    swapped: columns whose diodes are on each other's line. cut: column from which on the row's read line is open.
+    cols: that the row's lines pass. swapped: columns whose diodes are on each other's line. cut: column from which on
+    the row's read line is open.
     """
     own = {"edge": "vdd" if edge else "0", "edgen": "0" if edge else "vdd", "k": "vdd", "vss": "0", "ref": "row_ref"}
     resting = dict(rest)
@@ -79,12 +81,9 @@ def lines(
             turn = f"turn{lane} turnn{lane}" if d == "a" or edge else "0 vdd"
             deck.append(f"Xend{d}{lane} col{d}{lane} {reference} {turn} vbl vcp vdd 0 lane_end")
             deck.append(f"Xlines{d}{lane} lane{d}{lane} sense{d}{lane} col{d}{lane} 0 lane_line")
-    before = {"reset": "reset_row", "read": "read_row"}
+    places = [str(c) for c in range(cols)]
+    deck += [*row_line("reset", places, pixels), *row_line("read", places, pixels, str(cut))]
     for c, taps in diodes.items():
-        for name, near in before.items():
-            ohm = pixels.cut if name == "read" and c == cut else pixels.line_resistance
-            deck += [f"R{name}{c} {near} {name}{c} {ohm:g}", f"C{name}{c} {name}{c} 0 {pixels.line_capacitance:g}"]
-            before[name] = f"{name}{c}"
         names = ("b", "a") if c in swapped else ("a", "b")
         ends = " ".join(f"line_{d}{c}" for d in names)
         deck.append(f"Xpixel{c} well_a{c} well_b{c} {ends} reset{c} read{c} level 0 pixel")

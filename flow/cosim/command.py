@@ -102,7 +102,7 @@ def _print(s: dict[str, Any], folder: Path) -> None:
     for line in s["left_out"]:
         print(
             f"  left out: {line['name']}: {line['seconds']:.1f} s in place of {line['seconds_with']:.1f}, "
-            f"error {line['error_lsb']:+.4f} LSB at the lane"
+            f"error {line['error_lsb']:.4f} LSB at the lane"
         )
     for line in s["faults"]:
         print(f"  planted: {line['planted']}; found: {line['name']} (codes {line['error']} LSB from it in all)")

@@ -67,7 +67,7 @@ class Timing:
 
 @dataclass
 class Deck:
-    """A netlist and its drive.
+    """A netlist and its drive: of all lanes, or of one and its columns.
 
     answers: of each lane of the chip, the node of its decision, or "-". lanes, columns: those that are simulated.
     lines: of the netlist. drive: those of +drive below its head. saved: nodes of the waves. supply: V. flat: lanes are
@@ -212,7 +212,7 @@ def _columns(
     start, rest = own_columns.trimmed(column, not unsigned, timing.period, spec.supply, deck.flat)
     taps = {c: row.diodes[c] for c in deck.columns}
     of_lane = {c: c // tile_cols % lanes for c in deck.columns}
-    given = (not unsigned, row.integration, column, sizes, row.sizes, start, rest, swapped, cut)
+    given = (not unsigned, row.integration, column, sizes, row.sizes, start, rest, row.cols, swapped, cut)
     body += own_columns.lines(taps, of_lane, *given)
     first = 10 * lanes + SUBS * row.cols
     own_columns.drive(partial(_source, deck), deck.columns, deck.lanes, first, spec.supply)
@@ -240,7 +240,7 @@ def _row(
         forms = {"": (middle, {"a": a * spec.lsb, "b": b * spec.lsb})}
     swapped = frozenset(fault.where if fault and fault.kind == "diodes" else ())
     cut = fault.where[0] if fault and fault.kind == "row" else None
-    return pixels.lines(columns, forms, row.integration, row.sizes, swapped, cut)
+    return pixels.lines(columns, forms, row.integration, row.sizes, row.cols, swapped, cut)
 
 
 def _subcircuits(circuit: Circuit) -> list[str]:

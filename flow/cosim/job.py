@@ -39,7 +39,7 @@ def summary(row: Row) -> dict[str, Any]:
     """Figures of one row."""
     run, off = row.run, row.differences
     times = row.decision[np.isfinite(row.decision)]
-    decisions = run.cycles.deciding & np.isin(np.arange(run.cycles.answer.shape[1]), row.deck.lanes)
+    decisions = run.cycles.deciding & np.isin(np.arange(run.cycles.answer.shape[1]), row.lanes)
     return {
         "mode": row.request.mode,
         "name": row.request.name,
@@ -56,9 +56,9 @@ def summary(row: Row) -> dict[str, Any]:
         "undecided": int(np.isnan(row.decision[run.cycles.deciding]).sum()),
         "slowest_decision_s": float(times.max(initial=0.0)),
         "median_decision_s": float(np.median(times)) if times.size else None,
-        "transistors": row.deck.transistors,
-        "lanes": list(row.deck.lanes),
-        "columns": len(row.deck.columns),
+        "transistors": row.transistors,
+        "lanes": row.lanes,
+        "columns": sum(len(deck.columns) for deck in row.decks),
         "chip_cycles": run.stats["cycles"],
         "circuit_cycles": run.stats["circuit_cycles"],
         "time_points": run.stats["accepted"],

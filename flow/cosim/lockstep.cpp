@@ -6,16 +6,22 @@
 // become ramps of the EXTERNAL sources. A cycle in which no switch of the circuit is closed and no comparator decides has
 // no time of the circuit. At the end of the frame the process ends from within the transient.
 //
+// A circuit may have parts, which share nothing but the chip: each is a process with a chip of its own, and at a clock edge
+// every chip gets the answers of all. Names of files below end with .0, .1, .. of each part.
+//
+//   +parts=N       of the circuit
 //   +deck=FILE     the netlist; its last line is .end
-//   +drive=FILE    head: period edge step stop high (s): clk is high for so long; then lines "source bit low high half rise fall": volts at 0 and 1 of a
-//                  bit of `controls`, delays (s) of its edges; with half = 1 it is high while clk is low
+//   +drive=FILE    head: period edge step stop high (s): clk is high for so long; the comparators' outputs, of each lane in
+//                  order, separated by commas, "-" of a lane without a circuit in this part
+//                  then lines "source bit low high half rise fall": volts at 0 and 1 of a bit of `controls`, delays (s) of
+//                  its edges; with half = 1 it is high while clk is low
 //                  the bit of vlight0 .. vlight3, the light of each tap, is -1
 //   +whole=1       with light: every cycle of an integration is simulated
-//   +answers=NODES the comparators' outputs, of each lane in order, separated by commas; "-" of a lane without a circuit
 //   +cycles=FILE   what was asked and answered in each cycle of the circuit, as text
 //   +points=FILE   every time point, binary doubles: time and the saved vectors, whose names are the first line
+//   +lockstep=FILE what it took, as JSON
 //   +uic=1         no operating point: the transient begins with the netlist's .ic
-//   +max_cycles=N  exit status 4 where the frame has not ended by then; 5 where ngspice gives up
+//   +max_cycles=N  exit status 4 where the frame has not ended by then; 5 where ngspice gives up, 6 where another part has
 // The others are the bench's (flow/simulate/bench.sv).
 #include <algorithm>
 #include <chrono>
@@ -29,6 +35,10 @@
 #include <string>
 #include <unordered_map>
 #include <vector>
+#include <csignal>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
 #include "VBench.h"
 #include "verilated.h"
 #include <ngspice/sharedspice.h>
@@ -63,6 +73,8 @@ Source* light[4] = {};           // of each tap, 1 at the photocurrents' own str
 std::vector<std::string> nodes;
 std::vector<int> answer_at;      // of each lane, the vector
 std::vector<double> point;
+std::string wanted, part = ".0";  // nodes of the answers; end of this part's files
+int to_hub = -1, from_hub = -1;
 std::FILE *points = nullptr, *cycles = nullptr;
 std::chrono::steady_clock::time_point began;
 std::clock_t worked;
@@ -71,6 +83,8 @@ std::string argument(const char* name) {
   const char* match = context->commandArgsPlusMatch(name);
   return match && *match ? match + std::strlen(name) + 1 : "";
 }
+
+std::string own(const char* name) { return argument(name) + part; }
 
 template <class T> bool bit_of(const T& signal, unsigned at) {
   return reinterpret_cast<const std::uint8_t*>(&signal)[at / 8] >> at % 8 & 1;
@@ -124,17 +138,71 @@ bool quiet() {
   top->final();
   std::fclose(points);
   std::fclose(cycles);
-  if (const std::string name = argument("lockstep="); !name.empty()) {
-    std::FILE* stats = std::fopen(name.c_str(), "w");
-    if (!stats) std::_Exit(3);
-    std::fprintf(stats,
-                 "{\"seconds\": %.6f, \"processor_seconds\": %.6f, \"cycles\": %llu, \"circuit_cycles\": %llu, \"accepted\": %llu, \"rejected\": %llu}\n",
-                 spent.count(), processor, static_cast<unsigned long long>(of_frame), static_cast<unsigned long long>(analog),
-                 static_cast<unsigned long long>(accepted), static_cast<unsigned long long>(rejected));
-    std::fclose(stats);
-  }
+  std::FILE* stats = std::fopen(own("lockstep=").c_str(), "w");
+  if (!stats) std::_Exit(3);
+  std::fprintf(stats,
+               "{\"seconds\": %.6f, \"processor_seconds\": %.6f, \"cycles\": %llu, \"circuit_cycles\": %llu, \"accepted\": %llu, \"rejected\": %llu}\n",
+               spent.count(), processor, static_cast<unsigned long long>(of_frame), static_cast<unsigned long long>(analog),
+               static_cast<unsigned long long>(accepted), static_cast<unsigned long long>(rejected));
+  std::fclose(stats);
   std::fflush(nullptr);
   std::_Exit(top->done ? 0 : 4);
+}
+
+// The answers of all parts, given this one's; none comes where one of them has ended.
+std::uint32_t of_all(std::uint32_t answers) {
+  if (to_hub < 0) return answers;
+  std::uint32_t all = 0;
+  if (write(to_hub, &answers, sizeof answers) != sizeof answers || read(from_hub, &all, sizeof all) != sizeof all) std::_Exit(6);
+  return all;
+}
+
+// Each part in a process; returns in those, and ends here with the worst of their statuses.
+void divide(unsigned count) {
+  std::signal(SIGPIPE, SIG_IGN);
+  std::vector<int> from, to;
+  std::vector<pid_t> children;
+  for (unsigned k = 0; k < count; ++k) {
+    int up[2], down[2];
+    if (pipe(up) || pipe(down)) std::_Exit(3);
+    const pid_t child = fork();
+    if (child < 0) std::_Exit(3);
+    if (child == 0) {
+      prctl(PR_SET_PDEATHSIG, SIGKILL);
+      for (const int fd : from) close(fd);
+      for (const int fd : to) close(fd);
+      close(up[0]);
+      close(down[1]);
+      to_hub = up[1];
+      from_hub = down[0];
+      part = "." + std::to_string(k);
+      return;
+    }
+    close(up[1]);
+    close(down[0]);
+    from.push_back(up[0]);
+    to.push_back(down[1]);
+    children.push_back(child);
+  }
+  for (bool running = true; running;) {
+    std::uint32_t all = 0;
+    for (const int fd : from) {
+      std::uint32_t one = 0;
+      running &= read(fd, &one, sizeof one) == sizeof one;
+      all |= one;
+    }
+    for (const int fd : to)
+      if (running) running = write(fd, &all, sizeof all) == sizeof all;
+  }
+  for (const int fd : to) close(fd);
+  int worst = 0;
+  for (const pid_t child : children) {
+    int status = 0;
+    waitpid(child, &status, 0);
+    const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 1;
+    if (code && (!worst || worst == 6)) worst = code;
+  }
+  std::_Exit(worst);
 }
 
 double volts_of(unsigned lane) { return answer_at[lane] < 0 ? 0.0 : point[answer_at[lane]]; }
@@ -156,7 +224,7 @@ void clock_edge(double time) {
     std::uint32_t answers = 0;
     for (unsigned l = 0; l < answer_at.size(); ++l)
       answers |= static_cast<std::uint32_t>(bit_of(AFE(deciding), l) && volts_of(l) > threshold) << l;
-    AFE(answers) = answers;
+    AFE(answers) = of_all(answers);
     top->clk = 0;
     top->eval();
     record();
@@ -240,7 +308,6 @@ int data(pvecvaluesall all, int, int, void*) {
 }
 
 int first_data(pvecinfoall all, int, void*) {
-  const std::string wanted = argument("answers=");
   point.assign(all->veccount, 0.0);
   for (int i = 0; i < all->veccount; ++i) {
     nodes.push_back(all->vecs[i]->vecname);
@@ -266,8 +333,9 @@ int ended(int, NG_BOOL, NG_BOOL, int, void*) { std::_Exit(5); }
 
 bool read_drive(const std::string& name) {
   std::FILE* file = std::fopen(name.c_str(), "r");
-  if (!file || std::fscanf(file, "%lf %lf %lf %lf %lf", &period, &edge, &step, &stop, &high) != 5) return false;
   char text[256];
+  if (!file || std::fscanf(file, "%lf %lf %lf %lf %lf %255s", &period, &edge, &step, &stop, &high, text) != 6) return false;
+  wanted = text;
   int bit, half;
   double zero, one, rise, fall;
   while (std::fscanf(file, "%255s %d %lf %lf %d %lf %lf", text, &bit, &zero, &one, &half, &rise, &fall) == 7) {
@@ -288,11 +356,24 @@ bool read_drive(const std::string& name) {
 int main(int argc, char** argv) {
   context = new VerilatedContext;
   context->commandArgs(argc, argv);
+  if (const int count = std::atoi(argument("parts=").c_str()); count > 1) {
+    divide(static_cast<unsigned>(count));
+    if (part != ".0") {  // what the bench writes is the same in all
+      std::vector<std::string> kept(argv, argv + argc);
+      std::vector<const char*> given;
+      for (std::string& one : kept) {
+        for (const char* name : {"+stream=", "+miso=", "+activity="})
+          if (one.rfind(name, 0) == 0) one = std::string(name) + "/dev/null";
+        given.push_back(one.c_str());
+      }
+      context->commandArgs(argc, given.data());
+    }
+  }
   top = new VBench{context};
   if (const std::string text = argument("max_cycles="); !text.empty()) limit = std::strtoull(text.c_str(), nullptr, 10);
-  points = std::fopen(argument("points=").c_str(), "wb");
-  cycles = std::fopen(argument("cycles=").c_str(), "w");
-  if (!points || !cycles || !read_drive(argument("drive="))) {
+  points = std::fopen(own("points=").c_str(), "wb");
+  cycles = std::fopen(own("cycles=").c_str(), "w");
+  if (!points || !cycles || !read_drive(own("drive="))) {
     std::fprintf(stderr, "+points, +cycles or +drive: cannot be opened\n");
     return 3;
   }
@@ -303,7 +384,7 @@ int main(int argc, char** argv) {
   ngSpice_Command(alone);
   char simple[] = "optran 1 1 1 0 0 0";  // an operating point by a transient would go through `sync` and move the chip
   ngSpice_Command(simple);
-  if (ngSpice_Command(const_cast<char*>(("source " + argument("deck=")).c_str()))) return 5;
+  if (ngSpice_Command(const_cast<char*>(("source " + own("deck=")).c_str()))) return 5;
   top->reset = 1;
   top->eval();
   while (!AFE(running)) tick();  // the host's configuration

@@ -6,7 +6,7 @@ import json
 import tempfile
 import threading
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -79,7 +79,7 @@ def program(sensor: SensorParameters, note: Callable[[str], None] = lambda text:
 
 def run(
     binary: Path,
-    deck: Callable[[Accuracy], Deck],
+    decks: Callable[[Accuracy], Sequence[Deck]],
     frame: FrameParameters,
     samples: npt.NDArray[np.float64],
     front_end: FrontEnd,
@@ -91,12 +91,15 @@ def run(
 ) -> Run:
     """One frame; where ngspice gives up, again with the next of ``accuracy.ladder``.
 
-    whole: see `RowRequest`. note: called now and then with how far it is. Raises ToolError after the last.
+    decks: the parts of the circuit. whole: see `RowRequest`. note: called now and then with how far it is. Raises
+    ToolError after the last.
     """
     why = ""
     for attempt, tried in enumerate(accuracy.ladder, 1):
         try:
-            return _run(binary, deck(tried), frame, samples, front_end, timing, tried, attempt, whole, max_cycles, note)
+            return _run(
+                *(binary, decks(tried), frame, samples, front_end, timing, tried, attempt, whole, max_cycles, note)
+            )
         except ToolError as error:
             if f"status {GAVE_UP}" not in str(error):
                 raise
@@ -106,7 +109,7 @@ def run(
 
 def _run(
     binary: Path,
-    deck: Deck,
+    decks: Sequence[Deck],
     frame: FrameParameters,
     samples: npt.NDArray[np.float64],
     front_end: FrontEnd,
@@ -122,24 +125,25 @@ def _run(
         folder = Path(name)
         write_samples(folder / "samples", samples)
         write_converter(folder / "converter", front_end)
-        (folder / "deck").write_text("\n".join([*deck.lines, ""]))
         seconds = timing.period, timing.edge, accuracy.step, max_cycles * timing.period, timing.high
         head = " ".join(f"{one:.9g}" for one in seconds)
-        (folder / "drive").write_text("\n".join([head, *deck.drive, ""]))
+        for k, deck in enumerate(decks):
+            (folder / f"deck.{k}").write_text("\n".join([*deck.lines, ""]))
+            (folder / f"drive.{k}").write_text("\n".join([f"{head} {','.join(deck.answers)}", *deck.drive, ""]))
+        begun = any(deck.flat or any(line.startswith(".ic ") for line in deck.lines) for deck in decks)
         more = [f"+{file}={folder / file}" for file in ("deck", "drive", "cycles", "points", "lockstep")]
-        uic = ["+uic=1"] if deck.flat or any(line.startswith(".ic ") for line in deck.lines) else []
-        with _watched(folder / "cycles", note):
+        more += [f"+parts={len(decks)}", *(["+whole=1"] if whole else []), *(["+uic=1"] if begun else [])]
+        with _watched(folder / "cycles.0", note):
             done = run_frame(
-                binary,
-                folder / "samples",
-                folder / "converter",
-                script,
-                max_cycles=max_cycles,
-                more=[*more, f"+answers={','.join(deck.answers)}", *(["+whole=1"] if whole else []), *uic],
+                *(binary, folder / "samples", folder / "converter", script), max_cycles=max_cycles, more=more
             )
-        time, waves = _points(folder / "points")
-        stats = json.loads((folder / "lockstep").read_text())
-        return Run(done.stream, _cycles(folder / "cycles", len(deck.answers)), time, waves, stats, attempt)
+        parts = [_points(folder / f"points.{k}", deck.lanes) for k, deck in enumerate(decks)]
+        spent = [json.loads((folder / f"lockstep.{k}").read_text()) for k in range(len(decks))]
+        stats = spent[0] | {"seconds": max(one["seconds"] for one in spent)}
+        stats |= {name: sum(one[name] for one in spent) for name in ("processor_seconds", "accepted", "rejected")}
+        cycles = [_cycles(folder / f"cycles.{k}", len(deck.answers)) for k, deck in enumerate(decks)]
+        together = replace(cycles[0], volts=np.sum([one.volts for one in cycles], 0))  # 0 of another part's lanes
+        return Run(done.stream, together, *_merged(parts), stats, attempt)
 
 
 @contextlib.contextmanager
@@ -162,12 +166,24 @@ def _watched(cycles: Path, note: Callable[[str], None]) -> Iterator[None]:
         watcher.join()
 
 
-def _points(path: Path) -> tuple[npt.NDArray[np.float64], dict[str, npt.NDArray[np.float64]]]:
+def _points(path: Path, lanes: Sequence[int]) -> tuple[npt.NDArray[np.float64], dict[str, npt.NDArray[np.float64]]]:
+    """Time and waves of a part; its reference by the names of its ``lanes``."""
     head, _, body = path.read_bytes().partition(b"\n")
     names = head.decode().split()
     table = np.frombuffer(body[: len(body) // (8 * len(names)) * 8 * len(names)]).reshape(-1, len(names)).T
     waves = {name.removeprefix("v(").removesuffix(")"): row for name, row in zip(names, table, strict=True)}
-    return waves.pop("time"), waves
+    reference = waves.pop("ref")
+    return waves.pop("time"), waves | {f"ref{lane}": reference for lane in lanes}
+
+
+def _merged(
+    parts: Sequence[tuple[npt.NDArray[np.float64], dict[str, npt.NDArray[np.float64]]]],
+) -> tuple[npt.NDArray[np.float64], dict[str, npt.NDArray[np.float64]]]:
+    """Waves of all ``parts`` at the time points of any."""
+    if len(parts) == 1:
+        return parts[0]
+    time = np.unique(np.concatenate([time for time, _ in parts]))
+    return time, {name: np.interp(time, own, wave) for own, waves in parts for name, wave in waves.items()}
 
 
 def _cycles(path: Path, lanes: int) -> Cycle:

@@ -82,7 +82,7 @@ def _studies(s: Mapping[str, Any]) -> list[Section]:
         keys = ("cycles", "cycles_with", "transistors", "transistors_with")
         lines = [
             (x["name"], f"{x['seconds']:.1f}", f"{x['seconds_with']:.1f}", *(str(x[key]) for key in keys))
-            + (f"{x['error_lsb']:+.4f}", ", ".join(map(str, x["codes"])))
+            + (f"{x['error_lsb']:.4f}", "; ".join(", ".join(map(str, codes)) for codes in x["codes"]))
             for x in s["left_out"]
         ]
         sections.append(Section("Leaving out", head=head, rows=lines))
@@ -138,14 +138,14 @@ def _about(s: Mapping[str, Any]) -> str:
 
 
 def _waves(row: Row) -> Markup:
-    lane, period = row.deck.lanes[0], row.request.timing.period
+    lane, period = row.lanes[0], row.request.timing.period
     run = row.run
     begin = int(np.flatnonzero(run.cycles.hold)[0])
     at = (run.time >= begin * period) & (run.time <= (begin + SHOWN) * period)
     micro = 1e6 * run.time[at]
     figure = Figure(figsize=(9.0, 4.2), layout="constrained")
     above, below = figure.subplots(2, 1, sharex=True)
-    nodes = row.deck.inside(lane)
+    nodes = row.decks[0].inside(lane)
     for axes, pair in ((above, nodes[:2]), (below, nodes[2:])):
         for colour, node in zip(COLOURS, pair, strict=False):
             label = node.partition(".")[2]

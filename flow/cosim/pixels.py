@@ -11,7 +11,7 @@ capacitance.
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from talbot.models.parameters import ELEMENTARY_CHARGE, ArrayParameters, check_real, drawn_lines
@@ -138,16 +138,18 @@ def lines(
     forms: Mapping[str, tuple[float, Mapping[str, float]]],
     integration: float,
     sizes: PixelSizes,
+    cols: int,
     swapped: frozenset[int] = frozenset(),
     cut: int | None = None,
 ) -> list[str]:
     """Lines of the deck. Their drive: nodes reset_row, read_row, clear_row, light0..3, tap0..3.
 
     diodes: (a, b) in LSB of each column and tap. forms: what a column samples, by name: V of the value 0, and V for
-    each LSB of its diodes a and b. integration: s. swapped: columns whose diodes are on each other's line. cut: column
-    from which on the row's read line is open.
+    each LSB of its diodes a and b. integration: s. cols: that the row's lines pass. swapped: columns whose diodes
+    are on each other's line. cut: column from which on the row's read line is open.
     """
-    deck = [*_line("reset", diodes, sizes, None), *_line("read", diodes, sizes, cut)]
+    places = (DARK, *map(str, range(cols)))  # the dark pixel is at the row's driver
+    deck = [*row_line("reset", places, sizes), *row_line("read", places, sizes, str(cut))]
     deck += [f"Vlevel level 0 {sizes.level:g}", *_column(DARK, ("a", "b"))]
     unit = FULL / sizes.swing
     for column, taps in diodes.items():
@@ -170,14 +172,13 @@ def lines(
     return deck
 
 
-def _line(name: str, columns: Mapping[int, object], sizes: PixelSizes, cut: int | None) -> list[str]:
-    """A line of the row: the dark pixel is at its driver."""
-    deck, before = [f"R{name}{DARK} {name}_row {name}{DARK} {sizes.line_resistance:g}"], DARK
-    for column in columns:
-        ohm = sizes.cut if column == cut else sizes.line_resistance
-        deck.append(f"R{name}{column} {name}{before} {name}{column} {ohm:g}")
-        before = str(column)
-    return deck + [f"C{name}{c} {name}{c} 0 {sizes.line_capacitance:g}" for c in (DARK, *columns)]
+def row_line(name: str, places: Sequence[str], sizes: PixelSizes, cut: str = "") -> list[str]:
+    """A line of the row from <name>_row on, with a node <name><place> at each pixel; open before ``cut``."""
+    deck, before = [], f"{name}_row"
+    for place in places:
+        ohm, near, before = sizes.cut if place == cut else sizes.line_resistance, before, f"{name}{place}"
+        deck += [f"R{before} {near} {before} {ohm:g}", f"C{before} {before} 0 {sizes.line_capacitance:g}"]
+    return deck
 
 
 def _column(column: str, names: tuple[str, str]) -> list[str]:

@@ -1,6 +1,6 @@
 """One row through the chip's Verilog with the circuit in the loop, and its codes beside the real-number model's."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -25,6 +25,7 @@ from talbot.models.parameters import (
 )
 from talbot.models.parameters.electrical import AMPLIFIER
 from talbot.pixels.circuits.amplifier import AmplifierSpec
+from talbot.pixels.circuits.column_sizes import FULL
 from talbot.pixels.circuits.specification import LaneSpec
 
 from . import lockstep
@@ -72,6 +73,9 @@ class RowRequest:
         The column amplifiers are transistors, too, and each half of the row's read takes 16 cycles.
     extracted : bool
         Lanes, amplifiers, biases and column amplifiers are as drawn, with their parasitics; without ``fault``.
+    partition : bool
+        Each lane and its columns are a circuit and a process of their own, with references, bias and row lines of their
+        own; one chip hears all of them.
     """
 
     mode: str = "image"
@@ -88,6 +92,7 @@ class RowRequest:
     amplifier: bool = False
     columns: bool = False
     extracted: bool = False
+    partition: bool = True
     timing: Timing = Timing()
     accuracy: Accuracy = Accuracy()
     spec: LaneSpec = LaneSpec()
@@ -176,21 +181,35 @@ class RowRequest:
             values = self.front_end.converter.amplified(values, self.mode != "edge")
         return {(int(c), s): float(values[s, 0, c]) for c in np.flatnonzero(read[0]) for s in range(len(values))}
 
-    def deck(self, accuracy: Accuracy | None = None) -> Deck:
-        """The circuit."""
-        tile_cols = self.frame[0].tile.cols
-        return build(
-            self.values,
-            self.lanes,
-            tile_cols,
-            self.mode != "edge",
-            self.spec,
-            self.clock,
-            accuracy or self.accuracy,
-            self.fault,
-            self.everything,
-            self._pixels if self.pixels else None,
-            self.extracted,
+    def lane_of(self, column: int) -> int:
+        """The lane that converts a column."""
+        return column // self.frame[0].tile.cols % self.lanes
+
+    @property
+    def parts(self) -> tuple[Mapping[tuple[int, int], float], ...]:
+        """`values` of each circuit."""
+        if not self.partition or self.everything:
+            return (self.values,)
+        lanes = sorted({self.lane_of(column) for column, _ in self.values})
+        return tuple({at: v for at, v in self.values.items() if self.lane_of(at[0]) == lane} for lane in lanes)
+
+    def decks(self, accuracy: Accuracy | None = None) -> tuple[Deck, ...]:
+        """The circuit: of each lane that the row reads, or one of all."""
+        return tuple(
+            build(
+                values,
+                self.lanes,
+                self.frame[0].tile.cols,
+                self.mode != "edge",
+                self.spec,
+                self.clock,
+                accuracy or self.accuracy,
+                self.fault,
+                self.everything,
+                self._pixels if self.pixels else None,
+                self.extracted,
+            )
+            for values in self.parts
         )
 
     @property
@@ -225,10 +244,20 @@ class Row:
     """A row that was read. decision: s from the strobe to the comparator's decision, (cycles, lanes), nan for none."""
 
     request: RowRequest
-    deck: Deck
+    decks: tuple[Deck, ...]
     run: lockstep.Run
     samples: list[Sample]
     decision: npt.NDArray[np.float64]
+
+    @property
+    def lanes(self) -> list[int]:
+        """Those in the circuit."""
+        return [lane for deck in self.decks for lane in deck.lanes]
+
+    @property
+    def transistors(self) -> int:
+        """Of all parts."""
+        return sum(deck.transistors for deck in self.decks)
 
     @property
     def at_lane(self) -> npt.NDArray[np.float64]:
@@ -236,7 +265,7 @@ class Row:
         run, zero, off = self.run, 128 * (self.request.mode != "edge"), []
         for s in self.samples:
             end = (_held(run.cycles, s.column, s.sub, self.request)[0] + 1) * self.request.timing.period
-            ends = (np.interp(end, run.time, run.waves[node]) for node in (f"in{s.lane}", "ref"))
+            ends = (np.interp(end, run.time, run.waves[node]) for node in (f"in{s.lane}", f"ref{s.lane}"))
             volts = next(ends) - next(ends)
             off.append(volts / self.request.spec.lsb + zero - s.value)
         return np.array(off)
@@ -250,7 +279,7 @@ class Row:
         """
         run, at_lane, clock, off = self.run, self.at_lane, self.request.clock, []
         for s, miss in zip(self.samples, at_lane, strict=True):
-            top, other = (run.waves[node] for node in self.deck.inside(s.lane)[:2])
+            top, other = (run.waves[node] for node in self.decks[0].inside(s.lane)[:2])
             volts: dict[int, float] = {}
             for i in _search_of(run.cycles, _held(run.cycles, s.column, s.sub, self.request)[0], s.lane):
                 strobe = i * clock.period + clock.high - clock.edge
@@ -278,18 +307,18 @@ def read_row(asked: RowRequest, note: Callable[[str], None] = lambda text: None,
     sensor, frame = asked.frame
     binary = program or lockstep.program(sensor, note)
     run = lockstep.run(
-        *(binary, asked.deck, frame, asked.delivered, asked.front_end, asked.clock, asked.accuracy, asked.whole),
+        *(binary, asked.decks, frame, asked.delivered, asked.front_end, asked.clock, asked.accuracy, asked.whole),
         note=lambda text: note(f"{asked.name}: {text}"),
     )
     codes = decode_stream(run.stream, sensor.tile)[0].samples[0]
     expected = golden_frame(asked.delivered, sensor, frame, asked.front_end).codes[0]
-    deck = asked.deck()
     found = []
     for (column, sub), value in asked.values.items():
-        lane = column // sensor.tile.cols % asked.lanes
+        lane = asked.lane_of(column)
         why = _first_difference(run.cycles, lane, column, sub, asked)
         found.append(Sample(column, sub, lane, value, int(codes[column, sub]), int(expected[column, sub]), why))
-    return Row(asked, deck, run, found, decision_times(run, deck, asked.clock))
+    decks = asked.decks()
+    return Row(asked, decks, run, found, decision_times(run, decks, asked.clock))
 
 
 def _held(c: lockstep.Cycle, column: int, sub: int, asked: RowRequest) -> npt.NDArray[np.int64]:
@@ -320,11 +349,11 @@ def _first_difference(
     return None
 
 
-def decision_times(run: lockstep.Run, deck: Deck, timing: Timing) -> npt.NDArray[np.float64]:
+def decision_times(run: lockstep.Run, decks: Sequence[Deck], timing: Timing) -> npt.NDArray[np.float64]:
     """S from the middle of the strobe's rise until the comparator's outputs are half the supply apart."""
     times = np.full(run.cycles.answer.shape, np.nan)
-    half = 0.5 * deck.supply
-    for lane in deck.lanes:
+    for deck, lane in [(one, lane) for one in decks for lane in one.lanes]:
+        half = 0.5 * deck.supply
         one, other = (run.waves[node] for node in deck.inside(lane)[2:])
         apart = np.abs(one - other)
         for i in np.flatnonzero(run.cycles.deciding[:, lane]):

@@ -39,9 +39,9 @@ def accuracy(note: Callable[[str], None], asked: RowRequest = ONE) -> list[dict[
         note(f"{name}: {done[name].run.stats['seconds']:.1f} s")
     first = done["default"]
     sensor, _ = asked.frame
-    off = replay(asked.deck(TIGHT), first.run, asked.lanes, sensor.tile.cols, asked.timing)
+    off = replay(*asked.decks(TIGHT), first.run, asked.lanes, sensor.tile.cols, asked.timing)
     note(f"reference: {off.stats['seconds']:.1f} s, {off.stats['accepted']} points")
-    exact = decision_times(off, first.deck, asked.timing)
+    exact = decision_times(off, first.decks, asked.timing)
     lines = [_line(name, row, first, exact) for name, row in done.items()]
     return [
         *lines,
@@ -80,19 +80,18 @@ def faults(note: Callable[[str], None], asked: RowRequest = FAULTY) -> list[dict
 
 
 def leaving_out(note: Callable[[str], None]) -> list[dict[str, Any]]:
-    """What is left out, simulated all the same: cycles of an integration, and a lane that the row does not read."""
+    """What is left out, simulated all the same: cycles of an integration, a lane that is not read, what lanes share."""
     light = RowRequest(mode="image", cols=6, lanes=1, types=1, t_int=100)
     narrow = RowRequest(mode="image", cols=6, lanes=2, types=1, pixels=False)
+    shared = RowRequest(mode="edge", types=2, amplifier=True)
     pairs = {
         "an integration of 100 cycles": (light, replace(light, whole=True)),
         "a lane that the row does not read": (narrow, replace(narrow, everything=True)),
+        "what two lanes share": (shared, replace(shared, partition=False)),
     }
     lines = []
     for name, (lean, full) in pairs.items():
         a, b = read_row(lean), read_row(full)
-        node = "in0"  # of the lane that is read, as it lets go
-        ends = [(np.flatnonzero(r.run.cycles.hold)[0] + 1) * lean.timing.period for r in (a, b)]
-        last = [np.interp(t, r.run.time, r.run.waves[node]) for t, r in zip(ends, (a, b), strict=True)]
         lines.append(
             {
                 "name": name,
@@ -100,10 +99,10 @@ def leaving_out(note: Callable[[str], None]) -> list[dict[str, Any]]:
                 "seconds_with": b.run.stats["seconds"],
                 "cycles": a.run.stats["circuit_cycles"],
                 "cycles_with": b.run.stats["circuit_cycles"],
-                "transistors": a.deck.transistors,
-                "transistors_with": b.deck.transistors,
-                "error_lsb": float(last[0] - last[1]) / lean.spec.lsb,
-                "codes": [a.samples[0].code, b.samples[0].code],
+                "transistors": a.transistors,
+                "transistors_with": b.transistors,
+                "error_lsb": float(np.abs(a.at_lane - b.at_lane).max()),
+                "codes": [[s.code for s in row.samples] for row in (a, b)],
             }
         )
         note(f"{name}: {lines[-1]['seconds']:.1f} s in place of {lines[-1]['seconds_with']:.1f}")

@@ -1,7 +1,7 @@
 """A tap after the first, in the bench of a column."""
 
-from talbot.flow.analog.job import column_of, setup_of
 from talbot.flow.analog.curves import later_bench
+from talbot.flow.analog.job import column_of, setup_of
 from talbot.pixels.circuits import column as columns
 
 

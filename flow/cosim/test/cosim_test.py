@@ -12,10 +12,12 @@ from talbot.flow.cosim.accuracy import Accuracy
 from talbot.flow.cosim.diagnose import code_of, value_of
 from talbot.flow.cosim.extracted import rest_of_nets
 from talbot.flow.cosim.faults import Fault
+from talbot.flow.cosim.pixels import PixelSizes
 from talbot.flow.cosim.row import Row, RowRequest, read_row
 from talbot.flow.cosim.waves import write_vcd
 from talbot.models.parameters import ParameterError, circuit_columns
 from talbot.pixels.circuits.amplifier import AmplifierSpec
+from talbot.pixels.circuits.column_sizes import FULL
 from talbot.pixels.circuits.lane import sar_lane, size
 from talbot.pixels.circuits.netlist import Circuit, Resistor
 from talbot.pixels.circuits.specification import LaneSpec
@@ -138,7 +140,7 @@ def test_the_column_amplifiers_are_in_the_loop(mode):
     row = read_row(replace(SMALL, mode=mode, amplifier=True, columns=True))
     (sample,) = row.samples
     assert abs(row.at_lane[0]) < 1 and abs(sample.code - sample.expected) <= 1
-    assert row.run.attempts == 1 and row.deck.transistors > 400  # 337 with columns of arithmetic
+    assert row.run.attempts == 1 and row.transistors > 400  # 337 with columns of arithmetic
 
 
 @library
@@ -156,7 +158,7 @@ def test_the_drawn_circuits_are_in_the_loop():
     pytest.importorskip("klayout")
     row = read_row(replace(SMALL, extracted=True))
     assert abs(row.at_lane[0]) < 0.3 and abs(row.level_off[0]) < 0.26 and not row.beyond.any()
-    assert row.run.attempts == 1 and len(row.deck.lines) > 5000  # 160 of schematics, besides the models
+    assert row.run.attempts == 1 and len(row.decks[0].lines) > 5000  # 160 of schematics, besides the models
 
 
 def test_every_node_of_a_drawn_net_begins_where_the_net_does():
@@ -175,9 +177,7 @@ def test_faults_are_those_of_schematics():
         replace(SMALL, extracted=True, fault=Fault("row", (1,)))
 
 
-@pytest.mark.parametrize(
-    ("mode", "taps"), [("edge", []), ("image", ["sum"]), ("tof", ["sum"] + 3 * ["later_sum"])]
-)
+@pytest.mark.parametrize(("mode", "taps"), [("edge", []), ("image", ["sum"]), ("tof", ["sum"] + 3 * ["later_sum"])])
 def test_the_model_has_the_columns_curves(mode: str, taps: list[str]):
     """A value is what `make analog` measured that a column gives of its charge."""
     ideal = replace(SMALL, mode=mode)
@@ -203,20 +203,53 @@ def test_an_amplifier_needs_a_difference_and_a_clock_that_is_low_for_longer():
 
 def test_only_lanes_that_the_row_reads_are_built():
     whole = RowRequest(mode="image", cols=12, lanes=4, types=1)
-    lean, full = whole.deck(), RowRequest(mode="image", cols=12, lanes=4, types=1, everything=True).deck()
+    (lean,) = replace(whole, partition=False).decks()
+    (full,) = replace(whole, everything=True).decks()
     assert lean.lanes == (0, 1) and full.lanes == (0, 1, 2, 3)
     assert lean.answers[2:] == ["-", "-"] and full.transistors > 1.9 * lean.transistors - 20
 
 
+def test_each_lane_with_its_columns_is_a_part():
+    row = RowRequest(mode="image", cols=12, lanes=4, types=2, fault=Fault("row", (2,)))
+    (whole,), parts = replace(row, partition=False).decks(), row.decks()
+    assert [part.lanes for part in parts] == [(0,), (1,)] and whole.lanes == (0, 1)
+    assert tuple(sorted(c for part in parts for c in part.columns)) == whole.columns
+    assert [part.answers for part in parts] == [["q0", "-", "-", "-"], ["-", "q1", "-", "-"]]
+    for part in parts:  # a line passes the columns of the other lane, too
+        (cut,) = (line.split() for line in part.lines if line.startswith("Rread2 "))
+        assert cut[1:3] == ["read1", "read2"] and float(cut[3]) == PixelSizes().cut
+
+
+@library
+def test_parts_read_what_one_circuit_does():
+    both = RowRequest(mode="image", cols=12, lanes=2, types=1, pixels=False, accuracy=COARSE, seed=3)
+    apart, whole = read_row(both), read_row(replace(both, partition=False))
+    assert [s.code for s in apart.samples] == [s.code for s in whole.samples]
+    assert np.abs(apart.at_lane - whole.at_lane).max() < 0.02 and np.abs(apart.level_off).max() < 0.05
+    assert apart.run.stats["circuit_cycles"] == whole.run.stats["circuit_cycles"]
+    assert apart.run.waves.keys() == whole.run.waves.keys() and apart.transistors == whole.transistors
+
+
+@library
+def test_a_part_that_ngspice_gives_up_ends_all():
+    both = RowRequest(mode="image", cols=12, lanes=2, types=1, pixels=False, accuracy=COARSE)
+    sensor, frame = both.frame
+    sound, other = both.decks()
+    decks = sound, replace(other, lines=["* nothing", "Xnothing a b missing", ".end"])
+    given = lockstep.program(sensor), lambda accuracy: decks, frame, both.samples, both.front_end, both.clock
+    with pytest.raises(ToolError, match="gave up with every setting"):
+        lockstep.run(*given, COARSE)
+
+
 def test_a_fault_is_in_one_lane_alone():
     sound = RowRequest(mode="image", cols=12, lanes=2, types=1)
-    deck = RowRequest(mode="image", cols=12, lanes=2, types=1, fault=Fault("capacitor", (1, 7))).deck()
+    (deck,) = replace(sound, partition=False, fault=Fault("capacitor", (1, 7))).decks()
     lines = [line for text in deck.lines for line in text.splitlines()]
     assert sum(line.endswith(" sar_lane_faulty") and line.startswith("Xlane1") for line in lines) == 1
     assert sum(line.startswith("Cbit7 ") for line in lines) == 1  # the sound lane's
     with pytest.raises(ParameterError, match="net b7 at device switch7: must have two ends"):
         Fault("capacitor", (1, 7)).of_lane(sar_lane(size(LaneSpec(), analog)), 1).check(analog)
-    assert not any("faulty" in line for line in sound.deck().lines)
+    assert not any("faulty" in line for deck in sound.decks() for line in deck.lines)
 
 
 @pytest.mark.parametrize("text", ["", "capacitor:1", "comparator:x", "diode:1", "row:", "comparator:1:2"])
@@ -241,8 +274,8 @@ def test_ngspice_that_gives_up_is_an_error_after_the_whole_ladder(monkeypatch):
 
     monkeypatch.setattr(lockstep, "_run", gives_up)
     sensor, frame = SMALL.frame
-    deck = SMALL.deck()
-    given = lockstep.program(sensor), lambda accuracy: deck, frame, SMALL.samples, SMALL.front_end, SMALL.timing
+    decks = SMALL.decks()
+    given = lockstep.program(sensor), lambda accuracy: decks, frame, SMALL.samples, SMALL.front_end, SMALL.timing
     with pytest.raises(ToolError, match="gave up with every setting"):
         lockstep.run(*given, Accuracy())
     assert tried == list(Accuracy().ladder)

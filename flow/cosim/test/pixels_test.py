@@ -50,7 +50,7 @@ def row_of(fault: Fault | None, off: int = 0) -> Row:
         code = code_of(made, lane, False, asked.threshold, fault) + off * (n % 2)
         samples.append(Sample(column, sub, lane, value, code, code_of(value, lane, False, asked.threshold, None), None))
     empty = np.empty(0)
-    return Row(asked, asked.deck(), Run(b"", None, empty, {}, {}, 1), samples, empty)  # pyright: ignore[reportArgumentType]
+    return Row(asked, asked.decks(), Run(b"", None, empty, {}, {}, 1), samples, empty)  # pyright: ignore[reportArgumentType]
 
 
 @pytest.mark.parametrize("off", [0, 1, -1])

@@ -58,7 +58,9 @@ def test_columns_are_within_the_slope_that_they_were_sized_for():
 
 
 def test_a_diode_has_its_own_curve_and_what_the_other_leaves():
-    curves = ColumnCurves((0.0, 0.5, 1.0), (0.0, 0.5, 0.9), (0.0, 0.4, 0.8), (0.0, 0.01, 0.02), (0.0, 0.0, 0.0), 1.0, 1.0)
+    curves = ColumnCurves(
+        (0.0, 0.5, 1.0), (0.0, 0.5, 0.9), (0.0, 0.4, 0.8), (0.0, 0.01, 0.02), (0.0, 0.0, 0.0), 1.0, 1.0
+    )
     found = curves.delivered(np.array([[[1.0, 0.0], [0.0, 1.0]], [[0.5, 0.5], [0.0, 0.0]]]))
     assert found == pytest.approx(np.array([[[0.9, 0.0], [0.02, 0.8]], [[0.51, 0.4], [0.0, 0.0]]]))
 
