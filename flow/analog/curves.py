@@ -17,7 +17,7 @@ from .column import BOTH, FULL, QUIET, WELLS, bench, mean_of, opened, sample, tu
 from .deck import Setup
 
 OF_TAP = "w", "f", "fn", "unasked"  # the lines that each tap has
-FILLS = (*WELLS, 0.9, FULL)  # of a full well
+FILLS = (*WELLS, 0.85, 0.9, 0.94, FULL)  # of a full well: a bend begins at 0.85
 SOURCES = {
     "fills": "of a full well",
     **dict.fromkeys(("a", "b"), "charges of a column's diode in ngspice, the other empty"),

@@ -7,7 +7,10 @@ from pathlib import Path
 from typing import Any
 
 from talbot.base.progress import Steps
-from talbot.models.parameters import ParameterError
+from talbot.models.parameters import ParameterError, check_choice
+
+
+AMPLIFIERS = "all", "lanes", "none"
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -22,8 +25,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     add("--t-int", default="20000", help="cycles of integration, 1..65535 (20000 are 2 ms)")
     add("--reltol", default="1e-4", help="ngspice's relative tolerance, 1e-8..0.1")
     add("--method", default="trap", help="ngspice's integration, trap or gear")
-    add("--ideal-amplifier", action="store_true", help="edge mode: the lanes' difference amplifiers are arithmetic")
-    add("--own-columns", action="store_true", help="the column amplifiers are transistors, in all modes")
+    add("--amplifiers", default="all", help="that are transistors: all, of the columns and lanes; lanes (in edge mode); none")
     add("--extracted", action="store_true", help="each row again, with the drawn circuits and their parasitics")
     add("--study", action="store_true", help="error against run time on one sample, beside an off-line reference, too")
     add("--faults", action="store_true", help="faults planted in the circuit, and what the codes say of each, too")
@@ -44,6 +46,8 @@ def run(options: Namespace) -> int:
     modes = options.modes.split(",")
     if not set(modes) <= set(MODES):
         raise ParameterError(f"modes = {options.modes!r}: must be some of {','.join(MODES)}")
+    check_choice("amplifiers", options.amplifiers, AMPLIFIERS)
+    columns, lanes = (options.amplifiers in names for names in (("all",), ("all", "lanes")))
     types = text.integer("types", options.types, 1, 6)
     accuracy = Accuracy(reltol=text.real("reltol", options.reltol, 1e-8, 0.1), method=options.method)
     shared: dict[str, Any] = {
@@ -58,8 +62,8 @@ def run(options: Namespace) -> int:
         RowRequest(
             mode=mode,
             types=min(types, 2) if mode == "tof" else types,
-            amplifier=options.own_columns or (mode == "edge" and not options.ideal_amplifier),
-            columns=options.own_columns,
+            amplifier=columns or (mode == "edge" and lanes),
+            columns=columns,
             **shared,
         )
         for mode in modes
