@@ -32,7 +32,7 @@ def decks(pdk: str) -> tuple[str, str]:
 
 def drc(gds: Path, pdk: str, report: Path) -> dict[str, int]:
     """Violations by rule. report: KLayout's report database. Raises StepError."""
-    return broken_rules(decks(pdk)[0], gds, report)
+    return broken_rules({report.with_suffix(".drc"): decks(pdk)[0]}, gds, report)
 
 
 def lvs(gds: Path, spice: str, pdk: str, report: Path, boxes: Iterable[str] = ()) -> bool:

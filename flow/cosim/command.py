@@ -9,7 +9,6 @@ from typing import Any
 from talbot.base.progress import Steps
 from talbot.models.parameters import ParameterError, check_choice
 
-
 AMPLIFIERS = "all", "lanes", "none"
 
 
@@ -25,7 +24,11 @@ def add_arguments(parser: ArgumentParser) -> None:
     add("--t-int", default="20000", help="cycles of integration, 1..65535 (20000 are 2 ms)")
     add("--reltol", default="1e-4", help="ngspice's relative tolerance, 1e-8..0.1")
     add("--method", default="trap", help="ngspice's integration, trap or gear")
-    add("--amplifiers", default="all", help="that are transistors: all, of the columns and lanes; lanes (in edge mode); none")
+    add(
+        "--amplifiers",
+        default="all",
+        help="that are transistors: all, of the columns and lanes; lanes (in edge mode); none",
+    )
     add("--extracted", action="store_true", help="each row again, with the drawn circuits and their parasitics")
     add("--study", action="store_true", help="error against run time on one sample, beside an off-line reference, too")
     add("--faults", action="store_true", help="faults planted in the circuit, and what the codes say of each, too")

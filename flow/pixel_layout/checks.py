@@ -51,7 +51,7 @@ def decks(pdk: str) -> tuple[str, str]:
 
 def drc(gds: Path, pdk: str, report: Path) -> dict[str, int]:
     """Violations by rule, waived ones among them. report: KLayout's report database. Raises StepError."""
-    return broken_rules(decks(pdk)[0], gds, report)
+    return broken_rules({report.with_suffix(".drc"): decks(pdk)[0]}, gds, report)
 
 
 def unwaived(found: dict[str, int]) -> int:

@@ -7,6 +7,8 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
+from joblib import Parallel, delayed
+
 from talbot.base.steps import StepError
 from talbot.base.tools import ToolError, finish
 from talbot.platforms.coriolis import CoriolisPlatform
@@ -46,14 +48,37 @@ def with_taps(deck: str, active: GdsLayer, tap: GdsLayer) -> str:
     return deck.replace(f" = {old}\n", f" = {old} + {new}\n")
 
 
-def broken_rules(deck: str, gds: Path, report: Path) -> dict[str, int]:
-    """Violations by rule of an exported deck, text. report: KLayout's report database. Raises StepError."""
-    file = report.with_suffix(".drc")
-    file.write_text(deck)
-    status, output = run_exported(file, gds, report)
-    if status:
-        raise StepError(f"drc: KLayout failed with status {status}: {output.strip().splitlines()[-1:]}")
+def broken_rules(decks: Mapping[Path, str], gds: Path, report: Path) -> dict[str, int]:
+    """Violations by rule of exported decks, which run at the same time. Raises StepError.
+
+    decks: text of each, by the file that it is written to. report: KLayout's report database, of all.
+    """
+    for file, text in decks.items():
+        file.write_text(text)
+    reports = [report] if len(decks) == 1 else [file.with_suffix(".lyrdb") for file in decks]
+    runs = (delayed(run_exported)(file, gds, part) for file, part in zip(decks, reports, strict=True))
+    for status, output in Parallel(len(decks), prefer="threads")(runs):
+        if status:
+            lines = output.strip().splitlines()
+            error = next((line for line in lines if "ERROR" in line), lines[-1:])
+            raise StepError(f"drc: KLayout failed with status {status}: {error}")
+    if len(decks) > 1:
+        _join(reports, report)
     return violations(report)
+
+
+def _join(parts: Iterable[Path], report: Path) -> None:
+    """One report database of several, of one layout; they are removed."""
+    first, *rest = [(part, ET.parse(part)) for part in parts]
+    for _, other in rest:
+        for kind in ("categories", "cells", "items"):
+            into, new = first[1].find(kind), other.find(kind)
+            assert into is not None and new is not None, f"a report of KLayout has no {kind}"
+            known = {one.findtext("name") for one in into} if kind != "items" else set()
+            into.extend([one for one in new if one.findtext("name") not in known])
+    first[1].write(report, encoding="utf-8", xml_declaration=True)
+    for part, _ in (first, *rest):
+        part.unlink()
 
 
 def is_circuit(deck: str, gds: Path, spice: str, report: Path) -> bool:
@@ -76,8 +101,8 @@ def without_rules(deck: str, rules: Iterable[str]) -> str:
     return deck
 
 
-def with_flat_spaces(deck: str) -> str:
-    """The deck with the spaces of drawn layers checked last, flat and between edges.
+def deep_and_flat(deck: str, more: Iterable[str] = ()) -> tuple[str, str]:
+    """The deck as two, without and with the spaces of drawn layers, those flat and between edges, and lines ``more``.
 
     Wells, implants and rails continue from cell to cell through whole rows; to check those cell by cell takes two
     thirds of the deck's time, flat a tenth of that. Between polygons each neighbour of a large one is compared with all
@@ -86,13 +111,15 @@ def with_flat_spaces(deck: str) -> str:
     """
     drawn = dict(re.findall(r"^(\w+) = (input\(\d+, \d+\))$", deck, re.M))
     rules = [m for m in re.finditer(r"^(\w+)\.space\([\d.]+\)\.output\(\n(?:.*\n)*?\)\n", deck, re.M) if m[1] in drawn]
-    if not rules:
+    head, deep, body = deck.partition("\ndeep\n")
+    if not rules or not deep:
         raise StepError("drc: the deck has no rule of a space that could be checked flat")
     for rule in rules:
-        deck = deck.replace(rule[0], "", 1)
+        body = body.replace(rule[0], "", 1)
     layers = dict.fromkeys(rule[1] for rule in rules)
     spaces = (rule[0].replace(".space(", ".edges.space(", 1) for rule in rules)
-    return "\n".join([deck, "flat", *(f"{name} = {drawn[name]}" for name in layers), *spaces])
+    flat = "\n".join(["flat", *(f"{name} = {drawn[name]}" for name in layers), *spaces, *more, ""])
+    return head + deep + body, f"{head}\n{flat}"
 
 
 def hole_rules(tech: CoriolisPlatform) -> Iterator[str]:

@@ -3,10 +3,10 @@
 import json
 from typing import Any
 
-from talbot.base.steps import Files, Step, StepError
+from talbot.base.steps import Files, Step
 from talbot.platforms.coriolis import coriolis_platform
 
-from ..geometry.decks import hole_rules, run_exported, via_rules, violations, with_flat_spaces
+from ..geometry.decks import broken_rules, deep_and_flat, hole_rules, via_rules
 from .parameters import PdkParameters
 
 WARNING = "[Warning]"
@@ -21,7 +21,7 @@ class Drc(Step[PdkParameters]):
 
     name = "drc"
     inputs = {"gds": "fill.gds", "deck": "library.drc"}
-    outputs = {"report": "drc.lyrdb", "summary": "drc.json", "deck": "spaces.drc"}
+    outputs = {"report": "drc.lyrdb", "summary": "drc.json", "deep": "deep.drc", "flat": "flat.drc"}
     metrics = {"drc_violations": ""}
     tools = ("klayout",)
 
@@ -30,15 +30,11 @@ class Drc(Step[PdkParameters]):
         return deck
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
-        deck = with_flat_spaces(self.exported(inputs["deck"].read_text()))
         tech = coriolis_platform(self.parameters.pdk)
         masks = [tech.masks.read_text()] if tech.masks else []
-        outputs["deck"].write_text("\n".join([deck, *hole_rules(tech), *via_rules(tech), *masks]) + "\n")
-        status, output = run_exported(outputs["deck"], inputs["gds"], outputs["report"])
-        if status:
-            lines = output.strip().splitlines()
-            error = next((line for line in lines if "ERROR" in line), lines[-1:])
-            raise StepError(f"drc: KLayout failed with status {status}: {error}")
-        found = violations(outputs["report"])
+        more = (*hole_rules(tech), *via_rules(tech), *masks)
+        decks = deep_and_flat(self.exported(inputs["deck"].read_text()), more)
+        files = dict(zip((outputs["deep"], outputs["flat"]), decks, strict=True))
+        found = broken_rules(files, inputs["gds"], outputs["report"])
         outputs["summary"].write_text(json.dumps(found, indent=1) + "\n")
         return {"drc_violations": sum(count for rule, count in found.items() if not rule.startswith(WARNING))}

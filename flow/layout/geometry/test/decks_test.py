@@ -6,7 +6,7 @@ import pytest
 
 from talbot.base.gds import db, write_gds
 from talbot.base.steps import StepError
-from talbot.flow.layout.geometry.decks import run_deck, via_rules, violations, with_flat_spaces
+from talbot.flow.layout.geometry.decks import broken_rules, deep_and_flat, run_deck, via_rules, violations
 from talbot.flow.layout.geometry.lvs_deck import hierarchical
 from talbot.platforms.coriolis import coriolis_platform
 
@@ -33,9 +33,11 @@ connect(poly, poly_pin)
 
 
 def test_spaces_of_drawn_layers_are_checked_flat_and_the_rest_as_before():
-    deep, flat = with_flat_spaces(DRC).split("\nflat\n")
+    deep, flat = deep_and_flat(f"source(x)\n{DRC}", ["more"])
+    assert deep.startswith("source(x)\ndeep\nnwm = ")
     assert "nwm.space" not in deep and "both.space(0.2)" in deep and "nwm.width" in deep
-    assert flat == 'nwm = input(64, 20)\nnwm.edges.space(1.27).output(\n    "nwm space", "nwm minimum space"\n)\n'
+    spaces = 'nwm = input(64, 20)\nnwm.edges.space(1.27).output(\n    "nwm space", "nwm minimum space"\n)\n'
+    assert flat == f"source(x)\nflat\n{spaces}\nmore\n"
 
 
 @pytest.mark.skipif(not shutil.which("klayout"), reason="klayout: not found; install it with: make tools")
@@ -61,9 +63,24 @@ def test_a_via_outside_its_metal_or_of_another_size_is_found(tmp_path, cases, fo
     assert violations(tmp_path / "found.lyrdb") == found
 
 
+@pytest.mark.skipif(not shutil.which("klayout"), reason="klayout: not found; install it with: make tools")
+def test_decks_run_at_once_and_their_violations_are_in_one_report(tmp_path):
+    layout = db.Layout()
+    top = layout.create_cell("top")
+    for x, width in ((0, 1000), (2000, 800), (5000, 900)):  # a space of 1 um, a width of 0.8
+        top.shapes(layout.layer(64, 20)).insert(db.Box(x, 0, x + width, 2000))
+    write_gds(layout, tmp_path / "top.gds")
+    head = 'source(ENV["SOURCE_FILE"])\nreport("r", ENV["REPORT_FILE"])\n'
+    decks = deep_and_flat(head + DRC.replace("(nwm&li)", "nwm & nwm"))
+    files = {tmp_path / f"{name}.drc": deck for name, deck in zip(("deep", "flat"), decks, strict=True)}
+    found = broken_rules(files, tmp_path / "top.gds", tmp_path / "all.lyrdb")
+    assert found == {"nwm space": 1, "nwm width": 1}
+    assert not list(tmp_path.glob("deep.lyrdb")) and not list(tmp_path.glob("flat.lyrdb"))
+
+
 def test_a_deck_without_spaces_is_refused():
     with pytest.raises(StepError, match="no rule of a space"):
-        with_flat_spaces("deep\nnwm = input(64, 20)\n")
+        deep_and_flat("deep\nnwm = input(64, 20)\n")
 
 
 def test_the_comparison_goes_by_cells_and_the_substrate_is_one_net():

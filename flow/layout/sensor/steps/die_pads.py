@@ -6,15 +6,7 @@ from typing import Any
 
 from talbot.base.gds import write_gds
 from talbot.base.steps import Files, Step, StepError
-from talbot.flow.layout.geometry.decks import (
-    hole_rules,
-    run_deck,
-    run_exported,
-    via_rules,
-    violations,
-    with_flat_spaces,
-    with_taps,
-)
+from talbot.flow.layout.geometry.decks import broken_rules, deep_and_flat, hole_rules, run_deck, via_rules, with_taps
 from talbot.flow.layout.pdkmaster import export_spice
 from talbot.flow.layout.steps.parameters import PdkParameters
 from talbot.platforms.coriolis import coriolis_platform
@@ -52,19 +44,16 @@ class DiePadsDrc(Step[PdkParameters]):
 
     name = "die_pads_drc"
     inputs = {"gds": "die_pads.gds", "deck": "library.drc"}
-    outputs = {"report": "drc.lyrdb", "summary": "drc.json", "deck": "pads.drc"}
+    outputs = {"report": "drc.lyrdb", "summary": "drc.json", "deep": "deep.drc", "flat": "flat.drc"}
     metrics = {"pad_drc_violations": ""}
     tools = ("klayout",)
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         tech, process = coriolis_platform(self.parameters.pdk), pad_process(self.parameters.pdk)
-        deck = with_flat_spaces(with_taps(inputs["deck"].read_text(), tech.active, process.tap))
-        rules = [deck, *hole_rules(tech), *via_rules(tech), process.masks.read_text()]
-        outputs["deck"].write_text("\n".join(rules) + "\n")
-        status, output = run_exported(outputs["deck"], inputs["gds"], outputs["report"])
-        if status:
-            raise StepError(f"{self.name}: KLayout failed with status {status}: {output.strip().splitlines()[-1:]}")
-        found = violations(outputs["report"])
+        more = (*hole_rules(tech), *via_rules(tech), process.masks.read_text())
+        decks = deep_and_flat(with_taps(inputs["deck"].read_text(), tech.active, process.tap), more)
+        files = dict(zip((outputs["deep"], outputs["flat"]), decks, strict=True))
+        found = broken_rules(files, inputs["gds"], outputs["report"])
         outputs["summary"].write_text(json.dumps(found, indent=1) + "\n")
         return {"pad_drc_violations": sum(found.values())}
 
