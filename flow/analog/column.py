@@ -18,6 +18,7 @@ import numpy as np
 
 from talbot.cells.corner import Corner
 from talbot.cells.spice.engine import Points, Simulator
+from talbot.cells.spice.settings import Settings
 from talbot.cells.spice.wave import Wave
 from talbot.models.parameters.electrical import BOLTZMANN
 from talbot.pixels.circuits import column as columns
@@ -181,9 +182,12 @@ def settling(wave: Wave, spec: ColumnSpec) -> float:
 def offset(
     setup: Setup, spec: ColumnSpec, sizes: ColumnSizes, corner: Corner, start: tuple[float, float], seed: int
 ) -> float:
-    """LSB by which both diodes' lines differ without light, of a column with the models' own mismatch."""
+    """LSB by which both diodes' lines differ without light, of a column with the models' own mismatch.
+
+    With looser tolerances than other figures have: 0.17 LSB off at most, in a third of the time.
+    """
     end = turn_of(spec) + spec.cycle
-    with opened(setup, spec, sizes, corner, start, seed=seed) as spice:
+    with opened(setup, spec, sizes, corner, start, seed=seed, settings=SETTINGS) as spice:
         wave = sample(spice, spec, corner, 0.0, 0.0)
     return (wave.at("far_a", end) - wave.at("far_b", end)) / spec.lsb
 
@@ -277,6 +281,7 @@ def opened(
     seed: int | None = None,
     more: Sequence[str] = (),
     circuit: Circuit | None = None,
+    settings: Settings = EXACT,
 ) -> Simulator:
     """An ngspice process of the bench. image: the first lane's reference is the middle. seed: of mismatch.
 
@@ -294,7 +299,7 @@ def opened(
     rails = {"start_a": start[0], "start": start[1], "dark": spec.dark, "reference": spec.dark - image * spec.swing / 4}
     rails |= {"vdd_bias": corner.supply, "vdd_own": corner.supply}
     rails |= {f"rest_{name}": volt for name, volt in at_rest(setup, sizes, corner).items()}
-    return simulator(lines, DRIVEN, ("far_a", "far_b", "level", *more), corner, rails, EXACT)
+    return simulator(lines, DRIVEN, ("far_a", "far_b", "level", *more), corner, rails, settings)
 
 
 def sample(

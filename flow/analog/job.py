@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Callable, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from time import perf_counter
 from typing import Any
@@ -14,7 +14,7 @@ from talbot.base.jobs import Job, run
 from talbot.base.paths import BUILD
 from talbot.base.records import from_json
 from talbot.cells.corner import Corner
-from talbot.models.parameters import ParameterError, check_int
+from talbot.models.parameters import DIODE, ParameterError, check_int
 from talbot.models.parameters.electrical import AMPLIFIER
 from talbot.pixels.circuits import amplifier as amplifiers
 from talbot.pixels.circuits import lane as lanes
@@ -32,7 +32,7 @@ from .amplifier import AmplifierResult
 from .column import ColumnResult
 from .comparator import BATCH, Decisions, interval
 from .curves import ColumnFit
-from .deck import Setup, deck, process_of
+from .deck import SETTINGS, Setup, deck, process_of
 from .found import TYPICAL, Found
 from .lane import LaneResult, inl
 from .noise import Noise
@@ -50,7 +50,6 @@ ALL = (
 )
 CORNER_SETS = {"all": ALL, "quick": QUICK, "typical": (TYPICAL,)}
 ARRAYS = 1000  # drawn capacitor arrays
-COLUMNS = 40  # most columns that are drawn: a transient takes 5 s
 
 
 def corners_of(text: str) -> tuple[str, ...]:
@@ -226,9 +225,9 @@ def measured(
             f"column-draw-{k}",
             column.offset,
             (setup, spec_c, sizes_c, typical, columns[TYPICAL].start, k),
-            (given_c, columns[TYPICAL].start, k),
+            (given_c, columns[TYPICAL].start, k, SETTINGS),
         )
-        for k in range(1, min(draws, COLUMNS) + 1)
+        for k in range(1, draws + 1)
     ]
     column_offsets = run(unlike, STORE, "columns drawn", workers)
     given_f = setup, spec_c, sizes_c, typical, columns[TYPICAL].start
@@ -276,6 +275,8 @@ def converter(spec: LaneSpec, sizes: LaneSizes, found: Found) -> dict[str, Any]:
     """What `models/afe` takes of the circuit, each with its source and the fit's error where there is one (LSB)."""
     rms, low, high = interval(found.offsets)
     rms_a, low_a, high_a = interval([one.offset for one in found.amplifier_draws])
+    rms_c, low_c, high_c = interval(found.column_offsets)
+    of_diode = 2**0.5 * ColumnSpec.of().swing / spec.lsb / DIODE  # of a difference, for each LSB of a diode
     shape = inl(found.lanes[TYPICAL].decided)
     bend, bend_error = polynomial(found.amplifiers[TYPICAL].points)
     gains = float(np.std([one.gain for one in found.amplifier_draws], ddof=1))
@@ -292,7 +293,7 @@ def converter(spec: LaneSpec, sizes: LaneSizes, found: Found) -> dict[str, Any]:
             "unit_mismatch": round(sizes.dac.unit_mismatch, 6),
             **{name: round(value, 4) for name, value in zip(AMPLIFIER, bend, strict=True)},
         },
-        "columns": asdict(found.column_fit.curves),
+        "columns": asdict(replace(found.column_fit.curves, spread=round(rms_c / of_diode, 4))),
         "sources": {
             "inl": f"peak of {len(lane.CODES)} levels, by the decisions in ngspice, off the line through the ends",
             "dnl": "steps come from unit_mismatch",
@@ -302,6 +303,7 @@ def converter(spec: LaneSpec, sizes: LaneSizes, found: Found) -> dict[str, Any]:
             "unit_mismatch": f"{sizes.dac.source}",
             **dict.fromkeys(AMPLIFIER, fitted),
             **curves.SOURCES,
+            "spread": f"{len(found.column_offsets)} columns with the models' mismatch in ngspice",
         },
         "errors": {
             "inl": round(shape[2], 4),
@@ -315,6 +317,7 @@ def converter(spec: LaneSpec, sizes: LaneSizes, found: Found) -> dict[str, Any]:
             "settling": round(_left(spec, found.lanes[TYPICAL]), 6),
             "droop": round(found.lanes[TYPICAL].droop, 4),
             "columns": found.column_fit.error,
+            "spread": round((high_c - low_c) / 2 / of_diode, 4),
         },
     }
 

@@ -12,10 +12,10 @@ import numpy as np
 from talbot.cells.spice.engine import Simulator
 from talbot.flow.analog.amplifier import COLUMNS, EXACT
 from talbot.flow.analog.column import GAP, ROW, TRIMS, nearer
-from talbot.models.parameters import ELEMENTARY_CHARGE, AmpTiming
+from talbot.models.parameters import DIODE, ELEMENTARY_CHARGE, AmpTiming
 from talbot.pixels.circuits.column import BIASES, PINS, TAPS, column, line
 from talbot.pixels.circuits.column_block import OUTSIDE, cascode_lines, clear_pulse, column_bias, lane_end, lane_line
-from talbot.pixels.circuits.column_sizes import FULL, ColumnSizes, ColumnSpec, size
+from talbot.pixels.circuits.column_sizes import ColumnSizes, ColumnSpec, size
 from talbot.pixels.circuits.netlist import Circuit
 from talbot.pixels.circuits.row_driver import THICK
 from talbot.pixels.circuits.specification import CODES
@@ -96,7 +96,7 @@ def lines(
         deck.append(f"Xcolumn{c} {' '.join(nodes.get(pin, pin) for pin in map(line, PINS))} column")
         for tap, pair in taps.items():
             for diode, value in zip("ab", pair, strict=True):
-                ampere = value / FULL * spec.full_well * ELEMENTARY_CHARGE / integration
+                ampere = value / DIODE * spec.full_well * ELEMENTARY_CHARGE / integration
                 deck.append(f"Gphoto{diode}{c}_{tap} well_{diode}{c} 0 light{tap} 0 {ampere:.9g}")
     return deck
 

@@ -14,11 +14,10 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from talbot.models.parameters import ELEMENTARY_CHARGE, ArrayParameters, check_real, drawn_lines
+from talbot.models.parameters import DIODE, ELEMENTARY_CHARGE, ArrayParameters, check_real, drawn_lines
 from talbot.pixels.circuits.gates import LENGTH, inverter
 from talbot.pixels.circuits.netlist import Capacitor, Circuit, Instance, Transistor
 
-FULL = 127.5  # LSB of a diode whose well is full
 STAGE = 1e-3  # S, of the stage in which an amplifier has its gain
 DARK = "dark"
 LINES = ("reset", "read")
@@ -151,13 +150,13 @@ def lines(
     places = (DARK, *map(str, range(cols)))  # the dark pixel is at the row's driver
     deck = [*row_line("reset", places, sizes), *row_line("read", places, sizes, str(cut))]
     deck += [f"Vlevel level 0 {sizes.level:g}", *_column(DARK, ("a", "b"))]
-    unit = FULL / sizes.swing
+    unit = DIODE / sizes.swing
     for column, taps in diodes.items():
         names = ("b", "a") if column in swapped else ("a", "b")
         deck += _column(str(column), names)
         for tap, pair in taps.items():
             for diode, value in zip("ab", pair, strict=True):
-                ampere = value / FULL * sizes.full_well * ELEMENTARY_CHARGE / integration
+                ampere = value / DIODE * sizes.full_well * ELEMENTARY_CHARGE / integration
                 deck.append(f"Gphoto{diode}{column}_{tap} well_{diode}{column} 0 light{tap} 0 {ampere:.9g}")
         for form, (zero, volts) in forms.items():
             own = f"{form}{column}"

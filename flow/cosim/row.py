@@ -25,7 +25,6 @@ from talbot.models.parameters import (
 )
 from talbot.models.parameters.electrical import AMPLIFIER
 from talbot.pixels.circuits.amplifier import AmplifierSpec
-from talbot.pixels.circuits.column_sizes import FULL
 from talbot.pixels.circuits.specification import LaneSpec
 
 from . import lockstep
@@ -165,11 +164,7 @@ class RowRequest:
         if not self.columns:
             return self.samples
         curves = circuit_columns(DRAWN) if self.extracted else circuit_columns()
-        diodes = FULL * curves.delivered(self.samples / FULL)
-        if self.mode == "edge":
-            return diodes
-        sums = (curves.sum, *[curves.later_sum] * (len(diodes) - 1))
-        return diodes * np.reshape(sums, (-1, 1, 1, 1))
+        return curves.samples(self.samples, self.mode)
 
     @cached_property
     def values(self) -> dict[tuple[int, int], float]:

@@ -18,7 +18,7 @@ from talbot.models.capture import Exposure, Region, Views, choose_views, exposed
 from talbot.models.capture import expose as expose_pair
 from talbot.models.chip import front_end_of, golden_frame
 from talbot.models.digital.stream import decode_stream
-from talbot.models.parameters import SensorParameters
+from talbot.models.parameters import SensorParameters, circuit_columns, circuit_converter
 from talbot.models.pixel import measured_gains
 from talbot.models.plan import Plan, plan
 from talbot.models.scene import Sampling, Scene, load
@@ -77,7 +77,8 @@ def expose(
 
     def samples(noise: float) -> Values:
         exposure = _exposure(request, noise, number)
-        return np.asarray(exposed(pairs, sensor, exposure, trim_gain(front_end.trim)), np.float64)
+        diodes = np.asarray(exposed(pairs, sensor, exposure, trim_gain(front_end.trim)), np.float64)
+        return _of_columns(request, diodes)
 
     noisy = samples(request.noise)
     clean = samples(0.0) if request.noise else noisy
@@ -108,7 +109,18 @@ def flat_field(request: FrameRequest) -> Values:
     sensor, frame = request.lit, request.frame
     pair = integrate(load("flat:50", Sampling.of(sensor)), sensor, Region(1, np.ones(sensor.shape, bool)))[0]
     exposure = replace(_exposure(request, request.noise), timing=replace(frame.exposing, n_cm=0))
-    return expose_pair(pair, exposure, tap=BENCH) - expose_pair(0 * pair, replace(exposure, noise=0.0))
+    light, dark = expose_pair(pair, exposure, tap=BENCH), expose_pair(0 * pair, replace(exposure, noise=0.0))
+    light, dark = (_of_columns(request, one[None], "edge")[0] for one in (light, dark))
+    return light - dark
+
+
+def _of_columns(request: FrameRequest, diodes: Values, mode: str = "") -> Values:
+    """What the column amplifiers give of ``diodes`` (taps, rows, cols, 2): ideal ones but with the circuit's lanes."""
+    if request.sensor.converter != circuit_converter():
+        return diodes
+    columns = circuit_columns()
+    offsets = columns.offsets(diodes.shape[2], request.sensor.converter.seed)
+    return columns.samples(diodes, mode or request.frame.mode) + offsets
 
 
 def _exposure(request: FrameRequest, noise: float, number: int = 0) -> Exposure:

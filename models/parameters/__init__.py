@@ -4,7 +4,7 @@ from .array import COLS_MAX, ROWS_MAX, ArrayParameters
 from .camera import FOCUS_MAX, LIFE_SIZE, CameraParameters
 from .checks import ParameterError, check_choice, check_int, check_real
 from .chip import ASYNCHRONOUS, LANES, SPI_INPUTS, ChipParameters
-from .circuit import DRAWN, ColumnCurves, circuit_columns, circuit_converter
+from .circuit import DIODE, DRAWN, ColumnCurves, circuit_columns, circuit_converter
 from .divider import DIVIDERS
 from .drawn import LineParameters, drawn_curves, drawn_electrical, drawn_lines
 from .electrical import ELEMENTARY_CHARGE, TYPICAL_CONVERTER, ConverterParameters, ElectricalParameters
@@ -21,6 +21,7 @@ __all__ = [
     "ALL_TYPES",
     "ASYNCHRONOUS",
     "COLS_MAX",
+    "DIODE",
     "DIVIDERS",
     "DRAWN",
     "ELEMENTARY_CHARGE",

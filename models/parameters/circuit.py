@@ -13,6 +13,8 @@ from .checks import ParameterError, check_real
 from .electrical import ConverterParameters
 
 TABLE = Path(__file__).with_name("circuit.json")
+OFFSETS = 0xC01  # of the seed of columns' offsets
+DIODE = 127.5  # LSB of a diode whose well is full
 DRAWN = Path(__file__).with_name("circuit_drawn.json")  # columns as drawn, written by `make analog-layout TABLE=`
 
 
@@ -53,6 +55,8 @@ class ColumnCurves:
         What the diode's lane has where the other one is so full, -0.5..0.5.
     sum, later_sum : float
         More of both diodes' sum than their lanes have, in the first tap and in later ones, 0.5..1.5.
+    spread : float
+        Rms over columns of what a diode's lane has without light, in LSB of a diode, 0..16.
     """
 
     fills: tuple[float, ...]
@@ -62,6 +66,7 @@ class ColumnCurves:
     b_other: tuple[float, ...]
     sum: float
     later_sum: float
+    spread: float = 0.0
 
     def __post_init__(self) -> None:
         if not (len(self.fills) > 1 and self.fills[0] == 0 and (np.diff(self.fills) > 0).all()):
@@ -75,6 +80,7 @@ class ColumnCurves:
                 check_real(name, value, low, high)
         check_real("sum", self.sum, 0.5, 1.5)
         check_real("later_sum", self.later_sum, 0.5, 1.5)
+        check_real("spread", self.spread, 0, 16)
 
     def delivered(self, diodes: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
         """What the lanes have of both diodes.
@@ -96,6 +102,44 @@ class ColumnCurves:
             for d, curve in enumerate(curves)
         ]
         return np.stack([parts[0] + parts[2], parts[1] + parts[3]], -1)
+
+    def samples(self, diodes: npt.NDArray[np.float64], mode: str) -> npt.NDArray[np.float64]:
+        """What a front end has of charges, without `spread`: lanes of each diode, or parts of a sum.
+
+        Parameters
+        ----------
+        diodes : ndarray
+            (taps, rows, cols, 2) in LSB, DIODE where a well is full.
+        mode : str
+            edge and raw: of each diode; image and tof: of sums.
+
+        Returns
+        -------
+        ndarray
+            (taps, rows, cols, 2) in LSB.
+        """
+        found = DIODE * self.delivered(diodes / DIODE)
+        if mode in ("edge", "raw"):
+            return found
+        sums = self.sum, *[self.later_sum] * (len(diodes) - 1)
+        return found * np.reshape(sums, (-1, 1, 1, 1))
+
+    def offsets(self, cols: int, seed: int) -> npt.NDArray[np.float64]:
+        """Offsets of columns that are not alike: normal, the same in every frame.
+
+        Parameters
+        ----------
+        cols : int
+            How many.
+        seed : int
+            Of the chip, at least 0.
+
+        Returns
+        -------
+        ndarray
+            (cols, 2), of both diodes' lanes, in LSB of a diode.
+        """
+        return self.spread * np.random.default_rng((seed, OFFSETS)).standard_normal((cols, 2))
 
 
 @cache

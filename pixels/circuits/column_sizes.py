@@ -6,6 +6,7 @@ from types import ModuleType
 from typing import Self
 
 from talbot.models.parameters import (
+    DIODE,
     ELEMENTARY_CHARGE,
     AmpTiming,
     EnergyParameters,
@@ -28,7 +29,6 @@ EFFICIENCY = {"front": 21.0, "back": 22.0, "lane": 17.0, "cascode": 15.0, "casco
 # 1.25 times the current at ff_125C_1v98, as drawn: SKY130's narrow transistors have more
 EFFICIENCY |= {"top": 8.0, "lane_top": 9.0}
 PARTS = 16  # of what drives the lane: a replica is one of them
-FULL = 127.5  # LSB of a diode whose well is full
 TIMES = 2.0  # Cin over Chold: the holder's gain
 EXPOSED = 0.015  # of a charge that the signal half may leave at the typical corner
 # More of a charge is lost, as measured there, on the mean of the taps: 0.0023 in the first, less in those after it, in
@@ -90,7 +90,7 @@ class ColumnSpec:
 
     full_well: float = 1e5
     fall: float = 0.5
-    swing: float = FULL * 4 * LaneSpec().lsb / GAIN
+    swing: float = DIODE * 4 * LaneSpec().lsb / GAIN
     dark: float = 1.2
     line: float = 0.8e-12
     cycle: float = 100e-9
@@ -149,7 +149,7 @@ class ColumnSpec:
         rate = energy.frame_rate * energy.pixels
         return cls(
             full_well=sensor.electrical.full_well,
-            swing=FULL * sensor.electrical.difference_gain * LaneSpec().lsb / GAIN,
+            swing=DIODE * sensor.electrical.difference_gain * LaneSpec().lsb / GAIN,
             line=array.rows * drawn.column_farad,
             cycle=1 / chip.f_clk,
             settle=timing.t_settle,

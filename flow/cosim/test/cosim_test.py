@@ -15,9 +15,8 @@ from talbot.flow.cosim.faults import Fault
 from talbot.flow.cosim.pixels import PixelSizes
 from talbot.flow.cosim.row import Row, RowRequest, read_row
 from talbot.flow.cosim.waves import write_vcd
-from talbot.models.parameters import ParameterError, circuit_columns
+from talbot.models.parameters import DIODE, ParameterError, circuit_columns
 from talbot.pixels.circuits.amplifier import AmplifierSpec
-from talbot.pixels.circuits.column_sizes import FULL
 from talbot.pixels.circuits.lane import sar_lane, size
 from talbot.pixels.circuits.netlist import Circuit, Resistor
 from talbot.pixels.circuits.specification import LaneSpec
@@ -183,7 +182,7 @@ def test_the_model_has_the_columns_curves(mode: str, taps: list[str]):
     ideal = replace(SMALL, mode=mode)
     asked = replace(ideal, amplifier=True, columns=True)
     sums = [getattr(circuit_columns(), name) for name in taps] or [1.0]
-    wanted = FULL * circuit_columns().delivered(asked.samples / FULL) * np.reshape(sums, (-1, 1, 1, 1))
+    wanted = DIODE * circuit_columns().delivered(asked.samples / DIODE) * np.reshape(sums, (-1, 1, 1, 1))
     assert asked.delivered == pytest.approx(wanted) and not np.allclose(wanted, asked.samples, rtol=1e-3)
     assert ideal.delivered is ideal.samples
 

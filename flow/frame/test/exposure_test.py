@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 
 from talbot.flow.frame import hardware
+from talbot.flow.frame.job import golden_result
 from talbot.flow.frame.request import request
 from talbot.models.chip import front_end_of, golden_frame
 from talbot.models.digital.exposure import integration_cycles
 from talbot.models.parameters import (
+    MODES,
     STANDARD,
     AmpTiming,
     ArrayParameters,
@@ -18,6 +20,7 @@ from talbot.models.parameters import (
     RoomParameters,
     SensorParameters,
     Window,
+    circuit_columns,
 )
 from talbot.models.plan.exposure import fitting
 
@@ -96,3 +99,14 @@ def test_other_phases_leave_the_exposure_to_the_light():
     dim, timing = (request(**given).frame.timing for given in ({"lux": 250.0}, {"timing": {"t_settle": 40}}))
     usual = request().frame.timing.exposure
     assert 0 < timing.exposure < usual < dim.exposure and timing.t_settle == 40
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_the_circuits_columns_give_what_was_measured_of_them(mode):
+    """With the circuit's converters the front end has a column's curves of the same charges."""
+    plain = golden_result(request(24, 36, mode=mode, noise=0.0, converter="ideal")).exposed.samples
+    own = golden_result(request(24, 36, mode=mode, noise=0.0, converter="circuit")).exposed.samples
+    columns = circuit_columns()
+    offsets = columns.offsets(36, STANDARD.converter.seed)
+    assert own == pytest.approx(columns.samples(plain, mode) + offsets) and columns.spread > 0
+    assert offsets.std() == pytest.approx(columns.spread, rel=0.4) and len(np.unique(offsets)) == 72
