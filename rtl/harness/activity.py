@@ -17,10 +17,10 @@ OF_SIGNALS = "_rtl", ".harness.driven"  # modules whose blocks have no state out
 HEAD = """
 def settle():
   global moved, inputs
-  now = {inputs}
-  if moved or now != inputs:
+  given = {inputs}
+  if moved or given != inputs:
 {settle}
-    moved, inputs = {always}, now
+    moved, inputs = {always}, given
 
 def edge():
   global moved
