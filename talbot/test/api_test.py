@@ -158,7 +158,7 @@ def test_a_tradeoff_is_a_table_and_a_plot():
 
 
 def test_a_light_field_by_every_method():
-    run = talbot.Sensor(rows=40, cols=48).golden("tilted", mode="raw")
+    run = talbot.Sensor(rows=28, cols=36).golden("tilted", mode="raw")
     truth = run.result.exposed.scene.full_light_field
     error = {name: np.std(run.reconstruct("light_field", method=name).values - truth) for name in METHODS}
     assert error["mixture"] < error["linear"] < error["direct"]
