@@ -17,6 +17,8 @@ from .icarus import instance
 from .ports import Port, split, total_width
 
 FOLDER, LIBRARY = BUILD / "verilated", "library.so"
+# Warnings are errors, but those that PyMTL's Verilog gives everywhere
+OPTIONS = *(word for word in FAST if word != "-Wno-lint"), "-Wno-UNOPTFLAT", "-Wno-UNSIGNED", "-Wno-WIDTH"
 COMPILED = "-O0", "-fPIC", "-fno-gnu-unique", "-shared"  # compiling takes longer than what the tests simulate
 
 BENCH = """module VerilatedBench(input clk, input [{high_in}:0] in, output [{high_got}:0] got);
@@ -66,7 +68,7 @@ def kept_library(name: str, top: str, ports: Sequence[Port], text: str) -> Path:
     """The library that simulates module ``top`` of the Verilog ``text``, kept for the same text. Raises ToolError."""
     high_in, high_got = (total_width(group) - 1 for group in split(ports))
     text += BENCH.format(high_in=high_in, high_got=high_got, instance=instance(top, ports))
-    folder = FOLDER / f"{name}.{digest(verilator_version(), text, WRAPPER, FAST, CXX, COMPILED)}"
+    folder = FOLDER / f"{name}.{digest(verilator_version(), text, WRAPPER, OPTIONS, CXX, COMPILED)}"
     return cached(folder, lambda part: _compile(part / LIBRARY, text)) / LIBRARY
 
 
@@ -74,7 +76,7 @@ def _compile(library: Path, text: str) -> None:
     with tempfile.TemporaryDirectory(prefix="talbot-") as work:
         source, wrapper = Path(work) / "bench.sv", Path(work) / "wrapper.cpp"
         source.write_text(text)
-        made = verilate(Path(work), "VerilatedBench", [source], FAST)
+        made = verilate(Path(work), "VerilatedBench", [source], OPTIONS)
         wrapper.write_text(WRAPPER)
         compile_program(library, [*made, wrapper], [*COMPILED, *runtime()])
 

@@ -3,11 +3,14 @@
 import pytest
 from pymtl3 import Component, InPort, OutPort, connect, update, update_ff
 
+from talbot.base.tools import ToolError
 from talbot.rtl.harness import icarus
 from talbot.rtl.harness.driven import SimulationError
 from talbot.rtl.harness.icarus import MISSING, installed, kept_program
 from talbot.rtl.harness.netlists import Netlists, netlist
+from talbot.rtl.harness.ports import Port
 from talbot.rtl.harness.testbench import build, hooked
+from talbot.rtl.harness.verilated import kept_library
 
 pytestmark = pytest.mark.skipif(not installed(), reason=MISSING)
 LEVELS = False, True, "icarus"
@@ -103,6 +106,12 @@ def test_a_simulation_that_ends_early_is_an_error(tmp_path):
     netlists = Netlists({"Counter": netlist(f"Counter={path}")})
     with pytest.raises(SimulationError, match="ended early"), hooked(substitute=netlists.substitute):
         seen(build(Counter(), "icarus"), STEPS)
+
+
+def test_a_warning_of_verilator_is_an_error():
+    text = "module Latch(input clk, input a, output reg b);\n  always @* if (a) b = 1;\nendmodule\n"
+    with pytest.raises(ToolError, match="LATCH"):
+        kept_library("Latch", "Latch", (Port("a", 1, False), Port("b", 1, True)), text)
 
 
 def test_a_kept_program_that_is_damaged_is_compiled_again(monkeypatch, tmp_path):
