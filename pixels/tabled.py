@@ -6,7 +6,6 @@ from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from talbot.base.cache import cached, digest
 from talbot.base.paths import BUILD
@@ -145,5 +144,7 @@ def _drawn(kind: PixelType, pixel: str, along: Floats, across: Floats) -> Floats
     walk = kx / np.sqrt(index**2 - kx**2 - ky**2)
     at = np.clip(index * walk / np.sqrt(1 + walk**2), sines[0], sines[-1])
     stack = chosen.geometries[beta].stack
+    from scipy.interpolate import CubicSpline  # imported where it is needed: it is slow
+
     diodes = np.array([CubicSpline(sines, share)(at) for share in shares]) / bare_share(stack, chosen.wavelength_um)
     return diodes[::-1] if swapped else diodes

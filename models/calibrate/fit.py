@@ -7,7 +7,6 @@ q = m cos(beta (theta_x cos gamma + theta_y sin gamma) + alpha), and the light, 
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.optimize import least_squares
 
 from talbot.models.parameters import ParameterError, PixelType
 
@@ -105,6 +104,8 @@ def fit_pupil(sweep: Sweep) -> Pupil:
 
     def _all(p: Floats) -> Floats:
         return np.r_[_rest(p), 0 if across else p[4]]  # of one block: no slope is seen
+
+    from scipy.optimize import least_squares  # imported where it is needed: it is slow
 
     found = least_squares(_all, np.array([0.0, np.log(0.3), 0, 0, 0]), x_scale=[1, 1, 1, 1, 1e-3])
     errors, condition = _errors(found.jac, found.fun)
@@ -204,6 +205,8 @@ def _fit_type(sweep: Sweep, pupil: Pupil, number: int) -> TypeFit:
         cosine, sine = _parts(p)
         by_turn = -p[2] * sine - p[3] * cosine
         return np.stack([by_turn * theta[:, 0], by_turn * theta[:, 1], cosine, -sine], 1) * weight[:, None]
+
+    from scipy.optimize import least_squares
 
     jacobian: Any = _slopes  # SciPy's stubs know none but strings
     found = least_squares(_rest, first, jacobian, x_scale=[10, 10, 1, 1])

@@ -6,7 +6,6 @@ from time import perf_counter
 
 import numpy as np
 import numpy.typing as npt
-from scipy.integrate import cubature
 
 from talbot.models.parameters import OpticsParameters, PixelType
 
@@ -84,6 +83,8 @@ def exact(
         r, phi = points.T
         x, y = r * np.cos(phi), r * np.sin(phi)
         return (density(types, optics, x, y) * (light(x, y, optics.nu_max) * r)).transpose(2, 0, 1)
+
+    from scipy.integrate import cubature  # imported where it is needed: it is slow
 
     # SciPy's stub takes the default of atol, 0, for its type.
     result = cubature(_integrand, [0, 0], [optics.nu_max, 2 * np.pi], rtol=tolerance, atol=1e-14)  # pyright: ignore[reportArgumentType]

@@ -2,12 +2,15 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
-from scipy.interpolate import RectBivariateSpline
 
 from talbot.models.parameters import ParameterError
+
+if TYPE_CHECKING:
+    from scipy.interpolate import RectBivariateSpline
 
 Floats = npt.NDArray[np.floating]
 
@@ -67,5 +70,7 @@ class TableResponse:
         return np.maximum([spline.ev(along, across) for spline in self._splines], 0)
 
     @cached_property
-    def _splines(self) -> list[RectBivariateSpline]:
+    def _splines(self) -> "list[RectBivariateSpline]":
+        from scipy.interpolate import RectBivariateSpline  # imported where it is needed: it is slow
+
         return [RectBivariateSpline(self.along, self.across, diode) for diode in self.values]

@@ -3,7 +3,6 @@
 from dataclasses import asdict, dataclass
 
 import numpy as np
-from scipy.optimize import least_squares
 
 from .geometry import QUADRATURE
 from .response import Response
@@ -59,6 +58,8 @@ def fit(response: Response) -> Fit:
     angles, curves = response.angles, response.unpolarized.mean(0)
     best = min((_start(angles, curves, turn) for turn in (1, -1)), key=lambda found: found[0])
     _, turn, beta, sigma = best
+    from scipy.optimize import least_squares  # imported where it is needed: it is slow
+
     done = least_squares(
         lambda x: _linear(angles, curves, turn, x[0], x[1])[1].ravel(),
         (beta, sigma),

@@ -12,14 +12,15 @@ from pymtl3.passes.sim.PrepareSimPass import PrepareSimPass
 
 Block = Callable[[], None]
 LOOP = "wrapped_SCC_"  # PyMTL's block of blocks that depend on each other begins with this name
+OF_SIGNALS = "_rtl", ".harness.driven"  # modules whose blocks have no state outside the signals, or count it in one
 
 HEAD = """
 def settle():
   global moved, inputs
-  now = {inputs}
-  if moved or now != inputs:
+  given = {inputs}
+  if moved or given != inputs:
 {settle}
-    moved, inputs = {always}, now
+    moved, inputs = {always}, given
 
 def edge():
   global moved
@@ -28,7 +29,7 @@ def edge():
 
 
 def quicken(top: Any) -> None:
-    """Let the prepared simulation ``top`` skip a block of RTL (a module named _rtl) whose inputs have not changed.
+    """Let the prepared simulation ``top`` skip a block of RTL (OF_SIGNALS) whose inputs have not changed.
 
     Other blocks may have a state outside the signals, and run always.
     """
@@ -69,7 +70,7 @@ class _Code:
         name = self.name(block)
         loop = block.__name__.startswith(LOOP)
         blocks = block.__globals__["scc_tick_func"].__closure__[0].cell_contents if loop else [block]
-        if not all(b in self.nets or type(self.hosts[b]).__module__.endswith("_rtl") for b in blocks):
+        if not all(b in self.nets or type(self.hosts[b]).__module__.endswith(OF_SIGNALS) for b in blocks):
             self.pure = False
             return [f"{name}()", after]
         values = self.values({signal for b in blocks for signal in self.reads.get(b, ())})

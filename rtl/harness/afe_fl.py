@@ -27,6 +27,7 @@ class AfeFL(Component):
         }
         s.held, s.index = np.zeros(lanes), np.zeros(lanes, np.int64)
         s.decision = OutPort(8)  # cycles since the hold; a change runs `compare` again
+        every, holds, known = np.arange(lanes), [0], [None, 0]  # known: what the comparators saw last, and their bits
 
         @update_ff
         def sample():
@@ -37,18 +38,22 @@ class AfeFL(Component):
                         col = front_end.tile.cols * (lanes * int(s.group) + lane) + int(s.k)
                         s.index[lane] = np.ravel_multi_index((int(s.sub), int(s.row), col), v.shape)
                         s.held[lane] = s.converter.held(v[int(s.sub), int(s.row), col], lane, s.index[lane])
+                holds[0] += 1
                 s.decision <<= 0
             elif s.decision < 14:
                 s.decision <<= s.decision + 1
 
         @update
         def compare():
-            number, bits = int(s.decision), 0
-            for lane in range(lanes):
-                dac = int(s.dac[8 * lane : 8 * lane + 8])
-                if s.converter.compare(s.held[lane], dac, bool(s.unsigned_), lane, s.index[lane], number):
-                    bits |= 1 << lane
-            s.comparator @= bits
+            dac, unsigned, number = int(s.dac), bool(s.unsigned_), int(s.decision)
+            if known[0] != (dac, unsigned, number, holds[0]):
+                codes = np.frombuffer(dac.to_bytes(lanes, "little"), np.uint8)
+                above = s.converter.compare(s.held, codes, unsigned, every, s.index, number)
+                known[:] = (
+                    (dac, unsigned, number, holds[0]),
+                    int.from_bytes(np.packbits(above, bitorder="little"), "little"),
+                )
+            s.comparator @= known[1]
 
     def line_trace(s) -> str:
         return f"{'hold' if s.hold else '    '} {s.dac} > {s.comparator}"

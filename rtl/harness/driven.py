@@ -1,4 +1,4 @@
-"""A component whose behaviour is a simulation in a child process, with the ports of the component that it replaces."""
+"""A component whose behaviour is a simulation elsewhere, with the ports of the component that it replaces."""
 
 import contextlib
 import linecache
@@ -6,24 +6,29 @@ import subprocess
 import weakref
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
-from pymtl3 import Component, InPort, Interface, OutPort, mk_bits, update, update_ff
+from pymtl3 import Component, InPort, Interface, OutPort, Wire, mk_bits, update, update_ff
 
 from talbot.base.tools import ToolError
 
 from .ports import Port, places, port_signals, ports_of, split
 
 SOURCE = """
+def pack({names}):
+  return {packed}
+
 def behaviour(s, evaluate, clock):
+  s.edges = Wire()
+
   @update
   def up_module():
-    answer = evaluate({inputs})
-    if answer:
+    answer, changed = evaluate(s.edges, pack({inputs}))
 {outputs}
 
   @update_ff
   def up_clock():
+    s.edges <<= ~s.edges
     clock()
 """
 
@@ -77,55 +82,55 @@ def _end(process: subprocess.Popen) -> None:
     process.stdout.close()
 
 
-class Transactor:
-    """Inputs and clock edges of a component sent to its simulation; kinds: bit struct of a port, by its path."""
+class Simulation(Protocol):
+    """What simulates a component: `step` as of Driven, with outputs as binary text or as a number."""
 
-    def __init__(self, simulation: Driven, ports: Sequence[Port], kinds: Mapping[str, Any]) -> None:
-        inputs, outputs = split(ports)
+    def step(self, edge: bool, inputs: int) -> bytes | int:
+        """Settled outputs for the packed ``inputs``; edge: a clock edge with the old inputs comes first."""
+        ...
+
+
+class Transactor:
+    """Inputs and clock edges of a component sent to its simulation."""
+
+    def __init__(self, simulation: Simulation) -> None:
         self.simulation, self.cycle, self.edge = simulation, 0, False
         self.inputs: int | None = None
         self.answer: int | None = None
-        self.low = tuple(places(inputs).values())
-        self.take = [
-            (low, (1 << port.width) - 1, kinds[port.path] if port.struct else None, mk_bits(port.width))
-            for port, low in places(outputs).items()
-        ]
 
     def clock(self) -> None:
         """Note a clock edge; it is sent ahead of the next inputs."""
         self.edge = True
         self.cycle += 1
 
-    def evaluate(self, *values: Any) -> tuple[Any, ...]:
-        """Values of the outputs for those of the inputs, each in the order of the ports; () where none has changed."""
-        inputs = 0
-        for value, low in zip(values, self.low):
-            inputs |= int(value if hasattr(value, "uint") else value.to_bits()) << low
+    def evaluate(self, _edges: Any, inputs: int) -> tuple[int, int]:
+        """The packed outputs for the packed ``inputs``, and the bits of them that may have changed."""
         if inputs == self.inputs and not self.edge:
-            return ()
-        line = self.simulation.step(self.edge, inputs)
+            return 0, 0
+        answer = self.simulation.step(self.edge, inputs)
         self.inputs, self.edge = inputs, False
+        if isinstance(answer, bytes):
+            answer = self._number(answer)
+        changed = -1 if self.answer is None else answer ^ self.answer
+        self.answer = answer
+        return answer, changed
+
+    def _number(self, line: bytes) -> int:
         try:
-            answer = int(line, 2)
+            return int(line, 2)
         except ValueError:
             # Registers hold X until the first clock edge of the first reset, and not a cycle longer
             assert self.cycle == 0, f"cycle {self.cycle}: {', '.join(self.simulation.unknown(line))}"
-            answer = 0
-        if answer == self.answer:
-            return ()
-        self.answer = answer
-        return tuple(
-            kind.from_bits(bits(answer >> low & mask)) if kind else answer >> low & mask
-            for low, mask, kind, bits in self.take
-        )
+            return 0
 
 
 class DrivenLevel(Component):
-    """A component with the ``ports`` of the elaborated component ``dut``, and its simulation's behaviour."""
+    """A component with the ``ports`` of the elaborated component ``dut``, and the behaviour of ``simulation``.
 
-    def construct(
-        s, dut: Component, ports: Sequence[Port], evaluate: Callable[..., tuple[Any, ...]], clock: Callable[[], None]
-    ) -> None:
+    kinds: bit struct of a port, by its path.
+    """
+
+    def construct(s, dut: Component, ports: Sequence[Port], kinds: Mapping[str, Any], simulation: Simulation) -> None:
         # Interface
         for attribute, what in list(vars(dut).items()):
             if isinstance(what, (InPort, OutPort)) and attribute not in ("clk", "reset"):
@@ -136,23 +141,40 @@ class DrivenLevel(Component):
         # Logic: written out, since PyMTL schedules by the source of a block
         inputs, outputs = split(ports)
         source = SOURCE.format(
+            names=", ".join(port.name for port in inputs),
+            packed=" | ".join(
+                f"{port.name}{'.to_bits()' * port.struct}._uint << {low}" for port, low in places(inputs).items()
+            ),
             inputs=", ".join(f"s.{port.path}" for port in inputs),
-            outputs="\n".join(f"      s.{port.path} @= answer[{i}]" for i, port in enumerate(outputs)),
+            outputs="\n".join(_output(port, low) for port, low in places(outputs).items()),
         )
         file = f"<ports of {type(dut).__name__} {hash(ports):x}>"
         linecache.cache[file] = len(source), None, source.splitlines(keepends=True), file
-        scope = {"update": update, "update_ff": update_ff}
+        scope: dict[str, Any] = {"update": update, "update_ff": update_ff, "Wire": Wire}
+        scope |= {f"struct_{port.name}": _struct(kinds[port.path], port.width) for port in outputs if port.struct}
         exec(compile(source, file, "exec"), scope)
-        scope["behaviour"](s, evaluate, clock)
+        transactor = Transactor(simulation)
+        scope["behaviour"](s, transactor.evaluate, transactor.clock)
 
     def line_trace(s) -> str:
         return ""
 
 
-def driven_level(dut: Component, simulation: Driven) -> DrivenLevel:
+def _output(port: Port, low: int) -> str:
+    """Source that sets an output to its bits of ``answer``, where one of them has ``changed``."""
+    mask = (1 << port.width) - 1
+    value = f"struct_{port.name}" * port.struct + f"(answer >> {low} & {mask:#x})"
+    return f"    if changed & {mask << low:#x}:\n      s.{port.path} @= {value}"
+
+
+def _struct(kind: Any, width: int) -> Callable[[int], Any]:
+    bits = mk_bits(width)
+    return lambda number: kind.from_bits(bits(number))
+
+
+def driven_level(dut: Component, simulation: Simulation) -> DrivenLevel:
     """The DrivenLevel that replaces the elaborated component ``dut`` by ``simulation``."""
     ports, start = ports_of(dut), len(repr(dut)) + 1
     kinds = {repr(signal)[start:]: signal._dsl.Type for signal in port_signals(dut)}
     cls = type(f"{type(dut).__name__}Driven", (DrivenLevel,), {})  # PyMTL caches a class's blocks by the class
-    transactor = Transactor(simulation, ports, kinds)
-    return cls(dut, ports, transactor.evaluate, transactor.clock)
+    return cls(dut, ports, kinds, simulation)

@@ -2,6 +2,7 @@
 
 import json
 import re
+from functools import partial
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ from PIL import Image
 from talbot.commands import main
 from talbot.flow.frame.job import golden_result
 from talbot.flow.frame.request import request
-from talbot.flow.lightfield import page
+from talbot.flow.lightfield import fields, page
 from talbot.flow.lightfield.fields import estimate, pair_of, prior_of, read_back
 from talbot.flow.lightfield.methods import figures, parallax
 from talbot.models.parameters import ParameterError
@@ -113,8 +114,9 @@ def test_a_folder_tells_its_settings_and_what_it_replaced(tmp_path, monkeypatch,
     assert "replaced there: flat-rows=8-cols=12-lux=400-golden-disparities=3" in capsys.readouterr().out
 
 
-def test_an_estimate_alone_is_that_of_the_page():
+def test_an_estimate_alone_is_that_of_the_page(monkeypatch):
+    monkeypatch.setattr(fields, "prior_of", partial(prior_of, disparities=11))
     result = golden_result(request(scene="tilted", rows=24, cols=24, mode="raw"))
-    fields = read_back(result, prior_of(result))
-    for name, found in fields.found.items():
+    page = read_back(result, fields.prior_of(result))
+    for name, found in page.found.items():
         np.testing.assert_array_equal(estimate(result, name).light_field, found.light_field)

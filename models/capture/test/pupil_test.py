@@ -170,9 +170,17 @@ def test_the_error_is_that_of_all_pixels_read(tmp_path, window):
     assert 0.05 < views.error < 0.5
 
 
-@pytest.mark.parametrize("name", ["motorcycle", "rocket"])
-def test_some_tile_rows_have_the_error_of_all(monkeypatch, name):
-    sensor, timing = SensorParameters(), FrameParameters(SensorParameters().full_window).timing
+@pytest.mark.parametrize(
+    "name, size",
+    [
+        ("motorcycle", (192, 288)),
+        ("rocket", (384, 576)),
+        pytest.param("motorcycle", (384, 576), marks=pytest.mark.slow),
+    ],
+)
+def test_some_tile_rows_have_the_error_of_all(monkeypatch, name, size):
+    sensor = sensor_behind(*size)
+    timing = FrameParameters(sensor.full_window).timing
     scene = load(name, Sampling.of(sensor))
     few = choose_views(scene, sensor, timing, 7).error
     monkeypatch.setattr("talbot.models.capture.views.PROBE", sensor.tile_rows)

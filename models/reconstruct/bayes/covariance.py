@@ -92,9 +92,12 @@ class Covariances:
         return Tables(samples.reshape(*shape, diodes, diodes), field.reshape(*shape, self.views**2, diodes))
 
     def _planes(self, y: Floats, x: Floats) -> Floats:
-        """Covariance at all places y (n, a) by x (m, b): (n * m, a * b)."""
-        out = self.prior.covariance(y[:, None, :, None], x[None, :, None, :])
-        return out.reshape(len(y) * len(x), -1)
+        """Covariance at all places y (n, a) by x (m, b): (n * m, a * b); once for all of the same distances."""
+        (down, row), (across, col) = (np.unique(np.abs(place), return_inverse=True) for place in (y, x))
+        out = self.prior.covariance(down[:, None], across)
+        return out[row.reshape(y.shape)[:, None, :, None], col.reshape(x.shape)[None, :, None]].reshape(
+            len(y) * len(x), -1
+        )
 
     def mean(self) -> Tables:
         """Tables of a light field whose disparity is any of the prior's, each as likely.

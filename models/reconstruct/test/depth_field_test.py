@@ -119,7 +119,7 @@ def test_darkness_has_one_cluster():
 
 
 def test_taps_keep_the_disparity_of_their_sum():
-    estimator = FieldEstimator(SensorParameters(array=ArrayParameters(12, 18)), 5)
+    estimator = FieldEstimator(SensorParameters(array=ArrayParameters(12, 18)), 5, FieldPrior(disparities=11))
     pairs = np.random.default_rng(3).random((4, 2, 12, 18))
     found = depth_field(estimator, pairs)
     whole = estimator.mixture(pairs.sum(0) / 2)

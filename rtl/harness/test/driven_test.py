@@ -1,16 +1,19 @@
-"""The Icarus level equals PyMTL in every cycle, in a harness too; an X after the reset fails."""
+"""The levels of Verilog equal PyMTL in every cycle, in a harness too; an X after the reset fails."""
 
 import pytest
 from pymtl3 import Component, InPort, OutPort, connect, update, update_ff
 
+from talbot.base.tools import ToolError
 from talbot.rtl.harness import icarus
 from talbot.rtl.harness.driven import SimulationError
 from talbot.rtl.harness.icarus import MISSING, installed, kept_program
 from talbot.rtl.harness.netlists import Netlists, netlist
+from talbot.rtl.harness.ports import Port
 from talbot.rtl.harness.testbench import build, hooked
+from talbot.rtl.harness.verilated import kept_library
 
 pytestmark = pytest.mark.skipif(not installed(), reason=MISSING)
-LEVELS = False, "icarus"
+LEVELS = False, True, "icarus"
 
 
 class Counter(Component):
@@ -72,16 +75,17 @@ STEPS = [1, 1, 3, 0, 1, 15, 0, 2, 15, 15, 1, 7, 9, 5] * 4
 
 def test_equals_pymtl_in_every_cycle():
     runs = [seen(build(Counter(), level), STEPS) for level in LEVELS]
-    assert runs[0] == runs[1] and any(carry for _, carry in runs[0])
+    assert runs[0] == runs[1] == runs[2] and any(carry for _, carry in runs[0])
 
 
 def test_in_a_harness():
     runs = [seen(build(Harness(Counter()), level), STEPS) for level in LEVELS]
-    assert runs[0] == runs[1] and any(value == 5 for value, _ in runs[0])
+    assert runs[0] == runs[1] == runs[2] and any(value == 5 for value, _ in runs[0])
 
 
-def test_an_output_follows_an_input_within_the_cycle():
-    sim = build(Counter(), "icarus")
+@pytest.mark.parametrize("level", LEVELS)
+def test_an_output_follows_an_input_within_the_cycle(level):
+    sim = build(Counter(), level)
     for step, carry in ((0, 1), (1, 0), (0, 1)):
         sim.step @= step
         sim.sim_eval_combinational()
@@ -102,6 +106,12 @@ def test_a_simulation_that_ends_early_is_an_error(tmp_path):
     netlists = Netlists({"Counter": netlist(f"Counter={path}")})
     with pytest.raises(SimulationError, match="ended early"), hooked(substitute=netlists.substitute):
         seen(build(Counter(), "icarus"), STEPS)
+
+
+def test_a_warning_of_verilator_is_an_error():
+    text = "module Latch(input clk, input a, output reg b);\n  always @* if (a) b = 1;\nendmodule\n"
+    with pytest.raises(ToolError, match="LATCH"):
+        kept_library("Latch", "Latch", (Port("a", 1, False), Port("b", 1, True)), text)
 
 
 def test_a_kept_program_that_is_damaged_is_compiled_again(monkeypatch, tmp_path):

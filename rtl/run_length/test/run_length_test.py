@@ -153,6 +153,21 @@ def any_header(pick):
     )
 
 
+@cache
+def longest_token(place, order):
+    """Codes, at threshold 4, after which the longest token begins at ``place`` in a byte; the coder's state; a run."""
+    pick = random.Random(8 * place + order)
+    while True:
+        codes, state, sent = [], start(4), 0
+        begin = [pick.choice((-40, -9, -4, 4, 5, 9)) for _ in range(pick.randrange(12))]
+        while begin or state[0] < K_MAX:
+            codes.append(begin.pop() if begin else 0)
+            _, length, *state = code_sample(codes[-1], 4, *state)
+            sent += length
+        if (sent % 8, state[1] // 2 + 1, state[2]) == (place, order, 0):
+            return codes, state, pick.choice((0, 682, 1365, 2047))
+
+
 @st.composite
 def frames(draw):
     """Header, samples and counts of a frame of the small chip."""
@@ -274,17 +289,8 @@ class TestRunLengthFL:
     @pytest.mark.parametrize("place, order", [*((place, 1) for place in range(8)), (7, 2), (7, 3), (7, 4)])
     def test_the_longest_tokens(self, place, order):
         """After runs of 2^11 zeros the value of most bits, at every place in a byte."""
-        pick, header = random.Random(8 * place + order), header_of(threshold=4)
-        while True:
-            codes, state, sent = [], start(header.threshold), 0
-            begin = [pick.choice((-40, -9, -4, 4, 5, 9)) for _ in range(pick.randrange(12))]
-            while begin or state[0] < K_MAX:
-                codes.append(begin.pop() if begin else 0)
-                _, length, *state = code_sample(codes[-1], header.threshold, *state)
-                sent += length
-            if (sent % 8, state[1] // 2 + 1, state[2]) == (place, order, 0):
-                break
-        run = pick.choice((0, 682, 1365, 2047))
+        header = header_of(threshold=4)
+        codes, state, run = longest_token(place, order)
         rows = [(0, [*codes, *[0] * run, 127, -128])]  # a token that ends in ones: all bits of the register
         assert code_sample(127, header.threshold, *state)[1] == TOKEN_MAX + 1 - order
         assert self.bench(header).run(scan_of(rows)) == stream_of(header, rows, 0, 0)
