@@ -276,7 +276,8 @@ def converter(spec: LaneSpec, sizes: LaneSizes, found: Found) -> dict[str, Any]:
     rms, low, high = interval(found.offsets)
     rms_a, low_a, high_a = interval([one.offset for one in found.amplifier_draws])
     rms_c, low_c, high_c = interval(found.column_offsets)
-    of_diode = 2**0.5 * ColumnSpec.of().swing / spec.lsb / DIODE  # of a difference, for each LSB of a diode
+    column_spec = ColumnSpec.of()
+    of_diode = 2**0.5 * column_spec.swing / column_spec.lsb / DIODE  # of a difference, for each LSB of a diode
     shape = inl(found.lanes[TYPICAL].decided)
     bend, bend_error = polynomial(found.amplifiers[TYPICAL].points)
     gains = float(np.std([one.gain for one in found.amplifier_draws], ddof=1))

@@ -74,7 +74,7 @@ def kept_library(name: str, top: str, ports: Sequence[Port], text: str) -> Path:
 
 def _compile(library: Path, text: str) -> None:
     with tempfile.TemporaryDirectory(prefix="talbot-") as work:
-        source, wrapper = Path(work) / "bench.sv", Path(work) / "wrapper.cpp"
+        source, wrapper = Path(work) / "verilated.sv", Path(work) / "wrapper.cpp"
         source.write_text(text)
         made = verilate(Path(work), "VerilatedBench", [source], OPTIONS)
         wrapper.write_text(WRAPPER)

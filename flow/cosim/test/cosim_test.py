@@ -224,7 +224,7 @@ def test_parts_read_what_one_circuit_does():
     both = RowRequest(mode="image", cols=12, lanes=2, types=1, pixels=False, accuracy=COARSE, seed=3)
     apart, whole = read_row(both), read_row(replace(both, partition=False))
     assert [s.code for s in apart.samples] == [s.code for s in whole.samples]
-    assert np.abs(apart.at_lane - whole.at_lane).max() < 0.02 and np.abs(apart.level_off).max() < 0.05
+    assert np.abs(apart.at_lane - whole.at_lane).max() < 0.04 and np.abs(apart.level_off).max() < 0.05
     assert apart.run.stats["circuit_cycles"] == whole.run.stats["circuit_cycles"]
     assert apart.run.waves.keys() == whole.run.waves.keys() and apart.transistors == whole.transistors
 
