@@ -78,8 +78,8 @@ def fitted(
     for circuit in (plain, given(later_bench(sizes, spec))):
         with opened(setup, spec, sizes, corner, start, True, circuit=circuit) as spice:
             sums.append(mean_of(spice, spec, corner)[0])
-    rounded = [tuple(round(float(one), 6) for one in row) for row in (*own, *other)]
-    curves = ColumnCurves(FILLS, *rounded, 1.0, 1.0)
+    a, b, a_other, b_other = (tuple(round(float(one), 6) for one in row) for row in (*own, *other))
+    curves = ColumnCurves(FILLS, a, b, a_other, b_other, 1.0, 1.0)
     mean = curves.delivered(np.array(BOTH)).sum() / sum(BOTH)
     curves = replace(curves, sum=round(sums[0] / mean, 5), later_sum=round(sums[1] / mean, 5))
     off = curves.delivered(np.array(PROOF)) - (np.array(volts[0]) - proof) / spec.swing

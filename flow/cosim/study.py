@@ -39,7 +39,8 @@ def accuracy(note: Callable[[str], None], asked: RowRequest = ONE) -> list[dict[
         note(f"{name}: {done[name].run.stats['seconds']:.1f} s")
     first = done["default"]
     sensor, _ = asked.frame
-    off = replay(*asked.decks(TIGHT), first.run, asked.lanes, sensor.tile.cols, asked.timing)
+    (deck,) = asked.decks(TIGHT)
+    off = replay(deck, first.run, asked.lanes, sensor.tile.cols, asked.timing)
     note(f"reference: {off.stats['seconds']:.1f} s, {off.stats['accepted']} points")
     exact = decision_times(off, first.decks, asked.timing)
     lines = [_line(name, row, first, exact) for name, row in done.items()]

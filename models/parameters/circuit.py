@@ -4,6 +4,7 @@ import json
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -162,4 +163,5 @@ def circuit_columns(table: Path = TABLE) -> ColumnCurves:
         For a value out of range.
     """
     written = json.loads(table.read_text())["columns"]
-    return ColumnCurves(**{name: tuple(one) if isinstance(one, list) else one for name, one in written.items()})
+    given: dict[str, Any] = {name: tuple(one) if isinstance(one, list) else one for name, one in written.items()}
+    return ColumnCurves(**given)

@@ -6,6 +6,7 @@ import xml.etree.ElementTree as ET
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
+from typing import Any
 
 from joblib import Parallel, delayed
 
@@ -57,7 +58,8 @@ def broken_rules(decks: Mapping[Path, str], gds: Path, report: Path) -> dict[str
         file.write_text(text)
     reports = [report] if len(decks) == 1 else [file.with_suffix(".lyrdb") for file in decks]
     runs = (delayed(run_exported)(file, gds, part) for file, part in zip(decks, reports, strict=True))
-    for status, output in Parallel(len(decks), prefer="threads")(runs):
+    done: Any = Parallel(len(decks), prefer="threads")(runs)  # joblib has no types
+    for status, output in done:
         if status:
             lines = output.strip().splitlines()
             error = next((line for line in lines if "ERROR" in line), lines[-1:])
