@@ -30,7 +30,7 @@ PROOF = 0.87, 0.47  # of a full well, of both diodes: between those of FILLS
 
 @dataclass(frozen=True)
 class ColumnFit:
-    """error: LSB of the lane's converter in edge mode by which ``curves`` are off at PROOF."""
+    """What was fitted. error: LSB of the lane's converter in edge mode by which ``curves`` are off at PROOF."""
 
     curves: ColumnCurves
     error: float
