@@ -32,7 +32,7 @@ from .amplifier import AmplifierResult
 from .column import ColumnResult
 from .comparator import BATCH, Decisions, interval
 from .curves import ColumnFit
-from .deck import SETTINGS, Setup, deck, process_of
+from .deck import Setup, deck, process_of
 from .found import TYPICAL, Found
 from .lane import LaneResult, inl
 from .noise import Noise
@@ -225,7 +225,7 @@ def measured(
             f"column-draw-{k}",
             column.offset,
             (setup, spec_c, sizes_c, typical, columns[TYPICAL].start, k),
-            (given_c, columns[TYPICAL].start, k, SETTINGS),
+            (given_c, columns[TYPICAL].start, k),
         )
         for k in range(1, draws + 1)
     ]

@@ -50,7 +50,7 @@ def run(options: Namespace) -> int:
     if not set(modes) <= set(MODES):
         raise ParameterError(f"modes = {options.modes!r}: must be some of {','.join(MODES)}")
     check_choice("amplifiers", options.amplifiers, AMPLIFIERS)
-    columns, lanes = (options.amplifiers in names for names in (("all",), ("all", "lanes")))
+    columns = options.amplifiers == "all"
     types = text.integer("types", options.types, 1, 6)
     accuracy = Accuracy(reltol=text.real("reltol", options.reltol, 1e-8, 0.1), method=options.method)
     shared: dict[str, Any] = {
@@ -65,7 +65,7 @@ def run(options: Namespace) -> int:
         RowRequest(
             mode=mode,
             types=min(types, 2) if mode == "tof" else types,
-            amplifier=columns or (mode == "edge" and lanes),
+            amplifier=columns or (mode == "edge" and options.amplifiers == "lanes"),
             columns=columns,
             **shared,
         )

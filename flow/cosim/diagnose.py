@@ -27,12 +27,12 @@ class Finding(NamedTuple):
 
 def dictionary(row: RowRequest) -> Iterator[Fault]:
     """Every fault that the row's lanes may have, and its pixels where they are in the circuit."""
-    decks = row.decks()
-    for lane in (lane for deck in decks for lane in deck.lanes):
+    columns, lanes = row.read
+    for lane in lanes:
         yield Fault("comparator", (lane,))
         for bit in range(BITS):
             yield Fault("capacitor", (lane, bit))
-    for column in (column for deck in decks for column in deck.columns if row.pixels):
+    for column in columns if row.pixels else ():
         yield Fault("diodes", (column,))
         yield Fault("row", (column,))
 

@@ -30,6 +30,7 @@ HERE = Path(__file__).parent
 GAVE_UP = 5  # exit status where ngspice gives up
 INTERVAL = 10.0  # s between two lines on how far a row is
 LIBRARY = "ngspice"
+Waves = tuple[npt.NDArray[np.float64], dict[str, npt.NDArray[np.float64]]]  # s; V of every saved node
 
 
 @dataclass(frozen=True)
@@ -166,7 +167,7 @@ def _watched(cycles: Path, note: Callable[[str], None]) -> Iterator[None]:
         watcher.join()
 
 
-def _points(path: Path, lanes: Sequence[int]) -> tuple[npt.NDArray[np.float64], dict[str, npt.NDArray[np.float64]]]:
+def _points(path: Path, lanes: Sequence[int]) -> Waves:
     """Time and waves of a part; its reference by the names of its ``lanes``."""
     head, _, body = path.read_bytes().partition(b"\n")
     names = head.decode().split()
@@ -176,9 +177,7 @@ def _points(path: Path, lanes: Sequence[int]) -> tuple[npt.NDArray[np.float64], 
     return waves.pop("time"), waves | {f"ref{lane}": reference for lane in lanes}
 
 
-def _merged(
-    parts: Sequence[tuple[npt.NDArray[np.float64], dict[str, npt.NDArray[np.float64]]]],
-) -> tuple[npt.NDArray[np.float64], dict[str, npt.NDArray[np.float64]]]:
+def _merged(parts: Sequence[Waves]) -> Waves:
     """Waves of all ``parts`` at the time points of any."""
     if len(parts) == 1:
         return parts[0]

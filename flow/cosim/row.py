@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import Path
 
 import numpy as np
@@ -180,13 +180,18 @@ class RowRequest:
         """The lane that converts a column."""
         return column // self.frame[0].tile.cols % self.lanes
 
+    @cached_property
+    def read(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
+        """Columns that are read, and lanes that convert them."""
+        columns = {column for column, _ in self.values}
+        return tuple(sorted(columns)), tuple(sorted(set(map(self.lane_of, columns))))
+
     @property
     def parts(self) -> tuple[Mapping[tuple[int, int], float], ...]:
         """`values` of each circuit."""
         if not self.partition or self.everything:
             return (self.values,)
-        lanes = sorted({self.lane_of(column) for column, _ in self.values})
-        return tuple({at: v for at, v in self.values.items() if self.lane_of(at[0]) == lane} for lane in lanes)
+        return tuple({at: v for at, v in self.values.items() if self.lane_of(at[0]) == lane} for lane in self.read[1])
 
     def decks(self, accuracy: Accuracy | None = None) -> tuple[Deck, ...]:
         """The circuit: of each lane that the row reads, or one of all."""
@@ -300,9 +305,9 @@ class Row:
 def read_row(asked: RowRequest, note: Callable[[str], None] = lambda text: None, program: Path | None = None) -> Row:
     """Read one row with the circuit in the loop. Raises ParameterError, ToolError."""
     sensor, frame = asked.frame
-    binary = program or lockstep.program(sensor, note)
+    binary, decks = program or lockstep.program(sensor, note), cache(asked.decks)
     run = lockstep.run(
-        *(binary, asked.decks, frame, asked.delivered, asked.front_end, asked.clock, asked.accuracy, asked.whole),
+        *(binary, decks, frame, asked.delivered, asked.front_end, asked.clock, asked.accuracy, asked.whole),
         note=lambda text: note(f"{asked.name}: {text}"),
     )
     codes = decode_stream(run.stream, sensor.tile)[0].samples[0]
@@ -312,8 +317,8 @@ def read_row(asked: RowRequest, note: Callable[[str], None] = lambda text: None,
         lane = asked.lane_of(column)
         why = _first_difference(run.cycles, lane, column, sub, asked)
         found.append(Sample(column, sub, lane, value, int(codes[column, sub]), int(expected[column, sub]), why))
-    decks = asked.decks()
-    return Row(asked, decks, run, found, decision_times(run, decks, asked.clock))
+    made = decks(asked.accuracy)
+    return Row(asked, made, run, found, decision_times(run, made, asked.clock))
 
 
 def _held(c: lockstep.Cycle, column: int, sub: int, asked: RowRequest) -> npt.NDArray[np.int64]:

@@ -18,7 +18,7 @@ from talbot.models.capture import Exposure, Region, Views, choose_views, exposed
 from talbot.models.capture import expose as expose_pair
 from talbot.models.chip import front_end_of, golden_frame
 from talbot.models.digital.stream import decode_stream
-from talbot.models.parameters import SensorParameters, circuit_columns, circuit_converter
+from talbot.models.parameters import SensorParameters
 from talbot.models.pixel import measured_gains
 from talbot.models.plan import Plan, plan
 from talbot.models.scene import Sampling, Scene, load
@@ -78,7 +78,7 @@ def expose(
     def samples(noise: float) -> Values:
         exposure = _exposure(request, noise, number)
         diodes = np.asarray(exposed(pairs, sensor, exposure, trim_gain(front_end.trim)), np.float64)
-        return _of_columns(request, diodes)
+        return _of_columns(request, diodes, frame.mode)
 
     noisy = samples(request.noise)
     clean = samples(0.0) if request.noise else noisy
@@ -114,13 +114,12 @@ def flat_field(request: FrameRequest) -> Values:
     return light - dark
 
 
-def _of_columns(request: FrameRequest, diodes: Values, mode: str = "") -> Values:
-    """What the column amplifiers give of ``diodes`` (taps, rows, cols, 2): ideal ones but with the circuit's lanes."""
-    if request.sensor.converter != circuit_converter():
+def _of_columns(request: FrameRequest, diodes: Values, mode: str) -> Values:
+    """What the column amplifiers give of ``diodes`` (taps, rows, cols, 2)."""
+    columns = request.columns
+    if columns is None:
         return diodes
-    columns = circuit_columns()
-    offsets = columns.offsets(diodes.shape[2], request.sensor.converter.seed)
-    return columns.samples(diodes, mode or request.frame.mode) + offsets
+    return columns.samples(diodes, mode) + columns.offsets(diodes.shape[2], request.sensor.converter.seed)
 
 
 def _exposure(request: FrameRequest, noise: float, number: int = 0) -> Exposure:

@@ -10,14 +10,7 @@ from markupsafe import Markup
 from talbot.base.charts import bars, svg
 from talbot.base.page import Picture, Scale
 from talbot.flow.simulate.frame import WAVES
-from talbot.models.parameters import (
-    EnergyParameters,
-    LightParameters,
-    circuit_columns,
-    circuit_converter,
-    sensor_text,
-    sources,
-)
+from talbot.models.parameters import EnergyParameters, LightParameters, sensor_text, sources
 from talbot.models.parameters.drawn import drawn_sources
 
 from . import error_plots, pictures
@@ -195,10 +188,10 @@ def _where(s: dict[str, Any]) -> list[Markup]:
 def assumptions(result: FrameResult) -> list[tuple[str, object, str]]:
     """Every parameter of the camera, of noise and energy, its value in SI units and where it comes from."""
     sensor = result.request.sensor
-    own = sensor.converter == circuit_converter()
-    source = "ngspice: models/parameters/circuit.json" if own else "assumed"
+    columns = result.request.columns
+    source = "ngspice: models/parameters/circuit.json" if columns else "assumed"
     converter = [(f"converter {name}", value, source) for name, value in vars(sensor.converter).items()]
-    for name, value in vars(circuit_columns()).items() if own else ():
+    for name, value in vars(columns).items() if columns else ():
         text = ", ".join(f"{one:.6g}" for one in (value if isinstance(value, tuple) else (value,)))
         converter.append((f"columns {name}", text, source))
     optics, array = sensor.optics, sensor.array

@@ -78,6 +78,11 @@ class FrameRequest:
         return self.sensor if self.frame.mode == "tof" else self.room.lit(self.sensor)
 
     @property
+    def columns(self) -> parameters.ColumnCurves | None:
+        """The column amplifiers with the circuit's converters, or None for ideal ones."""
+        return parameters.circuit_columns() if self.sensor.converter == CONVERTERS["circuit"] else None
+
+    @property
     def name(self) -> str:
         """Name of the scene without folder and suffix."""
         return self.scene.name if isinstance(self.scene, LightField) else Path(self.scene).stem

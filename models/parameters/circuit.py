@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy.interpolate import PchipInterpolator
 
 from .checks import ParameterError, check_real
 from .electrical import ConverterParameters
@@ -96,6 +95,8 @@ class ColumnCurves:
         ndarray
             (..., 2), of a full well: monotone cubics through the curves' points, the last one beyond `fills`.
         """
+        from scipy.interpolate import PchipInterpolator  # 0.4 s, which no command without the circuit's columns needs
+
         own, other = diodes, diodes[..., ::-1]
         parts = [
             PchipInterpolator(self.fills, curve)(filled[..., d])

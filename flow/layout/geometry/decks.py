@@ -1,5 +1,6 @@
 """KLayout decks: run in the application, which alone interprets them; their reports; PDKMaster's DRC deck adapted."""
 
+import json
 import os
 import re
 import xml.etree.ElementTree as ET
@@ -67,6 +68,17 @@ def broken_rules(decks: Mapping[Path, str], gds: Path, report: Path) -> dict[str
     if len(decks) > 1:
         _join(reports, report)
     return violations(report)
+
+
+def check_rules(deck: str, more: Iterable[str], gds: Path, outputs: Mapping[str, Path]) -> dict[str, int]:
+    """Violations by rule of `deep_and_flat`'s decks, also written as JSON. Raises StepError.
+
+    outputs: files of a step, by name: deep and flat, the decks; report, KLayout's; summary.
+    """
+    decks = dict(zip((outputs["deep"], outputs["flat"]), deep_and_flat(deck, more), strict=True))
+    found = broken_rules(decks, gds, outputs["report"])
+    outputs["summary"].write_text(json.dumps(found, indent=1) + "\n")
+    return found
 
 
 def _join(parts: Iterable[Path], report: Path) -> None:

@@ -1,12 +1,11 @@
 """Design rules: the deck that PDKMaster exports for the process, in KLayout."""
 
-import json
 from typing import Any
 
 from talbot.base.steps import Files, Step
 from talbot.platforms.coriolis import coriolis_platform
 
-from ..geometry.decks import broken_rules, deep_and_flat, hole_rules, via_rules
+from ..geometry.decks import check_rules, hole_rules, via_rules
 from .parameters import PdkParameters
 
 WARNING = "[Warning]"
@@ -33,8 +32,5 @@ class Drc(Step[PdkParameters]):
         tech = coriolis_platform(self.parameters.pdk)
         masks = [tech.masks.read_text()] if tech.masks else []
         more = (*hole_rules(tech), *via_rules(tech), *masks)
-        decks = deep_and_flat(self.exported(inputs["deck"].read_text()), more)
-        files = dict(zip((outputs["deep"], outputs["flat"]), decks, strict=True))
-        found = broken_rules(files, inputs["gds"], outputs["report"])
-        outputs["summary"].write_text(json.dumps(found, indent=1) + "\n")
+        found = check_rules(self.exported(inputs["deck"].read_text()), more, inputs["gds"], outputs)
         return {"drc_violations": sum(count for rule, count in found.items() if not rule.startswith(WARNING))}

@@ -6,7 +6,7 @@ from typing import Any
 
 from talbot.base.gds import write_gds
 from talbot.base.steps import Files, Step, StepError
-from talbot.flow.layout.geometry.decks import broken_rules, deep_and_flat, hole_rules, run_deck, via_rules, with_taps
+from talbot.flow.layout.geometry.decks import check_rules, hole_rules, run_deck, via_rules, with_taps
 from talbot.flow.layout.pdkmaster import export_spice
 from talbot.flow.layout.steps.parameters import PdkParameters
 from talbot.platforms.coriolis import coriolis_platform
@@ -51,10 +51,8 @@ class DiePadsDrc(Step[PdkParameters]):
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         tech, process = coriolis_platform(self.parameters.pdk), pad_process(self.parameters.pdk)
         more = (*hole_rules(tech), *via_rules(tech), process.masks.read_text())
-        decks = deep_and_flat(with_taps(inputs["deck"].read_text(), tech.active, process.tap), more)
-        files = dict(zip((outputs["deep"], outputs["flat"]), decks, strict=True))
-        found = broken_rules(files, inputs["gds"], outputs["report"])
-        outputs["summary"].write_text(json.dumps(found, indent=1) + "\n")
+        deck = with_taps(inputs["deck"].read_text(), tech.active, process.tap)
+        found = check_rules(deck, more, inputs["gds"], outputs)
         return {"pad_drc_violations": sum(found.values())}
 
 
