@@ -1,11 +1,11 @@
 """All measurements of the lane as jobs, the datasheet from them, and the table that frames are simulated with."""
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
 from time import perf_counter
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -50,6 +50,7 @@ ALL = (
 )
 CORNER_SETS = {"all": ALL, "quick": QUICK, "typical": (TYPICAL,)}
 ARRAYS = 1000  # drawn capacitor arrays
+T = TypeVar("T")
 
 
 def corners_of(text: str) -> tuple[str, ...]:
@@ -177,38 +178,14 @@ def measured(
     note("corners")
     results = run(jobs, STORE, "corners", workers)
     spec_a, sizes_a = amplifier_of(setup, sizes)
-    amplified = [
-        Job(
-            f"amplifier-{name}",
-            amplifier.measure,
-            (setup, spec_a, sizes_a, sizes, corner),
-            (given, repr((spec_a, sizes_a)), name),
-        )
-        for name, corner in places.items()
-    ]
-    amplifiers = run(amplified, STORE, "amplifier", workers)
-    spec_s = SupportSpec()
-    standing = [
-        Job(f"support-{name}", support.measure, (setup, spec_s, corner), (repr((setup, spec_s)), name))
-        for name, corner in places.items()
-    ]
-    supports = run(standing, STORE, "support", workers)
-    spec_r = RowDriverSpec.of()
-    driving = [
-        Job(f"row-{name}", row_driver.measure, (setup, spec_r, corner), (repr((setup, spec_r)), name))
-        for name, corner in places.items()
-    ]
-    rows = run(driving, STORE, "row driver", workers)
+    amplifiers = _everywhere(
+        "amplifier", AmplifierResult, amplifier.measure, (setup, spec_a, sizes_a, sizes), places, workers
+    )
+    supports = _everywhere("support", SupportResult, support.measure, (setup, SupportSpec()), places, workers)
+    rows = _everywhere("row driver", RowDriverResult, row_driver.measure, (setup, RowDriverSpec.of()), places, workers)
     spec_c, sizes_c = column_of(setup)
     given_c = repr((setup, spec_c, sizes_c))
-    amplifying = [
-        Job(f"column-{name}", column.measure, (setup, spec_c, sizes_c, corner), (given_c, name))
-        for name, corner in places.items()
-    ]
-    columns = {
-        name: from_json(ColumnResult, one)
-        for name, one in zip(places, run(amplifying, STORE, "columns", workers), strict=True)
-    }
+    columns = _everywhere("column", ColumnResult, column.measure, (setup, spec_c, sizes_c), places, workers)
     note("mismatch")
     typical = places[TYPICAL]
     batches = range(1, -(-draws // BATCH) + 1)
@@ -258,17 +235,33 @@ def measured(
         [one[1] for one in arrays],
         [one[2] for one in arrays if one[2] is not None],
         ktc,
-        {name: from_json(AmplifierResult, one) for name, one in zip(places, amplifiers, strict=True)},
+        amplifiers,
         {name: amplifier.ktc(setup, sizes_a, corner) for name, corner in places.items()},
         amplifier_draws,
         amplifier_noise,
-        {name: from_json(SupportResult, one) for name, one in zip(places, supports, strict=True)},
-        {name: from_json(RowDriverResult, one) for name, one in zip(places, rows, strict=True)},
+        supports,
+        rows,
         columns,
         {name: column.noise(spec_c, sizes_c, process_of(setup.pdk), one.temperature) for name, one in places.items()},
         column_offsets,
         from_json(ColumnFit, run([curves_c], STORE, "curves", workers)[0]),
     )
+
+
+def _everywhere(
+    what: str,
+    record: type[T],
+    measure: Callable[..., T],
+    given: tuple[Any, ...],
+    places: Mapping[str, Corner],
+    workers: int,
+) -> dict[str, T]:
+    """``measure`` of ``given`` and a corner, at each of ``places``. record: what it returns."""
+    jobs = [
+        Job(f"{what.replace(' ', '-')}-{name}", measure, (*given, corner), (repr(given), name))
+        for name, corner in places.items()
+    ]
+    return {name: from_json(record, one) for name, one in zip(places, run(jobs, STORE, what, workers), strict=True)}
 
 
 def converter(spec: LaneSpec, sizes: LaneSizes, found: Found) -> dict[str, Any]:
