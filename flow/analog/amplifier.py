@@ -181,15 +181,19 @@ def biased(circuit: Circuit) -> Circuit:
 
 def opened(setup: Setup, spec: AmplifierSpec, circuit: Circuit, corner: Corner, seed: int | None = None) -> Simulator:
     """An ngspice process of an amplifier with its bias and a lane's array. seed: of the models' mismatch."""
-    lines = [
-        *deck(biased(circuit), setup, corner, seed=seed),
+    lines = [*deck(biased(circuit), setup, corner, seed=seed), *to_lane(corner)]
+    rails = {"vref": spec.vref, "vdd_bias": corner.supply}
+    return simulator(lines, INPUTS, ("out", "lane"), corner, rails, EXACT)
+
+
+def to_lane(corner: Corner) -> tuple[str, ...]:
+    """Lines of the switches of a lane's array."""
+    return (
         f".model to_lane sw vt={corner.supply / 2:g} vh=0 ron={LANE_OHM:g} roff=1e12",
         "Strack out lane track 0 to_lane",
         "Skeep lane before keep 0 to_lane",
         "Slast out before last 0 to_lane",
-    ]
-    rails = {"vref": spec.vref, "vdd_bias": corner.supply}
-    return simulator(lines, INPUTS, ("out", "lane"), corner, rails, EXACT)
+    )
 
 
 def sample(
@@ -208,15 +212,7 @@ def sample(
 
     before: V that the sample before left on the lane, and on the amplifier's output until it is off.
     """
-    vdd, begin, end = corner.supply, HOLD * spec.hold, END * spec.hold
-
-    def level(*changes: float, first: float = 0.0) -> Points:
-        points, now = [(0.0, first)], first
-        for when in changes:
-            points += [(when, now), (when + EDGE, vdd - now)]
-            now = vdd - now
-        return points
-
+    begin = HOLD * spec.hold
     stimulus: dict[str, Points] = {
         f"column_{name}": [
             (0.0, spec.reset_level),
@@ -225,17 +221,32 @@ def sample(
         ]
         for name, value in (("a", a), ("b", b))
     }
-    stop = (end + COLUMNS,) if ends else ()
-    stimulus |= {
-        "on": level(WAKE * spec.hold + spec.high, *stop),
+    stimulus |= clocked(spec, corner, begin, code, before, (END * spec.hold + COLUMNS,) if ends else ())
+    return spice.transient(stimulus, {"lane": load}, until * spec.hold, spec.hold / 20)
+
+
+def clocked(
+    spec: AmplifierSpec, corner: Corner, begin: float, code: int, before: float, stop: tuple[float, ...] = ()
+) -> dict[str, Points]:
+    """All inputs but the columns, of a hold that begins at ``begin`` (s); stop: when it is off after that."""
+    vdd, wake = corner.supply, begin - (HOLD - WAKE) * spec.hold
+
+    def level(*changes: float, first: float = 0.0) -> Points:
+        points, now = [(0.0, first)], first
+        for when in changes:
+            points += [(when, now), (when + EDGE, vdd - now)]
+            now = vdd - now
+        return points
+
+    stimulus = {
+        "on": level(wake + spec.high, *stop),
         "reset": level(begin, *stop, first=vdd),
-        "last": level((WAKE - REST) * spec.hold, first=vdd),
+        "last": level(wake - REST * spec.hold, first=vdd),
         "keep": level(begin + spec.high, first=vdd),
         "track": level(begin + spec.track, *stop),
         "before": [(0.0, before)],
     }
-    stimulus |= {f"g{k}": [(0.0, vdd * (code >> k & 1))] for k in range(TRIM_BITS)}
-    return spice.transient(stimulus, {"lane": load}, until * spec.hold, spec.hold / 20)
+    return stimulus | {f"g{k}": [(0.0, vdd * (code >> k & 1))] for k in range(TRIM_BITS)}
 
 
 def _settling(wave: Wave, spec: AmplifierSpec, within: float) -> float:

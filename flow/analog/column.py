@@ -9,10 +9,11 @@
 The wells are as much larger than nominal as the capacitors are at a corner, so that a slope is over theirs.
 """
 
-from collections.abc import Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
-from types import ModuleType
+from types import MappingProxyType, ModuleType
+from typing import NamedTuple
 
 import numpy as np
 
@@ -42,8 +43,11 @@ from .deck import EDGE, SETTINGS, Setup, deck, simulator
 from .noise import GAMMA
 
 ROW = 3.3  # V of the row's lines: wells at the charge amplifiers' level ask for less than the drawn pixel's 5 V
-# At trtol 7 the same line was 0.15 LSB off from run to run, a third of a limit; at reltol 2e-5 half of the runs failed
-EXACT = replace(SETTINGS, reltol=1e-4, trtol=1.0)
+# By the trapezoidal rule the same line was 0.15 LSB off from run to run, a third of a limit, and with a trtol of 1 or 3
+# half of the runs failed; by Gear's method 0.002. With an abstol of 1 fA some runs find no operating point; what a
+# column may lose is 5 pA an LSB
+EXACT = replace(SETTINGS, reltol=1e-4, method="gear", abstol=1e-13)
+SLOPE = 8e-9  # s in which a row's line rises, as drawn; at ss_n40C_1v62 no run ended where it was an edge
 GAP = 1e-9  # s between controls that must not be high together: gate delays of the block's bank
 REST = 1  # cycles before the read, and between it and the turn
 WELLS = 0.0, 0.2, 0.4, 0.6, 0.8  # of a full well: a straight line through these
@@ -80,6 +84,15 @@ DRIVEN = (
 )
 NAMES = {"lane_a": "near_a", "lane_b": "near_b"}  # of a column's pins in the bench
 STRAY = 40e-15  # F at the holder's output
+PIXEL = "n_thick"  # role of its pixel's switches, which are no part of a column
+
+
+class Beside(NamedTuple):
+    """What a deck has beside the bench: lines, inputs, rails (V)."""
+
+    lines: tuple[str, ...] = ()
+    inputs: tuple[str, ...] = ()
+    rails: Mapping[str, float] = MappingProxyType({})
 
 
 @dataclass(frozen=True)
@@ -180,14 +193,22 @@ def settling(wave: Wave, spec: ColumnSpec) -> float:
 
 
 def offset(
-    setup: Setup, spec: ColumnSpec, sizes: ColumnSizes, corner: Corner, start: tuple[float, float], seed: int
+    setup: Setup,
+    spec: ColumnSpec,
+    sizes: ColumnSizes,
+    corner: Corner,
+    start: tuple[float, float],
+    seed: int,
+    pixel: bool = False,
 ) -> float:
     """LSB by which both diodes' lines differ without light, of a column with the models' own mismatch.
 
-    With looser tolerances than other figures have: 0.17 LSB off at most, in a third of the time.
+    pixel: of its pixel's switches alone, which all others are without. With looser tolerances than other figures have:
+    0.17 LSB off at most, in a third of the time.
     """
     end = turn_of(spec) + spec.cycle
-    with opened(setup, spec, sizes, corner, start, seed=seed, settings=SETTINGS) as spice:
+    alike = {role for role, *_ in bench(sizes, spec).sizes() if (role == PIXEL) != pixel}
+    with opened(setup, spec, sizes, corner, start, seed=seed, alike=alike, settings=SETTINGS) as spice:
         wave = sample(spice, spec, corner, 0.0, 0.0)
     return (wave.at("far_a", end) - wave.at("far_b", end)) / spec.lsb
 
@@ -238,7 +259,7 @@ def bench(sizes: ColumnSizes, spec: ColumnSpec) -> Circuit:
         end = (f"far_{d}", reference, *turn, "vbl", "vcp", *SUPPLIES)
         parts.append(Instance(f"end_{d}", lane_end(sizes), end))
         parts.append(Instance(f"line_{d}", lane_line(sizes, spec), (f"near_{d}", f"sense_{d}", f"far_{d}", "vss")))
-        devices.append(Transistor(f"read_{d}", f"well_{d}", "row", f"column_{d}", "vss", "n_thick", 0.42, THICK))
+        devices.append(Transistor(f"read_{d}", f"well_{d}", "row", f"column_{d}", "vss", PIXEL, 0.42, THICK))
         capacitors += [
             Capacitor(f"line_{d}", f"column_{d}", "vss", spec.line),
             Capacitor(f"well_{d}", f"well_{d}", "vss", spec.well, 1),
@@ -279,17 +300,20 @@ def opened(
     start: tuple[float, float],
     image: bool = False,
     seed: int | None = None,
+    alike: Collection[str] = (),
     more: Sequence[str] = (),
     circuit: Circuit | None = None,
     settings: Settings = EXACT,
+    beside: Beside | None = None,
 ) -> Simulator:
-    """An ngspice process of the bench. image: the first lane's reference is the middle. seed: of mismatch.
+    """An ngspice process of the bench. image: the first lane's reference is the middle. seed: of mismatch, but of the
+    roles in ``alike``. more: nodes that are kept.
 
     The bias's lines are held until a row is read, or what is outside of the chip at them would take milliseconds: where
     ngspice finds an operating point by a transient of its own, it ends long before.
     The coupling capacitors begin empty, as leakage leaves them after a pause: the second stage has farthest to go.
     """
-    lines = deck(circuit or bench(sizes, spec), setup, corner, seed=seed)
+    lines, beside = deck(circuit or bench(sizes, spec), setup, corner, seed=seed, alike=alike), beside or Beside()
     lines.append(f".model filling sw vt={corner.supply / 2:g} vh=0 ron=1000 roff=1e15")
     ampere = spec.well * setup.scale(corner) / LIGHT
     for d in "ab":
@@ -299,19 +323,33 @@ def opened(
     rails = {"start_a": start[0], "start": start[1], "dark": spec.dark, "reference": spec.dark - image * spec.swing / 4}
     rails |= {"vdd_bias": corner.supply, "vdd_own": corner.supply}
     rails |= {f"rest_{name}": volt for name, volt in at_rest(setup, sizes, corner).items()}
-    return simulator(lines, DRIVEN, ("far_a", "far_b", "level", *more), corner, rails, settings)
+    lines, rails = [*lines, *beside.lines], rails | dict(beside.rails)
+    return simulator(lines, (*DRIVEN, *beside.inputs), ("far_a", "far_b", "level", *more), corner, rails, settings)
 
 
 def sample(
-    spice: Simulator, spec: ColumnSpec, corner: Corner, a: float, b: float, image: bool = False, wait: float = 0.0
+    spice: Simulator,
+    spec: ColumnSpec,
+    corner: Corner,
+    a: float,
+    b: float,
+    image: bool = False,
+    wait: float = 0.0,
+    cycles: int = 1,
+    more: Mapping[str, Points] | None = None,
+    loads: Mapping[str, float] | None = None,
 ) -> Wave:
-    """A transient: a row is read whose wells have the charge of a and b V, and ``wait`` s later than else a turn."""
+    """A transient: a row is read whose wells have the charge of a and b V, and ``wait`` s later than else a turn.
+
+    cycles: of the turn. more, loads: of the inputs and nodes that are `Beside` it.
+    """
     high, t = corner.supply, spec.cycle
     begin, middle = REST * t, (REST + spec.settle) * t
     end, turn = middle + spec.read * t, turn_of(spec) + wait
+    over = turn + cycles * t
 
-    def pulse(start: float, stop: float, low: float = 0.0) -> Points:
-        return [(0.0, low), (start, low), (start + EDGE, high - low), (stop, high - low), (stop + EDGE, low)]
+    def pulse(start: float, stop: float, low: float = 0.0, edge: float = EDGE) -> Points:
+        return [(0.0, low), (start, low), (start + edge, high - low), (stop, high - low), (stop + edge, low)]
 
     def both(start: float, stop: float, again: float, off: float, low: float = 0.0) -> Points:
         return [*pulse(start, stop, low), *pulse(again, off, low)[1:]]
@@ -324,24 +362,24 @@ def sample(
         "w0": [(0.0, high), (end, high), (end + EDGE, 0.0)],  # from before on: its capacitor begins at level
         "sig": pulse(middle + GAP, end + GAP),
         "sign": pulse(middle + GAP, end + GAP, high),
-        "f0": both(middle + GAP, end + GAP, turn, turn + t + 2 * GAP),
-        "fn0": both(begin, end + GAP, turn, turn + t + 2 * GAP, high),
-        "idle": both(begin, end + 2 * GAP, turn, turn + t + 2 * GAP, high),
-        "row": [(s, v / high * ROW) for s, v in pulse(middle + GAP, end + 10 * GAP)],
+        "f0": both(middle + GAP, end + GAP, turn, over + 2 * GAP),
+        "fn0": both(begin, end + GAP, turn, over + 2 * GAP, high),
+        "idle": both(begin, end + 2 * GAP, turn, over + 2 * GAP, high),
+        "row": [(s, v / high * ROW) for s, v in pulse(middle + GAP, end + 10 * GAP, edge=SLOPE)],
         "edge": [(0.0, 0.0 if image else high)],
         "edgen": [(0.0, high if image else 0.0)],
-        "turn": pulse(turn, turn + t + GAP),
-        "turnn": pulse(turn, turn + t + GAP, high),
-        "turnb": [(0.0, 0.0)] if image else pulse(turn, turn + t + GAP),
-        "turnbn": [(0.0, high)] if image else pulse(turn, turn + t + GAP, high),
-        "group": pulse(turn + GAP, turn + t + GAP),
+        "turn": pulse(turn, over + GAP),
+        "turnn": pulse(turn, over + GAP, high),
+        "turnb": [(0.0, 0.0)] if image else pulse(turn, over + GAP),
+        "turnbn": [(0.0, high)] if image else pulse(turn, over + GAP, high),
+        "group": pulse(turn + GAP, over + GAP),
         "k": [(0.0, high)],
         "unasked0": [(0.0, 0.0)],
         "fill": [(0.0, high), (begin, high), (begin + EDGE, 0.0)],
     }
     for name, volts in (("x_a", a), ("x_b", b)):
         stimulus[name] = [(s, v / high * volts) for s, v in pulse(middle - LIGHT, middle)]
-    return spice.transient(stimulus, {}, turn + 2 * t, t / 5)
+    return spice.transient(stimulus | dict(more or {}), loads or {}, over + t, t / 5)
 
 
 def turn_of(spec: ColumnSpec) -> float:

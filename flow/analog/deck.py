@@ -1,6 +1,6 @@
 """A circuit in ngspice at a corner: models, supplies, references behind their resistance; clocked waveforms."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import ModuleType
 
@@ -38,17 +38,22 @@ class Setup:
 
 
 def deck(
-    circuit: Circuit, setup: Setup, corner: Corner, copies: Sequence[Sequence[str]] = (), seed: int | None = None
+    circuit: Circuit,
+    setup: Setup,
+    corner: Corner,
+    copies: Sequence[Sequence[str]] = (),
+    seed: int | None = None,
+    alike: Collection[str] = (),
 ) -> list[str]:
     """Models, subcircuits and instances. copies: the nodes of each instance; without, one whose nodes are its ports.
 
-    seed: mismatch of every transistor is drawn with it. Raises ParameterError for a broken circuit, before anything
+    seed: mismatch of every transistor is drawn with it, but of the roles in ``alike``. Raises ParameterError for a broken circuit, before anything
     runs.
     """
     process = process_of(setup.pdk)
     circuit.check(process)
     lines = [] if seed is None else [f".option seed={seed}"]
-    lines += process.cards(corner.process, circuit.sizes(), seed is not None)
+    lines += process.cards(corner.process, circuit.sizes(), seed is not None, alike)
     scales = (
         f".param cscale={setup.scale(corner):.6g} rscale={process.resistance(corner.process, corner.temperature):.6g}"
     )

@@ -11,6 +11,7 @@ from .noise import Noise
 from .row_driver import RowDriverResult
 from .spread import AmplifierNoise, Drawn
 from .support import SupportResult
+from .turn import TurnResult
 
 TYPICAL = "tt_027C_1v80"  # the corner of typical values
 
@@ -36,4 +37,6 @@ class Found:
     columns: dict[str, ColumnResult]
     column_noise: dict[str, float]
     column_offsets: list[float]
+    pixel_offsets: list[float]
+    turns: dict[str, TurnResult]
     column_fit: ColumnFit

@@ -26,7 +26,7 @@ from talbot.pixels.circuits.row_driver import RowDriverSpec
 from talbot.pixels.circuits.specification import LaneSpec
 from talbot.pixels.circuits.support import SupportSpec
 
-from . import amplifier, column, comparator, curves, lane, linearity, row_driver, spread, support
+from . import amplifier, column, comparator, curves, lane, linearity, row_driver, spread, support, turn
 from . import noise as noises
 from .amplifier import AmplifierResult
 from .column import ColumnResult
@@ -40,6 +40,7 @@ from .row_driver import RowDriverResult
 from .rows import datasheet
 from .spread import AmplifierNoise, Drawn
 from .support import SupportResult
+from .turn import TurnResult
 
 STEPS = "check", "corners", "mismatch", "noise", "linearity", "report"
 STORE = BUILD / "analog" / "measured"
@@ -50,6 +51,7 @@ ALL = (
 )
 CORNER_SETS = {"all": ALL, "quick": QUICK, "typical": (TYPICAL,)}
 ARRAYS = 1000  # drawn capacitor arrays
+PIXELS = 25  # draws of a pixel's switches
 T = TypeVar("T")
 
 
@@ -128,7 +130,7 @@ def make(
     note("report")
     rows = datasheet(setup.spec, found, len(found.offsets))
     counts = [*found.decisions.values(), *found.lanes.values(), *found.amplifiers.values(), *found.supports.values()]
-    counts += [*found.rows.values(), *found.columns.values()]
+    counts += [*found.rows.values(), *found.columns.values(), *found.turns.values()]
     summary = {
         "pdk": pdk,
         "corners": list(corners),
@@ -186,6 +188,8 @@ def measured(
     spec_c, sizes_c = column_of(setup)
     given_c = repr((setup, spec_c, sizes_c))
     columns = _everywhere("column", ColumnResult, column.measure, (setup, spec_c, sizes_c), places, workers)
+    both = setup, (spec_c, spec_a), (sizes_c, sizes_a), sizes
+    turns = _everywhere("turn", TurnResult, turn.measure, both, places, workers)
     note("mismatch")
     typical = places[TYPICAL]
     batches = range(1, -(-draws // BATCH) + 1)
@@ -197,18 +201,21 @@ def measured(
         for k in range(1, BATCH * len(batches) + 1)
     ]
     amplifier_draws = [from_json(Drawn, one) for one in run(more, STORE, "amplifiers", workers)]
-    unlike = [
-        Job(
-            f"column-draw-{k}",
-            column.offset,
-            (setup, spec_c, sizes_c, typical, columns[TYPICAL].start, k),
-            (given_c, columns[TYPICAL].start, k),
+    start = columns[TYPICAL].start
+    given_f = setup, spec_c, sizes_c, typical, start
+    column_offsets, pixel_offsets = (
+        run(
+            [
+                Job(f"{name}-draw-{k}", column.offset, (*given_f, k, pixel), (given_c, start, k))
+                for k in range(1, count + 1)
+            ],
+            STORE,
+            f"{name}s drawn",
+            workers,
         )
-        for k in range(1, draws + 1)
-    ]
-    column_offsets = run(unlike, STORE, "columns drawn", workers)
-    given_f = setup, spec_c, sizes_c, typical, columns[TYPICAL].start
-    curves_c = Job("column-curves", curves.fitted, given_f, (given_c, columns[TYPICAL].start))
+        for name, count, pixel in (("column", draws, False), ("pixel", min(draws, PIXELS), True))
+    )
+    curves_c = Job("column-curves", curves.fitted, given_f, (given_c, start))
     note("noise")
     closed = amplifier.ktc(setup, sizes_a, typical)
     quiet = Job(
@@ -244,6 +251,8 @@ def measured(
         columns,
         {name: column.noise(spec_c, sizes_c, process_of(setup.pdk), one.temperature) for name, one in places.items()},
         column_offsets,
+        pixel_offsets,
+        turns,
         from_json(ColumnFit, run([curves_c], STORE, "curves", workers)[0]),
     )
 

@@ -122,7 +122,9 @@ def _columns(found: Found) -> list[Row]:
 
     slopes = {corner: 100 * max(abs(one.slope - 1), abs(one.mean - 1)) for corner, one in found.columns.items()}
     rms, _, high = interval(found.column_offsets)
-    over = f"{len(found.column_offsets)} draws, max: 95 % interval"
+    over, over_p = (f"{len(one)} draws, max: 95 % interval" for one in (found.column_offsets, found.pixel_offsets))
+    rms_p, _, high_p = interval(found.pixel_offsets)
+    left, settled = ({n: getattr(one, f) for n, one in found.turns.items()} for f in ("left", "settling"))
     return [
         row("slope, off by", "%", slopes, 100 * spec.slope),
         row("slope of a diode", "", each("slope")),
@@ -131,9 +133,12 @@ def _columns(found: Found) -> list[Row]:
         row("lost at 98 % of a full well", "LSB", each("full")),
         row("by the other diode's light", "LSB", each("other"), spec.settling),
         row("settling to half an LSB", "ns", each("settling", 1e9), 1e9 * spec.cycle),
+        row("turn, left at the lane after one cycle", "LSB", left, spec.settling),
+        row("turn, at the lane to half an LSB", "ns", {n: 1e9 * one for n, one in settled.items()}),
         row("droop until the last column's turn", "LSB", each("droop"), spec.droop),
         row("noise of a diode, closed form", "e", found.column_noise, spec.noise),
         Row("column", "offset of a difference, rms", "LSB", rms, None, high, most=spec.offset, over=over),
+        Row("column", "offset by a pixel's switches, rms", "LSB", rms_p, None, high_p, over=over_p),
         row("energy of a pixel", "pJ", each("energy", 1e12), 1e12 * spec.energy),
         row("current of a column at rest", "nA", each("idle", 1e9)),
         row("level that is trimmed, first diode", "V", {name: one.start[0] for name, one in found.columns.items()}),

@@ -6,6 +6,7 @@ from talbot.cells.corner import Corner
 from talbot.flow.analog import column
 from talbot.flow.analog.column import ColumnResult
 from talbot.flow.analog.deck import Setup
+from talbot.flow.analog.turn import TurnResult
 from talbot.pixels.circuits.column_sizes import ColumnSizes, ColumnSpec
 from talbot.pixels.circuits.netlist import Circuit
 
@@ -31,3 +32,9 @@ def rows(spec: ColumnSpec, found: Pair[ColumnResult]) -> Iterator[Row]:
     yield row("column: settling to half an LSB", "ns", lambda one: 1e9 * one.settling, 1e9 * spec.cycle)
     yield row("column: droop until the last column's turn", "LSB", lambda one: one.droop, spec.droop)
     yield row("column: energy of a pixel", "pJ", lambda one: 1e12 * one.energy, 1e12 * spec.energy)
+
+
+def turn_rows(spec: ColumnSpec, found: Pair[TurnResult]) -> Iterator[Row]:
+    """Column, lane's line and amplifier, both drawn."""
+    yield found.row("turn: left at the lane after one cycle", "LSB", lambda one: one.left, spec.settling)
+    yield found.row("turn: at the lane to half an LSB", "ns", lambda one: 1e9 * one.settling)

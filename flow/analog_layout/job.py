@@ -20,6 +20,8 @@ from talbot.flow.analog.lane import inl
 from talbot.flow.analog.linearity import inl_dnl, levels
 from talbot.flow.analog.row_driver import RowDriverResult
 from talbot.flow.analog.row_driver import measure as measure_row
+from talbot.flow.analog.turn import TurnResult
+from talbot.flow.analog.turn import measure as measure_turn
 from talbot.models.parameters import ArrayParameters
 from talbot.pixels.analog_layout.amplifier import amplifier_cell
 from talbot.pixels.analog_layout.bias import bias_cell
@@ -204,6 +206,9 @@ def _measured(
         yield from row_driver.rows(driven, row)
     for one in _columns(setup, circuits("column"), workers):
         yield from column.rows(column_of(setup)[0], one)
+    both = setup, (column_of(setup)[0], amplifiers[0]), (column_of(setup)[1], amplifiers[1]), sizes
+    for turn in beside("turn", measure_turn, TurnResult, both, circuits("column", "amplifier"), workers):
+        yield from column.turn_rows(column_of(setup)[0], turn)
     for gaps in beside("switch drivers", switch.measure, Gaps, (setup, support), circuits("non_overlap"), workers):
         yield from switch.rows(support, gaps)
     given = setup, *amplifiers, sizes

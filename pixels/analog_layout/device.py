@@ -70,7 +70,9 @@ class Device:
 
     @classmethod
     def of(cls, transistor: Transistor, tallest: float = TALLEST, dummies: bool = False) -> Self:
-        """With the fewest fingers that are no taller; one below 2 um, as the circuits' models have it."""
+        """With its own fingers, else the fewest that are no taller; one below 2 um, as the circuits' models have it."""
+        if transistor.fingers:
+            return cls(transistor, transistor.fingers, dummies)
         if transistor.w < 2:
             return cls(transistor, 1, dummies)
         for fingers in range(2, 101, 2):

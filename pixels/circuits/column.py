@@ -60,6 +60,11 @@ def p(name: str, nodes: str, w: float, kind: tuple[str, float]) -> Transistor:
     return Transistor(name, drain, gate, source, "vdd", kind[0], w, kind[1])
 
 
+def source(name: str, nodes: str, w: float, kind: tuple[str, float], parts: int = 1) -> Transistor:
+    """A p transistor that is a source of current, of so many of the bias's."""
+    return p(name, nodes, w, kind)._replace(fingers=parts)
+
+
 def _through(name: str, a: str, b: str, on: str, off: str, w: float = 0.42) -> tuple[Transistor, Transistor]:
     """A switch of both kinds."""
     return n(f"{name}_n", f"{a} {on} {b}", w, SWITCH), p(f"{name}_p", f"{a} {off} {b}", 2 * w, SWITCH_P)
@@ -74,7 +79,7 @@ def charge_amplifier(sizes: ColumnSizes) -> Circuit:
         (
             n("in", "below line vss", one.input, FRONT),
             n("cascode", "out cn below", one.cascode, CASCODE),
-            p("top", "above vbp vdd", one.top, TOP),
+            source("top", "above vbp vdd", one.top, TOP),
             p("cascode_p", "out vcp above", one.cascode_p, CASCODE_P),
             n("clear", "line clear out", 0.42, SWITCH),
         ),
@@ -115,7 +120,7 @@ def holder(sizes: ColumnSizes, taps: int) -> Circuit:
             n("enter", "cin reads x", 0.84, SWITCH),
             n("in", "below x vss", lane.input, LANE),
             n("cascode", "out cn below", back.cascode, CASCODE),
-            p("top", "above vbp vdd", back.top, BACK_TOP),
+            source("top", "above vbp vdd", back.top, BACK_TOP),
             p("cascode_p", "out vcp above", back.cascode_p, CASCODE_P),
             n("drive", "lane go below", lane.cascode, CASCODE),
             n("reset", "x ref out", 0.42, SLOW),
@@ -137,8 +142,8 @@ def column(sizes: ColumnSizes) -> Circuit:
     """Both diodes of a column, with its part of the decoder. Pins PINS."""
     cin = sizes.gain * sizes.hold
     parts = [
-        Instance("select_n", nand(), ("group", "k", "seln", *SUPPLIES)),
-        Instance("select", inverter(2), ("seln", "sel", *SUPPLIES)),
+        Instance("select_n", nand(3), ("group", "k", "seln", *SUPPLIES)),
+        Instance("select", inverter(4), ("seln", "sel", *SUPPLIES)),
         *(Instance(f"on{t}", nor(), ("seln", f"unasked{t}", f"s{t}", *SUPPLIES)) for t in range(TAPS)),
     ]
     for d, taps in (("a", TAPS), ("b", 1)):

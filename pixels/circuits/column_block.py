@@ -3,7 +3,7 @@
 from itertools import pairwise
 
 from .amplifier import BIAS
-from .column import BIASES, CONTROLS, OF_TAPS, SUPPLIES, SWITCH, SWITCH_P, TAPS, n, p
+from .column import BIASES, CONTROLS, OF_TAPS, SUPPLIES, SWITCH, SWITCH_P, TAPS, n, p, source
 from .column_sizes import CASCODE, CASCODE_P, FRONT, LANE_TOP, PARTS, TOP, ColumnSizes, ColumnSpec, drawn
 from .gates import LENGTH, inverter, nand, nor
 from .netlist import Capacitor, Circuit, Instance, Resistor, Transistor
@@ -15,8 +15,8 @@ DECOUPLING = 5e-12  # F at each of its lines
 # F outside of the chip at each, and at level: all columns' outputs end at once as a row ends, 10 fC each at vcp, and a
 # fronts' offset of 20 uV of vbp is an LSB. What selected cascodes' gates take of vcn is lost: some uA
 OUTSIDE = 100e-9
-GATES = 8  # branches of the bias at vcn
-STACK, STACK_P = (2.5, ("n_lvt", 5.0)), (0.42, ("p", 2.0))  # um, of the diodes that make the cascodes' gates
+GATES = 2  # charge amplifiers' currents at vcn
+STACK, STACK_P = (1.0, ("n_lvt", 5.0)), (0.42, ("p", 2.0))  # um, of the diodes that make the cascodes' gates
 LEG = 0.8  # um, of a branch of the bias
 SECTIONS = 12  # of a lane's line
 GROUPS, PLACES = 8, 6  # lines of a group, of a place in the tile
@@ -36,11 +36,10 @@ def column_bias(sizes: ColumnSizes) -> Circuit:
     """
     front, lane = sizes.front, sizes.lane
 
-    def feed(name: str, node: str, amperes: float) -> tuple[Transistor, Transistor]:
-        """A branch's current into a node."""
-        times = amperes / front.current
+    def feed(name: str, node: str, times: int = 1) -> tuple[Transistor, Transistor]:
+        """So many charge amplifiers' currents into a node."""
         return (
-            p(f"{name}_top", f"{name}_high vbp vdd", drawn(front.top * times), TOP),
+            source(f"{name}_top", f"{name}_high vbp vdd", round(front.top * times, 2), TOP, times),
             p(f"{name}_cascode", f"{node} vcp {name}_high", drawn(front.cascode_p * times), CASCODE_P),
         )
 
@@ -49,13 +48,13 @@ def column_bias(sizes: ColumnSizes) -> Circuit:
         n("leg_vbp", "vbp ibias vss", drawn(LEG * front.current / BRANCH), FRONT),
         n("leg_vcp", "vcp ibias vss", LEG, FRONT),
         n("leg_vbl", "vbl ibias vss", drawn(LEG * lane.current / PARTS / BRANCH), FRONT),
-        *feed("vbp", "vbp", front.current),
-        p("vbl_top", "vbl_high vbl vdd", drawn(lane.top / PARTS), LANE_TOP),
-        p("vbl_cascode", "vbl vcp vbl_high", drawn(lane.cascode_p / PARTS), CASCODE_P),
+        *feed("vbp", "vbp"),
+        source("vbl_top", "vbl_high vbl vdd", round(lane.top / PARTS, 2), LANE_TOP),
+        source("vbl_cascode", "vbl vcp vbl_high", round(lane.cascode_p / PARTS, 2), CASCODE_P),
         p("vcp", "vcp vcp vdd", *STACK_P),
-        *feed("vcn", "vcn", GATES * BRANCH),
+        *feed("vcn", "vcn", GATES),
         n("vcn", "vcn vcn vss", *STACK),
-        *feed("level", "level", front.current),
+        *feed("level", "level"),
         n("level_in", "level_low level vss", front.input, FRONT),
         n("level_under", "level vcn level_low", front.cascode, CASCODE),
     ]
@@ -94,8 +93,8 @@ def lane_end(sizes: ColumnSizes) -> Circuit:
         ("lane", "reference", "turn", "turnn", "vbl", "vcp", *SUPPLIES),
         (
             p("on", "high turnn vdd", 10.4, POWER),
-            p("top", "above vbl high", one.top, LANE_TOP),
-            p("cascode_p", "lane vcp above", one.cascode_p, CASCODE_P),
+            source("top", "above vbl high", one.top, LANE_TOP, PARTS),
+            source("cascode_p", "lane vcp above", one.cascode_p, CASCODE_P, PARTS),
             n("rest_n", "lane turnn reference", 6.0, SWITCH),
             p("rest_p", "lane turn reference", 12.0, SWITCH_P),
         ),

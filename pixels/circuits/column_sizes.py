@@ -21,14 +21,14 @@ from .amplifier import UNIT as CELL
 from .specification import LaneSpec, one_digit
 
 # Roles and lengths (um): inputs of the charge amplifier and of the holder, which drives the lane; cascodes, sources
-FRONT, LANE, CASCODE = ("n", 1.0), ("n", 0.5), ("n_lvt", 0.5)
-TOP, CASCODE_P, LANE_TOP = ("p", 2.0), ("p", 0.5), ("p", 0.5)
-BACK_TOP = TOP
-EFFICIENCY = {"front": 21.0, "back": 22.0, "lane": 17.0, "cascode": 15.0, "cascode_p": 15.0, "lane_p": 11.0}
-# Of the sources: a charge amplifier's is one finger, as the bias's that it follows. In two of half the width it had
-# 1.25 times the current at ff_125C_1v98, as drawn: SKY130's narrow transistors have more
+FRONT, LANE, CASCODE = ("n", 2.0), ("n", 0.5), ("n_lvt", 0.5)
+TOP, CASCODE_P, LANE_TOP = ("p", 3.3), ("p", 0.5), ("p", 0.5)
+BACK_TOP = ("p", 6.0)  # its threshold is in the sample as the input's is, which has a third of the source's area
+EFFICIENCY = {"front": 22.0, "back": 22.0, "lane": 17.0, "cascode": 15.0, "cascode_p": 15.0, "lane_p": 11.0}
+# Of the sources: those of charge amplifiers and holders are one finger, as the bias's that they follow. In two of half
+# the width one had 1.25 times the current at ff_125C_1v98, as drawn: SKY130's narrow transistors have more
 EFFICIENCY |= {"top": 8.0, "lane_top": 9.0}
-PARTS = 16  # of what drives the lane: a replica is one of them
+PARTS = 16  # of a lane's source of current, each the bias's transistor: one of all widths has 0.7 of their current
 TIMES = 2.0  # Cin over Chold: the holder's gain
 EXPOSED = 0.015  # of a charge that the signal half may leave at the typical corner
 # More of a charge is lost, as measured there, on the mean of the taps: 0.0023 in the first, less in those after it, in
@@ -36,8 +36,8 @@ EXPOSED = 0.015  # of a charge that the signal half may leave at the typical cor
 BEYOND = 0.0005
 ACROSS = 0.14e-15  # F, of transistors across Cf
 JUNCTIONS = 9e-15  # F, of a column that is not selected, at its lane's line
-LEFT = 0.3  # of a limit, at the typical corner: others are slower
-UNLIKE = 0.6  # of the offset's limit that is left to the charge amplifiers' inputs
+LEFT = 0.4  # of a limit, at the typical corner: others are slower
+UNLIKE = 0.5  # of the offset's limit that is left to the charge amplifiers' inputs
 
 
 @dataclass(frozen=True)
@@ -219,7 +219,8 @@ class ColumnSizes:
 
 
 HOLD = 0.14e-12  # F: a square of 8.2 um of MIM, as the pitch has room for
-KICK = 0.3  # of Chold: with it start is near dark at the typical corner
+HOLDER = 8.0  # times a charge amplifier's speed: a holder's
+KICK = 0.33  # of Chold: with it start is near dark at the typical corner
 FINGER = 2.6  # um, of a transistor drawn on the pitch of a column
 SLACK = 20e-9  # s of the signal half until the row's line is up
 WAKE = 8e-9  # s of a column's turn until its transistors conduct
@@ -233,7 +234,7 @@ def source_of(name: str) -> str:
 def size(spec: ColumnSpec, process: ModuleType, hold: float = HOLD) -> ColumnSizes:
     """Sizes for ``spec`` from the process's tables of gm/Id.
 
-    The charge amplifier has the signal half to come within EXPOSED of the charge, the holder is five times as
+    The charge amplifier has the signal half to come within EXPOSED of the charge, the holder is HOLDER times as
     fast, and a selected one has its lane settled to LEFT of the settling's limit when it must be ready. What the charge
     amplifiers' thresholds differ by is the wells' level against their lines': by it their inputs are UNLIKE of the
     offset's limit. Cf is the well's size less what finite gain and time take.
@@ -254,14 +255,19 @@ def size(spec: ColumnSpec, process: ModuleType, hold: float = HOLD) -> ColumnSiz
         lane_gm = load * (hold * (1 + KICK) + gate) / hold * rest / (spec.ready - WAKE)
         gate = lane_gm / EFFICIENCY["lane"] / drive.density * drive.gate
     back_beta = hold / (hold * (1 + KICK) + cin + gate)
-    back_gm = 5 * constants / half * hold / back_beta
+    back_gm = HOLDER * constants / half * hold / back_beta
 
     def stage(kind: tuple[str, float], name: str, top: tuple[str, float], gm: float, least: float = 0.0) -> Stage:
         amperes = gm / EFFICIENCY[name]
-        above = "lane_p" if name == "lane" else "cascode_p"
-        roles = (kind, name), (CASCODE, "cascode"), (top, source_of(name)), (CASCODE_P, above)
-        widths = [amperes / process.operating(*one, EFFICIENCY[role]).density for one, role in roles]
-        return Stage(amperes, *(drawn(max(w, floor)) for w, floor in zip(widths, (least, 0, 0, 0), strict=True)))
+
+        def width(one: tuple[str, float], role: str) -> float:
+            return amperes / process.operating(*one, EFFICIENCY[role]).density
+
+        given = drawn(max(width(kind, name), least)), drawn(width(CASCODE, "cascode"))
+        source, above = width(top, source_of(name)), width(CASCODE_P, "lane_p" if name == "lane" else "cascode_p")
+        if name == "lane":
+            return Stage(amperes, *given, *(round(PARTS * drawn(w / PARTS), 2) for w in (source, above)))
+        return Stage(amperes, *given, alone(source), drawn(above))
 
     def gain(kind: tuple[str, float], name: str, top: tuple[str, float]) -> float:
         below = process.operating(*kind, EFFICIENCY[name]).gain
@@ -284,6 +290,12 @@ def size(spec: ColumnSpec, process: ModuleType, hold: float = HOLD) -> ColumnSiz
         KICK * hold,
         TIMES,
     )
+
+
+def alone(width: float) -> float:
+    """The nearest width (um) of a transistor that is one finger. Raises ParameterError above FINGER."""
+    check_real("width", width, 0.0, FINGER)
+    return round(max(0.42, width), 2)
 
 
 def drawn(width: float) -> float:

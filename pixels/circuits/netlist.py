@@ -15,7 +15,8 @@ GROUND = "0"
 
 
 class Transistor(NamedTuple):
-    """One transistor; role: a key of the process's ROLES; w, l: um."""
+    """One transistor; role: a key of the process's ROLES; w, l: um. fingers: in which it is drawn, and modelled; 0: as
+    `instance` of the process has it."""
 
     name: str
     drain: str
@@ -25,6 +26,12 @@ class Transistor(NamedTuple):
     role: str
     w: float
     l: float  # noqa: E741
+    fingers: int = 0
+
+    @property
+    def finger_um(self) -> float:
+        """Width that its model has."""
+        return round(self.w / max(1, self.fingers), 6)
 
     @property
     def nodes(self) -> tuple[str, str, str, str]:
@@ -88,7 +95,7 @@ class Circuit:
 
     def own_sizes(self) -> set[tuple[str, float, float]]:
         """(role, w, l) of its own transistors, as its lines have them."""
-        return {(t.role, t.w, t.l) for t in self.transistors}
+        return {(t.role, t.finger_um, t.l) for t in self.transistors}
 
     def lines(self, process: ModuleType) -> list[str]:
         """The .subckt text of all circuits in it, without models.
@@ -110,7 +117,7 @@ class Circuit:
 
     def devices(self, process: ModuleType) -> list[str]:
         """Lines of its own transistors."""
-        return [process.instance(t.name, t.nodes, t.role, t.w, t.l) for t in self.transistors]
+        return [process.instance(t.name, t.nodes, t.role, t.w, t.l, t.fingers) for t in self.transistors]
 
     def check(self, process: ModuleType) -> None:
         """Raise ParameterError that names the first broken device, net or size, in this circuit or an inner one."""
@@ -126,8 +133,8 @@ class Circuit:
                 yield f"device {t.name}: role = {t.role!r}: must be one of {', '.join(process.ROLES)}"
             elif not process.SHORTEST[t.role] <= t.l <= process.WIDEST:
                 yield f"device {t.name}: l = {t.l:g}: must be in {process.SHORTEST[t.role]:g}..{process.WIDEST:g} um"
-            elif not process.NARROWEST <= t.w <= process.WIDEST:
-                yield f"device {t.name}: w = {t.w:g}: must be in {process.NARROWEST:g}..{process.WIDEST:g} um"
+            elif not process.NARROWEST <= t.finger_um <= process.WIDEST:
+                yield f"device {t.name}: w = {t.finger_um:g}: must be in {process.NARROWEST:g}..{process.WIDEST:g} um"
             if not all(t.nodes):
                 yield f"device {t.name}: node = '': must be named"
         yield from (f"device {c.name}: value = {c.value}: must be above 0" for c in self.capacitors if not c.value > 0)
@@ -145,7 +152,7 @@ class Circuit:
         first: dict[str, str] = {}
         alone: dict[Transistor, Transistor] = {}
         for t in self.transistors:
-            alone.setdefault(t._replace(name="", w=0.0), t)
+            alone.setdefault(t._replace(name="", w=0.0, fingers=0), t)
         parts: list[tuple[str, tuple[str, ...], tuple[str, ...]]] = [
             (t.name, (t.drain, t.gate, t.source), (t.drain, t.source)) for t in alone.values()
         ]

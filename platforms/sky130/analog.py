@@ -8,6 +8,7 @@ lengths): circuits are sized by it, and the Monte Carlo run uses the models, not
 
 import json
 import math
+import re
 from collections.abc import Collection
 from dataclasses import dataclass
 from functools import cache
@@ -36,7 +37,7 @@ CELL_MISMATCH = 0.0183 * 0.85105 * math.sqrt(0.50527)  # rms, relative, of one f
 SHARED = 0.28  # um of diffusion between two gates
 TABLES = Path(__file__).with_name("gm_id.json")  # written by `make analog GM_ID=`: flow/analog/tables.py
 # (role, length in um) of the transistors in it
-SIZED = (("p_lvt", 0.5), ("p", 0.5), ("p", 2.0), ("n", 0.5), ("n", 1.0), ("n_lvt", 0.5), ("n_lvt", 1.0))
+SIZED = (("p_lvt", 0.5), ("p", 0.5), ("p", 3.3), ("p", 6.0), ("n", 0.5), ("n", 2.0), ("n_lvt", 0.5), ("n_lvt", 1.0))
 # sky130_fd_pr__res_generic_nd, n+ diffusion: ohm a square at the process's ends and between, 1/K and 1/K2
 RESISTOR_SHEET, RESISTOR_AT, RESISTOR_TEMPERATURE = {"ss": 132.0, "ff": 108.0}, 30.0, (1.422e-3, 0.657e-6)
 RESISTOR_TYPICAL = 120.0
@@ -121,9 +122,26 @@ def unit_cells(mismatch: float) -> tuple[UnitCell, ...]:
     return fringe, mim
 
 
-def instance(name: str, nodes: tuple[str, str, str, str], role: str, w: float, l: float) -> str:  # noqa: E741
-    """A transistor's line: drain, gate, source, bulk; w, l in um. From 2 um on in two fingers that share the drain."""
-    if w < 2:
+def instance(
+    name: str,
+    nodes: tuple[str, str, str, str],
+    role: str,
+    w: float,
+    l: float,  # noqa: E741
+    fingers: int = 0,
+) -> str:
+    """A transistor's line: drain, gate, source, bulk; w, l in um.
+
+    fingers: as many models of a part of ``w``, sources at both ends; 0: one model, from 2 um on with the junctions of
+    two fingers that share the drain.
+    """
+    if fingers > 1:
+        each, inner = w / fingers, (fingers // 2 - 1) / fingers
+        end = 2 * models.END / fingers
+        junctions = each * (inner * SHARED + end), each * SHARED / 2
+        around = 2 * inner * SHARED + 2 * end + 2 * each / fingers, SHARED
+        return finger(name, nodes, role, each, l, fingers, junctions + around)
+    if w < 2 or fingers:
         area = w * models.END
         size = {"as": area, "ad": area, "ps": w + 2 * models.END, "pd": w + 2 * models.END}
     else:
@@ -143,20 +161,26 @@ def finger(
     junctions: tuple[float, ...],
 ) -> str:
     """A transistor of ``count`` fingers of ``w``. junctions: um2 of source and drain, um around, of a finger."""
-    size = {"w": w, "l": l, "m": count, **dict(zip(("as", "ad", "ps", "pd"), junctions, strict=True)), **models.STRESS}
+    size = {"w": w, "l": l, "m": count, "mult": count, **dict(zip(("as", "ad", "ps", "pd"), junctions, strict=True)), **models.STRESS}
     return f"X{name} {' '.join(nodes)} {ROLES[role]} " + " ".join(f"{k}={v:.6g}" for k, v in size.items())
 
 
-def cards(process: str, sizes: Collection[tuple[str, float, float]], mismatch: bool = False) -> list[str]:
-    """The models' lines for (role, w, l) at tt, ss, ff, sf or fs; mismatch: every instance is drawn.
+def cards(
+    process: str, sizes: Collection[tuple[str, float, float]], mismatch: bool = False, alike: Collection[str] = ()
+) -> list[str]:
+    """The models' lines for (role, w, l) at tt, ss, ff, sf or fs; mismatch: every instance is drawn, but of ``alike``.
 
     Without it all transistors of a size have one model. Inside its subcircuit every instance has all bins of its own:
     a circuit of 480 transistors took ngspice 10 s to read, one of 2000 minutes.
     """
     lines = models.cards("binned", process, {(ROLES[role], w, length) for role, w, length in sizes})
-    if mismatch:
-        return [line.replace("mc_mm_switch=0", "mc_mm_switch=1") for line in lines]
     shared, rest, inside = list[str](), list[str](), False
+    if mismatch:
+        same = {ROLES[role] for role in alike}
+        for line in lines:
+            inside = line.split()[1] in same if line.lower().startswith(".subckt") else inside
+            rest.append(re.sub("(?i)mc_mm_switch", "0", line) if inside else line)
+        return [line.replace("mc_mm_switch=0", "mc_mm_switch=1") for line in rest]
     for line in lines:
         inside = inside if line.startswith("+") else line.lower().startswith(".model")
         (shared if inside else rest).append(line.replace("sqrt(l*w*mult)", "1"))  # of mismatch, whose factor is 0
