@@ -293,8 +293,7 @@ def size(spec: ColumnSpec, process: ModuleType, hold: float = HOLD) -> ColumnSiz
 
 
 def alone(width: float) -> float:
-    """The nearest width (um) of a transistor that is one finger. Raises ParameterError above FINGER."""
-    check_real("width", width, 0.0, FINGER)
+    """The nearest width (um) of a transistor that is one finger; one above FINGER fits no column that is drawn."""
     return round(max(0.42, width), 2)
 
 

@@ -13,11 +13,13 @@ if not shutil.which("klayout"):
 from talbot.base.gds import db, write_gds
 from talbot.flow.analog_layout.checks import differences, drc, lvs
 from talbot.flow.analog_layout.test.planted import changed
+from talbot.flow.layout.geometry.antenna import violations
 from talbot.models.parameters import ArrayParameters, ChipParameters
 from talbot.pixels.analog_layout.column import PITCH
 from talbot.pixels.analog_layout.column_amplifiers import draw_column_amplifiers
 from talbot.pixels.circuits.column_sizes import ColumnSpec, size
 from talbot.platforms.analog import analog_masks
+from talbot.platforms.coriolis import coriolis_platform
 from talbot.platforms.sky130 import analog as process
 
 MASKS = analog_masks("sky130")
@@ -60,6 +62,8 @@ def halved(cell, mask):
 @pytest.mark.slow
 def test_all_columns_keep_the_rules(block, tmp_path):
     assert drc(block[1], "sky130", tmp_path / "good.lyrdb") == {}
+    bad = violations(block[0].layout, block[0].cell, coriolis_platform("sky130"))
+    assert not any(one.count() for one in bad.values())  # antennas
 
 
 def test_all_columns_are_their_circuit_and_one_with_anothers_code_is_not(block, tmp_path):

@@ -1,6 +1,7 @@
 """A drawn column keeps the rules and is its circuit; faults planted in capacitors, lines and devices are found."""
 
 import shutil
+from dataclasses import replace
 from importlib.util import find_spec
 
 import pytest
@@ -14,7 +15,9 @@ from talbot.base.gds import db, write_gds
 from talbot.flow.analog_layout.checks import drc, lvs
 from talbot.flow.analog_layout.extract import extract
 from talbot.flow.analog_layout.test.planted import changed
+from talbot.flow.layout.geometry.antenna import violations
 from talbot.models.parameters import ChipParameters
+from talbot.pixels.analog_layout import column as drawn
 from talbot.pixels.analog_layout.column import column_cell
 from talbot.pixels.analog_layout.column_band import draw_band
 from talbot.pixels.circuits.column import TAPS
@@ -77,11 +80,26 @@ def test_a_column_is_its_circuit_and_faults_are_found(column, tmp_path):
 def test_what_a_sample_depends_on_is_apart_from_what_it_must_not(column):
     """F between nets: 0.04 fF of an output to the other diode's line, of 31 fF, is half an LSB of its light."""
     _, nets = extract(column[0], MASKS, coriolis_platform("sky130").wires["typ"], resistance=False)
-    most = {("column_b", "out_a"): 0.02, ("column_a", "out_b"): 0.02, ("cin_a", "out_b"): 0.15}
+    most = {("column_b", "out_a"): 0.02, ("column_a", "out_b"): 0.025, ("cin_a", "out_b"): 0.15}
+    most |= {("back_b.above", "cin_a"): 0.02, ("back_b.tap0.inner", "cin_a"): 0.15}
     most |= {(f"back_{d}.f", f"back_{d}.x"): 0.5 for d in "ab"}
     most |= {(f"back_a.tap{t}.inner", "back_a.x"): 0.6 for t in range(TAPS)}
     assert all(pair[0] < pair[1] for pair in most)  # as the pairs of nets are
     assert {pair for pair, limit in most.items() if nets.couplings.get(pair, 0.0) > limit * 1e-15} == set()
+
+
+def test_no_net_of_a_column_has_an_antenna(monkeypatch):
+    """The two gates of clear bear some 50 um of the third metal: a line as long as the strip was too much."""
+
+    def antennas(made):
+        found = violations(made.layout, made.cell, coriolis_platform("sky130"))
+        return [level for level, bad in found.items() if bad.count()]
+
+    assert antennas(column_cell(MASKS, SIZES)) == []
+    piece = drawn.PIECES[0]
+    longer = replace(piece, over=piece.over | {"clear": "cn"})
+    monkeypatch.setattr(drawn, "PIECES", (longer, *drawn.PIECES[1:]))
+    assert antennas(column_cell(MASKS, SIZES)) == [3]
 
 
 @pytest.mark.slow

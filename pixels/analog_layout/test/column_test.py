@@ -115,5 +115,7 @@ def test_ways_are_apart(block):
 def test_what_does_not_fit_is_named():
     with pytest.raises(ParameterError, match="pitch = 1.2e-05"):
         draw_column_amplifiers(MASKS, SIZES, ArrayParameters(8, 384, pitch=12e-6), ChipParameters())
+    with pytest.raises(ParameterError, match="column strip 0 = .* tracks: must be 13 at most"):
+        column_cell(MASKS, replace(SIZES, front=replace(SIZES.front, top=4.0)))
     with pytest.raises(ParameterError, match="lanes = 4: must be 8"):
         draw_column_amplifiers(MASKS, SIZES, ArrayParameters(8, 384), replace(ChipParameters(), lanes=4))

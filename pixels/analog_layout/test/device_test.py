@@ -1,5 +1,6 @@
 """A drawn transistor has the gates and the junctions that its description says."""
 
+import re
 from importlib.util import find_spec
 
 import pytest
@@ -15,6 +16,7 @@ from talbot.pixels.analog_layout.cells import new_canvas
 from talbot.pixels.analog_layout.device import Device, draw_device
 from talbot.pixels.circuits.netlist import Transistor
 from talbot.platforms.analog import analog_masks
+from talbot.platforms.sky130 import analog as process
 
 MASKS = analog_masks("sky130")
 
@@ -59,3 +61,15 @@ def test_a_source_on_the_rail_is_marked_and_bad_fingers_are_refused():
     with pytest.raises(ParameterError, match="on the grid"):
         Device(transistor(w=1.01), 4)
     assert Device.of(transistor(w=75.0)).fingers == 20  # the fewest of at most 5 um on the grid of 0.005 um
+
+
+@given(st.sampled_from([1, 2, 4, 16]), st.sampled_from([0.65, 1.37]), st.sampled_from([0.5, 3.3]))
+def test_a_circuits_fingers_are_those_that_are_drawn_and_have_their_junctions(fingers, each, length):
+    t = transistor("p", round(each * fingers, 6), length)._replace(fingers=fingers)
+    device = Device.of(t)
+    assert device.fingers == fingers
+    line = process.instance(t.name, t.nodes, t.role, t.w, t.l, t.fingers)
+    found = {name: float(value) for name, value in re.findall(r"\b(w|m|mult|as|ad|ps|pd)=(\S+)", line)}
+    assert found["w"] == pytest.approx(each) and found.get("m", 1) == found.get("mult", 1) == fingers
+    junctions = [fingers * found[name] for name in ("as", "ad", "ps", "pd")]
+    assert junctions == pytest.approx(device.junctions_um, rel=1e-4)

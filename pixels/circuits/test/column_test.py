@@ -81,17 +81,21 @@ def test_currents_follow_from_time_and_load():
 
 
 def test_inputs_of_the_charge_amplifiers_are_as_alike_as_the_offset_asks():
-    """What their thresholds differ by is doubled, at both diodes: three fifths of the limit."""
-    millivolts = process.AREA["n"] / (SIZES.front.input * 1.0) ** 0.5
+    """What their thresholds differ by is doubled, at both diodes: half of the limit."""
+    millivolts = process.AREA["n"] / (SIZES.front.input * 2.0) ** 0.5
     unlike = 1e-3 * millivolts * SPEC.swing / SPEC.fall * 2**0.5 / SPEC.lsb
-    assert unlike == pytest.approx(0.6 * SPEC.offset, rel=0.01)
+    assert unlike == pytest.approx(0.5 * SPEC.offset, rel=0.01)
     assert size(replace(SPEC, offset=2.0), process).front.input == pytest.approx(4 * SIZES.front.input, rel=0.01)
 
 
-def test_a_charge_amplifiers_source_is_the_transistor_of_the_bias():
-    """One finger, with the same current: of other widths they are less alike than their ratio says."""
-    sources = {one.name: one.w for one in column_bias(SIZES).transistors if one.name.endswith("_top")}
-    assert sources["vbp_top"] == sources["level_top"] == SIZES.front.top < 2
+def test_a_source_of_current_is_as_many_as_it_has_parts_of_the_biass():
+    """Of other widths they are less alike than their ratio says."""
+    bias = {one.name: (one.w / one.fingers, one.l) for one in column_bias(SIZES).transistors if one.fingers}
+    assert bias["vbp_top"] == bias["level_top"] == bias["vcn_top"] == (SIZES.front.top, 3.3)
+    ends = {one.name: one for one in block.lane_end(SIZES).transistors if one.fingers}
+    for name in ("top", "cascode_p"):
+        assert ends[name].fingers == 16
+        assert bias[f"vbl_{name.removesuffix('_p')}"] == pytest.approx((ends[name].w / 16, ends[name].l))
 
 
 def test_the_feedback_is_the_well_less_what_is_lost():
