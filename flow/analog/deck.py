@@ -47,8 +47,8 @@ def deck(
 ) -> list[str]:
     """Models, subcircuits and instances. copies: the nodes of each instance; without, one whose nodes are its ports.
 
-    seed: mismatch of every transistor is drawn with it, but of the roles in ``alike``. Raises ParameterError for a broken circuit, before anything
-    runs.
+    seed: mismatch of every transistor is drawn with it, but of the roles in ``alike``. Raises ParameterError for a
+    broken circuit, before anything runs.
     """
     process = process_of(setup.pdk)
     circuit.check(process)

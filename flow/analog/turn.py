@@ -6,8 +6,8 @@
     column   |_______|/‾‾‾‾‾‾|‾‾‾      it drives the lane's line, for longer than in the chip
     lane     | before|__/ out|         sampled at the end of the hold
 
-Column and amplifier have each a settling of their own in the datasheet: of the one with a capacitor for an amplifier, of
-the other behind an ideal column. Here one is behind the other, with what the sample before left on the lane's array.
+Column and amplifier have each a settling of their own in the datasheet, of the one with a capacitor for an amplifier,
+of the other behind an ideal column. Here one is behind the other, with what the sample before left on the lane's array.
 """
 
 from dataclasses import dataclass, replace

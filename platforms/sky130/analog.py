@@ -161,7 +161,14 @@ def finger(
     junctions: tuple[float, ...],
 ) -> str:
     """A transistor of ``count`` fingers of ``w``. junctions: um2 of source and drain, um around, of a finger."""
-    size = {"w": w, "l": l, "m": count, "mult": count, **dict(zip(("as", "ad", "ps", "pd"), junctions, strict=True)), **models.STRESS}
+    size = {
+        "w": w,
+        "l": l,
+        "m": count,
+        "mult": count,
+        **dict(zip(("as", "ad", "ps", "pd"), junctions, strict=True)),
+        **models.STRESS,
+    }
     return f"X{name} {' '.join(nodes)} {ROLES[role]} " + " ".join(f"{k}={v:.6g}" for k, v in size.items())
 
 
