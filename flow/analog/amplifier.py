@@ -238,7 +238,7 @@ def clocked(
             now = vdd - now
         return points
 
-    stimulus = {
+    stimulus: dict[str, Points] = {
         "on": level(wake + spec.high, *stop),
         "reset": level(begin, *stop, first=vdd),
         "last": level(wake - REST * spec.hold, first=vdd),
