@@ -54,7 +54,8 @@ def test_columns_are_within_the_slope_that_they_were_sized_for():
     found = circuit_columns()
     half = found.delivered(np.array([[0.5, 0.0], [0.0, 0.5]]))
     assert half == pytest.approx(0.5 * np.eye(2), abs=0.5 * 0.05) and (half[[0, 1], [1, 0]] != 0).all()
-    assert 0.002 < found.later_sum - found.sum < 0.005  # of 0.65 % of a half: the second diode's holder takes none
+    # The second diode's holder takes none then: of its half at most all of EXPOSED, 1.5 %, more has come
+    assert 0.002 < found.later_sum - found.sum < 0.0075
 
 
 def test_a_diode_has_its_own_curve_and_what_the_other_leaves():
