@@ -16,15 +16,15 @@ SPEC, SIZES = job.column_of(SETUP)
 SPEC_A, SIZES_A = job.amplifier_of(SETUP, LANE)
 
 
-def test_a_cycle_is_enough_and_a_lane_with_half_its_current_is_found(monkeypatch):
+def test_a_cycle_is_enough_and_a_lane_with_a_quarter_of_its_current_is_found(monkeypatch):
     monkeypatch.setattr(turn, "LIGHT", ((0.9, 0.75),))
     monkeypatch.setattr(turn, "trimmed", lambda *_: (SPEC.dark - 0.067, SPEC.dark - 0.063))
     given = SETUP, (SPEC, SPEC_A), (SIZES, SIZES_A), LANE, CORNER
     sound = turn.measure(*given)
     assert sound.left < 0.1 and 40e-9 < sound.settling < 80e-9 and sound.runs == 1
     end = column_block.lane_end(SIZES)
-    half = [one._replace(w=one.w / 2, fingers=8) if one.name == "top" else one for one in end.transistors]
-    slow = turn.measure(*given, replace(end, transistors=tuple(half)))
+    less = [one._replace(w=one.w / 4, fingers=4) if one.name == "top" else one for one in end.transistors]
+    slow = turn.measure(*given, replace(end, transistors=tuple(less)))
     assert slow.settling > sound.settling + 5e-9 and slow.left > sound.left
 
 
