@@ -24,7 +24,7 @@ from talbot.pixels.circuits.lane import LaneSizes
 from talbot.pixels.circuits.netlist import Circuit, Instance
 from talbot.pixels.circuits.support import bias
 
-from .deck import EDGE, SETTINGS, Setup, deck, simulator
+from .deck import EDGE, SETTINGS, Setup, deck, settling, simulator
 
 INPUTS = (
     "column_a",
@@ -111,7 +111,7 @@ def measure(
             gain=float(slope * lsb / sizes.gain),
             offset=float(offset),
             inl=float(np.abs(got - offset - slope * wanted).max()),
-            settling=max(_settling(wave, spec, lsb / 2) for wave in waves),
+            settling=max(settling(wave, "lane", HOLD * spec.hold, LATER * spec.hold, lsb / 2) for wave in waves),
             left=left,
             ambient=abs(bright - dim),
             trim=float(np.abs(-np.diff(steps) / step - 1).max()),
@@ -247,14 +247,6 @@ def clocked(
         "before": [(0.0, before)],
     }
     return stimulus | {f"g{k}": [(0.0, vdd * (code >> k & 1))] for k in range(TRIM_BITS)}
-
-
-def _settling(wave: Wave, spec: AmplifierSpec, within: float) -> float:
-    """S after the hold's begin from which the lane stays within so many V of its last value."""
-    start = HOLD * spec.hold
-    inside = wave.time > start
-    out = np.abs(wave.voltage["lane"][inside] - wave.at("lane", LATER * spec.hold)) > within
-    return float(wave.time[inside][out].max(initial=start) - start)
 
 
 def _energy(wave: Wave, spec: AmplifierSpec, corner: Corner) -> tuple[float, float]:

@@ -39,7 +39,7 @@ from talbot.pixels.circuits.netlist import Capacitor, Circuit, Instance, Transis
 from talbot.pixels.circuits.row_driver import THICK
 from talbot.pixels.circuits.support import bias
 
-from .deck import EDGE, SETTINGS, Setup, deck, simulator
+from .deck import EDGE, SETTINGS, Setup, deck, settling, simulator
 from .noise import GAMMA
 
 ROW = 3.3  # V of the row's lines: wells at the charge amplifiers' level ask for less than the drawn pixel's 5 V
@@ -96,6 +96,9 @@ class Beside(NamedTuple):
     rails: Mapping[str, float] = MappingProxyType({})
 
 
+NOTHING = Beside()
+
+
 @dataclass(frozen=True)
 class ColumnResult:
     """At one corner; LSB of the lane's converter in edge mode where nothing else is said.
@@ -149,7 +152,7 @@ def measure(
             abs(wave.at(f"far_{d}", end) - waves[0].at(f"far_{d}", end)) / lsb
             for d, wave in (("b", waves[len(WELLS) - 1]), ("a", second))
         ),
-        settling=max(settling(wave, spec) for wave in (*waves, light)),
+        settling=max(settling(wave, "far_a", turn_of(spec), end, 0.5 * spec.lsb) for wave in (*waves, light)),
         droop=max(abs(one) for one in moved) / lsb,
         energy=_energy(waves[2], spec, corner),
         idle=waves[0].charge("vdd", 0.2 * spec.cycle, 0.9 * spec.cycle) / (0.7 * spec.cycle),
@@ -183,14 +186,6 @@ def nearer(
     """V of `start_a` and `start` that bring ``lanes``, V of both without light, to their references."""
     a, b = (volt + (spec.dark - lane) / sizes.follows for volt, lane in zip(start, lanes, strict=True))
     return a, b
-
-
-def settling(wave: Wave, spec: ColumnSpec) -> float:
-    """S after the turn's begin from which the line stays within half an LSB of what it is at the end."""
-    begin, end = turn_of(spec), turn_of(spec) + spec.cycle
-    inside = (wave.time > begin) & (wave.time < end)
-    out = np.abs(wave.voltage["far_a"][inside] - wave.at("far_a", end)) > 0.5 * spec.lsb
-    return float(wave.time[inside][out].max(initial=begin) - begin)
 
 
 def offset(
@@ -305,7 +300,7 @@ def opened(
     more: Sequence[str] = (),
     circuit: Circuit | None = None,
     settings: Settings = EXACT,
-    beside: Beside | None = None,
+    beside: Beside = NOTHING,
 ) -> Simulator:
     """An ngspice process of the bench. image: the first lane's reference is the middle. seed: of mismatch, but of the
     roles in ``alike``. more: nodes that are kept.
@@ -314,7 +309,7 @@ def opened(
     ngspice finds an operating point by a transient of its own, it ends long before.
     The coupling capacitors begin empty, as leakage leaves them after a pause: the second stage has farthest to go.
     """
-    lines, beside = deck(circuit or bench(sizes, spec), setup, corner, seed=seed, alike=alike), beside or Beside()
+    lines = deck(circuit or bench(sizes, spec), setup, corner, seed=seed, alike=alike)
     lines.append(f".model filling sw vt={corner.supply / 2:g} vh=0 ron=1000 roff=1e15")
     ampere = spec.well * setup.scale(corner) / LIGHT
     for d in "ab":

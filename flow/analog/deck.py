@@ -4,9 +4,12 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import ModuleType
 
+import numpy as np
+
 from talbot.cells.corner import Corner
 from talbot.cells.spice.engine import Points, Simulator
 from talbot.cells.spice.settings import Settings
+from talbot.cells.spice.wave import Wave
 from talbot.models.parameters import check_choice
 from talbot.pixels.circuits.netlist import Circuit
 from talbot.pixels.circuits.specification import LaneSpec
@@ -99,6 +102,13 @@ def clock(periods: int, period: float, high: float, phase: float = 0.5) -> Point
         up, down = (k + phase) * period, (k + 1) * period
         points += [(up, 0.0), (up + EDGE, high), (down, high), (down + EDGE, 0.0)]
     return points
+
+
+def settling(wave: Wave, node: str, begin: float, rest: float, within: float) -> float:
+    """S after ``begin`` from which a node stays within so many V of what it has at ``rest`` (s)."""
+    inside = (wave.time > begin) & (wave.time < rest)
+    out = np.abs(wave.voltage[node][inside] - wave.at(node, rest)) > within
+    return float(wave.time[inside][out].max(initial=begin) - begin)
 
 
 def patient(seconds: float) -> Settings:

@@ -23,7 +23,7 @@ from talbot.pixels.circuits.netlist import Circuit, Instance
 
 from . import amplifier as amplifiers
 from .column import GAP, Beside, bench, opened, sample, trimmed, turn_of
-from .deck import Setup
+from .deck import Setup, settling
 
 LIGHT = (0.2, 0.0), (0.0, 0.2), (0.9, 0.75)  # of a full well, of both diodes: differences within the converter's range
 LATER = 2  # cycles after the hold's begin: the line is at rest, and has lost little
@@ -68,13 +68,8 @@ def measure(
             waves.append(sample(spice, spec, corner, *wells, cycles=LATER, more=clocked, loads=load))
         runs, repeated = spice.runs, spice.repeated
 
-    def settling(wave: Wave) -> float:
-        inside = (wave.time > begin) & (wave.time < rest)
-        off = np.abs(wave.voltage["lane"][inside] - wave.at("lane", rest)) > 0.5 * lsb
-        return float(wave.time[inside][off].max(initial=begin) - begin)
-
     left = max(abs(wave.at("lane", end) - wave.at("lane", rest)) for wave in waves) / lsb
-    return TurnResult(left, max(map(settling, waves)), runs, repeated)
+    return TurnResult(left, max(settling(wave, "lane", begin, rest, 0.5 * lsb) for wave in waves), runs, repeated)
 
 
 def joined(column: ColumnSizes, own: AmplifierSizes, spec: ColumnSpec) -> Circuit:

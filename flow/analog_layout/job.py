@@ -206,9 +206,10 @@ def _measured(
         yield from row_driver.rows(driven, row)
     for one in _columns(setup, circuits("column"), workers):
         yield from column.rows(column_of(setup)[0], one)
-    both = setup, (column_of(setup)[0], amplifiers[0]), (column_of(setup)[1], amplifiers[1]), sizes
+    (spec_c, sizes_c), (spec_a, sizes_a) = column_of(setup), amplifiers
+    both = setup, (spec_c, spec_a), (sizes_c, sizes_a), sizes
     for turn in beside("turn", measure_turn, TurnResult, both, circuits("column", "amplifier"), workers):
-        yield from column.turn_rows(column_of(setup)[0], turn)
+        yield from column.turn_rows(spec_c, turn)
     for gaps in beside("switch drivers", switch.measure, Gaps, (setup, support), circuits("non_overlap"), workers):
         yield from switch.rows(support, gaps)
     given = setup, *amplifiers, sizes

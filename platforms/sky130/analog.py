@@ -148,6 +148,10 @@ def instance(
         drain, source = w / 2 * SHARED, w * models.END
         size = {"as": source, "ad": drain, "ps": w + 4 * models.END, "pd": 2 * SHARED}
     size = {"w": w, "l": l, **size, **models.STRESS}
+    return _line(name, nodes, role, size)
+
+
+def _line(name: str, nodes: tuple[str, str, str, str], role: str, size: dict[str, float]) -> str:
     return f"X{name} {' '.join(nodes)} {ROLES[role]} " + " ".join(f"{k}={v:.6g}" for k, v in size.items())
 
 
@@ -169,7 +173,7 @@ def finger(
         **dict(zip(("as", "ad", "ps", "pd"), junctions, strict=True)),
         **models.STRESS,
     }
-    return f"X{name} {' '.join(nodes)} {ROLES[role]} " + " ".join(f"{k}={v:.6g}" for k, v in size.items())
+    return _line(name, nodes, role, size)
 
 
 def cards(
