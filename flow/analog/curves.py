@@ -1,11 +1,14 @@
-"""What the model takes of a column: what of a diode's charge reaches its lane, and how much more sums have.
+"""What the model takes of a column: what of a diode's charge reaches its lane, and how much more it has in a sum.
 
-In the reads of taps after the first the second diode's holder takes no charge: their sums are somewhat larger.
+In a sum the charge amplifiers have other loads than in a difference, the second diode's the larger one: it is not yet
+at rest as the read ends, the first diode's is. In the reads of taps after the first the second diode's holder takes no
+charge: there it has more.
 """
 
 from dataclasses import dataclass, replace
 
 import numpy as np
+import numpy.typing as npt
 
 from talbot.cells.corner import Corner
 from talbot.models.parameters import ColumnCurves
@@ -13,7 +16,7 @@ from talbot.pixels.circuits import column as columns
 from talbot.pixels.circuits.column_sizes import ColumnSizes, ColumnSpec
 from talbot.pixels.circuits.netlist import Circuit
 
-from .column import BOTH, FULL, QUIET, WELLS, bench, mean_of, opened, sample, turn_of
+from .column import FULL, QUIET, WELLS, bench, opened, sample, turn_of
 from .deck import Setup
 
 OF_TAP = "w", "f", "fn", "unasked"  # the lines that each tap has
@@ -22,18 +25,20 @@ SOURCES = {
     "fills": "of a full well",
     **dict.fromkeys(("a", "b"), "charges of a column's diode in ngspice, the other empty"),
     **dict.fromkeys(("a_other", "b_other"), "charges of the other diode in ngspice"),
-    "sum": "of both diodes' charges, the first tap of a column in ngspice",
-    "later_sum": "of the second tap",
+    **dict.fromkeys(("sum_a", "sum_b"), "charges of one diode in ngspice, in a sum, the other empty"),
+    **dict.fromkeys(("later_a", "later_b"), "the same of a column's second tap"),
 }
 PROOF = 0.87, 0.47  # of a full well, of both diodes: between those of FILLS
 
 
 @dataclass(frozen=True)
 class ColumnFit:
-    """What was fitted. error: LSB of the lane's converter in edge mode by which ``curves`` are off at PROOF."""
+    """What was fitted. error, sum_error: LSB of the lane's converter by which ``curves`` are off at PROOF, in edge mode
+    and of the sums of the first and of the second tap."""
 
     curves: ColumnCurves
     error: float
+    sum_error: float
 
 
 def later_bench(sizes: ColumnSizes, spec: ColumnSpec) -> Circuit:
@@ -62,25 +67,27 @@ def fitted(
         return made.replaced(drawn) if drawn else made
 
     end, plain = turn_of(spec) + spec.cycle, given(bench(sizes, spec))
-    with opened(setup, spec, sizes, corner, start, circuit=plain) as spice:
+    alone = [(0.0, 0.0), *((fill, 0.0) for fill in FILLS[1:]), *((0.0, fill) for fill in FILLS[1:])]
+    count = len(FILLS)
 
-        def lanes(a: float, b: float) -> tuple[float, float]:
-            wave = sample(spice, spec, corner, a * spec.fall, b * spec.fall)
-            return wave.at("far_a", end), wave.at("far_b", end)
+    def lanes(circuit: Circuit, image: bool) -> npt.NDArray[np.float64]:
+        """V of both lanes at each of ``alone`` and at PROOF, less those without light: (points, 2)."""
+        with opened(setup, spec, sizes, corner, start, image, circuit=circuit) as spice:
+            waves = [sample(spice, spec, corner, a * spec.fall, b * spec.fall, image) for a, b in (*alone, PROOF)]
+        volts = np.array([[wave.at("far_a", end), wave.at("far_b", end)] for wave in waves])
+        return volts[0] - volts
 
-        volts = [lanes(0.0, 0.0)]
-        volts += [lanes(fill, 0.0) for fill in FILLS[1:]] + [lanes(0.0, fill) for fill in FILLS[1:]]
-        proof = lanes(*PROOF)
-    got = (volts[0] - np.array(volts)) / spec.swing  # of a full well
-    of_a, of_b = got[: len(FILLS)], np.vstack([got[:1], got[len(FILLS) :]])
-    own, other = (of_a[:, 0], of_b[:, 1]), (of_b[:, 0], of_a[:, 1])
-    sums = []
-    for circuit in (plain, given(later_bench(sizes, spec))):
-        with opened(setup, spec, sizes, corner, start, True, circuit=circuit) as spice:
-            sums.append(mean_of(spice, spec, corner)[0])
-    a, b, a_other, b_other = (tuple(round(float(one), 6) for one in row) for row in (*own, *other))
-    curves = ColumnCurves(FILLS, a, b, a_other, b_other, 1.0, 1.0)
-    mean = curves.delivered(np.array(BOTH)).sum() / sum(BOTH)
-    curves = replace(curves, sum=round(sums[0] / mean, 5), later_sum=round(sums[1] / mean, 5))
-    off = curves.delivered(np.array(PROOF)) - (np.array(volts[0]) - proof) / spec.swing
-    return ColumnFit(curves, round(float(np.abs(off).max()) * spec.swing / spec.lsb, 4))
+    def curve(of: npt.NDArray[np.float64]) -> tuple[float, ...]:
+        return tuple(round(float(one), 6) for one in of)
+
+    got = lanes(plain, False) / spec.swing  # of a full well
+    firsts, laters = (lanes(one, True)[:, 0] / (spec.swing / 4) for one in (plain, given(later_bench(sizes, spec))))
+    own, other = got[:count], np.vstack([got[:1], got[count:-1]])  # where a, where b has light
+    found = {"a": own[:, 0], "b": other[:, 1], "a_other": other[:, 0], "b_other": own[:, 1]}
+    for name, sums in (("sum", firsts), ("later", laters)):
+        found |= {f"{name}_a": sums[:count], f"{name}_b": np.concatenate([sums[:1], sums[count:-1]])}
+    curves = ColumnCurves(FILLS, **{name: curve(of) for name, of in found.items()})
+    proof = np.array(PROOF)
+    off = float(np.abs(curves.delivered(proof) - got[-1]).max()) * spec.swing
+    sums_off = max(abs(curves.summed(proof, sums is laters).sum() - sums[-1]) for sums in (firsts, laters))
+    return ColumnFit(curves, round(off / spec.lsb, 4), round(float(sums_off) * spec.swing / 4 / spec.lsb, 4))

@@ -320,6 +320,7 @@ def converter(spec: LaneSpec, sizes: LaneSizes, found: Found) -> dict[str, Any]:
             "settling": round(_left(spec, found.lanes[TYPICAL]), 6),
             "droop": round(found.lanes[TYPICAL].droop, 4),
             "columns": found.column_fit.error,
+            "sums": found.column_fit.sum_error,
             "spread": round((high_c - low_c) / 2 / of_diode, 4),
         },
     }

@@ -142,7 +142,7 @@ def make(
         (pair,) = _columns(setup, {first: [circuit]}, workers)  # measured above: it is read
         fit = fitted(setup, *column_of(setup), Corner.parse(first), pair.layout.start, circuit)
         text = {"command": f"make analog-layout, {first}", "columns": asdict(fit.curves), "sources": SOURCES}
-        text |= {"errors": {"columns": fit.error}}
+        text |= {"errors": {"columns": fit.error, "sums": fit.sum_error}}
         write(table, json.dumps(text, indent=1) + "\n")
     return summary
 

@@ -68,8 +68,16 @@ def summary(row: Row) -> dict[str, Any]:
         "processor_seconds": run.stats["processor_seconds"],
         "circuit_cycles_per_s": run.stats["circuit_cycles"] / run.stats["seconds"],
         "codes": [
-            {"column": s.column, "sub": s.sub, "value": s.value, "code": s.code, "model": s.expected}
-            for s in row.samples
+            {
+                "column": s.column,
+                "sub": s.sub,
+                "lane": s.lane,
+                "value": s.value,
+                "code": s.code,
+                "model": s.expected,
+                "off_at_lane_lsb": float(off),
+            }
+            for s, off in zip(row.samples, row.at_lane, strict=True)
         ],
     }
 

@@ -62,12 +62,12 @@ def _line(s: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def _codes(row: Row) -> Section:
-    head = ("column", "sub-sample", "lane", "value, LSB", "circuit", "model", "first decision that differs")
+    head = ("column", "sub-sample", "lane", "value, LSB", "off at the lane, LSB", "circuit", "model")
     lines = [
-        (f"{x.column}", f"{x.sub}", f"{x.lane}", f"{x.value:.3f}", f"{x.code}", f"{x.expected}", _why(x))
-        for x in row.samples
+        (f"{x.column}", f"{x.sub}", f"{x.lane}", f"{x.value:.3f}", f"{off:+.3f}", f"{x.code}", f"{x.expected}", _why(x))
+        for x, off in zip(row.samples, row.at_lane, strict=True)
     ]
-    return Section(f"Codes: {row.request.name}", head=head, rows=lines)
+    return Section(f"Codes: {row.request.name}", head=(*head, "first decision that differs"), rows=lines)
 
 
 def _studies(s: Mapping[str, Any]) -> list[Section]:

@@ -53,8 +53,8 @@ class ColumnCurves:
         What reaches the lane of a diode that is so full, as a part of a full well; 0 first, at most 1.5.
     a_other, b_other : tuple of float
         What the diode's lane has where the other one is so full, -0.5..0.5.
-    sum, later_sum : float
-        More of both diodes' sum than their lanes have, in the first tap and in later ones, 0.5..1.5.
+    sum_a, sum_b, later_a, later_b : tuple of float
+        What a diode that is so full has in the sum of both, in the first tap and in later ones; 0 first, at most 1.5.
     spread : float
         Rms over columns of what a diode's lane has without light, in LSB of a diode, 0..16.
     """
@@ -64,22 +64,23 @@ class ColumnCurves:
     b: tuple[float, ...]
     a_other: tuple[float, ...]
     b_other: tuple[float, ...]
-    sum: float
-    later_sum: float
+    sum_a: tuple[float, ...]
+    sum_b: tuple[float, ...]
+    later_a: tuple[float, ...]
+    later_b: tuple[float, ...]
     spread: float = 0.0
 
     def __post_init__(self) -> None:
         if not (len(self.fills) > 1 and self.fills[0] == 0 and (np.diff(self.fills) > 0).all()):
             raise ParameterError(f"fills = {self.fills}: must rise from 0")
-        ranges = {"fills": (0, 1), "a": (0, 1.5), "b": (0, 1.5), "a_other": (-0.5, 0.5), "b_other": (-0.5, 0.5)}
+        ranges = {"fills": (0, 1), "a_other": (-0.5, 0.5), "b_other": (-0.5, 0.5)}
+        ranges |= dict.fromkeys(("a", "b", "sum_a", "sum_b", "later_a", "later_b"), (0, 1.5))
         for name, (low, high) in ranges.items():
             values = getattr(self, name)
             if len(values) != len(self.fills) or values[0] != 0:
                 raise ParameterError(f"{name} = {values}: must be {len(self.fills)} numbers, the first 0")
             for value in values:
                 check_real(name, value, low, high)
-        check_real("sum", self.sum, 0.5, 1.5)
-        check_real("later_sum", self.later_sum, 0.5, 1.5)
         check_real("spread", self.spread, 0, 16)
 
     def delivered(self, diodes: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
@@ -95,15 +96,32 @@ class ColumnCurves:
         ndarray
             (..., 2), of a full well: monotone cubics through the curves' points, the last one beyond `fills`.
         """
+        others = self._along(diodes[..., ::-1], self.a_other, self.b_other)
+        return self._along(diodes, self.a, self.b) + others
+
+    def summed(self, diodes: npt.NDArray[np.float64], later: bool = False) -> npt.NDArray[np.float64]:
+        """What both diodes have in a sum.
+
+        Parameters
+        ----------
+        diodes : ndarray
+            Charges (..., 2), of a full well, 0..1.
+        later : bool
+            In a tap after the first.
+
+        Returns
+        -------
+        ndarray
+            (..., 2), of a full well, as `delivered` has it.
+        """
+        return self._along(diodes, *((self.later_a, self.later_b) if later else (self.sum_a, self.sum_b)))
+
+    def _along(self, diodes: npt.NDArray[np.float64], *curves: tuple[float, ...]) -> npt.NDArray[np.float64]:
+        """Each diode along its curve."""
         from scipy.interpolate import PchipInterpolator  # 0.4 s, which no command without the circuit's columns needs
 
-        own, other = diodes, diodes[..., ::-1]
-        parts = [
-            PchipInterpolator(self.fills, curve)(filled[..., d])
-            for curves, filled in (((self.a, self.b), own), ((self.a_other, self.b_other), other))
-            for d, curve in enumerate(curves)
-        ]
-        return np.stack([parts[0] + parts[2], parts[1] + parts[3]], -1)
+        parts = (PchipInterpolator(self.fills, curve)(diodes[..., d]) for d, curve in enumerate(curves))
+        return np.stack(list(parts), -1)
 
     def samples(self, diodes: npt.NDArray[np.float64], mode: str) -> npt.NDArray[np.float64]:
         """What a front end has of charges, without `spread`: lanes of each diode, or parts of a sum.
@@ -120,11 +138,10 @@ class ColumnCurves:
         ndarray
             (taps, rows, cols, 2) in LSB.
         """
-        found = DIODE * self.delivered(diodes / DIODE)
+        fills = diodes / DIODE
         if mode in ("edge", "raw"):
-            return found
-        sums = self.sum, *[self.later_sum] * (len(diodes) - 1)
-        return found * np.reshape(sums, (-1, 1, 1, 1))
+            return DIODE * self.delivered(fills)
+        return DIODE * np.concatenate([self.summed(fills[:1]), self.summed(fills[1:], later=True)])
 
     def offsets(self, cols: int, seed: int) -> npt.NDArray[np.float64]:
         """Offsets of columns that are not alike: normal, the same in every frame.
