@@ -28,7 +28,8 @@ from .pixels import PixelSizes, pixel, row_line
 
 TIMING = AmpTiming()  # of a row with these columns: the holder has 16 cycles in each half
 CELSIUS = 25.0
-BEFORE = {"line_{d}{c}": 0.5, "xcolumn{c}.cin_{d}": 1.6}  # V of what floats, since the row before was read
+LINE = 0.5  # V of a column's line, since the row before was read
+CIN = {True: (1.58, 1.58), False: (1.04, 1.58)}  # of both coupling capacitors, by `edge`: the row before was 40 % full
 SOURCE = "vbn", "vbp", "source", "start", "part_1", "part_2", "part_3"  # nodes of a bias
 RESTING = (*BIASES, "level", "ibias_columns", *(f"xcolumn_source.{name}" for name in SOURCE))
 
@@ -43,6 +44,7 @@ def lines(
     diodes: Mapping[int, Mapping[int, tuple[float, float]]],
     lanes: Mapping[int, int],
     edge: bool,
+    high: float,
     integration: float,
     spec: ColumnSpec,
     sizes: ColumnSizes,
@@ -55,11 +57,10 @@ def lines(
 ) -> list[str]:
     """Lines of the deck; see `drive` for their controls. lanes: of each column; the lanes' lines end at cola0, colb0.
 
-    diodes: (a, b) in LSB of each column and tap. edge: lanes get both diodes, else the mean. start: V of start_a and
-    start, trimmed.
-    rest: V of RESTING, with which it begins: an operating point of so many nodes that float takes minutes.
-    cols: that the row's lines pass. swapped: columns whose diodes are on each other's line. cut: column from which on
-    the row's read line is open.
+    diodes: (a, b) in LSB of each column and tap. edge: lanes get both diodes, else the mean. high: V of the supply.
+    start: V of start_a and start, trimmed. rest: V of RESTING, with which it begins: an operating point of so many
+    nodes that float takes minutes. cols: that the row's lines pass. swapped: columns whose diodes are on each other's
+    line. cut: column from which on the row's read line is open.
     """
     own = {"edge": "vdd" if edge else "0", "edgen": "0" if edge else "vdd", "k": "vdd", "vss": "0", "ref": "row_ref"}
     resting = dict(rest)
@@ -88,7 +89,9 @@ def lines(
         ends = " ".join(f"line_{d}{c}" for d in names)
         deck.append(f"Xpixel{c} well_a{c} well_b{c} {ends} reset{c} read{c} level 0 pixel")
         deck += [f"Cline_{d}{c} line_{d}{c} 0 {spec.line:g}" for d in "ab"]
-        floats = {name.format(d=d, c=c): volts for name, volts in BEFORE.items() for d in "ab"}
+        floats = {f"line_{d}{c}": LINE for d in "ab"} | {f"xcolumn{c}.out_{d}": high for d in "ab"}
+        floats |= {f"xcolumn{c}.cin_{d}": volts for d, volts in zip("ab", CIN[edge], strict=True)}
+        floats |= {f"xcolumn{c}.quarter": high, f"xcolumn{c}.half": high * edge}
         deck.append(".ic " + " ".join(f"v({name})={volts:g}" for name, volts in floats.items()))
         lane = lanes[c]
         nodes = own | {f"column_{d}": f"line_{d}{c}" for d in "ab"} | {"group": f"turn_column{c}"}
@@ -166,7 +169,7 @@ def trimmed(
     outs, found = [f"col{d}{lane_bit}" for d in "ab"], dict[str, float]()
     start = spec.dark, spec.dark
     for _ in range(TRIMS):
-        own = lines({0: {0: (0.0, 0.0)}}, {0: lane_bit}, edge, 1.0, spec, sizes, pixels, start, {})
+        own = lines({0: {0: (0.0, 0.0)}}, {0: lane_bit}, edge, high, 1.0, spec, sizes, pixels, start, {})
         own += extracted.rest_of_nets(own, layouts)
         if found:  # or the search for an operating point may end elsewhere
             own.append(".nodeset " + " ".join(f"v({name})={volts:.6g}" for name, volts in found.items()))

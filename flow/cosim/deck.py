@@ -212,7 +212,7 @@ def _columns(
     start, rest = own_columns.trimmed(column, not unsigned, timing.period, spec.supply, deck.flat)
     taps = {c: row.diodes[c] for c in deck.columns}
     of_lane = {c: c // tile_cols % lanes for c in deck.columns}
-    given = (not unsigned, row.integration, column, sizes, row.sizes, start, rest, row.cols, swapped, cut)
+    given = (not unsigned, spec.supply, row.integration, column, sizes, row.sizes, start, rest, row.cols, swapped, cut)
     body += own_columns.lines(taps, of_lane, *given)
     first = 10 * lanes + SUBS * row.cols
     own_columns.drive(partial(_source, deck), deck.columns, deck.lanes, first, spec.supply)
