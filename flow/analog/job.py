@@ -52,6 +52,7 @@ ALL = (
 CORNER_SETS = {"all": ALL, "quick": QUICK, "typical": (TYPICAL,)}
 ARRAYS = 1000  # drawn capacitor arrays
 PIXELS = 25  # draws of a pixel's switches
+BEND = "cubic through {} differences that the lane samples in ngspice"  # source of AMPLIFIER
 T = TypeVar("T")
 
 
@@ -284,7 +285,6 @@ def converter(spec: LaneSpec, sizes: LaneSizes, found: Found) -> dict[str, Any]:
     bend, bend_error = polynomial(found.amplifiers[TYPICAL].points)
     gains = float(np.std([one.gain for one in found.amplifier_draws], ddof=1))
     counts = f"{len(found.offsets)} comparators and {len(found.amplifier_draws)} amplifiers"
-    fitted = f"cubic through {len(found.amplifiers[TYPICAL].points)} differences that the lane samples in ngspice"
     return {
         "command": f"make analog, {TYPICAL}",
         "parameters": {
@@ -304,7 +304,7 @@ def converter(spec: LaneSpec, sizes: LaneSizes, found: Found) -> dict[str, Any]:
             "noise": f"{2 * found.noise.decisions} decisions with transient noise in ngspice",
             "ktc": "closed form of the lane's common plates, .noise of the amplifier in reset and signal",
             "unit_mismatch": f"{sizes.dac.source}",
-            **dict.fromkeys(AMPLIFIER, fitted),
+            **dict.fromkeys(AMPLIFIER, BEND.format(len(found.amplifiers[TYPICAL].points))),
             **curves.SOURCES,
             "spread": f"{len(found.column_offsets)} columns with the models' mismatch in ngspice",
         },

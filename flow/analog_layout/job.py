@@ -15,7 +15,7 @@ from talbot.cells.corner import Corner
 from talbot.flow.analog.column import ColumnResult
 from talbot.flow.analog.curves import SOURCES, fitted
 from talbot.flow.analog.deck import Setup, process_of
-from talbot.flow.analog.job import amplifier_of, column_of, setup_of
+from talbot.flow.analog.job import BEND, amplifier_of, column_of, polynomial, setup_of
 from talbot.flow.analog.lane import inl
 from talbot.flow.analog.linearity import inl_dnl, levels
 from talbot.flow.analog.row_driver import RowDriverResult
@@ -23,6 +23,7 @@ from talbot.flow.analog.row_driver import measure as measure_row
 from talbot.flow.analog.turn import TurnResult
 from talbot.flow.analog.turn import measure as measure_turn
 from talbot.models.parameters import ArrayParameters
+from talbot.models.parameters.electrical import AMPLIFIER
 from talbot.pixels.analog_layout.amplifier import amplifier_cell
 from talbot.pixels.analog_layout.bias import bias_cell
 from talbot.pixels.analog_layout.cells import Cell, comparator_cell
@@ -81,7 +82,7 @@ def make(
 ) -> dict[str, Any]:
     """Draw, check, measure and report into ``out``; returns the summary. Raises ParameterError, StepError.
 
-    table: file for the drawn column's gains at the first corner.
+    table: file for the curves of the drawn amplifier and column at the first corner.
     """
     from . import page  # Matplotlib: not before it is needed
 
@@ -138,13 +139,30 @@ def make(
         page.write(folder, summary, masks.base)
         (folder / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n")
     if table:
-        first, circuit = corners[0], typical["column"][0]
-        (pair,) = _columns(setup, {first: [circuit]}, workers)  # measured above: it is read
-        fit = fitted(setup, *column_of(setup), Corner.parse(first), pair.layout.start, circuit)
-        text = {"command": f"make analog-layout, {first}", "columns": asdict(fit.curves), "sources": SOURCES}
-        text |= {"errors": {"columns": fit.error, "sums": fit.sum_error}}
+        text = {"command": f"make analog-layout, {corners[0]}", **_table(setup, sizes, typical, corners[0], workers)}
         write(table, json.dumps(text, indent=1) + "\n")
     return summary
+
+
+def _table(
+    setup: Setup, sizes: LaneSizes, drawn: Mapping[str, tuple[Extracted, Nets]], corner: str, workers: int
+) -> dict[str, Any]:
+    """The curves of the drawn amplifier and column for the real-number model, with sources and errors, LSB.
+
+    Both were measured for the page: that is read.
+    """
+    circuit, *lanes = (drawn[name][0] for name in ("column", "amplifier", "bias"))
+    (column,) = _columns(setup, {corner: [circuit]}, workers)
+    fit = fitted(setup, *column_of(setup), Corner.parse(corner), column.layout.start, circuit)
+    (both,) = _amplifiers(setup, amplifier_of(setup, sizes), sizes, {corner: lanes}, workers)
+    points = both.layout.amplifier.points
+    bend, bend_error = polynomial(points)
+    return {
+        "parameters": {name: round(value, 4) for name, value in zip(AMPLIFIER, bend, strict=True)},
+        "columns": asdict(fit.curves),
+        "sources": {**dict.fromkeys(AMPLIFIER, BEND.format(len(points))), **SOURCES},
+        "errors": {"amplifier_fit": round(bend_error, 4), "columns": fit.error, "sums": fit.sum_error},
+    }
 
 
 def _extracted(made: dict[str, Cell], masks: AnalogMasks, corner: str) -> dict[str, tuple[Extracted, Nets]]:
@@ -207,19 +225,29 @@ def _measured(
     for one in _columns(setup, circuits("column"), workers):
         yield from column.rows(column_of(setup)[0], one)
     (spec_c, sizes_c), (spec_a, sizes_a) = column_of(setup), amplifiers
-    both = setup, (spec_c, spec_a), (sizes_c, sizes_a), sizes
-    for turn in beside("turn", measure_turn, TurnResult, both, circuits("column", "amplifier"), workers):
+    given = setup, (spec_c, spec_a), (sizes_c, sizes_a), sizes
+    for turn in beside("turn", measure_turn, TurnResult, given, circuits("column", "amplifier"), workers):
         yield from column.turn_rows(spec_c, turn)
     for gaps in beside("switch drivers", switch.measure, Gaps, (setup, support), circuits("non_overlap"), workers):
         yield from switch.rows(support, gaps)
-    given = setup, *amplifiers, sizes
-    for both in beside("amplifier", amplifier.measure, Amplified, given, circuits("amplifier", "bias"), workers):
+    for both in _amplifiers(setup, amplifiers, sizes, circuits("amplifier", "bias"), workers):
         yield from amplifier.rows(amplifiers[0], both)
 
 
 def _columns(setup: Setup, drawn: Mapping[str, Sequence[Extracted]], workers: int) -> Iterator[Pair[ColumnResult]]:
     """A column at every corner."""
     return beside("column", column.measure, ColumnResult, (setup, *column_of(setup)), drawn, workers)
+
+
+def _amplifiers(
+    setup: Setup,
+    amplifiers: tuple[AmplifierSpec, AmplifierSizes],
+    sizes: LaneSizes,
+    drawn: Mapping[str, Sequence[Extracted]],
+    workers: int,
+) -> Iterator[Pair[Amplified]]:
+    """Amplifier and bias at every corner."""
+    return beside("amplifier", amplifier.measure, Amplified, (setup, *amplifiers, sizes), drawn, workers)
 
 
 def _rows(spec: LaneSpec, found: Pair[Measured]) -> Iterator[Row]:

@@ -141,11 +141,12 @@ class RowRequest:
 
     @cached_property
     def front_end(self) -> FrontEnd:
-        """The real-number front end: ideal converters, the amplifier's curve as fitted to `make analog`."""
+        """The real-number front end: ideal converters, the amplifier's curve as fitted to ngspice's, drawn or not."""
         sensor, _ = self.frame
         none, converter = (0,) * sensor.tile.n_types, Converter.ideal(self.lanes)
         if self.amplifier:
-            curve = tuple(getattr(circuit_converter(), name) for name in AMPLIFIER)
+            fitted = circuit_converter(DRAWN) if self.extracted else circuit_converter()
+            curve = tuple(getattr(fitted, name) for name in AMPLIFIER)
             converter = replace(converter, amplifier=curve)
         return FrontEnd(GAIN, none, self.lanes, converter, sensor.tile)
 

@@ -15,7 +15,8 @@ from .electrical import ConverterParameters
 TABLE = Path(__file__).with_name("circuit.json")
 OFFSETS = 0xC01  # of the seed of columns' offsets
 DIODE = 127.5  # LSB of a diode whose well is full
-DRAWN = Path(__file__).with_name("circuit_drawn.json")  # columns as drawn, written by `make analog-layout TABLE=`
+# Amplifiers and columns as drawn, written by `make analog-layout TABLE=`
+DRAWN = Path(__file__).with_name("circuit_drawn.json")
 
 
 @cache
@@ -25,8 +26,8 @@ def circuit_converter(table: Path = TABLE) -> ConverterParameters:
     Parameters
     ----------
     table : path
-        JSON: "parameters" has fields of `ConverterParameters`; "sources" and "errors" (LSB) say where each is from, and
-        how far it is from ngspice's.
+        JSON: "parameters" has fields of `ConverterParameters`, in DRAWN the amplifier's alone; "sources" and "errors"
+        (LSB) say where each is from, and how far it is from ngspice's.
 
     Returns
     -------

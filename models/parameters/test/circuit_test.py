@@ -9,6 +9,7 @@ import pytest
 
 from talbot.models.parameters import (
     DIODE,
+    DRAWN,
     TYPICAL_CONVERTER,
     ColumnCurves,
     ConverterParameters,
@@ -17,6 +18,7 @@ from talbot.models.parameters import (
     circuit_converter,
 )
 from talbot.models.parameters.circuit import TABLE
+from talbot.models.parameters.electrical import AMPLIFIER
 
 WRITTEN = json.loads(TABLE.read_text())
 
@@ -27,6 +29,14 @@ def test_every_value_has_a_source():
     assert WRITTEN["sources"].keys() == names | WRITTEN["columns"].keys()
     assert all(WRITTEN["sources"].values()) and WRITTEN["command"].startswith("make analog")
     assert all(0 <= error < 1 for error in WRITTEN["errors"].values())
+
+
+def test_every_value_of_the_drawing_has_a_source():
+    drawn = json.loads(DRAWN.read_text())
+    assert drawn["parameters"].keys() == set(AMPLIFIER) and drawn["command"].startswith("make analog-layout")
+    assert drawn["sources"].keys() == {*AMPLIFIER, *drawn["columns"]} - {"spread"}
+    assert all(0 <= error < 1 for error in drawn["errors"].values())
+    assert circuit_converter(DRAWN).amplifier_offset != circuit_converter().amplifier_offset
 
 
 def test_the_circuit_is_what_it_was_sized_for():
