@@ -6,6 +6,7 @@ charge: there it has more.
 """
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -86,7 +87,8 @@ def fitted(
     found = {"a": own[:, 0], "b": other[:, 1], "a_other": other[:, 0], "b_other": own[:, 1]}
     for name, sums in (("sum", firsts), ("later", laters)):
         found |= {f"{name}_a": sums[:count], f"{name}_b": np.concatenate([sums[:1], sums[count:-1]])}
-    curves = ColumnCurves(FILLS, **{name: curve(of) for name, of in found.items()})
+    named: dict[str, Any] = {name: curve(of) for name, of in found.items()}
+    curves = ColumnCurves(FILLS, **named)
     proof = np.array(PROOF)
     off = float(np.abs(curves.delivered(proof) - got[-1]).max()) * spec.swing
     sums_off = max(abs(curves.summed(proof, sums is laters).sum() - sums[-1]) for sums in (firsts, laters))
