@@ -15,7 +15,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     add = parser.add_argument
     add("--pdk", default="sky130", help="process: sky130")
     add("--corners", default="typical", help="as of talbot analog: all (21), quick (3), typical, or names")
-    add("--table", type=Path, help="also write the drawn amplifier's and column's curves: models/parameters/circuit_drawn.json")
+    add("--table", type=Path, help="also write the curves as drawn: models/parameters/circuit_drawn.json")
     add("--workers", type=worker_count, default=-1, help="processes; -1: all cores")
     add("--out", type=Path, help="folder for the results (default: build/analog-layout/<pdk>)")
 
