@@ -6,7 +6,6 @@ charge: there it has more.
 """
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -69,7 +68,6 @@ def fitted(
 
     end, plain = turn_of(spec) + spec.cycle, given(bench(sizes, spec))
     alone = [(0.0, 0.0), *((fill, 0.0) for fill in FILLS[1:]), *((0.0, fill) for fill in FILLS[1:])]
-    count = len(FILLS)
 
     def lanes(circuit: Circuit, image: bool) -> npt.NDArray[np.float64]:
         """V of both lanes at each of ``alone`` and at PROOF, less those without light: (points, 2)."""
@@ -78,18 +76,19 @@ def fitted(
         volts = np.array([[wave.at("far_a", end), wave.at("far_b", end)] for wave in waves])
         return volts[0] - volts
 
-    def curve(of: npt.NDArray[np.float64]) -> tuple[float, ...]:
-        return tuple(round(float(one), 6) for one in of)
+    def each(of: npt.NDArray[np.float64]) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+        """Rows of ``alone`` where a, and where b has light, each from none on."""
+        count = len(FILLS)
+        return of[:count], np.concatenate([of[:1], of[count:-1]])
 
     got = lanes(plain, False) / spec.swing  # of a full well
     firsts, laters = (lanes(one, True)[:, 0] / (spec.swing / 4) for one in (plain, given(later_bench(sizes, spec))))
-    own, other = got[:count], np.vstack([got[:1], got[count:-1]])  # where a, where b has light
-    found = {"a": own[:, 0], "b": other[:, 1], "a_other": other[:, 0], "b_other": own[:, 1]}
-    for name, sums in (("sum", firsts), ("later", laters)):
-        found |= {f"{name}_a": sums[:count], f"{name}_b": np.concatenate([sums[:1], sums[count:-1]])}
-    named: dict[str, Any] = {name: curve(of) for name, of in found.items()}
-    curves = ColumnCurves(FILLS, **named)
+    of_a, of_b = each(got)
+    found = of_a[:, 0], of_b[:, 1], of_b[:, 0], of_a[:, 1], *each(firsts), *each(laters)
+    rounded = [tuple(round(float(one), 6) for one in curve) for curve in found]
+    a, b, a_other, b_other, sum_a, sum_b, later_a, later_b = rounded
+    curves = ColumnCurves(FILLS, a, b, a_other, b_other, sum_a, sum_b, later_a, later_b)
     proof = np.array(PROOF)
     off = float(np.abs(curves.delivered(proof) - got[-1]).max()) * spec.swing
-    sums_off = max(abs(curves.summed(proof, sums is laters).sum() - sums[-1]) for sums in (firsts, laters))
+    sums_off = max(abs(curves.summed(proof, later).sum() - of[-1]) for later, of in ((False, firsts), (True, laters)))
     return ColumnFit(curves, round(off / spec.lsb, 4), round(float(sums_off) * spec.swing / 4 / spec.lsb, 4))

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from types import ModuleType
 
 import numpy as np
+import numpy.typing as npt
 
 from talbot.cells.corner import Corner
 from talbot.cells.spice.engine import Points, Simulator
@@ -106,9 +107,15 @@ def clock(periods: int, period: float, high: float, phase: float = 0.5) -> Point
 
 def settling(wave: Wave, node: str, begin: float, rest: float, within: float) -> float:
     """S after ``begin`` from which a node stays within so many V of what it has at ``rest`` (s)."""
-    inside = (wave.time > begin) & (wave.time < rest)
-    out = np.abs(wave.voltage[node][inside] - wave.at(node, rest)) > within
-    return float(wave.time[inside][out].max(initial=begin) - begin)
+    return settled(wave.time, wave.voltage[node] - wave.at(node, rest), begin, rest, within)
+
+
+def settled(
+    time: npt.NDArray[np.float64], off: npt.NDArray[np.float64], begin: float, end: float, within: float
+) -> float:
+    """S after ``begin`` from which, until ``end``, what is ``off`` V of its level is no more than so many V."""
+    inside = (time > begin) & (time < end)
+    return float(time[inside][np.abs(off[inside]) > within].max(initial=begin) - begin)
 
 
 def patient(seconds: float) -> Settings:

@@ -52,7 +52,6 @@ ALL = (
 CORNER_SETS = {"all": ALL, "quick": QUICK, "typical": (TYPICAL,)}
 ARRAYS = 1000  # drawn capacitor arrays
 PIXELS = 25  # draws of a pixel's switches
-BEND = "cubic through {} differences that the lane samples in ngspice"  # source of AMPLIFIER
 T = TypeVar("T")
 
 
@@ -282,7 +281,7 @@ def converter(spec: LaneSpec, sizes: LaneSizes, found: Found) -> dict[str, Any]:
     column_spec = ColumnSpec.of()
     of_diode = 2**0.5 * column_spec.swing / column_spec.lsb / DIODE  # of a difference, for each LSB of a diode
     shape = inl(found.lanes[TYPICAL].decided)
-    bend, bend_error = polynomial(found.amplifiers[TYPICAL].points)
+    bend, bend_sources, bend_error = amplifier_curve(found.amplifiers[TYPICAL].points)
     gains = float(np.std([one.gain for one in found.amplifier_draws], ddof=1))
     counts = f"{len(found.offsets)} comparators and {len(found.amplifier_draws)} amplifiers"
     return {
@@ -294,7 +293,7 @@ def converter(spec: LaneSpec, sizes: LaneSizes, found: Found) -> dict[str, Any]:
             "noise": round(found.noise.rms, 4),
             "ktc": round(float(np.hypot(found.ktc[TYPICAL], found.amplifier_noise.total)), 4),
             "unit_mismatch": round(sizes.dac.unit_mismatch, 6),
-            **{name: round(value, 4) for name, value in zip(AMPLIFIER, bend, strict=True)},
+            **bend,
         },
         "columns": asdict(replace(found.column_fit.curves, spread=round(rms_c / of_diode, 4))),
         "sources": {
@@ -304,7 +303,7 @@ def converter(spec: LaneSpec, sizes: LaneSizes, found: Found) -> dict[str, Any]:
             "noise": f"{2 * found.noise.decisions} decisions with transient noise in ngspice",
             "ktc": "closed form of the lane's common plates, .noise of the amplifier in reset and signal",
             "unit_mismatch": f"{sizes.dac.source}",
-            **dict.fromkeys(AMPLIFIER, BEND.format(len(found.amplifiers[TYPICAL].points))),
+            **bend_sources,
             **curves.SOURCES,
             "spread": f"{len(found.column_offsets)} columns with the models' mismatch in ngspice",
         },
@@ -314,7 +313,7 @@ def converter(spec: LaneSpec, sizes: LaneSizes, found: Found) -> dict[str, Any]:
             "noise": round((found.noise.high - found.noise.low) / 2, 4),
             "offset_systematic": round(abs(shape[0]), 4),
             "gain": round(abs(shape[1]), 4),
-            "amplifier_fit": round(bend_error, 4),
+            "amplifier_fit": bend_error,
             "amplifier_gain_spread": round(128 * gains, 4),
             "amplifier_settling": round(found.amplifiers[TYPICAL].left, 4),
             "settling": round(_left(spec, found.lanes[TYPICAL]), 6),
@@ -324,6 +323,14 @@ def converter(spec: LaneSpec, sizes: LaneSizes, found: Found) -> dict[str, Any]:
             "spread": round((high_c - low_c) / 2 / of_diode, 4),
         },
     }
+
+
+def amplifier_curve(points: Sequence[tuple[float, float]]) -> tuple[dict[str, float], dict[str, str], float]:
+    """AMPLIFIER by `polynomial`, as a table has it; the source of each; LSB, the fit's error."""
+    bend, error = polynomial(points)
+    source = f"cubic through {len(points)} differences that the lane samples in ngspice"
+    named = {name: round(value, 4) for name, value in zip(AMPLIFIER, bend, strict=True)}
+    return named, dict.fromkeys(AMPLIFIER, source), round(error, 4)
 
 
 def polynomial(points: Sequence[tuple[float, float]]) -> tuple[tuple[float, ...], float]:

@@ -13,7 +13,7 @@ from talbot.models.parameters import ParameterError
 from talbot.pixels.circuits.lane import PINS, LaneSizes, sar_lane
 from talbot.pixels.circuits.netlist import Circuit
 
-from .deck import Setup, bits, clock, deck, references, simulator
+from .deck import Setup, bits, clock, deck, references, settled, simulator
 
 BITS = 8
 INPUTS = ("lane_a", "lane_b", "sample", "strobe", *(f"d{k}" for k in range(BITS)))
@@ -209,10 +209,8 @@ def faults(setup: Setup, sizes: LaneSizes, corner: Corner, circuit: Circuit | No
 
 def _settled(wave: Wave, start: float, end: float, within: float) -> float:
     """S after ``start`` from which the comparator's input stays within so many V of its value at ``end``."""
-    inside = (wave.time > start) & (wave.time < end)
-    volts = (wave.voltage["xcell.other"] - wave.voltage["xcell.top"])[inside]
-    out = np.abs(volts - difference(wave, end)) > within
-    return float(wave.time[inside][out].max(initial=start) - start)
+    volts = wave.voltage["xcell.other"] - wave.voltage["xcell.top"]
+    return settled(wave.time, volts - difference(wave, end), start, end, within)
 
 
 def _energy(wave: Wave, rail: str, period: float, volts: float) -> float:

@@ -11,7 +11,7 @@ from talbot.cells.spice.wave import Wave
 from talbot.pixels.circuits.netlist import Circuit, Instance
 from talbot.pixels.circuits.row_driver import CONTROLS, ROW_INPUTS, ROW_LINES, SUPPLIES, RowDriverSpec, row, row_line
 
-from .deck import EDGE, Setup, deck, patient, simulator
+from .deck import EDGE, Setup, deck, patient, settled, simulator
 
 FAR = 0.01  # of the lines' level, from it: settled
 AROUND = 0.9, 1.0, 1.1  # of the lines' level: limits hold in any combination with the chip's
@@ -96,9 +96,8 @@ def _figures(wave: Wave, spec: RowDriverSpec, corner: Corner, high: float) -> Ma
             wanted = high if up <= k < down else 0.0
             right &= abs(wave.at(line, (k + 1) * cycle - EDGE) - wanted) < high / 4
         for edge, level in ((up * cycle, high), (down * cycle, 0.0)):
+            settling.append(settled(wave.time, wave.voltage[line] - level, edge, edge + cycle, FAR * high))
             inside = (wave.time > edge) & (wave.time < edge + cycle)
-            out = np.abs(wave.voltage[line][inside] - level) > FAR * high
-            settling.append(float(wave.time[inside][out].max(initial=edge) - edge))
             between = (wave.voltage[line][inside] > 0.1 * high) & (wave.voltage[line][inside] < 0.9 * high)
             times = wave.time[inside][between]
             slew.append(float(np.ptp(times)) if len(times) else cycle)

@@ -15,7 +15,7 @@ from talbot.cells.corner import Corner
 from talbot.flow.analog.column import ColumnResult
 from talbot.flow.analog.curves import SOURCES, fitted
 from talbot.flow.analog.deck import Setup, process_of
-from talbot.flow.analog.job import BEND, amplifier_of, column_of, polynomial, setup_of
+from talbot.flow.analog.job import amplifier_curve, amplifier_of, column_of, setup_of
 from talbot.flow.analog.lane import inl
 from talbot.flow.analog.linearity import inl_dnl, levels
 from talbot.flow.analog.row_driver import RowDriverResult
@@ -23,7 +23,6 @@ from talbot.flow.analog.row_driver import measure as measure_row
 from talbot.flow.analog.turn import TurnResult
 from talbot.flow.analog.turn import measure as measure_turn
 from talbot.models.parameters import ArrayParameters
-from talbot.models.parameters.electrical import AMPLIFIER
 from talbot.pixels.analog_layout.amplifier import amplifier_cell
 from talbot.pixels.analog_layout.bias import bias_cell
 from talbot.pixels.analog_layout.cells import Cell, comparator_cell
@@ -155,13 +154,12 @@ def _table(
     (column,) = _columns(setup, {corner: [circuit]}, workers)
     fit = fitted(setup, *column_of(setup), Corner.parse(corner), column.layout.start, circuit)
     (both,) = _amplifiers(setup, amplifier_of(setup, sizes), sizes, {corner: lanes}, workers)
-    points = both.layout.amplifier.points
-    bend, bend_error = polynomial(points)
+    bend, bend_sources, bend_error = amplifier_curve(both.layout.amplifier.points)
     return {
-        "parameters": {name: round(value, 4) for name, value in zip(AMPLIFIER, bend, strict=True)},
+        "parameters": bend,
         "columns": asdict(fit.curves),
-        "sources": {**dict.fromkeys(AMPLIFIER, BEND.format(len(points))), **SOURCES},
-        "errors": {"amplifier_fit": round(bend_error, 4), "columns": fit.error, "sums": fit.sum_error},
+        "sources": bend_sources | SOURCES,
+        "errors": {"amplifier_fit": bend_error, "columns": fit.error, "sums": fit.sum_error},
     }
 
 

@@ -260,7 +260,7 @@ class Row:
         """Of all parts."""
         return sum(deck.transistors for deck in self.decks)
 
-    @property
+    @cached_property
     def at_lane(self) -> npt.NDArray[np.float64]:
         """LSB at the lane's input as its sample ends, of each sample, less the real-number model's."""
         run, zero, off = self.run, 128 * (self.request.mode != "edge"), []

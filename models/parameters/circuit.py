@@ -97,8 +97,7 @@ class ColumnCurves:
         ndarray
             (..., 2), of a full well: monotone cubics through the curves' points, the last one beyond `fills`.
         """
-        others = self._along(diodes[..., ::-1], self.a_other, self.b_other)
-        return self._along(diodes, self.a, self.b) + others
+        return self._along(diodes, self.a, self.b) + self._along(diodes[..., ::-1], self.a_other, self.b_other)
 
     def summed(self, diodes: npt.NDArray[np.float64], later: bool = False) -> npt.NDArray[np.float64]:
         """What both diodes have in a sum.
@@ -121,8 +120,7 @@ class ColumnCurves:
         """Each diode along its curve."""
         from scipy.interpolate import PchipInterpolator  # 0.4 s, which no command without the circuit's columns needs
 
-        parts = (PchipInterpolator(self.fills, curve)(diodes[..., d]) for d, curve in enumerate(curves))
-        return np.stack(list(parts), -1)
+        return np.stack([PchipInterpolator(self.fills, curve)(diodes[..., d]) for d, curve in enumerate(curves)], -1)
 
     def samples(self, diodes: npt.NDArray[np.float64], mode: str) -> npt.NDArray[np.float64]:
         """What a front end has of charges, without `spread`: lanes of each diode, or parts of a sum.
