@@ -23,11 +23,12 @@ PR_SET_PDEATHSIG = 1  # linux/prctl.h: the signal that a process gets when its p
 def alone(call: Callable[..., Any], *arguments: Any) -> tuple[Any, int]:
     """Return the result of ``call(*arguments)`` and the peak memory, MiB, of it or of the largest tool it ran.
 
-    Raises what the call raises, and StepError where its process ends without a result.
+    Its process has the name of the thread that waits for it. Raises what the call raises, and StepError where its
+    process ends without a result.
     """
     context = multiprocessing.get_context("spawn")
     receiver, sender = context.Pipe(duplex=False)
-    child = context.Process(target=_measured, args=(sender, call, arguments))
+    child = context.Process(target=_measured, args=(sender, call, arguments), name=threading.current_thread().name)
     _start(child)
     sender.close()
     try:

@@ -93,11 +93,14 @@ class Runner:
             return cached((self.shared if step.shared else self.folder) / f"{step.name}.{key}", make)
 
     @contextmanager
-    def beside(self, steps: Sequence[Step[Any]]) -> Iterator[None]:
+    def beside(
+        self, steps: Sequence[Step[Any]], given: Callable[[], Mapping[str, Path]] = dict[str, Path]
+    ) -> Iterator[None]:
         """Meanwhile run those of ``steps`` whose inputs are complete, one after another; at the end, end what runs.
 
         Their results are kept and no more: `run` finds them, and runs what failed again. Who begins something else with
-        other inputs puts another dict in the place of `paths`, without the results that no longer count.
+        other inputs puts another dict in the place of `paths`, without the results that no longer count. given: files
+        that there are by now, of another run.
         """
         ended = Event()
 
@@ -109,7 +112,7 @@ class Runner:
                     known = self.paths
                     tried.clear()
                     own.clear()
-                paths = ChainMap(known, own)
+                paths = ChainMap(known, own, dict(given()))
                 for step in steps:
                     asked = step.name, *(paths.get(source) for source in step.inputs.values())
                     if None not in asked and asked not in tried:
@@ -125,7 +128,7 @@ class Runner:
         finally:
             ended.set()
             while thread.is_alive():
-                _end_children()
+                _end_children(thread.name)
                 thread.join(LOOK_S)
 
     def run_all(self, steps: Sequence[Step[Any]]) -> list[Record]:
@@ -172,10 +175,11 @@ def _outputs(step: Step[Any], made: Path) -> dict[str, Path]:
     return {f"{step.name}.{name}": made / file for name, file in step.outputs.items()}
 
 
-def _end_children() -> None:
-    """End all processes of steps: their threads would wait for them to the end."""
+def _end_children(thread: str | None = None) -> None:
+    """End all processes of steps, or those of a thread: their threads would wait for them to the end."""
     for child in multiprocessing.active_children():
-        child.terminate()
+        if thread is None or child.name == thread:
+            child.terminate()
 
 
 def source_of(step: Step[Any], root: Path = ROOT) -> str:

@@ -3,6 +3,7 @@
 import json
 import shutil
 from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -32,10 +33,16 @@ BY_CORNER |= {"power.json": "power_{}.instances", "ir_drop.png": "ir_drop_{}.pic
 FIRST = "sdf", "lib"  # of the first corner, also under the design's name alone
 
 
-def lay_out(design: Design, options: Options, out: Path, note: Callable[[str], None]) -> tuple[Runner, dict[str, Any]]:
+def lay_out(
+    design: Design,
+    options: Options,
+    out: Path,
+    note: Callable[[str], None],
+    beside: Callable[[Runner], AbstractContextManager[None]] = lambda runner: nullcontext(),
+) -> tuple[Runner, dict[str, Any]]:
     """Lay out ``design``, its macros before it: (its Runner, its summary). Each has its folder in ``out``.
 
-    Raises StepError for a macro that breaks a limit.
+    beside: what goes on meanwhile, of the design's Runner. Raises StepError for a macro that breaks a limit.
     """
     runners = {}
     for macro in macro_designs(design):
@@ -47,8 +54,9 @@ def lay_out(design: Design, options: Options, out: Path, note: Callable[[str], N
     files = input_files(design, options, folder)
     check_same(design, files["rtl"], runners)
     runner = Runner(folder / "steps", files | macro_files(design, runners, options.corners), note, out / "shared")
-    summary = summarize(design, options, runner, lay_out_smallest(design, options, runner))
-    publish(folder, design.name, options, runner, summary)
+    with beside(runner):
+        summary = summarize(design, options, runner, lay_out_smallest(design, options, runner))
+        publish(folder, design.name, options, runner, summary)
     return runner, summary
 
 

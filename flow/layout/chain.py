@@ -135,7 +135,7 @@ def signoff_steps(design: Design, options: Options) -> list[Step]:
         Equivalence(EquivalenceParameters(design.top, design.clock.port, design.reset)),
         *netlist_tests(design),
         *foundry,
-        *(step(PdkParameters(options.pdk)) for step in (Lvs, Lef, Extraction)),
+        *(step(PdkParameters(options.pdk)) for step in (Lef, Extraction, Lvs)),
         *timing_steps(design, options),
     ]
     sources = ASSEMBLED if design.macros else BEFORE_ROUTING

@@ -18,6 +18,7 @@ from .options import Options
 from .report.metrics import broken
 from .report.page import closing
 from .sensor.die import CHIP, SENSOR, die_steps, lay_out_sensor
+from .sensor.plan import BLOCKS
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -45,7 +46,8 @@ def run(arguments: Namespace) -> int:
     options = Options(arguments.pdk, start, tuple(arguments.liberty), arguments.untimed, decks=decks)
     if arguments.design == SENSOR:
         steps = [f"{CHIP}: {step.name}" for step in all_steps(chosen, options)]
-        with Steps([*steps, *(step.name for step in die_steps(chosen, options))], lines=True) as bar:
+        steps += [step.name for step in die_steps(chosen, options, BLOCKS)]
+        with Steps(steps, lines=True) as bar:
             summary, lines = lay_out_sensor(chosen, options, arguments.analog, arguments.out, bar.note)
     else:
         summary, lines = block(chosen, options, arguments)

@@ -121,6 +121,30 @@ def test_a_step_runs_beside_others(tmp_path, text):
         runner.run(Crash())
 
 
+def test_what_another_run_has_made_is_given(tmp_path, text):
+    runner, other = Runner(tmp_path / "steps", {}), Runner(tmp_path / "other", {"text": text})
+    with runner.beside([Again()], lambda: other.paths):
+        other.run(Repeat())
+        assert waited(lambda: list((tmp_path / "steps").glob("again.*/out.txt")))
+    assert runner.paths == {}
+
+
+class Long(Repeat):
+    name = "long"
+
+    def run(self, inputs, outputs):
+        time.sleep(600)
+
+
+def test_what_runs_beside_ends_without_what_another_runs(tmp_path, text):
+    with Runner(tmp_path / "steps", {"text": text}).beside([Long()]):
+        assert waited(lambda: len(multiprocessing.active_children()) == 1)
+        with Runner(tmp_path / "other", {"text": text}).beside([Long()]):
+            assert waited(lambda: len(multiprocessing.active_children()) == 2)
+        assert len(multiprocessing.active_children()) == 1
+    assert not multiprocessing.active_children()
+
+
 def test_what_ran_beside_ends_with_it(tmp_path, text):
     runner = Runner(tmp_path / "steps", {"text": text})
     with pytest.raises(KeyboardInterrupt), runner.beside([Meet()]):

@@ -2,7 +2,8 @@
 
 import json
 import shutil
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager
 from dataclasses import replace
 from pathlib import Path
 
@@ -23,7 +24,7 @@ from talbot.platforms.pixel import pixel_process
 from talbot.platforms.wires import CORNERS
 
 from . import package
-from .analog import ARRAY, files
+from .analog import files
 from .metrics import RULES, summarize
 from .picture import by_block
 from .plan import DieParameters
@@ -36,6 +37,7 @@ from .steps.die_pads import DiePads, DiePadsDrc, DiePadsLvs
 from .steps.die_parasitics import DieParasitics, DieParasiticsParameters
 from .steps.die_plan import DiePlan, DiePlanParameters
 from .steps.die_sta import DieSta
+from .steps.drawing import ARRAY, DrawnCircuits, DrawnPixels
 
 SENSOR, CHIP = "asp_sensor", "asp_chip"
 # Files of the chip's run that the die is given
@@ -49,29 +51,34 @@ PACKAGE = f"{SENSOR}.pins.md", f"{SENSOR}.package.png", f"{SENSOR}.package.svg"
 
 
 def die_steps(
-    chip: Design,
-    options: Options,
-    extra: Iterable[str] = (),
-    drawn: Iterable[str] = (),
-    die: DieParameters | None = None,
+    chip: Design, options: Options, drawn: Sequence[str] = (), die: DieParameters | None = None
 ) -> list[Step]:
-    """The die's steps in order. extra, die: see DiePlanParameters. drawn: see DieGdsParameters."""
-    pdk, clock, io, drawn = options.pdk, chip.clock, chip.io, tuple(drawn)
+    """The die's steps, of those that can begin the longest first.
+
+    drawn: blocks that this project draws. die: see DiePlanParameters.
+    """
+    pdk, clock, io = options.pdk, chip.clock, chip.io
     ns = {"input_ns": io.input_delay * clock.period_ns, "output_ns": io.output_delay * clock.period_ns}
     parasitics = DieParasiticsParameters(pdk, clock.port, load_pf=io.load_pf, **ns)
-    return [
+    drawings = [step(PdkParameters(pdk)) for step in (DrawnPixels, DrawnCircuits)]
+    drawings = [step for step in drawings if any(f"{block}.lef" in step.outputs for block in drawn)]
+    steps: list[Step] = [
         DiePads(PdkParameters(pdk)),
-        DiePlan(DiePlanParameters(pdk, die or DieParameters(), tuple(extra))),
-        DieGds(DieGdsParameters(pdk, drawn)),
+        DiePlan(DiePlanParameters(pdk, die or DieParameters())),
+        DieGds(DieGdsParameters(pdk, tuple(drawn))),
+        DieDrc(PdkParameters(pdk)),
         DieConnectivity(PdkParameters(pdk)),
+        DieAntenna(PdkParameters(pdk)),
         DieParasitics(parasitics),
         *(DieSta(StaParameters(chip.top, corner, clock.period_ns)) for corner in options.corners),
-        DieDrc(PdkParameters(pdk)),
-        DieAntenna(PdkParameters(pdk)),
         *([DieIrDrop(DieIrDropParameters(pdk))] if ARRAY in drawn else []),
         DiePadsDrc(PdkParameters(pdk)),
         DiePadsLvs(PdkParameters(pdk)),
     ]
+    own = {name: f"{step.name}.{name}" for step in drawings for name in step.outputs if name.split(".")[0] in drawn}
+    for step in steps:
+        step.inputs = {name: own.get(source, source) for name, source in step.inputs.items()}
+    return [*drawings, *steps]
 
 
 def lay_out_sensor(
@@ -79,28 +86,35 @@ def lay_out_sensor(
 ) -> tuple[Path, list[str]]:
     """Lay out the chip and the die around it: (path of summary.json, limits broken).
 
-    analog: folder of a user's blocks. out: folder of all designs. Raises ParameterError, StepError for a chip that
-    breaks a limit.
+    What needs no more of the chip than there is runs beside it. analog: folder of a user's blocks. out: folder of all
+    designs. Raises ParameterError, StepError for a chip that breaks a limit.
     """
     top_metal(options.pdk)  # a process without one is refused before anything runs
     folder = out / SENSOR
-    blocks = files(folder / "black_boxes", options.pdk, analog, note)
-    core, summary = lay_out(chip, options, out, lambda text: note(f"{CHIP}: {text}"))
+    blocks = files(folder / "black_boxes", options.pdk, analog)
+    runner = Runner(folder / "steps", blocks.paths, note, out / "shared")
+    sources = PARTS | {f"timing.{corner}": f"timing.{corner}" for corner in options.corners}
+
+    def parts(core: Runner) -> dict[str, Path]:
+        """Those of the chip that there are."""
+        return {name: core.paths[source] for name, source in sources.items() if source in core.paths}
+
+    def beside(core: Runner) -> AbstractContextManager[None]:
+        return runner.beside(die_steps(chip, options, blocks.drawn), lambda: parts(core))
+
+    core, summary = lay_out(chip, options, out, lambda text: note(f"{CHIP}: {text}"), beside)
     if wrong := broken(summary):
         raise StepError(f"{SENSOR}: its block {CHIP} breaks a limit: {wrong[0]}")
-    parts = PARTS | {f"timing.{corner}": f"timing.{corner}" for corner in options.corners}
-    given = {name: core.paths[source] for name, source in parts.items()}
-    runner = Runner(folder / "steps", blocks.paths | given, note)
-    return lay_out_die(chip, options, runner, blocks.black_boxes, blocks.extra, blocks.drawn)
+    runner.paths |= parts(core)
+    return lay_out_die(chip, options, runner, drawn=blocks.drawn)
 
 
 def lay_out_die(
     chip: Design,
     options: Options,
     runner: Runner,
-    black_boxes: Sequence[str],
-    extra: Iterable[str] = (),
-    drawn: Iterable[str] = (),
+    black_boxes: Sequence[str] = (),
+    drawn: Sequence[str] = (),
     die: DieParameters | None = None,
 ) -> tuple[Path, list[str]]:
     """Lay out the die around a chip that is laid out: (path of summary.json, limits broken).
@@ -108,7 +122,7 @@ def lay_out_die(
     runner: its files are PARTS of the chip and those of the blocks; the results are beside its folder.
     """
     folder = runner.folder.parent
-    runner.run_all(die_steps(chip, options, extra, drawn, die))
+    runner.run_all(die_steps(chip, options, drawn, die))
     summary = summarize(SENSOR, options, runner, black_boxes)
     lines, tech = broken(summary, RULES), coriolis_platform(options.pdk)
     tech = replace(tech, metals=(*tech.metals, top_metal(options.pdk).metal))

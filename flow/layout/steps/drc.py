@@ -31,6 +31,6 @@ class Drc(Step[PdkParameters]):
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         tech = coriolis_platform(self.parameters.pdk)
         masks = [tech.masks.read_text()] if tech.masks else []
-        more = (*hole_rules(tech), *via_rules(tech), *masks)
-        found = check_rules(self.exported(inputs["deck"].read_text()), more, inputs["gds"], outputs)
+        deck, flat = self.exported(inputs["deck"].read_text()), (*hole_rules(tech), *masks)
+        found = check_rules(deck, via_rules(tech), flat, inputs["gds"], outputs)
         return {"drc_violations": sum(count for rule, count in found.items() if not rule.startswith(WARNING))}

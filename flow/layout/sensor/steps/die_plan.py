@@ -13,6 +13,7 @@ from talbot.platforms.layers import Layer
 from talbot.platforms.pads import pad_process
 
 from .. import arrange, decoupling, ring, routing, supplies, verilog
+from ..analog import check
 from ..arrange import Arranged
 from ..plan import BLOCKS, CORE, Block, DieParameters, driver, nm
 from ..ring import Frame, Pads, Place
@@ -25,25 +26,24 @@ Shapes = Sequence[Shape]
 
 @dataclass(frozen=True)
 class DiePlanParameters:
-    """Process, sizes of the die. extra: pins of analog blocks that lead to pins of the die."""
+    """Process, sizes of the die."""
 
     pdk: str = "sky130"
     die: DieParameters = field(default_factory=DieParameters)
-    extra: tuple[str, ...] = ()
 
 
 class DiePlan(Step[DiePlanParameters]):
     """Placement from the LEFs alone; a channel of signals below all blocks; supplies on the top metal; a ring of pads.
 
+    A pin that a block's black box does not have, a reference or a bias, leads to a pin of the die.
     pads: of the ring. routed: nets in the channel. abutted: nets whose pins touch. tracks: of the channel. wire_um: of
     the signals.
     """
 
     name = "die_plan"
-    inputs = {f"{block}.lef": f"{block}.lef" for block in (*BLOCKS, CORE)} | {
-        "rules": "library.rules",
-        "pads": "die_pads.pins",
-    }
+    inputs = {f"{block}.lef": f"{block}.lef" for block in (*BLOCKS, CORE)}
+    inputs |= {f"{block}.black_box": f"{block}.black_box" for block in BLOCKS}
+    inputs |= {"rules": "library.rules", "pads": "die_pads.pins"}
     outputs = {"plan": "plan.json", "verilog": f"{TOP}.v"}
     metrics = {"area_um2": "um2", **dict.fromkeys(COUNTS, ""), "wire_um": "um", "decoupling_pf": "pF"}
 
@@ -54,7 +54,10 @@ class DiePlan(Step[DiePlanParameters]):
         blocks = {name: Block.read(name, inputs[f"{name}.lef"].read_text()) for name in (*BLOCKS, CORE)}
         tracks = routing.Tracks.of(rules, p.die)
         pads = self.pads(json.loads(inputs["pads"].read_text()), {})
-        made = arrange.arranged(blocks, p.die, tracks, layers, pads, p.extra)
+        extra = dict.fromkeys(
+            pin for block in BLOCKS for pin in check(inputs[f"{block}.lef"], inputs[f"{block}.black_box"])
+        )
+        made = arrange.arranged(blocks, p.die, tracks, layers, pads, extra)
         signals = [
             ring.signal(net, kind, at - offset, pads.process, branch.side)
             for net, found in made.routes.items()

@@ -2,6 +2,7 @@
 
 import itertools
 import json
+import shutil
 
 from talbot.flow.layout.route.ports import LEVELS
 from talbot.flow.layout.sensor.pads import width_um
@@ -154,11 +155,18 @@ def files(folder):
     core(folder)
     pads(folder)
     (folder / "rules.json").write_text(json.dumps(RULES))
-    return {f"{block}.{kind}": folder / f"{block}.{kind}" for block in (*BLOCKS, CORE) for kind in ("lef", "gds")} | {
-        "library.rules": folder / "rules.json",
-        "die_pads.gds": folder / "pads.gds",
-        "die_pads.pins": folder / "pins.json",
-    }
+    for block in BLOCKS:
+        shutil.copyfile(folder / f"{block}.lef", folder / f"{block}.black_box")
+    found = {f"{block}.{kind}": folder / f"{block}.{kind}" for block in (*BLOCKS, CORE) for kind in ("lef", "gds")}
+    return (
+        found
+        | {f"{block}.black_box": folder / f"{block}.black_box" for block in BLOCKS}
+        | {
+            "library.rules": folder / "rules.json",
+            "die_pads.gds": folder / "pads.gds",
+            "die_pads.pins": folder / "pins.json",
+        }
+    )
 
 
 def run(step, given, folder):
@@ -169,9 +177,9 @@ def run(step, given, folder):
     return metrics
 
 
-def plan(given, folder, die=DIE, extra=()):
+def plan(given, folder, die=DIE):
     """Metrics of the plan."""
-    return run(DiePlan(DiePlanParameters("sky130", die, extra)), given, folder)
+    return run(DiePlan(DiePlanParameters("sky130", die)), given, folder)
 
 
 def connectivity(given, folder, drawn=()):
