@@ -20,15 +20,17 @@ ONE_AT_A_TIME = threading.Lock()
 PR_SET_PDEATHSIG = 1  # linux/prctl.h: the signal that a process gets when its parent ends
 
 
-def alone(call: Callable[..., Any], *arguments: Any) -> tuple[Any, int]:
+def alone(call: Callable[..., Any], *arguments: Any, nice: int = 0) -> tuple[Any, int]:
     """Return the result of ``call(*arguments)`` and the peak memory, MiB, of it or of the largest tool it ran.
 
-    Its process has the name of the thread that waits for it. Raises what the call raises, and StepError where its
+    Its process has the name of the thread that waits for it. nice: by which it yields to others, 0..19. Raises what the call raises, and StepError where its
     process ends without a result.
     """
     context = multiprocessing.get_context("spawn")
     receiver, sender = context.Pipe(duplex=False)
-    child = context.Process(target=_measured, args=(sender, call, arguments), name=threading.current_thread().name)
+    child = context.Process(
+        target=_measured, args=(sender, nice, call, arguments), name=threading.current_thread().name
+    )
     _start(child)
     sender.close()
     try:
@@ -62,7 +64,8 @@ def _start(child: BaseProcess) -> None:
                 os.environ["PYTHONHASHSEED"] = before
 
 
-def _measured(sender: Connection, call: Callable[..., Any], arguments: tuple[Any, ...]) -> None:
+def _measured(sender: Connection, nice: int, call: Callable[..., Any], arguments: tuple[Any, ...]) -> None:
+    os.nice(nice)
     signal.signal(signal.SIGTERM, _end)
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)

@@ -27,6 +27,7 @@ from .versions import version
 
 RECORD = "record.json"
 LOOK_S = 0.1  # how often `Runner.beside` looks for a step that can begin
+YIELDING = 10  # by which steps yield to those of another run
 Record = dict[str, Any]  # of a step's run, as record.json holds it
 
 
@@ -60,8 +61,8 @@ class Runner:
         self.records[step.name] = json.loads((made / RECORD).read_text())
         return self.records[step.name]
 
-    def _made(self, step: Step[Any], paths: Mapping[str, Path]) -> Path:
-        """The folder of the step's results, run now or earlier. paths: of all inputs, by source."""
+    def _made(self, step: Step[Any], paths: Mapping[str, Path], nice: int = 0) -> Path:
+        """The folder of the step's results, run now or earlier. paths: of all inputs, by source. nice: see `alone`."""
         inputs = {name: paths[source] for name, source in step.inputs.items()}
         hashes = {name: digest(path) for name, path in inputs.items()}
         tools = {tool: version(tool) for tool in step.tools}
@@ -73,7 +74,7 @@ class Runner:
             self.note(step.name)
             begin = time.perf_counter()
             outputs = {name: part / file for name, file in step.outputs.items()}
-            metrics, peak = alone(step.run, inputs, outputs)
+            metrics, peak = alone(step.run, inputs, outputs, nice=nice)
             _check(step, part, metrics)
             record = {
                 "step": step.name,
@@ -94,13 +95,13 @@ class Runner:
 
     @contextmanager
     def beside(
-        self, steps: Sequence[Step[Any]], given: Callable[[], Mapping[str, Path]] = dict[str, Path]
+        self, steps: Sequence[Step[Any]], given: Callable[[], Mapping[str, Path]] | None = None
     ) -> Iterator[None]:
         """Meanwhile run those of ``steps`` whose inputs are complete, one after another; at the end, end what runs.
 
         Their results are kept and no more: `run` finds them, and runs what failed again. Who begins something else with
         other inputs puts another dict in the place of `paths`, without the results that no longer count. given: files
-        that there are by now, of another run.
+        that there are by now, of another run, to whose steps these yield the cores.
         """
         ended = Event()
 
@@ -112,13 +113,13 @@ class Runner:
                     known = self.paths
                     tried.clear()
                     own.clear()
-                paths = ChainMap(known, own, dict(given()))
+                paths = ChainMap(known, own, dict(given()) if given else {})
                 for step in steps:
                     asked = step.name, *(paths.get(source) for source in step.inputs.values())
                     if None not in asked and asked not in tried:
                         tried.add(asked)
                         with suppress(Exception):
-                            own |= _outputs(step, self._made(step, paths))
+                            own |= _outputs(step, self._made(step, paths, YIELDING if given else 0))
                         break
 
         thread = Thread(target=work)

@@ -1,10 +1,13 @@
 """How exactly ngspice solves the circuit of a row, and what is tried when it gives up."""
 
+import re
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 from talbot.models.parameters import check_choice, check_real
 
 METHODS = ("trap", "gear")
+BODIES = re.compile(r"\brbodymod *= *1(\.0)?\b")
 
 
 @dataclass(frozen=True)
@@ -23,6 +26,8 @@ class Accuracy:
         Longest time step, 1e-12..1e-6 s.
     gmin : float
         Conductance across every junction, 1e-16..1e-9 S.
+    bodies : bool
+        Every transistor's body is the network of resistors (50 ohm each) that its model asks for, with three nodes.
     """
 
     reltol: float = 1e-4
@@ -32,6 +37,7 @@ class Accuracy:
     method: str = "trap"
     step: float = 10e-9
     gmin: float = 1e-15
+    bodies: bool = False
 
     def __post_init__(self) -> None:
         check_real("reltol", self.reltol, 1e-8, 0.1)
@@ -41,6 +47,10 @@ class Accuracy:
         check_choice("method", self.method, METHODS)
         check_real("step", self.step, 1e-12, 1e-6)
         check_real("gmin", self.gmin, 1e-16, 1e-9)
+
+    def cards(self, lines: Iterable[str]) -> list[str]:
+        """The models' lines."""
+        return [line if self.bodies else BODIES.sub("rbodymod = 0", line) for line in lines]
 
     @property
     def options(self) -> list[str]:

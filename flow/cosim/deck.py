@@ -177,7 +177,7 @@ def build(
         "* one row of a sensor",
         *accuracy.options,
         f".temp {CORNER.temperature:g}",
-        *analog.cards(CORNER.process, all_sizes),
+        *accuracy.cards(analog.cards(CORNER.process, all_sizes)),
         ".param cscale=1 rscale=1",
         *dict.fromkeys(text for circuit in circuits.values() for text in _subcircuits(circuit)),
         *own,

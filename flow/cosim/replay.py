@@ -18,7 +18,7 @@ from .accuracy import Accuracy
 from .deck import Deck, Timing
 from .lockstep import Cycle, Run
 
-TIGHT = Accuracy(reltol=1e-5, chgtol=1e-17, step=0.2e-9)  # ten times tighter ngspice gives up at an edge
+TIGHT = Accuracy(reltol=1e-5, chgtol=1e-17, step=0.2e-9, bodies=True)  # ten times tighter ngspice gives up at an edge
 FLAG = re.compile(r"(?P<kind>sample|strobe|d|select)(?P<a>\d+)(?:_(?P<b>\d+))?")
 
 

@@ -21,6 +21,7 @@ SETTINGS = {
     "reltol 1e-5, chgtol 1e-17": Accuracy(reltol=1e-5, chgtol=1e-17),
     "gear": Accuracy(method="gear"),
     "step 1 ns": Accuracy(step=1e-9),
+    "bodies' resistances": Accuracy(bodies=True),
 }
 PLANTED = (Fault("comparator", (0,)), Fault("capacitor", (1, 6)), Fault("diodes", (6,)), Fault("row", (1,)))
 COARSE = Accuracy(reltol=1e-3, chgtol=1e-15)  # codes that a fault moves by far more

@@ -1,6 +1,7 @@
 """Steps: run once for the same inputs, held to what they declare."""
 
 import multiprocessing
+import os
 import signal
 import subprocess
 import sys
@@ -50,8 +51,6 @@ class Crash(Repeat):
     name = "crash"
 
     def run(self, inputs, outputs):
-        import os
-
         os._exit(3)
 
 
@@ -121,12 +120,22 @@ def test_a_step_runs_beside_others(tmp_path, text):
         runner.run(Crash())
 
 
-def test_what_another_run_has_made_is_given(tmp_path, text):
+class Priority(Again):
+    name = "priority"
+
+    def run(self, inputs, outputs):
+        outputs["text"].write_text(str(os.nice(0)))
+        return {"length": 0}
+
+
+def test_what_another_run_has_made_is_given_and_that_run_has_the_cores(tmp_path, text):
     runner, other = Runner(tmp_path / "steps", {}), Runner(tmp_path / "other", {"text": text})
-    with runner.beside([Again()], lambda: other.paths):
-        other.run(Repeat())
-        assert waited(lambda: list((tmp_path / "steps").glob("again.*/out.txt")))
+    with runner.beside([Priority()], lambda: other.paths):
+        other.run_all([Repeat(), Priority()])
+        assert waited(lambda: list((tmp_path / "steps").glob("priority.*/out.txt")))
     assert runner.paths == {}
+    given, own = next((tmp_path / "steps").glob("priority.*/out.txt")), other.paths["priority.text"]
+    assert int(given.read_text()) > int(own.read_text()) == os.nice(0)
 
 
 class Long(Repeat):

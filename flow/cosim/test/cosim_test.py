@@ -1,6 +1,7 @@
 """Co-simulation: the chip's Verilog against the lane in transistors."""
 
 import ctypes.util
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -257,6 +258,12 @@ def test_a_fault_is_in_one_lane_alone():
 def test_a_fault_that_is_none_is_refused(text: str):
     with pytest.raises(ParameterError, match=r"fault = .* must be one of"):
         Fault.parse(text)
+
+
+def test_the_bodies_resistors_are_left_out_of_every_model_or_none():
+    cards = analog.cards("tt", {("n_lvt", 1.0, 0.15), ("p_lvt", 1.0, 0.35)})
+    lean = "\n".join(Accuracy().cards(cards))
+    assert set(re.findall(r"rbodymod = (\S+)", lean)) == {"0"} and Accuracy(bodies=True).cards(cards) == cards
 
 
 def test_the_ladder_ends_with_the_loosest():
