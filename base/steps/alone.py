@@ -23,8 +23,8 @@ PR_SET_PDEATHSIG = 1  # linux/prctl.h: the signal that a process gets when its p
 def alone(call: Callable[..., Any], *arguments: Any, nice: int = 0) -> tuple[Any, int]:
     """Return the result of ``call(*arguments)`` and the peak memory, MiB, of it or of the largest tool it ran.
 
-    Its process has the name of the thread that waits for it. nice: by which it yields to others, 0..19. Raises what the call raises, and StepError where its
-    process ends without a result.
+    Its process has the name of the thread that waits for it. nice: by which it yields to others, 0..19. Raises what the
+    call raises, and StepError where its process ends without a result.
     """
     context = multiprocessing.get_context("spawn")
     receiver, sender = context.Pipe(duplex=False)
