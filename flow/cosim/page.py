@@ -96,7 +96,7 @@ def _studies(s: Mapping[str, Any]) -> list[Section]:
 
 STUDY = (
     "One sample. Times of the comparator's decisions against those of the same drive off-line: piecewise linear "
-    "sources in ngspice alone, with tight tolerances."
+    "sources in ngspice alone, with tight tolerances and the resistances of the transistors' bodies."
 )
 FAULTS = "Found: of all faults of the dictionary, the one whose codes, computed from charge alone, are the nearest."
 

@@ -21,7 +21,7 @@ SETTINGS = {
     "reltol 1e-5, chgtol 1e-17": Accuracy(reltol=1e-5, chgtol=1e-17),
     "gear": Accuracy(method="gear"),
     "step 1 ns": Accuracy(step=1e-9),
-    "bodies' resistances": Accuracy(bodies=True),
+    "bodies' resistances, too": Accuracy(bodies=True),
 }
 PLANTED = (Fault("comparator", (0,)), Fault("capacitor", (1, 6)), Fault("diodes", (6,)), Fault("row", (1,)))
 COARSE = Accuracy(reltol=1e-3, chgtol=1e-15)  # codes that a fault moves by far more
@@ -82,14 +82,19 @@ def faults(note: Callable[[str], None], asked: RowRequest = FAULTY) -> list[dict
 
 
 def leaving_out(note: Callable[[str], None]) -> list[dict[str, Any]]:
-    """What is left out, simulated all the same: cycles of an integration, a lane that is not read, what lanes share."""
+    """What is left out, simulated all the same.
+
+    Cycles of an integration, a lane that is not read, what lanes share, resistances of the transistors' bodies.
+    """
     light = RowRequest(mode="image", cols=6, lanes=1, types=1, t_int=100)
     narrow = RowRequest(mode="image", cols=6, lanes=2, types=1, pixels=False)
     shared = RowRequest(mode="edge", types=2, amplifier=True)
+    columns = RowRequest(mode="edge", cols=6, lanes=1, types=1, amplifier=True, columns=True)
     pairs = {
         "an integration of 100 cycles": (light, replace(light, whole=True)),
         "a lane that the row does not read": (narrow, replace(narrow, everything=True)),
         "what two lanes share": (shared, replace(shared, partition=False)),
+        "resistances of the transistors' bodies": (columns, replace(columns, accuracy=Accuracy(bodies=True))),
     }
     lines = []
     for name, (lean, full) in pairs.items():
