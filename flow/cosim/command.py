@@ -108,7 +108,7 @@ def _print(s: dict[str, Any], folder: Path) -> None:
         print(f"  {line['name']}: {error}{line['time_points']} time points, {line['seconds']:.1f} s")
     for line in s["left_out"]:
         print(
-            f"  left out: {line['name']}: {line['seconds']:.1f} s in place of {line['seconds_with']:.1f}, "
+            f"  left out: {line['name']}: {line['seconds']:.1f} s of processor in place of {line['seconds_with']:.1f}, "
             f"error {line['error_lsb']:.4f} LSB at the lane"
         )
     for line in s["faults"]:

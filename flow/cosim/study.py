@@ -102,8 +102,8 @@ def leaving_out(note: Callable[[str], None]) -> list[dict[str, Any]]:
         lines.append(
             {
                 "name": name,
-                "seconds": a.run.stats["seconds"],
-                "seconds_with": b.run.stats["seconds"],
+                "seconds": a.run.stats["processor_seconds"],
+                "seconds_with": b.run.stats["processor_seconds"],
                 "cycles": a.run.stats["circuit_cycles"],
                 "cycles_with": b.run.stats["circuit_cycles"],
                 "transistors": a.transistors,
