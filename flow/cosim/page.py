@@ -78,7 +78,17 @@ def _studies(s: Mapping[str, Any]) -> list[Section]:
         lines = [_studied(line) for line in s["study"]]
         sections.append(Section("Error against run time", STUDY, head=head, rows=lines))
     if s["left_out"]:
-        head = ("left out", "s of processor", "with it", "cycles", "with it", "transistors", "with it", "error, LSB", "codes")
+        head = (
+            "left out",
+            "s of processor",
+            "with it",
+            "cycles",
+            "with it",
+            "transistors",
+            "with it",
+            "error, LSB",
+            "codes",
+        )
         keys = ("cycles", "cycles_with", "transistors", "transistors_with")
         lines = [
             (x["name"], f"{x['seconds']:.1f}", f"{x['seconds_with']:.1f}", *(str(x[key]) for key in keys))
