@@ -32,7 +32,8 @@ CELSIUS = 25.0
 LINE = 0.5  # V of a column's line, since the row before was read
 CIN = {True: (1.58, 1.58), False: (1.04, 1.58)}  # of both coupling capacitors, by `edge`: the row before was 40 % full
 SOURCE = "vbn", "vbp", "source", "start", "part_1", "part_2", "part_3"  # nodes of a bias
-# Of the trim: with a reltol of 1e-4 a line was 0.5 mV off, or not, as its level changed by 0.1 mV; 1e-5 and 1e-6 agree
+# Of the trim: with a reltol of 1e-4 a line was 0.5 mV off, or not, as its level changed by 0.1 mV; 1e-5 and 1e-6 agree.
+# The drawn column's trim ends at a rail with 1e-5, which is not understood: it has 1e-4
 FINE = replace(EXACT, reltol=1e-5)
 RESTING = (*BIASES, "level", "ibias_columns", *(f"xcolumn_source.{name}" for name in SOURCE))
 
@@ -176,7 +177,9 @@ def trimmed(
         own += extracted.rest_of_nets(own, layouts)
         if found:  # or the search for an operating point may end elsewhere
             own.append(".nodeset " + " ".join(f"v({name})={volts:.6g}" for name, volts in found.items()))
-        with Simulator([*deck, *own], tuple(waves), (*outs, *RESTING), {"vdd": high}, CELSIUS, FINE) as spice:
+        with Simulator(
+            [*deck, *own], tuple(waves), (*outs, *RESTING), {"vdd": high}, CELSIUS, EXACT if drawn else FINE
+        ) as spice:
             wave = spice.transient(waves, dict.fromkeys(outs, spec.input), (turn + 1) * cycle, cycle / 5)
         end = float(np.nextafter((turn + 1) * cycle, 0))
         start = nearer(start, (wave.at(outs[0], end), wave.at(outs[1], end)), spec, sizes)
