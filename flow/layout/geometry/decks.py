@@ -186,8 +186,8 @@ def via_rules(tech: CoriolisPlatform) -> Iterator[str]:
     for level, via in enumerate(tech.vias):
         yield f"{via.name} = input({via.layer}, {via.datatype})"
         report = f'"{via.name} size", "{via.name} that is not {via.size_um:g} um square"'
-        sizes = (f"{via.name}.without_bbox_{side}({via.size_um:g})" for side in ("width", "height"))
-        yield f"({' + '.join(sizes)}).output({report})"
+        sides = (f"{via.name}.without_bbox_{side}({via.size_um:g})" for side in ("width", "height"))
+        yield f"({' + '.join((*sides, f'{via.name}.non_rectangles'))}).output({report})"
         for metal in tech.metals[level : level + 2]:
             report = f'"{via.name} outside {metal.name}", "{via.name} that is not inside {metal.name}"'
             yield f"({via.name} - input({metal.layer}, {metal.datatype})).output({report})"

@@ -25,7 +25,10 @@ class AnalogFiles(NamedTuple):
 
 
 def files(folder: Path, pdk: str, analog: Path | None = None) -> AnalogFiles:
-    """Write the black boxes into ``folder``; find a user's blocks in ``analog``. Raises ParameterError."""
+    """Write the black boxes into ``folder``; find a user's blocks in ``analog``.
+
+    Raises ParameterError for blocks that do not fit, before anything is drawn.
+    """
     circuits = dict.fromkeys(_circuits(analog), analog) if analog else {}
     run([sys.executable, "-m", "talbot.pixels.footprints", "--pdk", pdk, "--out", folder], cwd=ROOT)
     found = {f"{block}.black_box": folder / f"{block}.lef" for block in BLOCKS}

@@ -54,6 +54,15 @@ def test_spaces_of_drawn_layers_are_checked_flat_and_the_rest_as_before():
     assert flat == f"source(x)\nflat\n{spaces}\n{wide}\nmore\n"
 
 
+def broken_vias(folder, layout, mode):
+    """Violations of the vias' rules in a layout, flat or deep."""
+    write_gds(layout, folder / "top.gds")
+    head = f"source('{folder}/top.gds')\nreport('vias', '{folder}/found.lyrdb')"
+    (folder / "vias.drc").write_text("\n".join([head, mode, *via_rules(coriolis_platform("sky130")), ""]))
+    run_deck(folder / "vias.drc", folder / "found.lyrdb", {})
+    return violations(folder / "found.lyrdb")
+
+
 @pytest.mark.skipif(not shutil.which("klayout"), reason="klayout: not found; install it with: make tools")
 @pytest.mark.parametrize(
     "cases, found",
@@ -71,11 +80,20 @@ def test_a_via_outside_its_metal_or_of_another_size_is_found(tmp_path, cases, fo
         shapes = (tech.metals[3].gds, (0, 0, 500, 800)), (tech.metals[4].gds, (0, 0, 500, end))
         for at, box in (*shapes, *((tech.vias[3].gds, (150, low, 350, low + 200)) for low in vias)):
             top.shapes(layout.layer(*at)).insert(db.Box(*box).moved(5000 * x, 0))
-    write_gds(layout, tmp_path / "top.gds")
-    head = f"source('{tmp_path}/top.gds')\nreport('vias', '{tmp_path}/found.lyrdb')"
-    (tmp_path / "vias.drc").write_text("\n".join([head, mode, *via_rules(tech), ""]))
-    run_deck(tmp_path / "vias.drc", tmp_path / "found.lyrdb", {})
-    assert violations(tmp_path / "found.lyrdb") == found
+    assert broken_vias(tmp_path, layout, mode) == found
+
+
+@pytest.mark.skipif(not shutil.which("klayout"), reason="klayout: not found; install it with: make tools")
+@pytest.mark.parametrize("mode", ("flat", "deep"))
+def test_a_via_with_a_notch_is_of_another_size(tmp_path, mode):
+    tech, layout = coriolis_platform("sky130"), db.Layout()
+    top, via = layout.create_cell("top"), tech.vias[3]
+    shapes = top.shapes(layout.layer(*via.gds))
+    for box in ((0, 0, 200, 120), (0, 120, 120, 200), (1000, 0, 1200, 200)):
+        shapes.insert(db.Box(*box))
+    for metal in tech.metals[3:5]:
+        top.shapes(layout.layer(*metal.gds)).insert(db.Box(-100, -100, 1300, 300))
+    assert broken_vias(tmp_path, layout, mode) == {"via3 size": 1}
 
 
 @pytest.mark.skipif(not shutil.which("klayout"), reason="klayout: not found; install it with: make tools")

@@ -36,6 +36,7 @@ class DiePlan(Step[DiePlanParameters]):
     """Placement from the LEFs alone; a channel of signals below all blocks; supplies on the top metal; a ring of pads.
 
     A pin that a block's black box does not have, a reference or a bias, leads to a pin of the die.
+
     pads: of the ring. routed: nets in the channel. abutted: nets whose pins touch. tracks: of the channel. wire_um: of
     the signals.
     """

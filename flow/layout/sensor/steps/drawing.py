@@ -17,13 +17,13 @@ from ..plan import BLOCKS
 ARRAY = "pixel_array"
 
 
-def outputs(blocks: Iterable[str]) -> dict[str, str]:
+def files_of(blocks: Iterable[str]) -> dict[str, str]:
     """LEF and GDS of blocks."""
     return {file: file for block in blocks for file in (f"{block}.lef", f"{block}.gds")}
 
 
 class Drawing(Step[PdkParameters]):
-    """LEF and GDS of blocks, as ``module`` draws them, and compares them with their circuits."""
+    """LEF and GDS of blocks, as ``module`` draws them."""
 
     shared = True
     module: ClassVar[str]
@@ -46,12 +46,12 @@ class DrawnPixels(Drawing):
 
     name = "drawn_pixels"
     module = "talbot.pixels.layout.write"
-    outputs = outputs([ARRAY])
+    outputs = files_of([ARRAY])
 
 
 class DrawnCircuits(Drawing):
-    """All other blocks."""
+    """All other blocks, each compared with its circuit."""
 
     name = "drawn_circuits"
     module = "talbot.flow.analog_layout.write"
-    outputs = outputs(block for block in BLOCKS if block != ARRAY)
+    outputs = files_of(block for block in BLOCKS if block != ARRAY)

@@ -158,15 +158,12 @@ def files(folder):
     for block in BLOCKS:
         shutil.copyfile(folder / f"{block}.lef", folder / f"{block}.black_box")
     found = {f"{block}.{kind}": folder / f"{block}.{kind}" for block in (*BLOCKS, CORE) for kind in ("lef", "gds")}
-    return (
-        found
-        | {f"{block}.black_box": folder / f"{block}.black_box" for block in BLOCKS}
-        | {
-            "library.rules": folder / "rules.json",
-            "die_pads.gds": folder / "pads.gds",
-            "die_pads.pins": folder / "pins.json",
-        }
-    )
+    found |= {f"{block}.black_box": folder / f"{block}.black_box" for block in BLOCKS}
+    return found | {
+        "library.rules": folder / "rules.json",
+        "die_pads.gds": folder / "pads.gds",
+        "die_pads.pins": folder / "pins.json",
+    }
 
 
 def run(step, given, folder):
