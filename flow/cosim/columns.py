@@ -4,15 +4,15 @@ Their lines are driven as the block's bank drives them, its gates' delays as del
 itself is the bank's own circuit. Row lines have 3.3 V, wells are reset to the level of the block's bias.
 """
 
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 
 from talbot.cells.spice.engine import Simulator
 from talbot.flow.analog.amplifier import COLUMNS, EXACT
-from talbot.flow.analog.column import GAP, ROW, TRIMS, nearer
+from talbot.flow.analog.column import CURRENT, GAP, ROW, SETTLED, nearer
 from talbot.models.parameters import DIODE, ELEMENTARY_CHARGE, AmpTiming
 from talbot.pixels.circuits.column import BIASES, PINS, TAPS, column, line
 from talbot.pixels.circuits.column_block import OUTSIDE, cascode_lines, clear_pulse, column_bias, lane_end, lane_line
@@ -29,13 +29,29 @@ from .pixels import PixelSizes, pixel, row_line
 
 TIMING = AmpTiming()  # of a row with these columns: the holder has 16 cycles in each half
 CELSIUS = 25.0
-LINE = 0.5  # V of a column's line, since the row before was read
-CIN = {True: (1.58, 1.58), False: (1.04, 1.58)}  # of both coupling capacitors, by `edge`: the row before was 40 % full
+LINE, CIN = 0.5, 1.2  # V of a column's line and coupling capacitors as the first step of a trim begins
+STEPS = 3  # of the trim: as drawn a lane follows `start` by 1.15 of what the circuit's does, and is 5 mV off after one
 SOURCE = "vbn", "vbp", "source", "start", "part_1", "part_2", "part_3"  # nodes of a bias
-# Of the trim: with a reltol of 1e-4 a line was 0.5 mV off, or not, as its level changed by 0.1 mV; 1e-5 and 1e-6 agree.
-# The drawn column's trim ends at a rail with 1e-5, which is not understood: it has 1e-4
-FINE = replace(EXACT, reltol=1e-5)
 RESTING = (*BIASES, "level", "ibias_columns", *(f"xcolumn_source.{name}" for name in SOURCE))
+BIAS = (
+    "Xcolumn_source ibias_columns vdd 0 bias",
+    f"Xcolumn_bias ibias_columns {' '.join(BIASES)} level vdd 0 column_bias",
+)
+
+NO_TRANSIENT = ".control", "optran 1 1 1 0 0 0", ".endc"  # for an operating point: what is to begin elsewhere would not
+
+
+class Trim(NamedTuple):
+    """start: V of start_a and start at which a pixel without light leaves its lanes at dark.
+
+    rest: V of RESTING and vdd. column: V that this leaves at line_a, line_b and every net of a column. repeated: of the
+    transients, those that needed a retry.
+    """
+
+    start: tuple[float, float]
+    rest: Mapping[str, float]
+    column: Mapping[str, float]
+    repeated: int
 
 
 def circuits(spec: ColumnSpec, sizes: ColumnSizes) -> tuple[Circuit, ...]:
@@ -53,8 +69,7 @@ def lines(
     spec: ColumnSpec,
     sizes: ColumnSizes,
     pixels: PixelSizes,
-    start: tuple[float, float],
-    rest: Mapping[str, float],
+    trim: Trim,
     cols: int = 1,
     swapped: frozenset[int] = frozenset(),
     cut: int | None = None,
@@ -62,22 +77,18 @@ def lines(
     """Lines of the deck; see `drive` for their controls. lanes: of each column; the lanes' lines end at cola0, colb0.
 
     diodes: (a, b) in LSB of each column and tap. edge: lanes get both diodes, else the mean. high: V of the supply.
-    start: V of start_a and start, trimmed. rest: V of RESTING, with which it begins: an operating point of so many
-    nodes that float takes minutes. cols: that the row's lines pass. swapped: columns whose diodes are on each other's
-    line. cut: column from which on the row's read line is open.
+    trim: what it begins with: an operating point of so many nodes that float takes minutes, and nodes that begin at 0 V
+    and rise draw others along (as drawn 0.5 LSB of a sum). cols: that the row's lines pass. swapped: columns whose
+    diodes are on each other's line. cut: column from which on the row's read line is open.
     """
     own = {"edge": "vdd" if edge else "0", "edgen": "0" if edge else "vdd", "k": "vdd", "vss": "0", "ref": "row_ref"}
-    resting = dict(rest)
-    for lane in set(lanes.values()) if rest else ():  # the bias of its amplifier is at the same levels
-        resting |= {f"xbias{lane}.{name}": rest[f"xcolumn_source.{name}"] for name in SOURCE}
     deck = [
         f"Vdark dark 0 {spec.dark:g}",
         f"Vreference reference 0 {spec.dark - (not edge) * CODES / 2 * spec.lsb:.9g}",
-        *(f"V{name} {name} 0 {volts:.9g}" for name, volts in zip(("start_a", "start"), start, strict=True)),
-        *([".ic " + " ".join(f"v({name})={volts:.6g}" for name, volts in resting.items())] if rest else []),
+        *(f"V{name} {name} 0 {volts:.9g}" for name, volts in zip(("start_a", "start"), trim.start, strict=True)),
+        begun(trim.rest),
         *(f"Coutside_{name} {name} 0 {OUTSIDE:g}" for name in (*BIASES, "level")),
-        "Xcolumn_source ibias_columns vdd 0 bias",
-        f"Xcolumn_bias ibias_columns {' '.join(BIASES)} level vdd 0 column_bias",
+        *BIAS,
         f"Xcascodes vcn reads readsn {own['edge']} {own['edgen']} cn vcnb 0 cascode_lines",
         "Xclear row_ref row_refn clear vbp vdd 0 clear_pulse",
     ]
@@ -93,10 +104,7 @@ def lines(
         ends = " ".join(f"line_{d}{c}" for d in names)
         deck.append(f"Xpixel{c} well_a{c} well_b{c} {ends} reset{c} read{c} level 0 pixel")
         deck += [f"Cline_{d}{c} line_{d}{c} 0 {spec.line:g}" for d in "ab"]
-        floats = {f"line_{d}{c}": LINE for d in "ab"} | {f"xcolumn{c}.out_{d}": high for d in "ab"}
-        floats |= {f"xcolumn{c}.cin_{d}": volts for d, volts in zip("ab", CIN[edge], strict=True)}
-        floats |= {f"xcolumn{c}.quarter": high, f"xcolumn{c}.half": high * edge}
-        deck.append(".ic " + " ".join(f"v({name})={volts:g}" for name, volts in floats.items()))
+        deck.append(begun({_of_column(net, c): volts for net, volts in trim.column.items()}))
         lane = lanes[c]
         nodes = own | {f"column_{d}": f"line_{d}{c}" for d in "ab"} | {"group": f"turn_column{c}"}
         nodes |= {f"{name}_{d}": f"{name}{d}{lane}" for name in ("lane", "sense") for d in "ab"}
@@ -106,6 +114,29 @@ def lines(
                 ampere = value / DIODE * spec.full_well * ELEMENTARY_CHARGE / integration
                 deck.append(f"Gphoto{diode}{c}_{tap} well_{diode}{c} 0 light{tap} 0 {ampere:.9g}")
     return deck
+
+
+def begun(volts: Mapping[str, float]) -> str:
+    """The line of a deck by which nodes begin at ``volts``, one at least."""
+    return ".ic " + " ".join(f"v({name})={volt:.6g}" for name, volt in volts.items())
+
+
+def _of_column(net: str, c: int) -> str:
+    return f"{net}{c}" if net.startswith("line_") else f"xcolumn{c}.{net}"
+
+
+def nets(circuit: Circuit, inside: str = "") -> Iterator[str]:
+    """What is inside a circuit and the circuits in it, by SPICE's names: xback_a.xtap0.inner."""
+    ends = [*(t.nodes for t in circuit.transistors), *((c.a, c.b) for c in circuit.capacitors)]
+    ends += [one.nodes for one in circuit.instances]
+    yield from (inside + net for net in sorted({net for nodes in ends for net in nodes} - set(circuit.ports)))
+    for one in circuit.instances:
+        yield from nets(one.circuit, f"{inside}x{one.name}.")
+
+
+def amplifier_bias(lane: int, rest: Mapping[str, float]) -> str:
+    """The same of the bias of a lane's amplifier, which is at the levels of the columns'."""
+    return begun({f"xbias{lane}.{name}": rest[f"xcolumn_source.{name}"] for name in SOURCE})
 
 
 def drive(source: Drive, columns: Sequence[int], lanes: Sequence[int], first: int, high: float) -> None:
@@ -134,12 +165,11 @@ def drive(source: Drive, columns: Sequence[int], lanes: Sequence[int], first: in
 
 
 @cache
-def trimmed(
-    spec: ColumnSpec, edge: bool, cycle: float, high: float, drawn: bool = False
-) -> tuple[tuple[float, float], dict[str, float]]:
-    """V of start_a and start at which a pixel without light leaves its lanes at dark, of the bias's lines at rest.
+def trimmed(spec: ColumnSpec, edge: bool, cycle: float, high: float, drawn: bool = False) -> Trim:
+    """Bias alone, from off; then, STEPS times, a pixel without light. drawn: of the column as drawn. Raises ToolError.
 
-    Simulated TRIMS times. drawn: of the column as drawn. Raises ToolError.
+    Each begins as the one before ended, and so does a row. The bias's lines are given to the first, too: where ngspice
+    finds no operating point it takes the end of a transient of its own, 10 us long, and they need milliseconds.
     """
     sizes, pixels = size(spec, analog), PixelSizes()
     reset, read, ends = 2, 6, 6 + spec.settle + spec.read
@@ -170,18 +200,23 @@ def trimmed(
     inner = {one.name: one for part in parts for one in part.circuits().values()}
     deck = [*analog.cards("tt", set().union(*(one.sizes() for one in parts))), ".param cscale=1 rscale=1"]
     deck += [line for one in inner.values() for line in one.own_lines(analog)]
-    outs, found = [f"col{d}{lane_bit}" for d in "ab"], dict[str, float]()
-    start = spec.dark, spec.dark
-    for _ in range(TRIMS):
-        own = lines({0: {0: (0.0, 0.0)}}, {0: lane_bit}, edge, high, 1.0, spec, sizes, pixels, start, {})
-        own += extracted.rest_of_nets(own, layouts)
-        if found:  # or the search for an operating point may end elsewhere
-            own.append(".nodeset " + " ".join(f"v({name})={volts:.6g}" for name, volts in found.items()))
-        with Simulator(
-            [*deck, *own], tuple(waves), (*outs, *RESTING), {"vdd": high}, CELSIUS, EXACT if drawn else FINE
-        ) as spice:
-            wave = spice.transient(waves, dict.fromkeys(outs, spec.input), (turn + 1) * cycle, cycle / 5)
-        end = float(np.nextafter((turn + 1) * cycle, 0))
-        start = nearer(start, (wave.at(outs[0], end), wave.at(outs[1], end)), spec, sizes)
-        found = {name: wave.at(name, 0.0) for name in RESTING}
-    return start, {"vdd": high} | found
+    deck += [CURRENT, *NO_TRANSIENT]
+    rails, outs, repeated = {"vdd": high}, [f"col{d}{lane_bit}" for d in "ab"], 0
+    with Simulator([*deck, *BIAS], (), RESTING, rails, CELSIUS, EXACT) as spice:
+        wave = spice.transient({}, {}, SETTLED, SETTLED / 20)
+        repeated += spice.repeated
+    rest = rails | {name: wave.at(name, SETTLED) for name in RESTING}
+    begin = {f"line_{d}": LINE for d in "ab"} | {f"cin_{d}": CIN for d in "ab"} | {f"out_{d}": high for d in "ab"}
+    trim = Trim((spec.dark, spec.dark), rest, begin | {"quarter": high, "half": high * edge}, 0)
+    inside = ("line_a", "line_b", *nets(column(sizes)))
+    names = {net: extracted.flat(_of_column(net, 0)) if drawn else _of_column(net, 0) for net in inside}
+    end, over = float(np.nextafter((turn + 1) * cycle, 0)), (turn + 2) * cycle
+    for _ in range(STEPS):
+        own = lines({0: {0: (0.0, 0.0)}}, {0: lane_bit}, edge, high, 1.0, spec, sizes, pixels, trim)
+        own = extracted.as_drawn(own, layouts)
+        with Simulator([*deck, *own], tuple(waves), (*outs, *names.values()), rails, CELSIUS, EXACT) as spice:
+            wave = spice.transient(waves, dict.fromkeys(outs, spec.input), over, cycle / 5)
+            repeated += spice.repeated
+        start = nearer(trim.start, (wave.at(outs[0], end), wave.at(outs[1], end)), spec, sizes)
+        trim = Trim(start, rest, {net: wave.at(node, over) for net, node in names.items()}, repeated)
+    return trim

@@ -71,7 +71,7 @@ class Deck:
 
     answers: of each lane of the chip, the node of its decision, or "-". lanes, columns: those that are simulated.
     lines: of the netlist. drive: those of +drive below its head. saved: nodes of the waves. supply: V. flat: lanes are
-    as extracted, without circuits in them.
+    as extracted, without circuits in them. repeated: of the columns' trim, transients that needed a retry.
     """
 
     answers: list[str]
@@ -84,6 +84,7 @@ class Deck:
     transistors: int = 0
     supply: float = 1.8
     flat: bool = False
+    repeated: int = 0
 
     def inside(self, lane: int) -> tuple[str, ...]:
         """Names of LANE_NODES of a lane in the waves."""
@@ -185,8 +186,7 @@ def build(
         *(f"V{name} {name}_out 0 {volts:g}" for name, volts in supplies.items()),
         *(f"R{name} {name}_out {name} {spec.reference_resistance:g}" for name in supplies),
         *deck.sources,
-        *body,
-        *extracted.rest_of_nets(body, layouts),
+        *extracted.as_drawn(body, layouts),
         ".save " + " ".join(f"v({node})" for node in deck.saved),
         ".end",
     ]
@@ -209,11 +209,13 @@ def _columns(
     sizes = size(column, analog)
     swapped = frozenset(fault.where if fault and fault.kind == "diodes" else ())
     cut = fault.where[0] if fault and fault.kind == "row" else None
-    start, rest = own_columns.trimmed(column, not unsigned, timing.period, spec.supply, deck.flat)
+    trim = own_columns.trimmed(column, not unsigned, timing.period, spec.supply, deck.flat)
+    deck.repeated = trim.repeated
     taps = {c: row.diodes[c] for c in deck.columns}
     of_lane = {c: c // tile_cols % lanes for c in deck.columns}
-    given = (not unsigned, spec.supply, row.integration, column, sizes, row.sizes, start, rest, row.cols, swapped, cut)
+    given = (not unsigned, spec.supply, row.integration, column, sizes, row.sizes, trim, row.cols, swapped, cut)
     body += own_columns.lines(taps, of_lane, *given)
+    body += [own_columns.amplifier_bias(lane, trim.rest) for lane in deck.lanes]
     first = 10 * lanes + SUBS * row.cols
     own_columns.drive(partial(_source, deck), deck.columns, deck.lanes, first, spec.supply)
     deck.saved += [f"xcolumn{c}.out_{d}" for c in deck.columns for d in "ab"]

@@ -25,15 +25,26 @@ def circuits() -> Mapping[str, Circuit]:
     return {name: extract(made[name], masks, wires)[0] for name in NAMES}
 
 
-def rest_of_nets(body: list[str], drawn: Mapping[str, Circuit]) -> list[str]:
-    """Lines that begin every node of a net of ``drawn`` circuits, net__1, net__2, .., where ``body`` begins the net."""
+def flat(net: str) -> str:
+    """A net's name where its instance has no circuits in it: xcolumn0.on1.m of xcolumn0.xon1.m."""
+    return re.sub(r"(?<=\.)x(?=\w+\.)", "", net)
+
+
+def as_drawn(body: list[str], drawn: Mapping[str, Circuit]) -> list[str]:
+    """``body``, in which all nodes of a net of a ``drawn`` circuit, net, net__1, net__2, .., begin where the net does."""
     calls = (line.split() for line in body if line.startswith("X"))
     called = {words[0].lower(): words[-1] for words in calls if words[-1] in drawn}
     nodes = {name: {n for r in one.resistors for n in (r.a, r.b)} for name, one in drawn.items()}
-    begun = re.findall(r"v\((\w+)\.([\w.]+)\)=(\S+)", "\n".join(line for line in body if line.startswith(".ic ")))
-    return [
-        f".ic v({instance}.{node})={volts}"
-        for instance, net, volts in begun
-        for node in sorted(nodes.get(called.get(instance, ""), ()))
-        if node.startswith(f"{net}__")
-    ]
+
+    def begun(match: re.Match[str]) -> str:
+        name, volts = match.groups()
+        instance, _, net = flat(name).partition(".")
+        rest = [node for node in nodes.get(called.get(instance, ""), ()) if node.startswith(f"{net}__")]
+        return (
+            " ".join(f"v({instance}.{node})={volts}" for node in (net, *sorted(rest)))
+            if instance in called
+            else match[0]
+        )
+
+    begins = re.compile(r"v\((\S+)\)=(\S+)")
+    return [begins.sub(begun, line) if line.startswith(".ic ") else line for line in body]

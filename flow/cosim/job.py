@@ -64,6 +64,7 @@ def summary(row: Row) -> dict[str, Any]:
         "time_points": run.stats["accepted"],
         "rejected_points": run.stats["rejected"],
         "attempts": run.attempts,
+        "trim_retries": row.decks[0].repeated,
         "seconds": run.stats["seconds"],
         "processor_seconds": run.stats["processor_seconds"],
         "circuit_cycles_per_s": run.stats["circuit_cycles"] / run.stats["seconds"],

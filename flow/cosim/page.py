@@ -43,7 +43,8 @@ def write(folder: Path, rows: Sequence[Row], s: Mapping[str, Any]) -> None:
 
 
 HEAD = ("", "samples", "codes that differ", "largest, LSB", "at the lane, LSB", "decisions", "that differ")
-HEAD += ("slowest, ns", "transistors", "cycles of the circuit", "of the chip", "time points", "attempts", "s")
+HEAD += ("slowest, ns", "transistors", "cycles of the circuit", "of the chip", "time points", "attempts")
+HEAD += ("retries of the trim", "s")
 ABOUT = (
     "Each row leaves the chip as its stream; the codes are decoded from it. The real-number front end is asked the "
     "same questions as the circuit in the same cycle: decisions that differ are counted one by one."
@@ -54,7 +55,7 @@ WAVES = "Both sides are in <mode>.vcd; here, voltages between the comparator's i
 def _line(s: Mapping[str, Any]) -> tuple[str, ...]:
     codes = (f"{s['samples']:,}", f"{s['differing']:,}", f"{s['largest_difference_lsb']:,}")
     numbers = (s["decisions"], s["differing_decisions"])
-    more = (s["transistors"], s["circuit_cycles"], s["chip_cycles"], s["time_points"], s["attempts"])
+    more = (s["transistors"], s["circuit_cycles"], s["chip_cycles"], s["time_points"], s["attempts"], s["trim_retries"])
     ns = f"{1e9 * s['slowest_decision_s']:.2f}"
     name = s["name"] + ", with amplifiers" * s["amplifier"]
     at_lane = f"{s['largest_error_at_lane_lsb']:.3f}"
