@@ -31,7 +31,7 @@ def flat(net: str) -> str:
 
 
 def as_drawn(body: list[str], drawn: Mapping[str, Circuit]) -> list[str]:
-    """``body``, in which all nodes of a net of a ``drawn`` circuit, net, net__1, net__2, .., begin where the net does."""
+    """``body``, in which all nodes of a net of a ``drawn`` circuit, net, net__1, .., begin where the net does."""
     calls = (line.split() for line in body if line.startswith("X"))
     called = {words[0].lower(): words[-1] for words in calls if words[-1] in drawn}
     nodes = {name: {n for r in one.resistors for n in (r.a, r.b)} for name, one in drawn.items()}

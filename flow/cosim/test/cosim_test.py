@@ -165,7 +165,7 @@ def test_a_trim_depends_on_no_tolerance(monkeypatch, edge):
     monkeypatch.setattr(columns, "EXACT", replace(columns.EXACT, reltol=1e-5))
     tight = columns.trimmed.__wrapped__(*of)
     assert found.repeated == tight.repeated == 0
-    assert np.abs(np.subtract(found.start, tight.start)).max() < 1e-4
+    assert np.abs(np.subtract(found.start, tight.start)).max() < 2e-4  # 0.1 LSB; both diodes alike
     assert 0.55 < found.rest["vbp"] < 0.58 and found.column.keys() == tight.column.keys()
 
 
