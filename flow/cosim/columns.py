@@ -37,7 +37,6 @@ BIAS = (
     "Xcolumn_source ibias_columns vdd 0 bias",
     f"Xcolumn_bias ibias_columns {' '.join(BIASES)} level vdd 0 column_bias",
 )
-
 NO_TRANSIENT = ".control", "optran 1 1 1 0 0 0", ".endc"  # for an operating point: what is to begin elsewhere would not
 
 
