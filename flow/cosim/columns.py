@@ -41,10 +41,11 @@ NO_TRANSIENT = ".control", "optran 1 1 1 0 0 0", ".endc"  # for an operating poi
 
 
 class Trim(NamedTuple):
-    """start: V of start_a and start at which a pixel without light leaves its lanes at dark.
+    """What a trim found.
 
-    rest: V of RESTING and vdd. column: V that this leaves at line_a, line_b and every net of a column. repeated: of the
-    transients, those that needed a retry.
+    start: V of start_a and start at which a pixel without light leaves its lanes at dark. rest: V of RESTING and vdd.
+    column: V that this leaves at line_a, line_b and every net of a column. repeated: of the transients, those that
+    needed a retry.
     """
 
     start: tuple[float, float]
