@@ -64,7 +64,6 @@ def lines(
     diodes: Mapping[int, Mapping[int, tuple[float, float]]],
     lanes: Mapping[int, int],
     edge: bool,
-    high: float,
     integration: float,
     spec: ColumnSpec,
     sizes: ColumnSizes,
@@ -76,10 +75,10 @@ def lines(
 ) -> list[str]:
     """Lines of the deck; see `drive` for their controls. lanes: of each column; the lanes' lines end at cola0, colb0.
 
-    diodes: (a, b) in LSB of each column and tap. edge: lanes get both diodes, else the mean. high: V of the supply.
-    trim: what it begins with: an operating point of so many nodes that float takes minutes, and nodes that begin at 0 V
-    and rise draw others along (as drawn 0.5 LSB of a sum). cols: that the row's lines pass. swapped: columns whose
-    diodes are on each other's line. cut: column from which on the row's read line is open.
+    diodes: (a, b) in LSB of each column and tap. edge: lanes get both diodes, else the mean. trim: initial voltages: an
+    operating point of so many floating nodes takes minutes, and what rises from 0 V couples into the others (as drawn
+    0.5 LSB of a sum). cols: that the row's lines pass. swapped: columns whose diodes are on each other's line. cut:
+    column from which on the row's read line is open.
     """
     own = {"edge": "vdd" if edge else "0", "edgen": "0" if edge else "vdd", "k": "vdd", "vss": "0", "ref": "row_ref"}
     deck = [
@@ -121,6 +120,11 @@ def begun(volts: Mapping[str, float]) -> str:
     return ".ic " + " ".join(f"v({name})={volt:.6g}" for name, volt in volts.items())
 
 
+def amplifier_bias(lane: int, rest: Mapping[str, float]) -> str:
+    """The line by which the bias of a lane's amplifier begins at the levels of the columns' bias."""
+    return begun({f"xbias{lane}.{name}": rest[f"xcolumn_source.{name}"] for name in SOURCE})
+
+
 def _of_column(net: str, c: int) -> str:
     return f"{net}{c}" if net.startswith("line_") else f"xcolumn{c}.{net}"
 
@@ -132,11 +136,6 @@ def nets(circuit: Circuit, inside: str = "") -> Iterator[str]:
     yield from (inside + net for net in sorted({net for nodes in ends for net in nodes} - set(circuit.ports)))
     for one in circuit.instances:
         yield from nets(one.circuit, f"{inside}x{one.name}.")
-
-
-def amplifier_bias(lane: int, rest: Mapping[str, float]) -> str:
-    """The same of the bias of a lane's amplifier, which is at the levels of the columns'."""
-    return begun({f"xbias{lane}.{name}": rest[f"xcolumn_source.{name}"] for name in SOURCE})
 
 
 def drive(source: Drive, columns: Sequence[int], lanes: Sequence[int], first: int, high: float) -> None:
@@ -201,22 +200,21 @@ def trimmed(spec: ColumnSpec, edge: bool, cycle: float, high: float, drawn: bool
     deck = [*analog.cards("tt", set().union(*(one.sizes() for one in parts))), ".param cscale=1 rscale=1"]
     deck += [line for one in inner.values() for line in one.own_lines(analog)]
     deck += [CURRENT, *NO_TRANSIENT]
-    rails, outs, repeated = {"vdd": high}, [f"col{d}{lane_bit}" for d in "ab"], 0
+    rails, outs = {"vdd": high}, [f"col{d}{lane_bit}" for d in "ab"]
     with Simulator([*deck, *BIAS], (), RESTING, rails, CELSIUS, EXACT) as spice:
         wave = spice.transient({}, {}, SETTLED, SETTLED / 20)
-        repeated += spice.repeated
     rest = rails | {name: wave.at(name, SETTLED) for name in RESTING}
     begin = {f"line_{d}": LINE for d in "ab"} | {f"cin_{d}": CIN for d in "ab"} | {f"out_{d}": high for d in "ab"}
-    trim = Trim((spec.dark, spec.dark), rest, begin | {"quarter": high, "half": high * edge}, 0)
+    trim = Trim((spec.dark, spec.dark), rest, begin | {"quarter": high, "half": high * edge}, spice.repeated)
     inside = ("line_a", "line_b", *nets(column(sizes)))
     names = {net: extracted.flat(_of_column(net, 0)) if drawn else _of_column(net, 0) for net in inside}
     end, over = float(np.nextafter((turn + 1) * cycle, 0)), (turn + 2) * cycle
     for _ in range(STEPS):
-        own = lines({0: {0: (0.0, 0.0)}}, {0: lane_bit}, edge, high, 1.0, spec, sizes, pixels, trim)
+        own = lines({0: {0: (0.0, 0.0)}}, {0: lane_bit}, edge, 1.0, spec, sizes, pixels, trim)
         own = extracted.as_drawn(own, layouts)
         with Simulator([*deck, *own], tuple(waves), (*outs, *names.values()), rails, CELSIUS, EXACT) as spice:
             wave = spice.transient(waves, dict.fromkeys(outs, spec.input), over, cycle / 5)
-            repeated += spice.repeated
         start = nearer(trim.start, (wave.at(outs[0], end), wave.at(outs[1], end)), spec, sizes)
-        trim = Trim(start, rest, {net: wave.at(node, over) for net, node in names.items()}, repeated)
+        left = {net: wave.at(node, over) for net, node in names.items()}
+        trim = Trim(start, rest, left, trim.repeated + spice.repeated)
     return trim

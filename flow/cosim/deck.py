@@ -213,7 +213,7 @@ def _columns(
     deck.repeated = trim.repeated
     taps = {c: row.diodes[c] for c in deck.columns}
     of_lane = {c: c // tile_cols % lanes for c in deck.columns}
-    given = (not unsigned, spec.supply, row.integration, column, sizes, row.sizes, trim, row.cols, swapped, cut)
+    given = (not unsigned, row.integration, column, sizes, row.sizes, trim, row.cols, swapped, cut)
     body += own_columns.lines(taps, of_lane, *given)
     body += [own_columns.amplifier_bias(lane, trim.rest) for lane in deck.lanes]
     first = 10 * lanes + SUBS * row.cols

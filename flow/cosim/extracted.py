@@ -37,14 +37,11 @@ def as_drawn(body: list[str], drawn: Mapping[str, Circuit]) -> list[str]:
     nodes = {name: {n for r in one.resistors for n in (r.a, r.b)} for name, one in drawn.items()}
 
     def begun(match: re.Match[str]) -> str:
-        name, volts = match.groups()
-        instance, _, net = flat(name).partition(".")
-        rest = [node for node in nodes.get(called.get(instance, ""), ()) if node.startswith(f"{net}__")]
-        return (
-            " ".join(f"v({instance}.{node})={volts}" for node in (net, *sorted(rest)))
-            if instance in called
-            else match[0]
-        )
+        instance, _, net = flat(match[1]).partition(".")
+        if instance not in called:
+            return match[0]
+        rest = sorted(node for node in nodes[called[instance]] if node.startswith(f"{net}__"))
+        return " ".join(f"v({instance}.{node})={match[2]}" for node in (net, *rest))
 
     begins = re.compile(r"v\((\S+)\)=(\S+)")
     return [begins.sub(begun, line) if line.startswith(".ic ") else line for line in body]
