@@ -3,7 +3,7 @@
 import re
 from collections.abc import Callable, Iterable, Sequence
 from importlib import import_module
-from typing import Any
+from typing import Any, NamedTuple
 
 from talbot.base.gds import db
 from talbot.platforms.layers import GdsLayer
@@ -22,6 +22,8 @@ IMPLANT, ENCLOSURE, APART = (
 CLEAR, LEAST = IMPLANT + ENCLOSURE, 380  # contacts to poly from p+ diffusion; width and space of implants (psd.1, 2)
 SPACES = 210, 170  # of poly and of local interconnect: what is nearer around a moved contact is filled (poly.2, li.3)
 SHORT = 10  # what the level shifter to the core has too little room for hvntm between its two n transistors
+THICK_LEAST, THICK_APART, THICK_ROOM = 290, 370, 330  # in thick oxide: diffusion, p+ from n+, n well around a tap
+GROWN = 30  # of a tap of 250 on each side: one has a transistor 340 nm off
 GRID = 5
 ROW = "pads"
 GROUNDS = "vss", "iovss"
@@ -29,6 +31,16 @@ AROUND = (
     ((80, 50), (50, 80)),
     ((80, 0), (0, 80)),
 )  # nm of poly and of local interconnect around a contact: licon.8, li.5
+
+
+class _Well(NamedTuple):
+    """A well of a cell. name: the same of wells that abut. thick, thin: it has thick oxide, thin-oxide transistors."""
+
+    cell: "db.Cell"
+    region: "db.Region"
+    name: tuple[int, int, int]
+    thick: bool
+    thin: bool
 
 
 def library(process: PadProcess) -> tuple[Any, Any]:
@@ -60,6 +72,7 @@ def layout(made: Any, process: PadProcess, pixel: PixelProcess) -> "db.Layout":
         cell.flatten(True)
         mend(cell, pixel)
         split(cell, pixel, process.tap)
+    cover_wells(pads, pixel, process.tap)
     others = [cell.cell_index() for cell in found.each_cell() if cell.cell_index() not in wanted]
     found.delete_cells(others)
     return found
@@ -100,6 +113,48 @@ def split(cell: "db.Cell", process: PixelProcess, tap: GdsLayer) -> None:
     taps = (nplus & well) + (pplus - well)
     _replace(cell, tap, taps)
     _replace(cell, process.active, active - taps)
+
+
+def cover_wells(cells: "Sequence[db.Cell]", process: PixelProcess, tap: GdsLayer) -> None:
+    """Extend thick oxide over all of a well that it is in (nwell.9), in the cells beside it, too, where the well goes on.
+
+    Not over a well with thin-oxide transistors, as IOPadIn's level shifter has: they would be of thick oxide.
+    """
+    mask, wells = process.thick[0][0], list[_Well]()
+    for number, cell in enumerate(cells):
+        thick = _region(cell, mask)
+        gates = (_region(cell, process.active) & _region(cell, process.poly)) - thick
+        for polygon in _region(cell, process.well).each():
+            well, box = db.Region(polygon), polygon.bbox()
+            edge = (well & db.Region(db.Box(0, box.bottom, GRID, box.top))).bbox()
+            name = (-1, edge.bottom, edge.top) if not edge.empty() else (number, box.left, box.bottom)
+            wells.append(_Well(cell, well, name, not (thick & well).is_empty(), not (gates & well).is_empty()))
+    covered = {one.name for one in wells if one.thick} - {one.name for one in wells if one.thin}
+    for cell in cells:
+        own = [one.region for one in wells if one.cell is cell and one.name in covered]
+        if own:
+            well = _widened(cell, process, tap, sum(own, db.Region()).merged())
+            _replace(cell, process.well, _region(cell, process.well) + well)
+            _replace(cell, mask, _closed((_region(cell, mask) + well).merged(), TIP_SPACE).merged())
+
+
+def _widened(cell: "db.Cell", process: PixelProcess, tap: GdsLayer, well: "db.Region") -> "db.Region":
+    """A well as thick oxide wants it: its diffusion THICK_LEAST wide, taps THICK_APART from diodes, THICK_ROOM around."""
+    half, apart = THICK_LEAST // 2 - GRID, db.Region()
+    for mask, implant in ((process.active, process.pplus), (tap, process.nplus)):
+        whole = _region(cell, mask)
+        inside = (whole & well).merged()
+        narrow = inside.interacting((inside - inside.sized(-half).sized(half)).sized(-GROWN // 2))
+        made = (_grown(narrow, GROWN) + inside - apart).merged()
+        _replace(cell, mask, (whole - inside + made).merged())
+        _replace(cell, implant, (_region(cell, implant) + _grown(made.interacting(narrow), ENCLOSURE)).merged())
+        apart = _grown(made.not_interacting(_region(cell, tap)), THICK_APART)
+    return (well + _grown((_region(cell, tap) & well).merged(), THICK_ROOM)).merged()
+
+
+def _grown(region: "db.Region", by: int) -> "db.Region":
+    """The region and ``by`` nm around it; diagonal edges stay on the grid."""
+    return region.minkowski_sum(db.Box(-by, -by, by, by)).merged()
 
 
 def _thick(cell: "db.Cell", process: PixelProcess) -> "db.Region":

@@ -74,6 +74,49 @@ def test_taps_are_on_their_own_mask(layout):
     assert region(cell, DIFFUSION).bbox() == db.Box(0, 0, 2000, 1000)
 
 
+@pytest.mark.parametrize("thin", [False, True])
+def test_thick_oxide_is_over_all_of_its_well(layout, thin):
+    """And over what goes on of it in the next cell; not where a thin-oxide transistor is in it, in either of them."""
+    tap, thick = pad_process("sky130").tap, PIXEL.thick[0][0]
+
+    def draw(cell, mask, *corners):
+        cell.shapes(layout.layer(*mask)).insert(db.Box(*corners))
+
+    cells = [layout.create_cell(name) for name in ("pad", "filler")]
+    for cell in cells:
+        draw(cell, NWELL, -180, 0, 5180, 840)
+        draw(cell, tap, 0, 295, 5000, 545)
+        draw(cell, PIXEL.nplus, -125, 170, 5125, 670)
+        draw(cell, NWELL, 1000, 6000, 3000, 8000)  # another one, without thick oxide
+    draw(cells[0], thick, 2000, -300, 3000, 900)
+    if thin:
+        draw(cells[1], DIFFUSION, 4000, 300, 4200, 500)
+        draw(cells[1], PIXEL.poly, 4050, 0, 4150, 800)
+    pads.cover_wells(cells, PIXEL, tap)
+    for cell in cells:
+        well = region(cell, NWELL)
+        low, other = (well & db.Region(db.Box(-9000, 500 * k, 9000, 500 * (k + 1))) for k in (0, 12))
+        assert (low - region(cell, thick)).is_empty() != thin
+        assert (other & region(cell, thick)).is_empty()
+        if not thin:
+            taps = region(cell, tap)
+            assert taps.bbox().height() >= 290 and (taps.sized(330) - well).is_empty()
+            assert (taps.sized(125) - region(cell, PIXEL.nplus)).is_empty()
+
+
+def test_a_tap_in_thick_oxide_is_apart_from_a_diode(layout):
+    tap, cell = pad_process("sky130").tap, layout.create_cell("cell")
+    for mask, *corners in (
+        (NWELL, 0, 0, 9000, 3000),
+        (PIXEL.thick[0][0], 500, 500, 8500, 2500),
+        (DIFFUSION, 2000, 1000, 6000, 1750),
+        (tap, 2000, 2000, 6000, 2600),
+    ):
+        cell.shapes(layout.layer(*mask)).insert(db.Box(*corners))
+    pads.cover_wells([cell], PIXEL, tap)
+    assert region(cell, tap).bbox().bottom == 1750 + 370
+
+
 def test_grounds_are_one_net_in_pads_alone():
     spice = ".subckt IOPadIn vss vdd iovss pad\nX1 iovss pad vss Clamp\n.ends IOPadIn\n"
     clamp = ".subckt Clamp iovss pad vss\nM1 pad iovss iovss iovss nmos\n.ends Clamp\n"
@@ -96,9 +139,17 @@ def test_the_pads_keep_all_rules_and_a_fault_is_named(tmp_path):
     max(clamp.each(), key=lambda shape: shape.bbox().height()).delete()
     opening = layout.cell("IOPadIn").shapes(layout.layer(*PIXEL.contact_poly))
     next(opening.each()).delete()
+    vdd = layout.cell("IOPadVdd")  # thick oxide ends in the clamp's well, beside its tap
+    thick = vdd.shapes(layout.layer(*PIXEL.thick[0][0]))
+    whole = max(thick.each(), key=lambda shape: shape.bbox().height())
+    box = whole.bbox()
+    short = db.Region(whole.polygon) - db.Region(db.Box(box.left, box.bottom, box.left + 200, box.top))
+    whole.delete()
+    thick.insert(short)
     runner.paths["die_pads.gds"] = tmp_path / "faults.gds"
     write_gds(layout, runner.paths["die_pads.gds"])
     assert runner.run(DiePadsLvs(parameters))["metrics"] == {"pads_unmatched": 1}
     assert '"IOPadAnalog": false' in runner.paths["die_pads_lvs.verdicts"].read_text()
     assert runner.run(DiePadsDrc(parameters))["metrics"]["pad_drc_violations"] > 0
-    assert "licon.18" in runner.paths["die_pads_drc.summary"].read_text()
+    broken = runner.paths["die_pads_drc.summary"].read_text()
+    assert "licon.18" in broken and "nwell.9" in broken
