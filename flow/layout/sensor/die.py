@@ -15,6 +15,7 @@ from talbot.flow.layout.options import Options
 from talbot.flow.layout.report.metrics import broken
 from talbot.flow.layout.report.page import picture, write_report
 from talbot.flow.layout.report.picture import render
+from talbot.flow.layout.steps.foundry_drc import FoundryDrcParameters
 from talbot.flow.layout.steps.parameters import PdkParameters
 from talbot.flow.layout.steps.sta import StaParameters
 from talbot.platforms.coriolis import coriolis_platform
@@ -30,7 +31,7 @@ from .picture import by_block
 from .plan import DieParameters
 from .steps.die_antenna import DieAntenna
 from .steps.die_connectivity import DieConnectivity
-from .steps.die_drc import DieDrc
+from .steps.die_drc import DieDrc, DieFoundryDrc
 from .steps.die_gds import DieGds, DieGdsParameters
 from .steps.die_ir_drop import DieIrDrop, DieIrDropParameters
 from .steps.die_pads import DiePads, DiePadsDrc, DiePadsLvs
@@ -67,6 +68,7 @@ def die_steps(
         DiePlan(DiePlanParameters(pdk, die or DieParameters())),
         DieGds(DieGdsParameters(pdk, tuple(drawn))),
         DieDrc(PdkParameters(pdk)),
+        *([DieFoundryDrc(FoundryDrcParameters(pdk, SENSOR))] if "klayout" in dict(options.decks) else []),
         DieConnectivity(PdkParameters(pdk)),
         DieAntenna(PdkParameters(pdk)),
         DieParasitics(parasitics),
@@ -93,7 +95,8 @@ def lay_out_sensor(
     folder = out / SENSOR
     blocks = files(folder / "black_boxes", options.pdk, analog)
     runner = Runner(folder / "steps", blocks.paths, note, out / "shared")
-    sources = PARTS | {f"timing.{corner}": f"timing.{corner}" for corner in options.corners}
+    given = [f"timing.{corner}" for corner in options.corners] + [f"foundry.{name}" for name, _ in options.decks]
+    sources = PARTS | {name: name for name in given}
 
     def parts(core: Runner) -> dict[str, Path]:
         """Those of the chip that there are."""

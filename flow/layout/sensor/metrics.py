@@ -63,7 +63,7 @@ def summarize(name: str, options: Options, runner: Runner, black_boxes: Sequence
         "timing_rests_on": f"the chip, its ports with the die's nets{extrapolated(sta)}; {timing_basis(options)}",
         **{key: {corner: found[key] for corner, found in sta.items()} or None for key in SLACKS},
         "f_max_mhz": min((found["f_max_mhz"] for found in sta.values()), default=None),
-        **{key: metrics.get(key) for key in DROPS},
+        **{key: metrics.get(key) for key in ("foundry_drc_violations", *DROPS)},
         "largest_loads": dict(sorted(loads.items(), key=lambda item: -item[1])[:SHOWN]),
         "not_checked": [*([BOXES_NOT_CHECKED] if black_boxes else []), *NOT_CHECKED],
         **{name: {step: record[name] for step, record in records.items()} for name in ("wall_s", "peak_mib")},

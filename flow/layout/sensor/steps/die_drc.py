@@ -1,7 +1,8 @@
-"""Design rules of the die."""
+"""Design rules of the die, by PDKMaster's deck and by the foundry's."""
 
 from talbot.flow.layout.geometry.decks import with_taps, without_rules
 from talbot.flow.layout.steps.drc import Drc
+from talbot.flow.layout.steps.foundry_drc import FoundryDrc
 from talbot.platforms.analog import analog_masks
 from talbot.platforms.pixel import PROCESSES
 
@@ -23,3 +24,10 @@ class DieDrc(Drc):
             return deck
         masks = analog_masks(pdk)
         return without_rules(with_taps(deck, masks.base.active, masks.base.tap), masks.contradicted)
+
+
+class DieFoundryDrc(FoundryDrc):
+    """`FoundryDrc` of what `DieDrc` checks."""
+
+    name = "die_foundry_drc"
+    inputs = {"gds": "die_gds.checked", "deck": "foundry.klayout"}
