@@ -175,6 +175,7 @@ def test_a_light_field_by_every_method(monkeypatch):
             run.reconstruct(what, method=method)
 
 
+@pytest.mark.slow
 def test_polarization_of_a_run_is_that_of_the_command(tmp_path):
     run = talbot.Sensor(rows=48, cols=54).golden("specular", mode="raw")
     found = run.polarization(highlight=0.05)
@@ -191,6 +192,7 @@ def test_polarization_of_a_run_is_that_of_the_command(tmp_path):
             wrong()
 
 
+@pytest.mark.slow
 def test_depth_of_a_run_is_that_of_the_command(tmp_path):
     lens = {"focal_length": 25e-3, "focus": 3.0, "scale": 1.0}
     sensor = talbot.Sensor(rows=40, cols=48, f_mod=100e6, **lens)

@@ -87,6 +87,7 @@ def test_a_wheel_has_the_package_and_nothing_else(built):
     assert {name for name in names if name.startswith("talbot/")} == paths and set(names.values()) == {1}
 
 
+@pytest.mark.slow
 def test_an_installation_works_from_any_folder(built, tmp_path):
     zipfile.ZipFile(built[1]).extractall(tmp_path / "site")
     (tmp_path / "away").mkdir()

@@ -19,6 +19,7 @@ def test_a_python_that_does_not_fit_is_refused_in_one_line(tmp_path, python, fou
     assert not (tmp_path / "venv").exists()
 
 
+@pytest.mark.slow
 def test_another_python_of_the_system_is_found_and_named(tmp_path):
     """The first `python3` does not fit; one with a version in its name does."""
     (tmp_path / "python3").symlink_to("/bin/false")

@@ -42,6 +42,7 @@ def test_files(done):
     assert len(read_calibration(folder / "calibration.json").types) == 24
 
 
+@pytest.mark.slow
 def test_lightfield_knows_it_in_place_of_the_truth(done, tmp_path):
     folder, _ = done
     words = "--rows=24", "--cols=24", "--pupil=0.012", "--golden", "--disparities=5"

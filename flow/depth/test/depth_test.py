@@ -49,6 +49,7 @@ def test_files(done):
     assert f"{s['depth_rms_m']:.4f} m" in text and "Past the occluder" not in text
 
 
+@pytest.mark.slow
 def test_depth_edges_have_their_own_turns(tmp_path):
     s = measured(tmp_path, "--scene=cornell", "--rows=96", "--cols=96", "--golden")
     best, free = s["methods"]["field"], s["baselines"]["light_field"]
@@ -75,6 +76,7 @@ def test_no_light_and_too_much_have_no_depth(scene, tmp_path):
     assert s["depth_sure"] == 0 and s["depth_rms_m"] is None
 
 
+@pytest.mark.slow
 def test_a_depth_beyond_the_disparities_that_are_tried_is_not_sure(tmp_path):
     words = "--scene=tilted", "--rows=40", "--cols=48", "--golden", "--far=1.8", "--near=2.5"
     assert measured(tmp_path, *words)["depth_sure"] < 0.1
@@ -120,6 +122,7 @@ def test_what_the_capture_does_not_ask_is_refused(capsys, tmp_path):
     assert "unrecognized arguments: --views=3" in capsys.readouterr().err and not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow
 def test_light_by_other_ways_moves_the_depth_of_a_room(tmp_path):
     s = measured(tmp_path / "all", "--scene=room", "--rows=48", "--cols=48", "--golden")
     assert 0.03 < s["multipath"]["median_m"] < 0.3 and s["multipath"]["rms_m"] < 0.3

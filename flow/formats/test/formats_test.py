@@ -102,6 +102,7 @@ def test_command(tmp_path, codes, capsys, monkeypatch):
     assert text.startswith("before\n") and text.endswith("after\n") and "stale" not in text and "| nibbles |" in text
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not shutil.which("yosys"), reason="yosys is not installed (make tools)")
 def test_gates_rank_the_packers():
     gates = command.gates_of_packers()

@@ -16,6 +16,7 @@ from talbot.models.parameters import ParameterError
 ROWS = 1, 2
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not has_headers(PACKED), reason=f"no {' and '.join(PACKED)}")
 def test_waves(tmp_path):
     asked = request(scene="coins", rows=8, cols=12, waves=ROWS, waves_format="fst")

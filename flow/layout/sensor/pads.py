@@ -116,7 +116,7 @@ def split(cell: "db.Cell", process: PixelProcess, tap: GdsLayer) -> None:
 
 
 def cover_wells(cells: "Sequence[db.Cell]", process: PixelProcess, tap: GdsLayer) -> None:
-    """Extend thick oxide over all of a well that it is in (nwell.9), in the cells beside it, too, where the well goes on.
+    """Extend thick oxide over all of a well that it is in (nwell.9), into the cells beside it, too.
 
     Not over a well with thin-oxide transistors, as IOPadIn's level shifter has: they would be of thick oxide.
     """
@@ -139,7 +139,7 @@ def cover_wells(cells: "Sequence[db.Cell]", process: PixelProcess, tap: GdsLayer
 
 
 def _widened(cell: "db.Cell", process: PixelProcess, tap: GdsLayer, well: "db.Region") -> "db.Region":
-    """A well as thick oxide wants it: its diffusion THICK_LEAST wide, taps THICK_APART from diodes, THICK_ROOM around."""
+    """A well as thick oxide wants it; its diffusion becomes wide enough, its taps part from diodes."""
     half, apart = THICK_LEAST // 2 - GRID, db.Region()
     for mask, implant in ((process.active, process.pplus), (tap, process.nplus)):
         whole = _region(cell, mask)

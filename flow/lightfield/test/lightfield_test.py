@@ -114,6 +114,7 @@ def test_a_folder_tells_its_settings_and_what_it_replaced(tmp_path, monkeypatch,
     assert "replaced there: flat-rows=8-cols=12-lux=400-golden-disparities=3" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_an_estimate_alone_is_that_of_the_page(monkeypatch):
     monkeypatch.setattr(fields, "prior_of", partial(prior_of, disparities=11))
     result = golden_result(request(scene="tilted", rows=24, cols=24, mode="raw"))

@@ -117,6 +117,7 @@ def test_looks_at_nothing():
 """
 
 
+@pytest.mark.slow
 def test_what_no_test_checks_survives(tmp_path):
     """A mutant that moves a pin in a test that does not look at it is not killed; the module's own tests kill."""
     path, folder, mutants = planted(one_cycle(), tmp_path, "asp_chip", 8)

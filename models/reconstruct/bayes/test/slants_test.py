@@ -133,7 +133,7 @@ def test_a_mean_along_a_level_plane_is_the_pool_and_a_slanted_ridge_stays():
     np.testing.assert_allclose(along(ridge, 2.5, 1, 1.0)[:, 8:-8], ridge[:, 8:-8], atol=1e-12)
 
 
-@pytest.mark.parametrize("slant", [(0.0, SLANT), (-SLANT, 0.0)])
+@pytest.mark.parametrize("slant", [(0.0, SLANT), pytest.param((-SLANT, 0.0), marks=pytest.mark.slow)])
 def test_a_slanted_plane_is_better_by_slanted_hypotheses(slant):
     """A wall in steep view, finely textured; its pixels have the disparities of the truth."""
     truth, disparity = _field(40, 48, *slant)
