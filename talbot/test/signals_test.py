@@ -69,12 +69,12 @@ def whole(tmp_path_factory):
     return {path.name for path in out.iterdir()}, time.monotonic() - begin
 
 
-PARTS = 2
+PARTS = 4
 
 
-@pytest.mark.parametrize("part", range(PARTS))
+@pytest.mark.parametrize("part", [pytest.param(n, marks=[pytest.mark.slow] * (n % 2)) for n in range(PARTS)])
 def test_at_a_random_moment(tmp_path, whole, part):
-    """In each half of the run once; which signal, and whether the whole group gets it, is drawn."""
+    """In each quarter of the run once; which signal, and whether the whole group gets it, is drawn."""
     names, seconds = whole
     child = sim(tmp_path)
     begun(child)

@@ -24,7 +24,7 @@ SPACES = 210, 170  # of poly and of local interconnect: what is nearer around a 
 SHORT = 10  # what the level shifter to the core has too little room for hvntm between its two n transistors
 THICK_LEAST, THICK_APART, THICK_ROOM = 290, 370, 330  # in thick oxide: diffusion, p+ from n+, n well around a tap
 GROWN = 30  # of a tap of 250 on each side: one has a transistor 340 nm off
-GRID = 5
+GRID, SLIVER = 5, 15  # half of what corners leave of a region that is opened
 ROW = "pads"
 GROUNDS = "vss", "iovss"
 AROUND = (
@@ -101,7 +101,7 @@ def mend(cell: "db.Cell", process: PixelProcess) -> None:
         (process.pplus, pplus, p_active, n_active.sized(APART) + cut),
     ):
         kept = own.sized(ENCLOSURE) & implant
-        left = (implant - (far - kept)).sized(-LEAST // 2).sized(LEAST // 2)
+        left = _opened(implant - (far - kept), LEAST)
         made = (left + kept).merged()
         _replace(cell, mask, made + (_closed(made, LEAST) - on_poly.sized(IMPLANT) - (far - cut)))
 
@@ -140,11 +140,11 @@ def cover_wells(cells: "Sequence[db.Cell]", process: PixelProcess, tap: GdsLayer
 
 def _widened(cell: "db.Cell", process: PixelProcess, tap: GdsLayer, well: "db.Region") -> "db.Region":
     """A well as thick oxide wants it; its diffusion becomes wide enough, its taps part from diodes."""
-    half, apart = THICK_LEAST // 2 - GRID, db.Region()
+    apart = db.Region()
     for mask, implant in ((process.active, process.pplus), (tap, process.nplus)):
         whole = _region(cell, mask)
         inside = (whole & well).merged()
-        narrow = inside.interacting((inside - inside.sized(-half).sized(half)).sized(-GROWN // 2))
+        narrow = inside.interacting((inside - _opened(inside, THICK_LEAST - 2 * GRID)).sized(-SLIVER))
         made = (_grown(narrow, GROWN) + inside - apart).merged()
         _replace(cell, mask, (whole - inside + made).merged())
         _replace(cell, implant, (_region(cell, implant) + _grown(made.interacting(narrow), ENCLOSURE)).merged())
@@ -161,6 +161,11 @@ def _thick(cell: "db.Cell", process: PixelProcess) -> "db.Region":
     """Thick-oxide n+ diffusion."""
     active, nplus, well = (_region(cell, mask) for mask in (process.active, process.nplus, process.well))
     return ((active & nplus & _region(cell, process.thick[0][0])) - well).merged()
+
+
+def _opened(region: "db.Region", width: int) -> "db.Region":
+    """The region without what is not wider than ``width``."""
+    return region.sized(-(width // 2)).sized(width // 2)
 
 
 def _closed(region: "db.Region", space: int) -> "db.Region":

@@ -24,19 +24,19 @@ def layout():
     return db.Layout()
 
 
+def draw(cell, mask, *corners):
+    cell.shapes(cell.layout().layer(*mask)).insert(db.Box(*corners))
+
+
 def transistor(layout, gap, thick=False):
     """A cell with a p transistor in a well and a contact on its gate, ``gap`` nm from the diffusion; or thick oxide."""
     cell = layout.create_cell("cell")
-
-    def box(mask, *corners):
-        cell.shapes(layout.layer(*mask)).insert(db.Box(*corners))
-
-    box(NWELL if not thick else PIXEL.thick[0][0], -2000, -2000, 4000, 4000)
-    box(DIFFUSION, 0, 0, 2000, 1000)
-    box(PIXEL.nplus if thick else PIXEL.pplus, -300, -300, 2300, 2500)
-    box(PIXEL.poly, 900, -200, 1400, 1000 + gap + 400)
-    box(PIXEL.contact, 1065, 1000 + gap, 1235, 1170 + gap)
-    box(PIXEL.metals[0].gds, 985, 920 + gap, 1315, 1250 + gap)
+    draw(cell, NWELL if not thick else PIXEL.thick[0][0], -2000, -2000, 4000, 4000)
+    draw(cell, DIFFUSION, 0, 0, 2000, 1000)
+    draw(cell, PIXEL.nplus if thick else PIXEL.pplus, -300, -300, 2300, 2500)
+    draw(cell, PIXEL.poly, 900, -200, 1400, 1000 + gap + 400)
+    draw(cell, PIXEL.contact, 1065, 1000 + gap, 1235, 1170 + gap)
+    draw(cell, PIXEL.metals[0].gds, 985, 920 + gap, 1315, 1250 + gap)
     return cell
 
 
@@ -67,8 +67,8 @@ def test_thick_oxide_has_its_tip_implant_and_thin_none(layout):
 
 def test_taps_are_on_their_own_mask(layout):
     cell = transistor(layout, 190)
-    cell.shapes(layout.layer(*DIFFUSION)).insert(db.Box(3000, 0, 3500, 500))
-    cell.shapes(layout.layer(*PIXEL.nplus)).insert(db.Box(2800, -200, 3700, 700))
+    draw(cell, DIFFUSION, 3000, 0, 3500, 500)
+    draw(cell, PIXEL.nplus, 2800, -200, 3700, 700)
     pads.split(cell, PIXEL, pad_process("sky130").tap)
     assert str(region(cell, pad_process("sky130").tap)) == "(3000,0;3000,500;3500,500;3500,0)"
     assert region(cell, DIFFUSION).bbox() == db.Box(0, 0, 2000, 1000)
@@ -78,10 +78,6 @@ def test_taps_are_on_their_own_mask(layout):
 def test_thick_oxide_is_over_all_of_its_well(layout, thin):
     """And over what goes on of it in the next cell; not where a thin-oxide transistor is in it, in either of them."""
     tap, thick = pad_process("sky130").tap, PIXEL.thick[0][0]
-
-    def draw(cell, mask, *corners):
-        cell.shapes(layout.layer(*mask)).insert(db.Box(*corners))
-
     cells = [layout.create_cell(name) for name in ("pad", "filler")]
     for cell in cells:
         draw(cell, NWELL, -180, 0, 5180, 840)
@@ -95,7 +91,7 @@ def test_thick_oxide_is_over_all_of_its_well(layout, thin):
     pads.cover_wells(cells, PIXEL, tap)
     for cell in cells:
         well = region(cell, NWELL)
-        low, other = (well & db.Region(db.Box(-9000, 500 * k, 9000, 500 * (k + 1))) for k in (0, 12))
+        low, other = (well & db.Region(db.Box(-9000, y, 9000, y + 500)) for y in (0, 6000))
         assert (low - region(cell, thick)).is_empty() != thin
         assert (other & region(cell, thick)).is_empty()
         if not thin:
@@ -112,7 +108,7 @@ def test_a_tap_in_thick_oxide_is_apart_from_a_diode(layout):
         (DIFFUSION, 2000, 1000, 6000, 1750),
         (tap, 2000, 2000, 6000, 2600),
     ):
-        cell.shapes(layout.layer(*mask)).insert(db.Box(*corners))
+        draw(cell, mask, *corners)
     pads.cover_wells([cell], PIXEL, tap)
     assert region(cell, tap).bbox().bottom == 1750 + 370
 
