@@ -1,7 +1,6 @@
 """The stream beside general coders: the same codes of eight scenes at several thresholds, by our own count of bytes."""
 
 import heapq
-import io
 import zlib
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
@@ -9,9 +8,7 @@ from typing import Any
 import imagecodecs
 import numpy as np
 import numpy.typing as npt
-import pillow_jpls  # noqa: F401  (gives Pillow its JPEG-LS)
 import zstandard
-from PIL import Image
 
 from talbot.flow.frame.codecs import JPEGXL_EFFORT
 from talbot.models.digital.stream import StreamHeader, encode_frame
@@ -42,9 +39,7 @@ def _picture(codes: Codes) -> npt.NDArray[np.uint8]:
 
 
 def _jpeg_ls(codes: Codes) -> int:
-    file = io.BytesIO()
-    Image.fromarray(_picture(codes)).save(file, "JPEG-LS")
-    return len(file.getvalue())
+    return len(imagecodecs.jpegls_encode(_picture(codes)))
 
 
 def _jpeg_xl(codes: Codes) -> int:
