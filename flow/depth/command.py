@@ -73,10 +73,11 @@ def _code(options: Namespace, own: ElectricalParameters) -> ElectricalParameters
 
 
 def _print(s: dict[str, Any], folder: Path) -> None:
-    from .page import rows
+    from .page import lead_line, rows
 
     size, span = f"{s['rows']} x {s['cols']} pixels", f"{s['range_m']:.3f} m, {s['ambiguity_m']:.3f} m a turn"
     print(f"{s['scene']}: depth of {size} over {span}")
+    print(f"  {lead_line(s)}")
     for name, error, share, known, whole in rows(s):
         print(f"  {name:<50}{error:>9} {share:>8}  in {known:>7} of the pixels; in all {whole:>9}")
     less = s["left_out"]

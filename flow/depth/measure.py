@@ -1,6 +1,6 @@
 """Depth from the frames of time of flight by every method, beside what costs nothing."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Container, Sequence
 from dataclasses import dataclass, replace
 from time import perf_counter
 from typing import Any
@@ -25,7 +25,7 @@ from .capture import DepthFrames
 Values = npt.NDArray[np.floating]
 Bools = npt.NDArray[np.bool_]
 Complexes = npt.NDArray[np.complexfloating]
-BEST = "field"
+SINE, CODED = "field", "code"  # methods that lead: in the light of a sine, and of a code
 FAINT = 3.0  # codes: what has a smaller amplitude has no phase
 LOOSE = 0.2  # px per view step: no disparity is surer
 # Of the prior: enough for turns, and smooth textures, whose phases are the less noisy
@@ -40,7 +40,7 @@ NOISE = 1.0  # codes, of a tap: of the converter and the light, not less
 
 @dataclass(frozen=True, eq=False)
 class Depth:
-    """What the frames give. depth: by method, in m, (rows, cols); sure: where its turns are known."""
+    """What the frames give. depth: by method, in m, (rows, cols), the leading one first; sure: where it is known."""
 
     frames: DepthFrames
     field: DepthField
@@ -51,13 +51,23 @@ class Depth:
     summary: dict[str, Any]
 
     @property
+    def lead(self) -> str:
+        """The method whose depth leads: coded light where there is some."""
+        return leading(self.depth)
+
+    @property
     def truth(self) -> Values:
         """Depth of the scene in m."""
         return np.asarray(self.frames.sums.exposed.scene.depth)
 
 
+def leading(methods: Container[str]) -> str:
+    """The method whose depth leads."""
+    return CODED if CODED in methods else SINE
+
+
 def read_depth(frames: DepthFrames, prior: FieldPrior, note: Callable[[str], None] = lambda text: None) -> Depth:
-    """Depth by every method; that of `BEST` first in the summary."""
+    """Depth by every method, the leading one first: its figures are the summary's own."""
     result = frames.sums
     sensor, scene = result.sensor, result.exposed.scene
     truth, ambiguity = np.asarray(scene.depth), SPEED_OF_LIGHT / (2 * sensor.electrical.f_mod)
@@ -86,19 +96,22 @@ def read_depth(frames: DepthFrames, prior: FieldPrior, note: Callable[[str], Non
         phase = np.where(over | (amplitude < FAINT), np.nan, phase)
         found = unwrap(phase, coarse / ambiguity, doubt / ambiguity)
         depth["three"], sure["three"] = found.turns * ambiguity, found.sure
+    lead = leading(depth)
+    depth = {lead: depth[lead]} | depth
     methods = {name: figures(depth[name], truth, sure[name], ambiguity) for name in depth}
-    once = sure[BEST]
+    once = sure[lead]
     baselines = {
         "constant": figures(np.full_like(truth, truth.mean()), truth, once, ambiguity),
         "light_field": figures(coarse, truth, once, ambiguity),
-        "wrapped": figures(depth[BEST] % ambiguity, truth, once, ambiguity),
+        "wrapped": figures(depth[SINE] % ambiguity, truth, once, ambiguity),
     }
     behind, past = _behind(field, coarse, ambiguity, result)
     summary = frames.about() | {
         "range_m": float(np.ptp(truth)),
         "ambiguity_m": ambiguity,
-        "depth_rms_m": methods[BEST]["rms_m"],
-        "depth_sure": methods[BEST]["sure"],
+        "depth_method": lead,
+        "depth_rms_m": methods[lead]["rms_m"],
+        "depth_sure": methods[lead]["sure"],
         "methods": methods,
         "baselines": baselines,
         "multipath": _multipath(frames),

@@ -10,7 +10,7 @@ from talbot.flow.frame import pictures
 from talbot.flow.frame.reading import agreement, line, number
 from talbot.models.reconstruct.depth_field import refocused
 
-from .measure import BEST, Depth, Values
+from .measure import SINE, Depth, Values
 
 NAMES = ("depth.html", "summary.json", "depth.npz")
 HEAD = ("", "RMS where sure", "of the range", "sure", "RMS everywhere")
@@ -32,7 +32,7 @@ TEXTS = {
 def write(folder: Path, found: Depth) -> None:
     """Write everything but summary.json into ``folder``, which exists."""
     s = found.summary
-    best, sure = found.depth[BEST], found.sure[BEST]
+    best, sure = found.depth[found.lead], found.sure[found.lead]
     arrays = {"taps": found.field.taps.astype(np.float16), "disparity": found.field.disparity, "confidence": sure}
     arrays |= {"depth": best.astype(np.float32)}
     if found.behind is not None:
@@ -70,17 +70,29 @@ def _row(m: dict[str, Any], span: float) -> tuple[str, ...]:
     return number(m["rms_m"], 4, " m"), share, f"{100 * m['sure']:.1f} %", number(m["rms_all_m"], 4, " m") + whole
 
 
+def lead_line(s: dict[str, Any]) -> str:
+    """The leading method of the summary ``s``, its error where it is sure, and what costs nothing."""
+    lead = s["depth_method"]
+    error, _, sure, _ = _row(s["methods"][lead], s["range_m"])
+    beside = f"one depth for all {number(s['baselines']['constant']['rms_m'], 4, ' m')}"
+    if lead != SINE:
+        beside += f", without the code {number(s['methods'][SINE]['rms_m'], 4, ' m')}"
+    return f"{TEXTS[lead]}: {error} RMS in {sure} of the pixels ({beside})"
+
+
 def _headline(s: dict[str, Any]) -> list[Tile]:
-    free, best = s["baselines"], s["methods"][BEST]
-    _, share, sure, whole = _row(best, s["range_m"])
+    lead = s["depth_method"]
+    free, methods = s["baselines"], s["methods"]
+    error, share, sure, whole = _row(methods[lead], s["range_m"])
+    other = "divider" if lead == SINE else SINE
     return [
         Tile("none", "of the pixels has a depth that is sure")
-        if best["rms_m"] is None
+        if methods[lead]["rms_m"] is None
         else Tile(
-            number(best["rms_m"], 4, " m"), f"{share} of the range (one depth: {number(free['constant']['rms_m'])} m)"
+            error, f"{TEXTS[lead]}: {share} of the range (one depth for all: {number(free['constant']['rms_m'])} m)"
         ),
         Tile(sure, f"of the pixels are sure; over all {whole}"),
-        Tile(number(s["methods"]["divider"]["rms_m"], 4, " m"), "by the chip's divider"),
+        Tile(number(methods[other]["rms_m"], 4, " m"), TEXTS[other] + ("" if lead == SINE else ", without the code")),
         agreement(s),
     ]
 
@@ -104,17 +116,20 @@ def _picture(name: str, caption: str, values: Values, ends: tuple[float, float])
 
 
 def _depths(found: Depth) -> list[Picture]:
-    truth, sure = found.truth, found.sure[BEST]
+    truth = found.truth
     ends = _ends(truth)
-    wrapped = found.depth[BEST] % found.summary["ambiguity_m"]
+    wrapped = found.depth[SINE] % found.summary["ambiguity_m"]
+
+    def known(method: str, name: str) -> Picture:
+        return _picture(name, TEXTS[method], np.where(found.sure[method], found.depth[method], np.nan), ends)
+
     return [
         _picture("true", "depth of the scene", truth, ends),
-        _picture("depth", "depth field, unwrapped", np.where(sure, found.depth[BEST], np.nan), ends),
-        _picture("wrapped", "the same before: modulo a turn", wrapped, (0, found.summary["ambiguity_m"])),
+        known(found.lead, "depth"),
+        *([known(SINE, "sine")] if found.lead != SINE else []),
+        _picture("wrapped", f"{TEXTS[SINE]}, modulo a turn", wrapped, (0, found.summary["ambiguity_m"])),
         _picture("coarse", "depth by disparity alone", found.coarse, ends),
-        _picture(
-            "divider", "by the chip's divider", np.where(found.sure["divider"], found.depth["divider"], np.nan), ends
-        ),
+        known("divider", "divider"),
     ]
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from talbot.flow.depth.capture import capture
-from talbot.flow.depth.measure import BEST, read_depth
+from talbot.flow.depth.measure import read_depth
 from talbot.flow.frame import pictures
 from talbot.flow.frame.result import FrameResult, GoldenResult
 from talbot.flow.lightfield.fields import prior_of
@@ -101,8 +101,8 @@ def depth_of(result: GoldenResult, near: float, far: float, disparities: int) ->
     disparity = found.field.disparity
     return DepthResult(
         found.summary,
-        Image.of(found.depth[BEST]),
-        found.sure[BEST],
+        Image.of(found.depth[found.lead]),
+        found.sure[found.lead],
         Image.of(disparity),
         None if found.behind is None else Image.of(found.behind),
         LightField(light, disparity, f"{request.name}_estimate"),

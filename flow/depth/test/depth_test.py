@@ -130,12 +130,19 @@ def test_light_by_other_ways_moves_the_depth_of_a_room(tmp_path):
     assert straight["multipath"] is None
 
 
-def test_coded_light_sees_past_the_fog(tmp_path):
+def test_coded_light_sees_past_the_fog(tmp_path, capsys):
     words = "--scene=fog", "--rows=40", "--cols=48", "--code=31"
     s = measured(tmp_path, *words)
     assert s["chip"] and s["stream_mismatches"] == s["decoded_mismatches"] == 0
     code, sine, free = s["methods"]["code"], s["methods"]["sums"], s["baselines"]["constant"]
     assert code["sure"] > 0.6 and code["rms_m"] < 0.2 * min(sine["rms_m"], free["rms_m"])
+    # What was asked for leads: summary, first printed line, first tile, arrays
+    assert s["depth_method"] == "code" and s["depth_rms_m"] == code["rms_m"] and s["depth_sure"] == code["sure"]
+    lead = f"{code['rms_m']:.4f} m"
+    assert capsys.readouterr().out.splitlines()[1].startswith(f"  coded light, sums: {lead} RMS in ")
+    assert f'<div class="tiles">\n<div class="tile "><b>{lead}</b>coded light' in (tmp_path / "depth.html").read_text()
+    with np.load(tmp_path / "depth.npz") as arrays:
+        assert arrays["confidence"].mean() == pytest.approx(code["sure"])
 
 
 def test_a_rendered_scene_through_another_lens_has_no_depth(capsys, tmp_path):
