@@ -3,10 +3,11 @@
 import io
 import re
 import textwrap
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
-from typing import BinaryIO
+from types import MappingProxyType
+from typing import Any, BinaryIO
 
 import numpy as np
 from markupsafe import Markup
@@ -21,6 +22,9 @@ from matplotlib.transforms import Bbox
 PLACES = ((5, 3, "left", "bottom"), (5, -3, "left", "top"), (-5, 3, "right", "bottom"), (-5, -3, "right", "top"))
 PLACES += ((0, 7, "center", "bottom"), (0, -7, "center", "top"))
 BROAD = 8  # inches: a chart of this width has a row of a page for itself
+# How a series is drawn, unless its points are in an order and joined
+SCATTER: dict[str, Any] = {"linestyle": "none"}
+LINE: dict[str, Any] = {"marker": "", "linewidth": 1.6}
 COLOURS = ("#4878a8", "#e8a33d", "#7aa874", "#b8678f", "#8a8f99", "#c9574b")
 
 
@@ -68,18 +72,20 @@ def curves(
     log_x: bool = False,
     log_y: bool = False,
     mark: tuple[float, float] | None = None,
+    styles: Mapping[str, Mapping[str, Any]] = MappingProxyType({}),
 ) -> Figure:
     """Draw lines with markers. series: name -> points (x, y, label or ''); mark: one (x, y) to circle.
 
-    A label that has no place beside its point is left out.
+    styles: of series by name, `SCATTER` or `LINE`. A label that has no place beside its point is left out.
     """
     legend_rows = -(-len(series) // 2) if len(series) > 1 else 0
     figure = Figure(figsize=(4.6, 3.2 + 0.18 * legend_rows), layout="constrained")
     axes = figure.add_subplot()
     for i, (name, points) in enumerate(series.items()):
         x, y = ([point[k] for point in points] for k in (0, 1))
-        style = "o-" if i < len(COLOURS) else "s--"
-        axes.plot(x, y, style, color=COLOURS[i % len(COLOURS)], label=name, markersize=4, linewidth=1.2)
+        marker, linestyle = ("o", "-") if i < len(COLOURS) else ("s", "--")
+        look = {"marker": marker, "linestyle": linestyle, "linewidth": 1.2} | dict(styles.get(name, {}))
+        axes.plot(x, y, color=COLOURS[i % len(COLOURS)], label=name, markersize=4, **look)
     if mark:
         axes.plot(*mark, "o", markersize=12, fillstyle="none", color="#c9574b")
     for axis, scale, log in ((axes.xaxis, axes.set_xscale, log_x), (axes.yaxis, axes.set_yscale, log_y)):
@@ -100,6 +106,17 @@ def curves(
         figure.legend(fontsize=8, frameon=False, loc="outside lower left", ncols=2)
     place_labels(axes, [point for points in series.values() for point in points])
     return figure
+
+
+def front(points: Iterable[tuple[float, float, str]]) -> list[tuple[float, float, str]]:
+    """Corners of the staircase over the non-dominated ``points``, by ascending x; large is good in both."""
+    best: list[tuple[float, float, str]] = []
+    for x, y, _ in sorted(points, reverse=True):
+        if not best:
+            best.append((x, y, ""))
+        elif y > best[-1][1]:
+            best += [(x, best[-1][1], ""), (x, y, "")]
+    return best[::-1]
 
 
 def place_labels(axes: Axes, points: Sequence[tuple[float, float, str]], size: float = 7) -> None:

@@ -5,7 +5,7 @@ from itertools import combinations
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-from talbot.base.charts import bars, curves, svg
+from talbot.base.charts import LINE, SCATTER, bars, curves, front, svg
 
 CROWDED = [(1 + 0.02 * i, 5 + 0.05 * i, f"T={i}") for i in range(60)]
 
@@ -43,3 +43,16 @@ def test_ticks_of_a_short_logarithmic_axis_are_plain_numbers():
 def test_black_is_the_ink_of_the_page():
     text = svg(bars({"one": 1.0, "two": np.float64(3000)}, "cycles", "a title"))
     assert text.startswith("<svg") and "currentColor" in text and "#000000" not in text and "#ffffff" not in text
+
+
+def test_points_without_an_order_are_not_joined():
+    points = {"measured": [(2, 3, ""), (1, 5, ""), (3, 1, "")], "fitted": [(1, 5, ""), (3, 1, "")]}
+    figure = curves(points, "x", "y", "t", styles={"measured": SCATTER, "fitted": LINE})
+    drawn = {line.get_label(): (line.get_linestyle(), line.get_marker()) for line in figure.axes[0].lines}
+    assert drawn == {"measured": ("None", "o"), "fitted": ("-", "")}
+
+
+def test_a_front_is_a_staircase_of_the_points_that_nothing_dominates():
+    points = [(2, 3, "b"), (1, 5, "a"), (1, 4, ""), (3, 1, ""), (2, 2, ""), (3, 1, "")]
+    assert [corner[:2] for corner in front(points)] == [(1, 5), (1, 3), (2, 3), (2, 1), (3, 1)]
+    assert front([]) == []

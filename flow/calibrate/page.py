@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from talbot.base.charts import curves, svg
+from talbot.base.charts import LINE, SCATTER, curves, svg
 from talbot.base.page import TABLES, Section, Tile, render
 from talbot.flow.frame.reading import number
 from talbot.models.parameters import OpticsParameters
@@ -106,5 +106,6 @@ def _figures(done: Calibrated) -> list[Figure]:
             "fitted": [(x, y, "") for x, y in zip(fine, wave, strict=True)],
             "measured": [(x, y, "") for x, y in zip(nu, (a - b) / (a + b), strict=True)],
         }
-        out.append(curves(points, "nu_x", "(a - b) / (a + b)", f"Type {chosen}: beta {kind.beta:.2f}"))
+        title, styles = f"Type {chosen}: beta {kind.beta:.2f}", {"fitted": LINE, "measured": SCATTER}
+        out.append(curves(points, "nu_x", "(a - b) / (a + b)", title, styles=styles))
     return out

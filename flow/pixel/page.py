@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from talbot.base import page
-from talbot.base.charts import curves, save, svg
+from talbot.base.charts import LINE, SCATTER, curves, front, save, svg
 from talbot.base.page import TABLES, Section, Tile
 from talbot.models.parameters import TileParameters
 from talbot.pixels.optics.closed_form import angular_frequency, talbot_depth
@@ -76,7 +76,7 @@ def write(
             Section(
                 "What nothing beats",
                 "Designs that no other beats in modulation depth, quantum efficiency and bandwidth, of any beta.",
-                charts=[svg(_pareto(found))],
+                charts=[svg(pareto(found))],
                 head=KIND_HEAD,
                 rows=[(d.geometry.kind, *_figures(d, wide)) for d, wide in found.front],
             ),
@@ -194,8 +194,8 @@ def _heights(name: str, designs: dict[float, Design], measured: dict[float, Meas
     )
 
 
-def _pareto(found: Found) -> Figure:
-    """m against quantum efficiency, a series for each class of bandwidth, and what was chosen of each kind."""
+def pareto(found: Found) -> Figure:
+    """m against quantum efficiency: designs by bandwidth, those chosen of each kind, and the front of these two."""
     ends: dict[str, list[tuple[float, float, str]]] = {}
     for low, high, name in (
         (0, NARROW_NM, f"below {NARROW_NM} nm"),
@@ -204,8 +204,12 @@ def _pareto(found: Found) -> Figure:
     ):
         ends[name] = [_point(design) for design, wide in found.front if low <= round(1e3 * wide) < high]
     for plan in found.plans:
-        ends[f"{plan.kind}: chosen"] = sorted(_point(design) for design in plan.designs.values())
-    return curves(ends, "quantum efficiency", "modulation depth m", "None better, by bandwidth; numbers: beta")
+        ends[f"{plan.kind}: chosen"] = [_point(design) for design in plan.designs.values()]
+    styles = dict.fromkeys(ends, SCATTER)
+    line = "the front, of any bandwidth"
+    ends[line], styles[line] = front(_point(design) for design, _ in found.front), LINE
+    title = "None better, by bandwidth; numbers: beta"
+    return curves(ends, "quantum efficiency", "modulation depth m", title, styles=styles)
 
 
 def _point(design: Design) -> tuple[float, float, str]:

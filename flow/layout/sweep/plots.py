@@ -39,7 +39,8 @@ def pareto_plot(points: Sequence[Point]) -> Figure:
             at = point["area_um2"], point[key]
             axes.annotate(point["bits"], at, fontsize=8, xytext=(5, 3), textcoords="offset points")
         line = front(shown, "area_um2", "f_max_mhz" if axes is left else "results_uj")
-        axes.plot([p["area_um2"] for p in line], [p[key] for p in line], color="0.6", linewidth=1, zorder=0)
+        corners = [p["area_um2"] for p in line], [p[key] for p in line]
+        axes.plot(*corners, color="0.6", linewidth=1, zorder=0, drawstyle="steps-post")
         axes.set_xlabel("routed area, um2")
         axes.margins(0.08)
     left.set(ylabel="highest clock at the slowest corner, MHz")

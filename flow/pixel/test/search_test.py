@@ -8,6 +8,7 @@ import pytest
 from talbot.base.gds import read_gds
 from talbot.flow.pixel.drawn import write_tile
 from talbot.flow.pixel.errors import errors
+from talbot.flow.pixel.page import pareto
 from talbot.flow.pixel.pictures import around
 from talbot.flow.pixel.search import Plan, bandwidth, search
 from talbot.flow.pixel.types import AZIMUTHS, DEGREES, RAY_DEGREES, measured, name_of, solve_around, solve_one, stacked
@@ -30,6 +31,10 @@ def test_a_search_finds_what_reaches_a_beta(tmp_path):
     front = found.front
     assert front and all(wide == found.bandwidth_um(design) for design, wide in front)
     assert max(wide for _, wide in front) > 0 and found.bandwidth_um(plan.designs[10.0]) >= 0
+    chart = pareto(found)
+    *series, staircase = chart.axes[0].lines
+    assert all(line.get_linestyle() == "None" for line in series) and staircase.get_linestyle() == "-"
+    assert np.all(np.diff(staircase.get_xdata()) >= 0) and np.all(np.diff(staircase.get_ydata()) <= 0)
     kept = {path: path.stat().st_mtime_ns for path in tmp_path.iterdir()}
     assert search(two, (10.0,), ("interleaved",), tmp_path, said.append) == found
     assert {path: path.stat().st_mtime_ns for path in tmp_path.iterdir()} == kept
