@@ -72,7 +72,10 @@ sim: $(READY)  ## a scene through the golden models and the chip's Verilog: buil
 sim-help: $(READY)  ## the arguments of make sim, explained
 	@$(PY) -m talbot sim --help
 
-VIDEO := $(filter %.mp4 %.m4v %.mov %.mkv %.webm %.avi,$(value SCENE))
+# In small letters, as cameras write CLIP.MP4 too (models/scene/video_file.py)
+SMALL := $(subst Y,y,$(subst X,x,$(subst W,w,$(subst V,v,$(subst T,t,$(subst S,s,$(subst P,p,$(subst O,o,$(subst M,m,$(subst L,l,$(subst K,k,$(subst I,i,$(subst G,g,$(subst F,f,$(subst E,e,$(subst B,b,$(subst A,a,$(value SCENE))))))))))))))))))
+VIDEO := $(filter %.mp4 %.m4v %.mov %.mkv %.webm %.avi %.ts %.mts %.m2ts %.wmv %.3gp %.3g2 %.ogv %.flv %.mpg %.mpeg %.vob \
+  %.asf %.mxf %.y4m,$(SMALL))
 .PHONY: sequence
 sequence: $(READY) $(if $(VIDEO),$(VIDEO_READY))  ## SCENE=clip.gif, a folder of frames or a video through one running simulation: build/sequence/<scene>/report.html
 	@$(talbot) sequence

@@ -1,23 +1,23 @@
-"""Sequences of pictures, read one by one: a folder of frames, an animated GIF, WebP, PNG or AVIF, a video, arrays."""
+"""Sequences of pictures, read one by one: a folder of frames, an animation, a TIFF stack, a video, arrays."""
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Sized
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from talbot.models.parameters import ParameterError
 
+from .file_form import is_video
 from .light_field import LightField
-from .picture_file import frames_of, loaded, luminance_of, opened, undamaged
+from .picture_file import header_of, luminance_of, read_frames, read_pixels
 from .sampling import Sampling
+from .video_file import RATE, VIDEOS, Video
 
-VIDEOS = ".mp4", ".m4v", ".mov", ".mkv", ".webm", ".avi"
-RATE = 30.0  # frames a second, where a file does not say
+SAME = {".jpeg": ".jpg", ".jpe": ".jpg", ".jfif": ".jpg", ".tiff": ".tif"}  # suffixes of one kind of picture
 SHORTEST = 0.02  # s that a frame is shown: browsers take less, in a GIF, for "not said"
 
 Luminance = npt.NDArray[np.floating]
@@ -98,7 +98,7 @@ def open_clip(source: str | Path | Iterable[npt.ArrayLike], sampling: Sampling) 
     path = Path(source)
     if path.is_dir():
         return _folder(path, sampling)
-    if path.suffix.lower() in VIDEOS and path.is_file():
+    if path.is_file() and (path.suffix.lower() in VIDEOS or is_video(path)):
         return _video(path, sampling)
     return _animated(path, sampling)
 
@@ -114,23 +114,31 @@ def _folder(path: Path, sampling: Sampling) -> Clip:
     files = sorted((entry for entry in path.iterdir() if not entry.name.startswith(".")), key=_numbers)
     if not files:
         raise ParameterError(f"scene = {str(path)!r}: must hold the frames, pictures of one kind; it is empty")
-    kinds = sorted({entry.suffix.lower() if entry.is_file() else f"folder {entry.name}" for entry in files})
+    kinds = sorted({_kind(entry) if entry.is_file() else f"folder {entry.name}" for entry in files})
     if len(kinds) > 1:
         raise ParameterError(f"scene = {str(path)!r}: must hold pictures of one kind, has {', '.join(kinds[:5])}")
-    size = None
+    shape = None
     for entry in files:  # before anything is simulated: of pictures the header alone is read
-        with opened(entry, "scene") as picture:
-            size = size or picture.size
-            if picture.size != size or frames_of(picture, entry) > 1:
-                has = f"{picture.height} x {picture.width} px, frames {frames_of(picture, entry)}"
-                raise ParameterError(f"scene = {str(entry)!r}: {has}: must be one of {size[1]} x {size[0]} px")
+        header = header_of(entry, "scene")
+        shape = shape or header.shape
+        if header.shape != shape or header.frames > 1:
+            height, width = header.shape
+            raise ParameterError(
+                f"scene = {str(entry)!r}: {height} x {width} px, frames {header.frames}: "
+                f"must be one of {shape[0]} x {shape[1]} px"
+            )
 
     def _read() -> Iterator[Frame]:
         for entry in files:
-            with opened(entry, "scene") as picture:
-                yield Frame(luminance_of(loaded(picture, entry, "scene"), entry, *sampling.shape), 1 / RATE)
+            pixels = read_pixels(entry, "scene", sampling.shape)
+            yield Frame(luminance_of(pixels, entry, *sampling.shape), 1 / RATE)
 
     return Clip(path.resolve().name, len(files), _read)
+
+
+def _kind(path: Path) -> str:
+    suffix = path.suffix.lower()
+    return SAME.get(suffix, suffix)
 
 
 def _numbers(path: Path) -> list[tuple[int, str]]:
@@ -139,54 +147,22 @@ def _numbers(path: Path) -> list[tuple[int, str]]:
 
 
 def _animated(path: Path, sampling: Sampling) -> Clip:
-    with opened(path, "scene") as picture:
-        count = frames_of(picture, path)
+    count = header_of(path, "scene").frames
     if count < 2:
         raise ParameterError(f"scene = {str(path)!r}: has one frame: must have more; make sim takes one picture")
 
     def _read() -> Iterator[Frame]:
-        with opened(path, "scene") as picture:
-            for number in range(count):
-                with undamaged("scene", path, f"frame {number}"):
-                    picture.seek(number)
-                luminance = luminance_of(loaded(picture, path, "scene"), path, *sampling.shape)
-                seconds = float(picture.info.get("duration") or 0) / 1000
-                yield Frame(luminance, seconds if seconds >= SHORTEST else 1 / RATE)
+        for pixels, seconds in read_frames(path, "scene"):
+            luminance = luminance_of(pixels, path, *sampling.shape)
+            yield Frame(luminance, seconds if seconds >= SHORTEST else 1 / RATE)
 
     return Clip(path.stem, count, _read)
 
 
 def _video(path: Path, sampling: Sampling) -> Clip:
-    try:
-        import av
-        from av.error import FFmpegError
-    except ModuleNotFoundError:
-        raise ParameterError(
-            f"scene = {str(path)!r}: a video needs the package av: pip install 'talbot[video]'"
-        ) from None
-
-    @contextmanager
-    def _stream() -> Iterator[Any]:
-        try:
-            with av.open(str(path)) as container:
-                if not container.streams.video:
-                    raise ParameterError(f"scene = {str(path)!r}: must have a video stream")
-                yield container.streams.video[0]
-        except FFmpegError as error:
-            raise ParameterError(f"scene = {str(path)!r}: the video is damaged ({error.strerror})") from None
-
-    with _stream() as stream:
-        count = stream.frames or None
+    video = Video(path)
 
     def _read() -> Iterator[Frame]:
-        with _stream() as stream:
-            stream.codec_context.options = {"err_detect": "explode"}  # damage is an error, not a guess
-            seconds, found = 1 / float(stream.average_rate or RATE), 0
-            for picture in stream.container.decode(stream):
-                codes = picture.to_image()
-                yield Frame(luminance_of(codes, path, *sampling.shape), seconds)
-                found += 1
-            if found < (count or 1):
-                raise ParameterError(f"scene = {str(path)!r}: the video is damaged ({found} of {count or 1} frames)")
+        yield from map(Frame, video.read(sampling), video.seconds)
 
-    return Clip(path.stem, count, _read)
+    return Clip(path.stem, len(video.seconds), _read)

@@ -3,8 +3,8 @@
 .npy                (rows, cols), depth in m, 0.1..1000
 .npz                one array: `depth` (m, the same) or `disparity` (px per view step, -100..100, against
                     `camera.REFERENCE`, at the array's size)
-16-bit image        depth in mm, 100..65535
-8-bit image         inverse depth: 0 is 6 m, 255 is 2 m, linear in 1/m (brighter is nearer)
+image, 9..16 bits   depth in mm, 100..65535
+image, 1..8 bits    inverse depth: 0 is 6 m, 255 is 2 m, linear in 1/m (brighter is nearer)
 """
 
 import zipfile
@@ -51,8 +51,11 @@ def read_depth(path: str | Path, sampling: Sampling, picture_shape: tuple[int, i
     if values.ndim != 2 or 0 in values.shape:
         raise ParameterError(f"depth shape = {values.shape}: must be (rows, cols)")
     height, width = values.shape
-    if abs(np.log(width / height * picture_shape[0] / picture_shape[1])) > 0.02:
-        raise ParameterError(f"depth shape = {values.shape}: must have the proportions of the image, {picture_shape}")
+    if not _alike(height, width, *picture_shape):
+        turned = "; turned by the image's EXIF orientation it has them" if _alike(width, height, *picture_shape) else ""
+        raise ParameterError(
+            f"depth shape = {values.shape}: must have the proportions of the image, {picture_shape}{turned}"
+        )
     values = resample.pick(values, *sampling.shape, box=resample.centre_box(height, width, *sampling.shape))
     if kind == "disparity":
         check_values("disparity", values, -100, 100)
@@ -61,8 +64,18 @@ def read_depth(path: str | Path, sampling: Sampling, picture_shape: tuple[int, i
         return camera.scaled(1 / (1 / FAR + values / 255 * (1 / NEAR - 1 / FAR)), sampling.camera)
     if kind == "mm":
         values = values / 1000
+    if (values == 0).any():
+        raise ParameterError(
+            "depth = 0: every value must be a finite number in [0.1, 1000]; 0 is a hole where nothing was measured: "
+            "fill it first"
+        )
     check_values("depth", values, 0.1, 1000)
     return camera.scaled(values, sampling.camera)
+
+
+def _alike(height: int, width: int, rows: int, cols: int) -> bool:
+    """Whether two sizes have the same proportions, to 2 %."""
+    return abs(np.log(width / height * rows / cols)) <= 0.02
 
 
 def _read(path: Path) -> tuple[npt.NDArray[np.generic], str]:

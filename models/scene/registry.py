@@ -7,7 +7,6 @@ from pathlib import Path
 from talbot.models.parameters import ParameterError
 
 from . import polarized, solids, targets
-from .clip import VIDEOS
 from .leaves import leaves
 from .light_field import LightField
 from .light_field_file import named
@@ -16,6 +15,7 @@ from .photograph import PHOTOGRAPHS, photograph, picture
 from .rendered import RENDERED, rendered
 from .sampling import Sampling
 from .scene import Scene
+from .video_file import VIDEOS
 
 # Each is a function of a Sampling; `name:number` on the command line adds the number (edge:30 is 30 degrees).
 scenes: dict[str, Callable[..., Scene]] = {

@@ -101,6 +101,15 @@ def test_refused_by_the_command_in_one_line(words, said, asked):
     assert lines[0].startswith("talbot: error: ") and said in lines[0]
 
 
+@pytest.mark.parametrize(
+    "scene, installs",
+    [("CLIP.MP4", True), ("a b.Mov", True), ("x/clip.m2ts", True), ("clip.gif", False), ("$(error no).MKV", True)],
+)
+def test_a_video_of_any_case_installs_its_package(scene, installs):
+    result = make("-n", "-W", "requirements/video.lock", "sequence", f"SCENE={scene}")
+    assert result.returncode == 0 and ("requirements/video.lock" in result.stdout) == installs
+
+
 def test_the_program_itself_refuses_and_its_status_is_makes():
     result = make("sim", "SCENE=a$b c.png")
     assert result.returncode == 2 and not result.stdout

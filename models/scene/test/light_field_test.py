@@ -124,7 +124,7 @@ def _damaged(folder):
         (_missing, "has 8 views: must be a square of them"),
         (_extra, "has 9 views: .* of 3 x 3 is missing row 1, column 1"),
         (_other, r"Cam007.png': uint8 \(8, 24\): must be as the first view, uint8 \(16, 24\)"),
-        (_damaged, "Cam007.png': must be an image file that Pillow reads"),
+        (_damaged, "Cam007.png': must be an image file of a form that is read"),
     ],
 )
 def test_folders_that_are_refused(tmp_path, spoil, said):
@@ -139,7 +139,7 @@ def test_folders_that_are_refused(tmp_path, spoil, said):
     [
         ("x.npy", b"rubbish", "must be a NumPy array file"),
         ("x.npz", b"rubbish", "must be a NumPy array file"),
-        ("x.png:3", b"rubbish", "must be an image file that Pillow reads"),
+        ("x.png:3", b"rubbish", "must be an image file of a form that is read"),
         ("x.png:many", None, "views = 'many': must be an integer in 1..31"),
         ("x.png:0", None, "views = 0: must be an integer in 1..31"),
         ("x.png:5", None, "views = 5: must divide the image's height and width, 48 x 72"),
