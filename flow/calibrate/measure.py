@@ -9,8 +9,9 @@ import numpy as np
 import numpy.typing as npt
 
 from talbot.flow.frame.job import golden_result, see
+from talbot.flow.frame.light_field import prior_of
 from talbot.flow.frame.request import FrameRequest
-from talbot.flow.lightfield.fields import prior_of, read_back
+from talbot.flow.lightfield.fields import read_back
 from talbot.models.calibrate import Calibration, Sweep, TypeFit, calibrated
 from talbot.models.parameters import SensorParameters
 from talbot.models.pixel import optical_gains

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from talbot.flow.frame.reading import full, rms
+from talbot.flow.frame.light_field import estimator_of, full
+from talbot.flow.frame.reading import rms
 from talbot.flow.frame.result import PHASE_TURN, GoldenResult
-from talbot.flow.lightfield.fields import estimator_of
 from talbot.models.digital.phase import phase_samples
 from talbot.models.pixel.time_of_flight import SPEED_OF_LIGHT, demodulate
 from talbot.models.reconstruct import white_sum

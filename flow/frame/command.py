@@ -241,7 +241,7 @@ def _print_figures(s: dict[str, Any], folder: Path) -> None:
     print(f"  {s['stream_bytes']:,} bytes for {s['raw_bytes']:,} values ({s['compression_ratio']:.2f}:1); {sent(s)}")
     print(f"  2-D image: {against(s)}")
     if s["light_field_psnr_db"] is not None:
-        print(f"  light field, linear estimate: {light_field(s)}")
+        print(f"  light field, {s['light_field_method']}: {light_field(s)}")
     if "light_field_psnr_true_optics_db" in s:
         found, true = (decibels(s[f"light_field_psnr{end}_db"]) for end in ("", "_true_optics"))
         print(f"  light field {found}; with the true optics in place of the calibration {true}")

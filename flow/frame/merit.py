@@ -45,7 +45,7 @@ def nothing_sent(s: Summary) -> str:
 
 
 def light_field(s: Summary) -> str:
-    """PSNR of the light field's linear estimate beside that of the 2-D image in every view."""
+    """PSNR of the light field's estimate beside that of the 2-D image in every view."""
     found, copied = s["light_field_psnr_db"], s["light_field_psnr_copied_db"]
     note = ", no better" if found is not None and (copied is None or found <= copied) else ""
     return f"PSNR {decibels(found)}{note}; the 2-D image in every view has {decibels(copied)}"
@@ -71,7 +71,7 @@ def table(s: Summary) -> list[tuple[str, str, str]]:
         rows.append((f"2-D image, {what}", shown(s[key.format("")]), _images(s, key, shown)))
     if s["light_field_psnr_db"] is not None:
         beside = f"2-D image in every view: {decibels(s['light_field_psnr_copied_db'])}"
-        rows.append(("light field, PSNR", decibels(s["light_field_psnr_db"]), beside))
+        rows.append((f"light field by {s['light_field_method']}, PSNR", decibels(s["light_field_psnr_db"]), beside))
     if s["depth_rms_m"] is not None:
         beside = f"one depth for all: {100 * s['depth_rms_constant_m']:.3g} cm"
         rows.append(("depth, RMS error", f"{100 * s['depth_rms_m']:.3g} cm", beside))

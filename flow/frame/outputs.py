@@ -148,8 +148,8 @@ def _fields(result: FrameResult, summary: dict[str, Any]) -> list[tuple[str, Val
     if scene.angular or result.request.frame.mode == "raw":
         out.append(("the scene's light field: what the pixels saw", np.asarray(scene.full_light_field, float)))
     if result.request.frame.mode == "raw":
-        field = np.maximum(result.light_field, 0)
-        caption = f"linear estimate from the decoded diodes: {light_field(summary)}"
+        field = np.maximum(result.estimate.light_field, 0)
+        caption = f"estimate from the decoded diodes, {result.light_field_method}: {light_field(summary)}"
         out.append((caption, field))
     return out
 

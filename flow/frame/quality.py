@@ -131,19 +131,20 @@ def coded_sum(result: GoldenResult) -> Values:
     return np.asarray(sum_image(half * sums.codes[..., 0].astype(float), asked.lit, read, asked.frame.exposing), float)
 
 
-def field_quality(result: GoldenResult) -> dict[str, float | None]:
-    """Of the light field read back in raw mode, against the scene's: PSNR, and that of the sum image in every view."""
+def field_quality(result: GoldenResult) -> dict[str, float | str | None]:
+    """Of the light field read back in raw mode, against the scene's: method, PSNR, and that of the sum image copied."""
     if result.request.frame.mode != "raw":
-        return {"light_field_psnr_db": None, "light_field_psnr_copied_db": None}
+        return {"light_field_method": None, "light_field_psnr_db": None, "light_field_psnr_copied_db": None}
     # Corners that the round pupil does not reach have no light
     part = (cells(result.exposed.scene.views), *part_read(result.golden.read))
     truth = np.asarray(result.exposed.scene.full_light_field, float)[part]
-    field = result.light_field[part]
+    field = result.estimate.light_field[part]
     copied = np.broadcast_to(result.image[part[1:]], truth.shape)
-    out = {"light_field_psnr_db": psnr_db(field, truth), "light_field_psnr_copied_db": psnr_db(copied, truth)}
+    out: dict[str, float | str | None] = {"light_field_method": result.light_field_method}
+    out |= {"light_field_psnr_db": psnr_db(field, truth), "light_field_psnr_copied_db": psnr_db(copied, truth)}
     if result.request.calibration:
         true = replace(result, request=replace(result.request, calibration=None))
-        out["light_field_psnr_true_optics_db"] = psnr_db(true.light_field[part], truth)
+        out["light_field_psnr_true_optics_db"] = psnr_db(true.estimate.light_field[part], truth)
     return out
 
 

@@ -16,7 +16,6 @@ from talbot.base.page import Tile
 from talbot.base.progress import Steps
 from talbot.flow.simulate.frame import WAVES
 from talbot.models.parameters import CameraParameters, SensorParameters
-from talbot.models.reconstruct import FULL
 from talbot.models.scene.rendered import RENDERED
 
 from . import report
@@ -27,7 +26,6 @@ from .request import FrameRequest
 from .result import FrameResult, GoldenResult
 from .sensor import asked_sensor
 
-HEADROOM = 5.0  # LSB below a full code, for noise and bow of the converters: what is above counts as full
 # All of a frame is read
 WHOLE = {"threshold": "0", "phase": False, "types": "all", "window": "full", "decimation": "0"}
 WHOLE |= {"waves": None, "waves_format": WAVES[0]}
@@ -134,11 +132,6 @@ def about(result: GoldenResult) -> dict[str, Any]:
         "stream_mismatches": mismatches(result.stream, result.golden.stream),
         "decoded_mismatches": int((result.decoded.samples != result.golden.sent).sum()),
     }
-
-
-def full(samples: npt.NDArray[np.floating], axes: tuple[int, ...]) -> npt.NDArray[np.bool_]:
-    """Where any of the samples along ``axes``, in LSB, is full: what else it holds is not known."""
-    return np.asarray((samples > FULL - HEADROOM).any(axes))
 
 
 def rms(error: npt.NDArray[np.floating]) -> float | None:

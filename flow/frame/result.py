@@ -8,16 +8,18 @@ import numpy as np
 import numpy.typing as npt
 
 from talbot.models.afe import FrontEnd
-from talbot.models.capture import CaptureOperator, Views
+from talbot.models.capture import Views
 from talbot.models.chip import GoldenFrame
 from talbot.models.digital.stream.frame import DecodedFrame
 from talbot.models.parameters import SensorParameters
 from talbot.models.pixel.time_of_flight import quadrature
 from talbot.models.plan import Plan
-from talbot.models.reconstruct import edge_images, light_field_estimate, rebuild, sum_image, white_sum
+from talbot.models.reconstruct import edge_images, rebuild, sum_image
+from talbot.models.reconstruct.methods import Found
 from talbot.models.reconstruct.rebuild import Rebuilt
 from talbot.models.scene import Scene
 
+from . import light_field
 from .hardware import HardwareFrame
 from .request import FrameRequest
 
@@ -100,13 +102,15 @@ class GoldenResult:
         x, y = quadrature(np.moveaxis(samples, 2, 0))
         return np.arctan2(y, x), np.hypot(x, y)
 
+    @property
+    def light_field_method(self) -> str:
+        """Name of the method of `estimate`; raw mode only."""
+        return light_field.method_of(self)
+
     @cached_property
-    def light_field(self) -> npt.NDArray[np.float64]:
-        """The linear estimate of the light field from the decoded diodes, relative radiance; raw mode only."""
-        pair = np.moveaxis(self.decoded.samples.astype(float), 2, 0)
-        operator = CaptureOperator(self.sensor, read=self.decoded.read)
-        white = white_sum(self.request.lit, self.request.frame.exposing)
-        return np.asarray(light_field_estimate(operator, pair) / white, float)
+    def estimate(self) -> Found:
+        """The light field from the decoded diodes, relative radiance, by `light_field_method`; raw mode only."""
+        return light_field.estimate(self, self.light_field_method)
 
 
 @dataclass(frozen=True, eq=False)

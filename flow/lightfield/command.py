@@ -30,7 +30,7 @@ def add_prior_arguments(parser: ArgumentParser) -> None:
 
 def prior_asked(options: Namespace) -> "Callable[[GoldenResult], FieldPrior]":
     """From a frame to its prior with the disparities of `add_prior_arguments`. Raises ParameterError."""
-    from .fields import prior_of
+    from talbot.flow.frame.light_field import prior_of
 
     far = text.real("far", options.far, -20, 20)
     near = text.real("near", options.near, far, 20)
@@ -40,9 +40,10 @@ def prior_asked(options: Namespace) -> "Callable[[GoldenResult], FieldPrior]":
 
 def run(options: Namespace) -> int:
     """Read one frame back and print the figures; 1 where the chip and the golden model differ."""
+    from talbot.models.reconstruct.methods import METHODS
+
     from . import page  # Matplotlib: not before it is needed
     from .fields import Fields, read_back
-    from .methods import METHODS
 
     asked, typed = reading.asked(options, "lightfield", add_arguments)
     prior = prior_asked(options)

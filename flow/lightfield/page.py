@@ -10,12 +10,13 @@ from PIL.Image import Image
 from talbot.base import page
 from talbot.base.page import Picture, Scale, Tile
 from talbot.flow.frame import pictures
+from talbot.flow.frame.light_field import SURE
 from talbot.flow.frame.merit import decibels
 from talbot.flow.frame.reading import agreement, line, number
 from talbot.flow.frame.report import Views
 from talbot.models.reconstruct.refocus import refocus
 
-from .fields import SURE, Fields, depth_map
+from .fields import Fields, depth_map
 
 Values = npt.NDArray[np.floating]
 MOVING = "views.webp"

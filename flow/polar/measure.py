@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from talbot.flow.frame.reading import about, full, rms
+from talbot.flow.frame.light_field import estimate, full
+from talbot.flow.frame.reading import about, rms
 from talbot.flow.frame.result import GoldenResult
-from talbot.flow.lightfield.fields import estimate
 from talbot.models.pixel.polarization import angle
 from talbot.models.reconstruct import (
     Polarization,

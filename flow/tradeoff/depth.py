@@ -15,8 +15,8 @@ from matplotlib.figure import Figure
 from talbot.base.charts import curves
 from talbot.flow.depth.capture import DepthFrames, capture
 from talbot.flow.depth.measure import COARSE, FAINT, by_disparity, figures
+from talbot.flow.frame.light_field import estimator_of, prior_of
 from talbot.flow.frame.request import request
-from talbot.flow.lightfield.fields import estimator_of, prior_of
 from talbot.models.parameters import LIFE_SIZE, STANDARD
 from talbot.models.pixel.time_of_flight import SPEED_OF_LIGHT, demodulate
 from talbot.models.reconstruct import white_sum

@@ -15,12 +15,12 @@ from matplotlib.figure import Figure
 
 from talbot.base.charts import curves
 from talbot.flow.frame.job import golden_result
+from talbot.flow.frame.light_field import estimator_of, pair_of, prior_of, reached
 from talbot.flow.frame.request import request
 from talbot.flow.frame.result import GoldenResult
-from talbot.flow.lightfield import methods
-from talbot.flow.lightfield.fields import estimator_of, pair_of, prior_of, reached
+from talbot.flow.lightfield.figures import figures
 from talbot.models.capture import CaptureOperator
-from talbot.models.reconstruct import psnr_db, sum_image, white_sum
+from talbot.models.reconstruct import methods, psnr_db, sum_image, white_sum
 from talbot.models.reconstruct.bayes import FieldPrior
 from talbot.models.reconstruct.sparse import Coding, SparseEstimator
 
@@ -103,7 +103,7 @@ def measure(point: Point) -> dict[str, Any]:
     else:
         found, times = methods.measure(name, estimator_of(result, prior), CaptureOperator(result.sensor), pair)
         field, seconds, plain = found.light_field, times["seconds"], found.plain
-    got = methods.figures(field * corners, truth, psnr_db(free, truth))
+    got = figures(field * corners, truth, psnr_db(free, truth))
     setting = " ".join(f"{key} {value:g}" for key, value in change.items())
     return {"noise": label, "method": name, "setting": setting} | got | {"left_out": plain, "seconds": seconds}
 

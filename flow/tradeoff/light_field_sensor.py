@@ -15,15 +15,15 @@ from matplotlib.figure import Figure
 
 from talbot.base.charts import curves
 from talbot.flow.frame.job import golden_result
+from talbot.flow.frame.light_field import estimator_of, pair_of, prior_of, reached
 from talbot.flow.frame.request import STANDARD, request
 from talbot.flow.frame.result import GoldenResult
-from talbot.flow.lightfield import methods
-from talbot.flow.lightfield.fields import estimator_of, pair_of, prior_of, reached
+from talbot.flow.lightfield.figures import figures
 from talbot.models.afe import trim_gain
 from talbot.models.capture import CaptureOperator
 from talbot.models.parameters import PixelType, TileParameters
 from talbot.models.pixel.response import aperture
-from talbot.models.reconstruct import psnr_db, white_sum
+from talbot.models.reconstruct import methods, psnr_db, white_sum
 
 BITS = (3, 4, 5, 6, 7, 8, 10, 12)
 THRESHOLDS = (0, 2, 4, 8, 16, 32)  # LSB of a difference
@@ -113,7 +113,7 @@ def measure(point: Point) -> dict[str, Any]:
     estimator, operator = estimator_of(result, prior), CaptureOperator(result.sensor)
     row: dict[str, Any] = {"what": what, "value": value, "sent": share, "sum_image_psnr_db": free}
     for name in ("linear", "mixture"):
-        found = methods.figures(methods.METHODS[name](estimator, operator, pair).light_field * corners, truth, free)
+        found = figures(methods.METHODS[name](estimator, operator, pair).light_field * corners, truth, free)
         row |= {f"{name}_{key}": found[key] for key in ("psnr_db", "gain_db", "slope")}
     return row
 

@@ -9,8 +9,8 @@ import numpy.typing as npt
 from talbot.flow.depth.capture import capture
 from talbot.flow.depth.measure import read_depth
 from talbot.flow.frame import pictures
+from talbot.flow.frame.light_field import prior_of
 from talbot.flow.frame.result import FrameResult, GoldenResult
-from talbot.flow.lightfield.fields import prior_of
 from talbot.flow.polar.measure import read_polarization
 from talbot.models.parameters import ParameterError, check_int, check_real
 from talbot.models.scene import RADIANCE_MAX

@@ -9,10 +9,9 @@ import numpy.typing as npt
 
 from talbot.flow.frame import outputs, pictures
 from talbot.flow.frame.figures import summarize, summarize_golden
+from talbot.flow.frame.light_field import SURE, estimate
 from talbot.flow.frame.result import FrameResult, GoldenResult
-from talbot.flow.lightfield.fields import SURE, estimate
-from talbot.flow.lightfield.methods import METHODS
-from talbot.models.parameters import ParameterError, check_choice
+from talbot.models.parameters import ParameterError
 from talbot.models.pixel import depth_of as depth_of_phase
 from talbot.models.scene import RADIANCE_MAX
 
@@ -73,8 +72,9 @@ class Run:
         disparity (raw mode): px of the array per view step, Image (rows, cols), NaN where the mixture is not sure.
         depth (tof mode): in m, Image (rows, cols), NaN where there is no amplitude.
 
-        method: of a light field (flow/lightfield/README.md): direct (the thesis's; the default), linear, sparse,
-        mixture, network.
+        method: of a light field (flow/lightfield/README.md), by the name that it has in `make lightfield` and in the
+        summary of `make sim`: linear (the default), direct (the thesis's), sparse, autoencoder, convolutions,
+        two_branch, mixture, network. Of a decimated frame, and of more than 17 x 17 views, direct is the default.
         disparity: (rows, cols), px of the array per view step, for an image from edges; by default the scene's own.
         Raises ParameterError.
         """
@@ -86,15 +86,15 @@ class Run:
         if method is not None and what != "light_field":
             raise ParameterError(f"method = {method!r}: must be left out, it is of a light field")
         if what == "disparity":
-            found = estimate(result)
+            found = estimate(result, "mixture")
             if found.disparity is None or found.spread is None:
                 raise AssertionError("the mixture has a disparity")
             return Image.of(np.where(found.spread <= SURE, found.disparity, np.nan))
         if what == "light_field":
-            check_choice("method", method, (None, *METHODS))
-            field = result.light_field if method in (None, "direct") else estimate(result, method).light_field
-            values = np.clip(field, 0, RADIANCE_MAX)
-            return LightField(values, result.exposed.scene.disparity, f"{result.request.name}_estimate")
+            method = method or result.light_field_method
+            found = result.estimate if method == result.light_field_method else estimate(result, method)
+            values = np.clip(found.light_field, 0, RADIANCE_MAX)
+            return LightField(values, found.disparity, f"{result.request.name}_{method}")
         if what == "edges":
             return Image.of(result.edges)
         if what == "depth":

@@ -12,10 +12,10 @@ import pytest
 import talbot
 from talbot.base.paths import ROOT
 from talbot.commands import main
-from talbot.flow.lightfield import fields
-from talbot.flow.lightfield.methods import METHODS
+from talbot.flow.frame import light_field as frame_light_field
 from talbot.flow.tradeoff.sweeps import SWEEPS
 from talbot.models.parameters import AmpTiming
+from talbot.models.reconstruct.methods import METHODS
 
 
 def test_own_light_field_tile_and_response(tmp_path):
@@ -160,18 +160,19 @@ def test_a_tradeoff_is_a_table_and_a_plot():
 
 
 def test_a_light_field_by_every_method(monkeypatch):
-    monkeypatch.setattr(fields, "prior_of", partial(fields.prior_of, disparities=11))
+    monkeypatch.setattr(frame_light_field, "prior_of", partial(frame_light_field.prior_of, disparities=11))
     run = talbot.Sensor(rows=40, cols=48).golden("tilted", mode="raw")
     truth = run.result.exposed.scene.full_light_field
     error = {name: np.std(run.reconstruct("light_field", method=name).values - truth) for name in METHODS}
     assert error["mixture"] < error["linear"] < error["direct"]
-    assert (run.reconstruct("light_field").values == run.reconstruct("light_field", method="direct").values).all()
+    assert (run.reconstruct("light_field").values == run.reconstruct("light_field", method="linear").values).all()
+    assert run.summary["light_field_method"] == "linear"
     found, disparity = run.reconstruct("disparity"), run.result.exposed.scene.disparity
     sure = ~np.isnan(found)
     constant = np.abs(disparity - disparity.mean())[sure].mean()
     assert sure.mean() > 0.5 and np.abs(found - disparity)[sure].mean() < constant / 2
-    for what, method in (("light_field", "best"), ("image", "linear")):
-        with pytest.raises(talbot.ParameterError, match="method = "):
+    for what, method, said in (("light_field", "best", ", ".join(METHODS)), ("image", "linear", "left out")):
+        with pytest.raises(talbot.ParameterError, match=f"method = '{method}': must be .*{said}"):
             run.reconstruct(what, method=method)
 
 

@@ -48,7 +48,11 @@ def test_every_figure_of_the_mode_is_in_the_table(mode):
         "raw": f"{s['light_field_psnr_db']:.1f} dB" if mode == "raw" else "",
         "tof": f"{100 * s['depth_rms_m']:.3g} cm" if mode == "tof" else "",
     }
-    names = {"edge": "edges among the samples sent (precision)", "raw": "light field, PSNR", "tof": "depth, RMS error"}
+    names = {
+        "edge": "edges among the samples sent (precision)",
+        "raw": "light field by linear, PSNR",
+        "tof": "depth, RMS error",
+    }
     for of, name in names.items():
         assert (name in rows) == (of == mode) and (of != mode or rows[name][0] == own[of])
     assert ("phase, RMS error" in rows) == (mode == "tof")

@@ -9,12 +9,14 @@ import pytest
 from PIL import Image
 
 from talbot.commands import main
+from talbot.flow.frame import light_field
 from talbot.flow.frame.job import golden_result
+from talbot.flow.frame.light_field import estimate, method_of, pair_of, prior_of, reached
 from talbot.flow.frame.request import request
-from talbot.flow.lightfield import fields, page
-from talbot.flow.lightfield.fields import estimate, pair_of, prior_of, read_back
-from talbot.flow.lightfield.methods import figures, parallax
-from talbot.models.parameters import ParameterError
+from talbot.flow.lightfield import page
+from talbot.flow.lightfield.fields import read_back
+from talbot.flow.lightfield.figures import figures, parallax
+from talbot.models.parameters import ParameterError, Window
 from talbot.models.reconstruct import diode_noise
 from talbot.models.reconstruct.bayes import FieldPrior
 
@@ -114,10 +116,38 @@ def test_a_folder_tells_its_settings_and_what_it_replaced(tmp_path, monkeypatch,
     assert "replaced there: flat-rows=8-cols=12-lux=400-golden-disparities=3" in capsys.readouterr().out
 
 
+def test_the_estimate_of_a_part_is_that_of_its_tiles(monkeypatch):
+    monkeypatch.setattr(light_field, "prior_of", partial(prior_of, disparities=5))
+    asked = partial(request, scene="tilted", rows=24, cols=36, mode="raw", noise=0, converter="ideal")
+    window = golden_result(asked(window=lambda full: Window(1, 4, 2, 5), mask=0x7FFFFF))
+    box, truth = np.s_[..., 4:20, 12:36], window.exposed.scene.full_light_field
+    assert method_of(window) == window.light_field_method == "linear"
+    for method in ("linear", "mixture"):
+        found = estimate(window, method)
+        error = np.sqrt(np.mean((found.light_field - truth * reached(window))[box] ** 2))
+        assert error < 0.7 * np.std((window.image - truth)[box]) and np.ptp(found.light_field[box]) > 0.1
+        outside = found.light_field.copy()
+        outside[box] = 0
+        assert not outside.any()
+        assert method == "linear" or (np.isinf(found.spread[:4]).all() and (found.spread[box] < 1).any())
+    with pytest.raises(ParameterError, match="method = 'sparse': must be one of direct, linear, mixture for a part"):
+        estimate(window, "sparse")
+
+
+def test_a_decimated_frame_has_the_direct_estimate_alone():
+    sparse = golden_result(request(scene="tilted", rows=24, cols=36, mode="raw", decimation=1))
+    assert sparse.light_field_method == "direct" and sparse.estimate.light_field.any()
+    with pytest.raises(ParameterError, match="decimation = 1: must be 0"):
+        estimate(sparse, "linear")
+    small = golden_result(request(scene="flat", rows=8, cols=12, mode="raw"))
+    with pytest.raises(ParameterError, match="'sparse': must be one of direct, linear.* 5 x 5 views of 8 x 12"):
+        estimate(small, "sparse")
+
+
 @pytest.mark.slow
 def test_an_estimate_alone_is_that_of_the_page(monkeypatch):
-    monkeypatch.setattr(fields, "prior_of", partial(prior_of, disparities=11))
+    monkeypatch.setattr(light_field, "prior_of", partial(prior_of, disparities=11))
     result = golden_result(request(scene="tilted", rows=24, cols=24, mode="raw"))
-    page = read_back(result, fields.prior_of(result))
+    page = read_back(result, light_field.prior_of(result))
     for name, found in page.found.items():
         np.testing.assert_array_equal(estimate(result, name).light_field, found.light_field)

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from talbot.flow.frame.job import golden_result
+from talbot.flow.frame.light_field import pair_of, reached
 from talbot.flow.frame.request import STANDARD, request
-from talbot.flow.lightfield.fields import pair_of, reached
 from talbot.flow.tradeoff import light_field, light_field_sensor, views
 from talbot.flow.tradeoff.sweeps import SWEEPS, measured, run_sweeps
 from talbot.models.parameters import ParameterError

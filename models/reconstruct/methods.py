@@ -1,4 +1,12 @@
-"""Methods that give a light field back from the diodes, by name, and their figures beside what costs nothing."""
+"""The methods that give a light field back from the diodes, each by the name that it has everywhere.
+
+direct      Sigma^-1 Phi' i [Jayasuriya2017, Sec. 3.3.2]
+linear      `bayes`: one filter for windows of like disparities; the default
+sparse      `sparse`
+mixture     `bayes`: each pixel by its own disparity
+network     `network`
+two_branch  `branches`; autoencoder and convolutions are its branches, each alone [Jayasuriya2017, Sec. 3.7]
+"""
 
 from collections.abc import Callable, Mapping
 from functools import lru_cache, partial
@@ -7,25 +15,31 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from skimage.metrics import structural_similarity
 
 from talbot.models.capture import CaptureOperator
-from talbot.models.parameters import SensorParameters
-from talbot.models.reconstruct import light_field_estimate, psnr_db
-from talbot.models.reconstruct.bayes import FieldEstimator
-from talbot.models.reconstruct.branches import KINDS, Branches
-from talbot.models.reconstruct.network import VIEWS, Network
-from talbot.models.reconstruct.sparse import Coding, Dictionary, SparseEstimator
+from talbot.models.parameters import ParameterError, SensorParameters
+
+from .bayes import FieldEstimator
+from .branches import KINDS, Branches
+from .light_field import light_field_estimate
+from .network import VIEWS, Network
+from .sparse import Coding, Dictionary, SparseEstimator
 
 Values = npt.NDArray[np.floating]
-SSIM_WINDOW = 7  # px
+DEFAULT = "linear"  # as fast as direct once its filters are there, and it has parallax
 
 
 class Found(NamedTuple):
     """What a method gives.
 
-    light_field: l[v, u, y, x], white = 1. disparity, spread: (rows, cols) in px, or None. plain: share of the windows
-    that are left out, since their samples show no angular content.
+    Attributes
+    ----------
+    light_field : array (views, views, rows, cols)
+        l[v, u, y, x], white = 1; noise and error take it below 0.
+    disparity, spread : array (rows, cols) or None
+        In px per view step, and its standard deviation; None of a method that tells none.
+    plain : float
+        Share of the windows that are left out, since their samples show no angular content.
     """
 
     light_field: Values
@@ -74,8 +88,6 @@ def _prepared(sensor: SensorParameters, coding: Coding) -> SparseEstimator:
     return coder
 
 
-# direct: Sigma^-1 Phi' i [Jayasuriya2017, Sec. 3.3.2]. linear, mixture: models/reconstruct/bayes. autoencoder and
-# convolutions: the branches of two_branch, each alone [Jayasuriya2017, Sec. 3.7]
 BRANCHES = dict(zip(("autoencoder", "convolutions", "two_branch"), KINDS, strict=True))
 METHODS: Mapping[str, Method] = {
     "direct": _direct,
@@ -92,10 +104,22 @@ PREPARE: Mapping[str, Callable[[FieldEstimator, CaptureOperator], object]] = {
     "network": lambda estimator, operator: (estimator.prepare(mixture=True), Network.shipped()),
     **dict.fromkeys(BRANCHES, lambda estimator, operator: Branches.shipped()),
 }
+ANY_TYPES = "direct", "linear", "mixture"  # know what to do where some pixel types are not read
 
 
 def applicable(operator: CaptureOperator) -> list[str]:
-    """Methods for frames of this size and light fields of as many views; what is learned has a size of its own."""
+    """Methods for frames of this size and light fields of as many views; what is learned has a size of its own.
+
+    Parameters
+    ----------
+    operator : CaptureOperator
+        Operator of all views.
+
+    Returns
+    -------
+    list of str
+        Their names, in the order of `METHODS`.
+    """
     views, _, *shape = operator.shape
     _, own, _, *patch = Dictionary.shipped().atoms.shape
     fits = {"network": views == VIEWS, "sparse": views == own and min(np.subtract(shape, patch)) >= 0}
@@ -103,49 +127,56 @@ def applicable(operator: CaptureOperator) -> list[str]:
     return [name for name in METHODS if fits.get(name, True)]
 
 
+def check_method(name: str, operator: CaptureOperator) -> None:
+    """Check that a method is there, and for frames of this size.
+
+    Parameters
+    ----------
+    name : str
+        Of the method.
+    operator : CaptureOperator
+        As for `applicable`.
+
+    Raises
+    ------
+    ParameterError
+        With the list of those that are.
+    """
+    if name not in METHODS:
+        raise ParameterError(f"method = {name!r}: must be one of {', '.join(METHODS)}")
+    if name not in applicable(operator):
+        views, _, rows, cols = operator.shape
+        raise ParameterError(
+            f"method = {name!r}: must be one of {', '.join(applicable(operator))} for {views} x {views} views of "
+            f"{rows} x {cols} pixels and this tile"
+        )
+
+
 def measure(
     name: str, estimator: FieldEstimator, operator: CaptureOperator, pair: Values
 ) -> tuple[Found, dict[str, float]]:
     """Run a method.
 
-    pair: (2, rows, cols), 1 = the average diode in a flat white scene. Returns what it gives, and seconds a frame with
-    those that it takes once a sensor.
+    Parameters
+    ----------
+    name : str
+        One of `METHODS`.
+    estimator : FieldEstimator
+        Of the sensor, with the prior.
+    operator : CaptureOperator
+        Of the same sensor, all views.
+    pair : array (2, rows, cols)
+        1 = the average diode in a flat white scene.
+
+    Returns
+    -------
+    Found
+        What it gives.
+    dict
+        ``seconds`` a frame, and ``seconds_once``, those that it takes once a sensor.
     """
     start = perf_counter()
     PREPARE.get(name, lambda estimator, operator: None)(estimator, operator)
     ready = perf_counter()
     found = METHODS[name](estimator, operator, pair)
     return found, {"seconds": perf_counter() - ready, "seconds_once": ready - start}
-
-
-def figures(found: Values, truth: Values, free: float | None) -> dict[str, float | None]:
-    """Of a light field against the true one: PSNR, SSIM (mean of the views), gain over the copied image, parallax.
-
-    slope, correlation: of the difference of opposite outer views, horizontal and vertical, to the true one; None where
-    the true views are equal. free: PSNR (dB) of the copied sum image, which the gain is against.
-    """
-    psnr = psnr_db(found, truth)
-    slope, correlation = parallax(found, truth)
-    gain = None if psnr is None or free is None else psnr - free
-    return {"psnr_db": psnr, "ssim": ssim(found, truth), "gain_db": gain, "slope": slope, "correlation": correlation}
-
-
-def ssim(found: Values, truth: Values) -> float | None:
-    """Structural similarity, mean of the views; None where a view is smaller than the window."""
-    if min(truth.shape[2:]) < SSIM_WINDOW:
-        return None
-    pairs = ((np.asarray(found[v, u], float), np.asarray(truth[v, u], float)) for v, u in np.ndindex(truth.shape[:2]))
-    return float(np.mean([structural_similarity(a, b, data_range=1.0) for a, b in pairs]))
-
-
-def parallax(found: Values, truth: Values) -> tuple[float | None, float | None]:
-    """Slope and correlation of the found difference of the outermost middle views to the true one."""
-    middle = len(truth) // 2
-    a, b = (
-        np.stack([field[middle, -1] - field[middle, 0], field[-1, middle] - field[0, middle]]).astype(float)
-        for field in (found, truth)
-    )
-    own, true, shared = float((a * a).sum()), float((b * b).sum()), float((a * b).sum())
-    if not true:
-        return None, None
-    return shared / true, shared / np.sqrt(own * true) if own else 0.0
