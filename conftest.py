@@ -1,4 +1,4 @@
-"""Options of the tests: slow ones, netlists in place of the translated Verilog, and tests skipped for lack of a tool.
+"""Options of the tests: slow ones, and netlists in place of the translated Verilog.
 
 A property fails immediately with the first input that breaks it. --hypothesis-profile=smallest looks for the smallest
 one, which takes minutes with a simulator. Where a CI runs the tests, Hypothesis draws the same inputs every time,
@@ -6,10 +6,7 @@ whatever --hypothesis-seed says, but with --hypothesis-profile=seeded.
 """
 
 import gc
-import importlib.util
 import os
-import re
-from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -28,37 +25,12 @@ for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"):
 # Collection makes objects that all stay: to look for cycles among them took a third of its time
 gc.disable()
 
-# These draw and read layouts: KLayout's Python module comes with the environment of cells and layouts
-LAYOUTS = "talbot/cells/extract", "talbot/cells/compact", "talbot/cells/lef", "talbot/cells/test"
 PACKAGE = Path(__file__).parent / "talbot"
 NETLISTS = pytest.StashKey()  # rtl.harness.netlists.Netlists of --netlist
-SLOW = "slow: make verify, or pytest --all"
-# What neither Debian nor PyPI has, a machine cannot do, or is too large to ask for: skipped with --complete, too
-ELSEWHERE = re.compile(
-    r"slow|benchmark|PDK_ROOT|TT_TOOLS|openroad|PyTorch|Mitsuba|a small file system cannot be mounted|needs /proc"
-    r"|no coriolis for"
-)
-# Command that brings what a test was skipped for, by a word of its reason
-BRINGS = {
-    "slow": "make verify",
-    "benchmark": "make bench",
-    "LibreLane": "make librelane",
-    "PyTorch": "pip install 'talbot[nn]'",
-    "Mitsuba": "make render",
-    "TT_TOOLS": "TT_TOOLS=<tt-support-tools> PDK_ROOT=<an installed PDK>",
-    "PDK_ROOT": "PDK_ROOT=<an installed PDK>",
-} | dict.fromkeys(
-    ("klayout", "c4m", "pdkmaster", "coriolis", "sky130"), "make setup-layout (klayout's program: make tools)"
-)
-LAYOUT_PACKAGES = {"klayout", "c4m", "pdkmaster", "coriolis", "coloquinte", "sky130"}
-collect_ignore = [] if importlib.util.find_spec("klayout") else list(LAYOUTS)
 
 
 def pytest_addoption(parser):
     parser.addoption("--all", action="store_true", help="also run the tests marked slow (make verify)")
-    parser.addoption(
-        "--complete", action="store_true", help="fail where a test is skipped for want of a tool or package"
-    )
     group = parser.getgroup("netlists", "run the Icarus level of the tests on netlists")
     group.addoption(
         "--netlist",
@@ -114,7 +86,7 @@ def pytest_collection_finish():
 
 
 def pytest_collection_modifyitems(config, items):
-    from talbot.rtl.harness.icarus import MISSING, installed
+    from talbot.verif.needs import SLOW
 
     in_icarus = [item for item in items if getattr(item.cls, "verilog", None) == "icarus"]
     if config.getoption("netlist"):
@@ -124,36 +96,8 @@ def pytest_collection_modifyitems(config, items):
         for item in items:
             if item.get_closest_marker("slow"):
                 item.add_marker(pytest.mark.skip(reason=SLOW))
-    if not installed():
-        for item in in_icarus:
-            item.add_marker(pytest.mark.skip(reason=MISSING))
-
-
-@pytest.hookimpl(wrapper=True)
-def pytest_runtest_setup(item):
-    return (yield from skipped_without_layouts())
-
-
-@pytest.hookimpl(wrapper=True)
-def pytest_runtest_call(item):
-    return (yield from skipped_without_layouts())
-
-
-def skipped_without_layouts():
-    """Skip a test that comes to a package of the environment of layouts, where that is not installed.
-
-    Data that the package holds is missed as a ToolError, whose cause names the package.
-    """
-    from talbot.base.tools import ToolError
-
-    try:
-        return (yield)
-    except (ModuleNotFoundError, ToolError) as error:
-        absent = error if isinstance(error, ModuleNotFoundError) else error.__cause__
-        package = (getattr(absent, "name", None) or "").partition(".")[0]
-        if package in LAYOUT_PACKAGES:
-            pytest.skip(f"{package}: not installed")
-        raise
+    for item in in_icarus:
+        item.add_marker(pytest.mark.needs("iverilog"))
 
 
 @pytest.fixture
@@ -188,10 +132,8 @@ def on_netlists(request):
 
 
 def pytest_sessionfinish(session):
-    """Fail for a netlist that no test used (in one process: workers share the tests), and with --complete for a gap."""
+    """Fail for a netlist that no test used (in one process: workers share the tests)."""
     options = session.config.option
-    if options.complete and not hasattr(session.config, "workerinput") and session.exitstatus == 0:
-        session.exitstatus = int(bool(missing(session.config.pluginmanager.get_plugin("terminalreporter"))))
     if not options.netlist or options.collectonly or getattr(options, "dist", "no") != "no":
         return
     netlists = session.config.stash[NETLISTS]
@@ -200,27 +142,3 @@ def pytest_sessionfinish(session):
             f"--netlist = {', '.join(unused)}: no test builds that; built were: "
             f"{', '.join(sorted(netlists.built)) or 'none'}"
         )
-
-
-def skipped(reporter):
-    """(reason, how many tests), the most frequent first; a module that is skipped whole counts once."""
-    reasons = Counter(f"{folder}: klayout is not installed" for folder in collect_ignore)
-    for report in reporter.stats.get("skipped", ()):
-        reason = report.longrepr[2] if isinstance(report.longrepr, tuple) else str(report.longrepr)
-        reasons[reason.removeprefix("Skipped: ").splitlines()[0]] += 1
-    return reasons.most_common()
-
-
-def missing(reporter):
-    """Reasons that a package of Debian or PyPI would remove."""
-    return [reason for reason, _ in skipped(reporter) if not ELSEWHERE.search(reason)]
-
-
-def pytest_terminal_summary(terminalreporter, config):
-    """Print what was left out and the command that brings it."""
-    for reason, count in () if config.getoption("netlist") else skipped(terminalreporter):
-        command = next((command for word, command in BRINGS.items() if word in reason), "make tools")
-        suffix = "" if "make" in reason else f" ({command})"
-        terminalreporter.write_line(f"left out: {count} x {reason}{suffix}")
-    if config.getoption("complete") and (gaps := missing(terminalreporter)):
-        terminalreporter.write_line(f"--complete: {len(gaps)} reasons to skip that a package removes: this run fails")

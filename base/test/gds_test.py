@@ -2,11 +2,12 @@
 
 import time
 
+import klayout.db as db
 import pytest
 
 from talbot.base.gds import write_gds
 
-db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
+pytestmark = pytest.mark.needs("layout")
 
 
 def test_the_same_layout_is_the_same_file(tmp_path):

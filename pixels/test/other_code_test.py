@@ -5,6 +5,7 @@ Silicon without loss: of an absorbing half space meent 0.13.2 says otherwise tha
 
 from dataclasses import replace
 
+import meent
 import numpy as np
 import pytest
 
@@ -15,7 +16,6 @@ from talbot.pixels.optics.response import respond
 from talbot.pixels.optics.solve import Illumination, solve
 from talbot.platforms.materials import refractive_index
 
-meent = pytest.importorskip("meent")
 CELLS = 560  # of a period: the edges of the lines are between them
 ORDERS = 21
 WAVELENGTH, PERIOD, SHIFT = 0.53, 0.7, 0.25

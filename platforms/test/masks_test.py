@@ -1,7 +1,6 @@
 """The rules that PDKMaster's deck lacks: cells of two libraries, and an error planted against each."""
 
 import re
-import shutil
 from collections import Counter
 from xml.etree import ElementTree
 
@@ -107,7 +106,7 @@ def broken(tmp_path_factory):
     return found
 
 
-pytestmark = pytest.mark.skipif(not shutil.which("klayout"), reason="klayout: not installed")
+pytestmark = pytest.mark.needs("klayout")
 
 
 def test_what_keeps_every_rule(broken):

@@ -1,7 +1,6 @@
 """Only platforms/<pdk> describes a process; every process has what the layout flow requires."""
 
 import asyncio
-import importlib.util
 import re
 import sys
 
@@ -47,13 +46,12 @@ def test_figures_fit_each_other(pdk):
     assert list(tech.fill.sides_um) == sorted(tech.fill.sides_um, reverse=True)
 
 
+@pytest.mark.needs("layout")
 @pytest.mark.slow  # importing a process's package draws its cells
 @pytest.mark.filterwarnings("ignore:gate oxide:DeprecationWarning")  # c4m-pdk-ihpsg13g2's own
 @pytest.mark.parametrize("pdk", PROCESSES)
 def test_the_wheel_agrees(pdk):
     tech = coriolis_platform(pdk)
-    if not importlib.util.find_spec("pdkmaster"):
-        pytest.skip("pdkmaster: not installed; make layout installs it")
     wheel = imported(f"{tech.package}.pdkmaster")
     for part in (*tech.metals, *tech.vias):
         assert wheel.gds_layers[part.name] == part.gds

@@ -1,14 +1,12 @@
 """The asynchronous pins pass synchronizers; a missing flip-flop and a raw pin are found."""
 
-import shutil
-
 import pytest
 
 from talbot.models.parameters import ASYNCHRONOUS, ArrayParameters, ChipParameters, SensorParameters
 from talbot.rtl.crossings import crossings
 from talbot.rtl.export import translate
 
-pytestmark = pytest.mark.skipif(not shutil.which("yosys"), reason="no Yosys: make tools installs it")
+pytestmark = pytest.mark.needs("yosys")
 
 GOOD = """
 module Top (input clk, input reset, input sclk, input csn, input mosi, output miso_oe, output reg miso);

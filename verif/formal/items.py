@@ -11,7 +11,6 @@ from talbot.base.records import from_json
 from talbot.verif.results import OUT, PROVEN
 
 from . import manifest
-from .engine import FormalError, tool
 from .plan import pieces
 from .proof import Proof
 from .prove import ProofResult
@@ -44,19 +43,15 @@ class ProofItem(pytest.Item):
     cls = None  # as of tests outside classes
 
     def __init__(self, *, proof: Proof, **given: Any) -> None:
-        """Mark it slow where the proof is, or repeats another at its size."""
+        """Mark its tools, and it slow where the proof is, or repeats another at its size."""
         super().__init__(**given)
         self.proof = proof
+        self.add_marker(pytest.mark.needs("yosys-smtbmc", proof.engines[0]))
         if proof.slow or proof.size_of:
             self.add_marker("slow")
 
     def runtest(self) -> None:
         """Prove it, or take the result that is kept."""
-        try:
-            for name in ("yosys", "yosys-smtbmc", self.proof.engines[0]):
-                tool(name)
-        except FormalError as missing:
-            pytest.skip(str(missing))
         if problem := failure(self.proof, OUT / "formal"):
             pytest.fail(problem, pytrace=False)
 

@@ -1,6 +1,5 @@
 """Cells' functions in Verilog: registers begin with a bit each, not with X."""
 
-import shutil
 import subprocess
 
 import pytest
@@ -22,9 +21,7 @@ endmodule
 """
 
 
-@pytest.mark.skipif(
-    not (shutil.which("iverilog") and shutil.which("yosys")), reason="iverilog, yosys: install them with: make tools"
-)
+@pytest.mark.needs("iverilog", "yosys")
 def test_registers_begin_with_random_bits(tmp_path):
     cells = library("l")
     add_cell(cells, "dff", 1.0, ("d", "c", "q"), {"q": "IQ"}, {"clocked_on": "c", "next_state": "d"}, "c")

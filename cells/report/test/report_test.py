@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-pytest.importorskip("klayout.db", reason="klayout = not installed: make cells")
-
 from talbot.cells.liberty.compare import Difference, summary
 from talbot.cells.report import command, curve, pictures
+
+pytestmark = pytest.mark.needs("layout")
 
 ERRORS = [
     {"name": curve.DEFAULT, "cell": "inv_1", "seconds": 2.0, "error": [1.0, -3.0, 2.0]},

@@ -1,7 +1,6 @@
 """The engine on circuits whose answer is known."""
 
 import os
-import shutil
 import signal
 import threading
 
@@ -14,7 +13,7 @@ from talbot.cells.spice.wave import Wave
 from talbot.models.parameters import ParameterError
 
 RC = [".subckt rc A Y", "R1 A Y 1k", ".ends", "Xcell A Y rc"]
-ngspice = pytest.mark.skipif(not shutil.which("ngspice"), reason="needs ngspice (make tools)")
+ngspice = pytest.mark.needs("ngspice")
 
 
 @ngspice
@@ -47,7 +46,7 @@ def test_a_run_beyond_its_time_is_ended():
 
 
 @ngspice
-@pytest.mark.skipif(not os.path.isdir("/proc"), reason="needs /proc, which says what a process has used")
+@pytest.mark.needs("/proc")
 def test_a_busy_machine_is_no_time_out():
     """A child that gets no processor for longer than its time-out, here a stopped one, has its answer waited for."""
     with Simulator(RC, ["A"], ["Y"], {}, 25) as simulator:

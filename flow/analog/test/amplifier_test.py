@@ -1,6 +1,5 @@
 """The amplifier in ngspice against (Ca a - Cb b) / Cf, and with planted faults."""
 
-import shutil
 from dataclasses import replace
 
 import pytest
@@ -14,7 +13,7 @@ from talbot.pixels.circuits.netlist import Circuit
 SETUP, LANE = job.setup_of("sky130")
 CORNER = Corner.parse(job.TYPICAL)
 SPEC, SIZES = job.amplifier_of(SETUP, LANE)
-ngspice = pytest.mark.skipif(not shutil.which("ngspice"), reason="needs ngspice (make tools)")
+ngspice = pytest.mark.needs("ngspice")
 
 
 def output(a: float, b: float, code: int = UNITS, circuit: Circuit | None = None) -> float:

@@ -1,6 +1,5 @@
 """The lane in ngspice against closed forms, against itself with other capacitors, and with planted faults."""
 
-import shutil
 from dataclasses import replace
 
 import numpy as np
@@ -18,7 +17,7 @@ from talbot.pixels.circuits.netlist import Circuit
 
 SETUP, SIZES = job.setup_of("sky130")
 CORNER = Corner.parse(job.TYPICAL)
-ngspice = pytest.mark.skipif(not shutil.which("ngspice"), reason="needs ngspice (make tools)")
+ngspice = pytest.mark.needs("ngspice")
 
 
 def swapped(circuit: Circuit) -> Circuit:

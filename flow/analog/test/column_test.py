@@ -1,6 +1,5 @@
 """A column in ngspice against its capacitors, and with planted faults."""
 
-import shutil
 from dataclasses import replace
 
 import pytest
@@ -12,7 +11,7 @@ from talbot.flow.analog.column import bench, turn_of
 from talbot.pixels.circuits import column as columns
 from talbot.platforms.sky130 import analog as process
 
-pytestmark = pytest.mark.skipif(not shutil.which("ngspice"), reason="needs ngspice (make tools)")
+pytestmark = pytest.mark.needs("ngspice")
 SETUP, _ = job.setup_of("sky130")
 CORNER = Corner.parse(job.TYPICAL)
 SPEC, SIZES = job.column_of(SETUP)

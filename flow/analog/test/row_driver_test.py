@@ -1,6 +1,5 @@
 """A row's driver in ngspice: against the line's closed form, and with planted faults."""
 
-import shutil
 from dataclasses import replace
 from math import log, pi
 
@@ -11,7 +10,7 @@ from talbot.flow.analog import job, row_driver
 from talbot.flow.analog.deck import EDGE, deck, simulator
 from talbot.pixels.circuits.row_driver import RowDriverSpec, bank, row, row_line
 
-pytestmark = pytest.mark.skipif(not shutil.which("ngspice"), reason="needs ngspice (make tools)")
+pytestmark = pytest.mark.needs("ngspice")
 SETUP, _ = job.setup_of("sky130")
 CORNER = Corner.parse(job.TYPICAL)
 SPEC = RowDriverSpec.of()

@@ -1,6 +1,5 @@
 """Mismatch and noise of the amplifier: its seed decides, capacitors alone give the spread of their cells, kT/C."""
 
-import shutil
 from math import sqrt
 
 import numpy as np
@@ -17,7 +16,7 @@ from talbot.platforms.sky130 import analog as process
 SETUP, LANE = job.setup_of("sky130")
 CORNER = Corner.parse(job.TYPICAL)
 SPEC, SIZES = job.amplifier_of(SETUP, LANE)
-ngspice = pytest.mark.skipif(not shutil.which("ngspice"), reason="needs ngspice (make tools)")
+ngspice = pytest.mark.needs("ngspice")
 
 
 @ngspice

@@ -1,6 +1,5 @@
 """Switch drivers and bias in ngspice against closed forms, and with planted faults."""
 
-import shutil
 from dataclasses import replace
 
 import numpy as np
@@ -15,7 +14,7 @@ from talbot.pixels.circuits.netlist import Circuit, Instance
 from talbot.pixels.circuits.support import BARS, BIAS_OHM, SupportSpec, bias
 from talbot.platforms.sky130 import analog as process
 
-pytestmark = pytest.mark.skipif(not shutil.which("ngspice"), reason="needs ngspice (make tools)")
+pytestmark = pytest.mark.needs("ngspice")
 SETUP, _ = job.setup_of("sky130")
 CORNER = Corner.parse(job.TYPICAL)
 SPEC = SupportSpec()

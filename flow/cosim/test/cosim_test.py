@@ -1,6 +1,5 @@
 """Co-simulation: the chip's Verilog against the lane in transistors."""
 
-import ctypes.util
 import re
 from dataclasses import replace
 
@@ -26,7 +25,7 @@ from talbot.pixels.circuits.netlist import Circuit, Resistor
 from talbot.pixels.circuits.specification import LaneSpec
 from talbot.platforms.sky130 import analog
 
-library = pytest.mark.skipif(not ctypes.util.find_library("ngspice"), reason="needs libngspice (make tools)")
+library = pytest.mark.needs("libngspice")
 COARSE = Accuracy(reltol=1e-3, chgtol=1e-15)  # a quarter of the default's time
 SMALL = RowRequest(mode="image", cols=6, lanes=1, types=1, accuracy=COARSE)  # its pixels, too
 
@@ -149,9 +148,9 @@ def test_the_column_amplifiers_are_in_the_loop(mode):
 @library
 @pytest.mark.slow
 @pytest.mark.parametrize("mode", ["edge", "image"])
+@pytest.mark.needs("layout")
 def test_a_drawn_row_begins_as_the_trim_leaves_it(mode):
     """From 0 V an inner node of the gates moved a line by 1 mV, half an LSB of a sum."""
-    pytest.importorskip("klayout")
     row = read_row(RowRequest(mode=mode, cols=6, lanes=1, types=1, amplifier=True, columns=True, extracted=True))
     assert np.abs(row.at_lane).max() < 0.2 and row.decks[0].repeated == 0
 
@@ -179,9 +178,9 @@ def test_a_sum_does_not_depend_on_its_turn():
 
 @library
 @pytest.mark.slow
+@pytest.mark.needs("layout")
 def test_the_drawn_circuits_are_in_the_loop():
     """As drawn, with all parasitics: the plates' ends and the comparator's have other names in the waves."""
-    pytest.importorskip("klayout")
     row = read_row(replace(SMALL, extracted=True))
     assert abs(row.at_lane[0]) < 0.3 and abs(row.level_off[0]) < 0.26 and not row.beyond.any()
     assert row.run.attempts == 1 and len(row.decks[0].lines) > 5000  # 160 of schematics, besides the models

@@ -1,7 +1,5 @@
 """A sampler leaves nothing that grows with the value; codes of a sound row name no fault, those of a fault name it."""
 
-import shutil
-
 import numpy as np
 import pytest
 
@@ -14,7 +12,7 @@ from talbot.flow.cosim.row import Row, RowRequest, Sample
 from talbot.pixels.circuits.netlist import Circuit
 from talbot.platforms.sky130 import analog
 
-ngspice = pytest.mark.skipif(not shutil.which("ngspice"), reason="needs ngspice (make tools)")
+ngspice = pytest.mark.needs("ngspice")
 VALUES = (0.3, 0.8, 1.3)  # V
 EDGE_ROW = RowRequest(mode="edge", cols=12, lanes=2, types=6, pixels=False)
 

@@ -1,7 +1,6 @@
 """The comparison: every sample coded once in every order, known frames cost what they must, bad files are named."""
 
 import csv
-import shutil
 
 import numpy as np
 import pytest
@@ -103,7 +102,7 @@ def test_command(tmp_path, codes, capsys, monkeypatch):
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(not shutil.which("yosys"), reason="yosys is not installed (make tools)")
+@pytest.mark.needs("yosys")
 def test_gates_rank_the_packers():
     gates = command.gates_of_packers()
     assert list(gates) == list(FORMATS)

@@ -1,7 +1,5 @@
 """Whole frames: the chip's Verilog against the golden chip, byte for byte, in every mode, at odd sizes."""
 
-import shutil
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -106,9 +104,8 @@ def test_imperfect_converters(programs, mode, converter):
     assert hardware.simulate(programs["odd"], sensor, asked.frame, samples, front_end).stream == golden.stream
 
 
+@pytest.mark.needs("iverilog")
 def test_icarus_sends_the_same_bytes(programs, tmp_path):
-    if not shutil.which("iverilog"):
-        pytest.skip("Icarus Verilog is not installed: make tools")
     asked = asked_of("odd", threshold=9, exposure=5)
     front_end, samples = front_end_of(asked.sensor, [7] * 24), exposure(asked.sensor, 2)
     program = icarus_program(Build.of(asked.sensor), tmp_path)

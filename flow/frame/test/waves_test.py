@@ -10,14 +10,13 @@ from talbot.flow.frame import job
 from talbot.flow.frame.hardware import program
 from talbot.flow.frame.request import request
 from talbot.flow.simulate.frame import Waves
-from talbot.flow.simulate.verilator import PACKED
 from talbot.models.parameters import ParameterError
 
 ROWS = 1, 2
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(not has_headers(PACKED), reason=f"no {' and '.join(PACKED)}")
+@pytest.mark.needs("fst")
 def test_waves(tmp_path):
     asked = request(scene="coins", rows=8, cols=12, waves=ROWS, waves_format="fst")
     exposed = job.expose(asked, *job.see(asked))

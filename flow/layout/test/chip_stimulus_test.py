@@ -1,7 +1,5 @@
 """The stimulus of the whole chip: recorded in the chip that is laid out."""
 
-import shutil
-
 import pytest
 
 from talbot.flow.layout.chain import CHIP_FRAME, input_files
@@ -10,9 +8,7 @@ from talbot.flow.layout.options import Options
 from talbot.flow.layout.steps.stimulus import Stimulus, StimulusParameters
 
 
-@pytest.mark.skipif(
-    not shutil.which("yosys") or not shutil.which("iverilog"), reason="yosys, iverilog: not found; make tools"
-)
+@pytest.mark.needs("yosys", "iverilog")
 @pytest.mark.slow
 def test_the_chip_is_watched_as_it_is_laid_out(tmp_path):
     """A trace of a chip of another size is none of this one: its header says another."""

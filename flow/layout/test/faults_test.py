@@ -12,12 +12,7 @@ from talbot.flow.layout.steps.parameters import PdkParameters
 
 from . import counter
 
-pytestmark = [
-    pytest.mark.slow,
-    pytest.mark.skipif(
-        bool(counter.LACKING), reason=f"{', '.join(counter.LACKING)}: not found; make tools, make layout"
-    ),
-]
+pytestmark = [pytest.mark.slow, pytest.mark.needs(*counter.NEEDS)]
 
 
 @pytest.fixture(scope="module")

@@ -17,12 +17,7 @@ from talbot.flow.layout.steps.parameters import PdkParameters
 
 from . import counter
 
-pytestmark = [
-    pytest.mark.slow,
-    pytest.mark.skipif(
-        bool(counter.LACKING), reason=f"{', '.join(counter.LACKING)}: not found; make tools, make layout"
-    ),
-]
+pytestmark = [pytest.mark.slow, pytest.mark.needs(*counter.NEEDS)]
 PAIR = (
     counter.VERILOG
     + """

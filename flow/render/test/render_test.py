@@ -2,7 +2,6 @@
 
 import json
 import sys
-from importlib.util import find_spec
 
 import numpy as np
 import pytest
@@ -55,10 +54,9 @@ def test_without_mitsuba(capsys, tmp_path, monkeypatch):
 
 
 @pytest.fixture(scope="module")
-def made(tmp_path_factory):
+def made(tmp_path_factory, require):
     """Folder of two small scenes by Mitsuba."""
-    if not all(map(find_spec, ("mitsuba", "mitransient"))):
-        pytest.skip("Mitsuba: not installed")
+    require("mitsuba")
     folder = tmp_path_factory.mktemp("render")
     assert main(["render", "--scene=sheet,room", "--size=24", "--views=3", "--samples=8", f"--out={folder}"]) == 0
     return folder

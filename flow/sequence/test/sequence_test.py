@@ -1,6 +1,5 @@
 """Sequences through one running simulation: every frame's bytes are the golden chip's, its state stays."""
 
-import shutil
 from dataclasses import replace
 
 import numpy as np
@@ -67,9 +66,8 @@ def test_what_the_chip_has_is_not_written_again():
     assert runs[0].stream[:20] == runs[1].stream[:20] and runs[0].activity["busy"] == runs[1].activity["busy"]
 
 
+@pytest.mark.needs("iverilog")
 def test_icarus_runs_on_too(tmp_path):
-    if not shutil.which("iverilog"):
-        pytest.skip("Icarus Verilog is not installed: make tools")
     asked = asked_of("tile", threshold=3, exposure=1)  # by default 100,000 cycles pass before the first row
     rough = replace(asked.sensor, converter=ConverterParameters(inl=1, noise=1.5, ktc=1, seed=2**32 - 1))
     front_end = front_end_of(rough, [7] * 24)

@@ -1,7 +1,6 @@
 """Sizes: known circuits count what they must, a missing tool is named."""
 
 import json
-import shutil
 
 import pytest
 
@@ -10,7 +9,7 @@ from talbot.base.tools import ToolError
 from talbot.flow.sizes import command
 from talbot.flow.sizes.measure import areas, measure
 
-needs_yosys = pytest.mark.skipif(not shutil.which("yosys"), reason="yosys is not installed (make tools)")
+needs_yosys = pytest.mark.needs("yosys")
 
 KNOWN = """
 module Known (input clk, input a, input b, output reg q, output y);

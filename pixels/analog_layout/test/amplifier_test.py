@@ -1,13 +1,9 @@
 """Banks in common centroid with the circuit's units; rows whose sides have one middle; all transistors are there."""
 
 from collections import Counter
-from importlib.util import find_spec
 
 import numpy as np
 import pytest
-
-if find_spec("klayout") is None:
-    pytest.skip("klayout: not installed", allow_module_level=True)
 
 from talbot.base.gds import db
 from talbot.models.parameters import ParameterError
@@ -29,6 +25,8 @@ from talbot.pixels.circuits.amplifier import AmplifierSpec, amplifier, size
 from talbot.pixels.circuits.support import BARS, BIAS_OHM, bias
 from talbot.platforms.analog import analog_masks
 from talbot.platforms.sky130 import analog
+
+pytestmark = pytest.mark.needs("layout")
 
 MASKS = analog_masks("sky130")
 SIZES = size(AmplifierSpec(), 4.7e-12, analog)

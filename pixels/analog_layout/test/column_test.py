@@ -5,8 +5,6 @@ from itertools import pairwise
 
 import pytest
 
-pytest.importorskip("klayout.db", reason="klayout: not installed")
-
 from talbot.base.gds import db
 from talbot.models.parameters import ArrayParameters, ChipParameters, ParameterError
 from talbot.pixels.analog_layout import flat
@@ -29,6 +27,8 @@ from talbot.pixels.circuits.column_block import band
 from talbot.pixels.circuits.column_sizes import ColumnSpec, size
 from talbot.platforms.analog import analog_masks
 from talbot.platforms.sky130 import analog as process
+
+pytestmark = pytest.mark.needs("layout")
 
 MASKS = analog_masks("sky130")
 SIZES = size(ColumnSpec.of(), process)

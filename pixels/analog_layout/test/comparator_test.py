@@ -1,11 +1,6 @@
 """The comparator's two halves are mirror images: every mask, but for the crossing of its outputs on the axis."""
 
-from importlib.util import find_spec
-
 import pytest
-
-if find_spec("klayout") is None:
-    pytest.skip("klayout: not installed", allow_module_level=True)
 
 from talbot.base.gds import db
 from talbot.pixels.analog_layout.cells import new_canvas
@@ -13,6 +8,8 @@ from talbot.pixels.analog_layout.comparator import comparator_plans, devices
 from talbot.pixels.analog_layout.strip import draw_strip
 from talbot.pixels.circuits.comparator import ComparatorSizes, comparator
 from talbot.platforms.analog import analog_masks
+
+pytestmark = pytest.mark.needs("layout")
 
 MASKS = analog_masks("sky130")
 AXIS = 30.0

@@ -1,14 +1,10 @@
 """A drawn transistor has the gates and the junctions that its description says."""
 
 import re
-from importlib.util import find_spec
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-
-if find_spec("klayout") is None:
-    pytest.skip("klayout: not installed", allow_module_level=True)
 
 from talbot.base.gds import db
 from talbot.models.parameters import ParameterError
@@ -17,6 +13,8 @@ from talbot.pixels.analog_layout.device import Device, draw_device
 from talbot.pixels.circuits.netlist import Transistor
 from talbot.platforms.analog import analog_masks
 from talbot.platforms.sky130 import analog as process
+
+pytestmark = pytest.mark.needs("layout")
 
 MASKS = analog_masks("sky130")
 

@@ -1,12 +1,8 @@
 """The lane's arrays on the process's capacitors, and where its pins are."""
 
 from dataclasses import replace
-from importlib.util import find_spec
 
 import pytest
-
-if find_spec("klayout") is None:
-    pytest.skip("klayout: not installed", allow_module_level=True)
 
 from talbot.models.parameters import ParameterError
 from talbot.pixels.analog_layout.array import edges
@@ -16,6 +12,8 @@ from talbot.pixels.circuits import lane
 from talbot.pixels.circuits.specification import LaneSpec
 from talbot.platforms.analog import analog_masks
 from talbot.platforms.sky130 import analog
+
+pytestmark = pytest.mark.needs("layout")
 
 MASKS = analog_masks("sky130")
 SIZES = lane.size(LaneSpec.of(), analog)

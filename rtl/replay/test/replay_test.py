@@ -1,6 +1,5 @@
 """Traces of a block's tests: they match its Verilog and its gates, and report a bug by test, cycle and port."""
 
-import shutil
 import subprocess
 import sys
 
@@ -8,15 +7,14 @@ import pytest
 
 from talbot.base.command import main
 from talbot.base.paths import ROOT
-from talbot.rtl.harness.icarus import MISSING, installed
 from talbot.rtl.harness.testbench import build, hooked
 from talbot.rtl.harness.translate import translate_component
 from talbot.rtl.quad_divider import quad_divider
 from talbot.rtl.replay import command, load, record, replay, replay_files
 
 LIBRARY = ROOT / "cells" / "gates.lib"
-pytestmark = pytest.mark.skipif(not installed(), reason=MISSING)
-needs_yosys = pytest.mark.skipif(not shutil.which("yosys"), reason="yosys: not found; install it with: make tools")
+pytestmark = pytest.mark.needs("iverilog")
+needs_yosys = pytest.mark.needs("yosys")
 
 
 @pytest.fixture(scope="module")

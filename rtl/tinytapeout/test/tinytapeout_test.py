@@ -94,6 +94,7 @@ class TestChipIcarus:
         assert busy[-1] == "0" and "1" in busy and not any("x" in flags for flags, _ in said)
 
 
+@pytest.mark.needs("iverilog")
 def test_the_examples_run(host, tmp_path):
     for top, words in EXAMPLES.items():
         said = host(top, words)

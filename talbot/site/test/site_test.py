@@ -115,7 +115,6 @@ def test_docstrings_are_prose():
 
 
 def test_a_warning_of_sphinx_is_a_failure(tmp_path):
-    pytest.importorskip("myst_parser")
     source = tmp_path / "source"
     source.mkdir()
     (source / "index.md").write_text("# Title\n\n[here](nowhere.md)\n")

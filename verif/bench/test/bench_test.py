@@ -8,14 +8,13 @@ import pytest
 from talbot.base.command import main
 from talbot.base.records import from_json
 from talbot.models.chip import golden_frame
-from talbot.rtl.harness.icarus import MISSING, installed
 from talbot.verif.bench import command, simulation
 from talbot.verif.bench.command import CHIP, SAME, BenchRun, summary
 from talbot.verif.bench.exposure import FRAMES, FRONT_END, SENSOR, samples
 from talbot.verif.bench.pymtl_frame import pymtl_stream
 from talbot.verif.results import BlockResults, Tests
 
-needs_icarus = pytest.mark.skipif(not installed(), reason=MISSING)
+needs_icarus = pytest.mark.needs("iverilog")
 SMALL = "raw, a window"
 
 

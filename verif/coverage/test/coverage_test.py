@@ -1,7 +1,6 @@
 """Coverage counts what is reached and only that; plans and exclusions that do not hold are errors."""
 
 import re
-import shutil
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -156,7 +155,7 @@ endmodule
 """
 
 
-@pytest.mark.skipif(not shutil.which("yosys-abc"), reason="needs Yosys: make tools")
+@pytest.mark.needs("yosys-abc")
 def test_constants_are_proven():
     ports = [Port("reset", 1, False), Port("free", 1, False), Port("pair", 3, True), Port("other", 3, True)]
     found = constant_bits(FIXED, "Fixed", ports)

@@ -4,11 +4,10 @@ import numpy as np
 import pytest
 
 from talbot.models.digital.host import command
-from talbot.rtl.harness.icarus import MISSING, installed
 from talbot.verif.faults.chip import configured, quiet, run, start
 from talbot.verif.faults.waveform import PULSE_HIGH, PULSE_LOW, RDY, RESET, rest, transfer
 
-pytestmark = [pytest.mark.skipif(not installed(), reason=MISSING), pytest.mark.slow]
+pytestmark = [pytest.mark.needs("iverilog"), pytest.mark.slow]
 
 
 def faults():

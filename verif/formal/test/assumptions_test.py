@@ -6,17 +6,14 @@ import pytest
 
 from talbot.models.parameters import ParameterError
 from talbot.verif.formal import command, design, manifest
-from talbot.verif.formal.engine import FormalError, tool
+from talbot.verif.formal.engine import FormalError
 from talbot.verif.formal.freedom import FreedomResult, freedom
 from talbot.verif.formal.necessity import NecessityResult, necessity
 from talbot.verif.formal.proof import labels
 from talbot.verif.formal.prove import CoverResult
 
-try:
-    for name in ("yosys", "yosys-smtbmc", "boolector"):
-        tool(name)
-except FormalError as missing:
-    pytest.skip(str(missing), allow_module_level=True)
+pytestmark = pytest.mark.needs("yosys-smtbmc", "boolector")
+
 
 PUT = "a_put: assume (!put || ready);"
 

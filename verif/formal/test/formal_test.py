@@ -12,17 +12,12 @@ from talbot.base.command import main
 from talbot.base.paths import ROOT
 from talbot.models.parameters import ParameterError
 from talbot.verif.formal import command, design, manifest
-from talbot.verif.formal.engine import FormalError, tool
 from talbot.verif.formal.items import ProofsFile, failure
 from talbot.verif.formal.plan import pieces
 from talbot.verif.formal.proof import Twin, labels
 from talbot.verif.formal.prove import CoverResult, ProofResult, TwinResult, cover, prove, twin
 
-try:
-    for name in ("yosys", "yosys-smtbmc", "boolector"):
-        tool(name)
-except FormalError as missing:
-    pytest.skip(str(missing), allow_module_level=True)
+pytestmark = pytest.mark.needs("yosys-smtbmc", "boolector")
 
 
 NO_COVERS = CoverResult([], [], 0.0)

@@ -1,6 +1,5 @@
 """Mutants differ from the original; the equivalence check says 'equivalent' of what is, and only of that."""
 
-import shutil
 import subprocess
 
 import pytest
@@ -22,9 +21,7 @@ from talbot.verif.mutation.judge import SURVIVED, judge, mutated, one_mutant, ow
 from talbot.verif.mutation.mutants import Mutant, generate, shares, with_mutants
 from talbot.verif.mutation.trial import attempt
 
-pytestmark = pytest.mark.skipif(
-    not (shutil.which("yosys") and shutil.which("yosys-abc")), reason="needs Yosys: make tools"
-)
+pytestmark = pytest.mark.needs("yosys", "yosys-abc")
 
 # A counter whose upper bit is never looked at, and a register that no output shows
 SMALL = """

@@ -1,7 +1,6 @@
 """Mutants of the text: each kind does what it says, and none selected is the original."""
 
 import random
-import shutil
 
 import pytest
 
@@ -72,7 +71,7 @@ def test_triggers_flip_one_bit():
     assert of(triggered, "4'd0") == []
 
 
-@pytest.mark.skipif(not shutil.which("yosys-abc"), reason="needs Yosys: make tools")
+@pytest.mark.needs("yosys-abc")
 def test_all_in_one_design(tmp_path):
     trace = recorded_cycles()
     mutants, text = rewritten(trace.verilog(), "EdgeAdc", "edge_adc", 30, 1)
@@ -88,6 +87,7 @@ def test_all_in_one_design(tmp_path):
     assert compare(text, "EdgeAdc", trace.ports, seen)[0] == DIFFERENT
 
 
+@pytest.mark.needs("yosys")
 def test_a_mutant_below_the_top():
     text = translate_component(build_top("AdcBank", SensorParameters()), "AdcBank")
     mutants, planted = rewritten(text, "AdcBank", "adc_bank", 12, 1)

@@ -1,7 +1,5 @@
 """The fault simulator against brute force: every fault of small circuits, each in a netlist that has it built in."""
 
-import shutil
-
 import numpy as np
 import pytest
 
@@ -9,9 +7,7 @@ from talbot.verif.stuck_at.faults import OUTPUT, collapsed
 from talbot.verif.stuck_at.netlist import FF, synthesize
 from talbot.verif.stuck_at.simulate import Simulator
 
-pytestmark = pytest.mark.skipif(
-    not (shutil.which("yosys") and shutil.which("gcc")), reason="no Yosys or no gcc: make tools installs them"
-)
+pytestmark = pytest.mark.needs("yosys")
 
 COUNTER = """module Top (input clk, input reset, input a, input b, output [2:0] y);
   reg [2:0] n;

@@ -1,6 +1,5 @@
 """Transitions as they settle, the fit of events, what is evaluated and shown of them, frames and bad input."""
 
-import shutil
 from dataclasses import replace
 
 import numpy as np
@@ -77,7 +76,7 @@ def counts(folder, clock=CLOCK):
     return folder / "counts"
 
 
-@pytest.mark.skipif(not shutil.which("iverilog"), reason="iverilog: not found; install it with: make tools")
+@pytest.mark.needs("iverilog")
 def test_what_does_not_remain_is_no_transition(tmp_path):
     parts = read_counts(counts(tmp_path), NETLIST)
     chain = dict.fromkeys(("a", "n[0]", "n[1]", "n[2]", "n[3]"), 3)
@@ -87,7 +86,7 @@ def test_what_does_not_remain_is_no_transition(tmp_path):
     assert parts["frame"].cycles == 8 and parts["after"].cycles == 2
 
 
-@pytest.mark.skipif(not shutil.which("iverilog"), reason="iverilog: not found; install it with: make tools")
+@pytest.mark.needs("iverilog")
 def test_a_run_that_ends_early_is_refused(tmp_path):
     with pytest.raises(StepError, match="'after'"):
         read_counts(counts(tmp_path, CLOCK.replace("done <= 1", "done <= 0")), NETLIST)

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import klayout.db as db
 import pytest
 
 from talbot.base.lef.read import read_macro
@@ -9,7 +10,7 @@ from talbot.flow.layout.geometry.abstract import abstract, ports, read_back
 from talbot.models.parameters import ParameterError
 from talbot.platforms.coriolis import coriolis_platform
 
-db = pytest.importorskip("klayout.db", reason="klayout is not installed (make layout)")
+pytestmark = pytest.mark.needs("layout")
 NETLIST = "module Two (a, q);\n  input a;\n  output [1:0] q;\nendmodule\n"
 
 

@@ -1,12 +1,13 @@
 """Metal too large for its gate is found, except with a diffusion or a short segment."""
 
+import klayout.db as db
 import pytest
 
 from talbot.flow.layout.geometry.antenna import violations
 from talbot.flow.layout.geometry.test.gate import gate
 from talbot.platforms.coriolis import coriolis_platform
 
-db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
+pytestmark = pytest.mark.needs("layout")
 
 
 @pytest.mark.parametrize("length_um, bad", [(20, 0), (60, 1)])

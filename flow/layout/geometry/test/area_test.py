@@ -1,11 +1,12 @@
 """A pad too small grows where there is room, and stays where there is none."""
 
+import klayout.db as db
 import pytest
 
 from talbot.flow.layout.geometry.area import grow
 from talbot.platforms.coriolis import coriolis_platform
 
-db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
+pytestmark = pytest.mark.needs("layout")
 RULES = {"area": 0.144, "space": 0.21}
 
 

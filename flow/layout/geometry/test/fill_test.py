@@ -1,11 +1,12 @@
 """Fill keeps its distance, reaches its density where there is room, and what is too dense is found."""
 
+import klayout.db as db
 import pytest
 
 from talbot.flow.layout.geometry.fill import fill, peak_density
 from talbot.platforms.coriolis import coriolis_platform
 
-db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
+pytestmark = pytest.mark.needs("layout")
 
 
 @pytest.fixture(params=["sky130", "ihp-sg13g2"])

@@ -1,5 +1,6 @@
 """A layout in a frame: its ports, its place, straps as pins, its LEF."""
 
+import klayout.db as db
 import pytest
 
 from talbot.base.lef.read import read_macro
@@ -12,7 +13,7 @@ from talbot.models.parameters import ParameterError
 from talbot.platforms.coriolis import coriolis_platform
 from talbot.platforms.frame import Frame
 
-db = pytest.importorskip("klayout.db", reason="klayout is not installed (make layout)")
+pytestmark = pytest.mark.needs("layout")
 FRAME = Frame(12.0, 10.0, (1.0, 1.5), (("a", 3.0), ("q", 8.0)), (0.3, 1.0), "met4", ("VPWR", "VGND"))
 ORIGIN = 1.0, 2.0
 NETLIST = Netlist("Two", (Port("a", "input", 1), Port("q", "output", 1)), ())

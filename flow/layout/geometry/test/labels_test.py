@@ -1,12 +1,13 @@
 """Labels of a streamed layout: of a port where it is, not where its net was before it was rerouted."""
 
+import klayout.db as db
 import pytest
 
 from talbot.base.steps import StepError
 from talbot.flow.layout.geometry.labels import relabel
 from talbot.platforms.coriolis import coriolis_platform
 
-db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
+pytestmark = pytest.mark.needs("layout")
 
 
 @pytest.fixture

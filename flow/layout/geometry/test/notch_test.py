@@ -1,11 +1,12 @@
 """A slit in one shape is filled, a gap between two is left for the rules to find, and a wide slit stays."""
 
+import klayout.db as db
 import pytest
 
 from talbot.flow.layout.geometry import notch
 from talbot.platforms.coriolis import coriolis_platform
 
-db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
+pytestmark = pytest.mark.needs("layout")
 METAL = coriolis_platform("sky130").metals[1]
 
 

@@ -2,7 +2,6 @@
 
 import os
 import re
-import shutil
 from pathlib import Path
 
 import numpy as np
@@ -16,9 +15,6 @@ from talbot.flow.layout.parasitics.shapes import shapes
 from .planted import DEVICES, M1, M2, M3, TECH, layout
 
 TECHNOLOGY = Path(os.environ.get("PDK_ROOT", "/nowhere")) / "sky130A" / "libs.tech" / "magic" / "sky130A.tech"
-LACKING = [
-    str(part) for part, there in (("magic", shutil.which("magic")), (TECHNOLOGY, TECHNOLOGY.exists())) if not there
-]
 SCRIPT = """drc off
 gds read {gds}
 load top
@@ -49,7 +45,7 @@ def magic(folder, made):
     return [(total[name] / 1000, *at[name]) for name in total]
 
 
-@pytest.mark.skipif(bool(LACKING), reason=f"{', '.join(LACKING)}: not found; install a PDK and set PDK_ROOT")
+@pytest.mark.needs("magic", "PDK_ROOT", "layout")
 def test_crossing_lines_are_as_in_magic(tmp_path):
     lines = [(M1, 0, 0.7 * k, 20, 0.7 * k + 0.3) for k in range(12)]
     lines += [(M2, 1.4 * k + 0.5, -2, 1.4 * k + 0.8, 12) for k in range(12)]

@@ -7,12 +7,11 @@ import pytest
 from talbot.base.steps import StepError
 from talbot.flow.layout.geometry.rows import Rows
 from talbot.flow.layout.netlist.netlist import Instance
+from talbot.flow.layout.repair.arrange import arranged
 from talbot.flow.layout.repair.repair import Plan
 from talbot.flow.layout.repair.test.repair_test import ROW, SITE, WIDTHS, check_places
 
-pytest.importorskip("coloquinte", reason="make setup-layout")
-
-from talbot.flow.layout.repair.arrange import arranged  # after the check that it is there
+pytestmark = pytest.mark.needs("coriolis")
 
 
 def scattered(seed):

@@ -1,6 +1,5 @@
 """Repair: loads end within what drivers take, functions stay, places neither overlap nor leave their rows."""
 
-import shutil
 from dataclasses import replace
 
 import pytest
@@ -237,7 +236,7 @@ def test_length_of_a_net():
     assert length([(0.0, 0.0), (3.0, 4.0), (1.0, 1.0), (2.0, 2.0), (3.0, 3.0)]) > 7
 
 
-@pytest.mark.skipif(not shutil.which("sta"), reason="sta: not found; install it with: make tools")
+@pytest.mark.needs("sta")
 def test_slacks_are_those_of_the_tables(tmp_path):
     from talbot.flow.layout.design import Clock, Design
 

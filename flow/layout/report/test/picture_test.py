@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from PIL import Image
 
-pytest.importorskip("klayout.lay", reason="klayout = not installed: make layout")
-
 from talbot.base.gds import db, write_gds
 from talbot.flow.layout.netlist.netlist import Instance, Netlist
 from talbot.flow.layout.report.picture import BACKGROUND, by_block, render
 from talbot.platforms.coriolis import coriolis_platform
+
+pytestmark = pytest.mark.needs("layout")
 
 TECH = coriolis_platform("sky130")
 SIDE = 100

@@ -4,6 +4,7 @@ import random
 from collections import Counter
 from itertools import pairwise
 
+import klayout.db as db
 import numpy as np
 import pytest
 
@@ -21,7 +22,7 @@ from talbot.flow.layout.route.view import NetView
 from talbot.flow.layout.route.violations import Violations, find, split_levels
 from talbot.platforms.coriolis import coriolis_platform
 
-db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
+pytestmark = pytest.mark.needs("layout")
 
 TECH = coriolis_platform("sky130")
 LIBRARY_RULES = {

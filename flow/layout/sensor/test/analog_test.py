@@ -16,7 +16,7 @@ from talbot.platforms.pads import pad_process
 
 from . import small
 
-pytest.importorskip("klayout.db", reason="klayout: not installed")
+pytestmark = pytest.mark.needs("layout")
 
 
 @pytest.fixture(scope="module")

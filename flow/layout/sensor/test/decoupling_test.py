@@ -11,7 +11,7 @@ from talbot.platforms.pads import pad_process
 
 from . import small
 
-pytest.importorskip("klayout.db", reason="klayout: not installed")
+pytestmark = pytest.mark.needs("layout")
 
 DIE = DieParameters(3000.0, 1800.0, side_um=91.0, west=2)
 BLOCKS = {

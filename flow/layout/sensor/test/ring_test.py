@@ -25,7 +25,7 @@ from talbot.platforms.pads import pad_process
 
 from . import small
 
-pytest.importorskip("klayout.db", reason="klayout: not installed")
+pytestmark = pytest.mark.needs("layout")
 
 PROCESS, WIDTH, LINE = pad_process("sky130"), 3_000_000, 10_000
 SIGNALS = [signal(net, "input", 300_000 + 100_000 * k, PROCESS) for k, net in enumerate(("clk", "reset"))]

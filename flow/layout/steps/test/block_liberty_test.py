@@ -1,7 +1,6 @@
 """The timing at a block's ports, by hand; the Liberty generated from it, read back; faults in it are found."""
 
 import json
-import shutil
 
 import pytest
 
@@ -11,8 +10,7 @@ from talbot.flow.layout.steps.block_liberty import BlockLiberty, BlockLibertyPar
 from talbot.flow.layout.timing.boundary import Sources, measure, reach
 from talbot.flow.layout.timing.spef import spef
 
-TOOLS = [tool for tool in ("sta", "yosys") if not shutil.which(tool)]
-pytestmark = pytest.mark.skipif(bool(TOOLS), reason=f"{', '.join(TOOLS)}: not found; install it with: make tools")
+pytestmark = pytest.mark.needs("sta", "yosys")
 
 
 @pytest.fixture

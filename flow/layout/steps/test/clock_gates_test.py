@@ -1,6 +1,5 @@
 """Registers behind clock gates are proven to be those of the Verilog, and no gate that is none is taken for one."""
 
-import shutil
 from dataclasses import replace
 
 import pytest
@@ -13,7 +12,7 @@ from talbot.flow.layout.steps.synthesis import Synthesis, SynthesisParameters
 from talbot.flow.layout.steps.test.equivalence_test import CELLS, FLIP_FLOP, PORTS
 from talbot.flow.layout.timing import liberty
 
-pytestmark = pytest.mark.skipif(not shutil.which("yosys"), reason="yosys: not found; install it with: make tools")
+pytestmark = pytest.mark.needs("yosys")
 
 RTL = """
 module Kept(input clk, input reset, input go, input [3:0] d, output reg [3:0] kept, output reg [1:0] count);

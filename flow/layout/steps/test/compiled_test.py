@@ -12,9 +12,9 @@ from talbot.flow.layout.route import grid, index
 from talbot.flow.layout.route.test import route_test
 from talbot.flow.layout.steps.compiled import Compiled
 
-# Where a module that needs it was left out before, Python has a part of it: its import raises nothing again
-pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
+pytestmark = pytest.mark.needs("layout")
 
+# Where a module that needs it was left out before, Python has a part of it: its import raises nothing again
 LOOPS = bins, capacitance, shapes, trees, grid, index
 
 

@@ -1,7 +1,6 @@
 """Equal designs are proven equal, and every planted fault is found."""
 
 import re
-import shutil
 from dataclasses import replace
 
 import pytest
@@ -13,7 +12,7 @@ from talbot.flow.layout.steps.equivalence import Equivalence, EquivalenceParamet
 from talbot.flow.layout.steps.synthesis import Synthesis, SynthesisParameters
 from talbot.flow.layout.timing import liberty
 
-pytestmark = pytest.mark.skipif(not shutil.which("yosys"), reason="yosys: not found; install it with: make tools")
+pytestmark = pytest.mark.needs("yosys")
 
 RTL = """
 module Counter(input clk, input reset, input [1:0] step, output reg [3:0] count, output high);

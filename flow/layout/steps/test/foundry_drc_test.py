@@ -2,6 +2,7 @@
 
 import shutil
 
+import klayout.db as db
 import pytest
 
 from talbot.base.steps import StepError
@@ -9,7 +10,7 @@ from talbot.flow.layout.steps.foundry_drc import FoundryDrc, FoundryDrcParameter
 from talbot.models.parameters import ParameterError
 from talbot.platforms.foundry import foundry_checks, installed
 
-db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
+pytestmark = pytest.mark.needs("layout")
 
 DECK = """
 source($input, $topcell)
@@ -90,22 +91,26 @@ def checked(step, root, gap_nm):
 
 
 @pytest.mark.parametrize("gap_nm, broken", [(150, 0), (100, 1)])
-@pytest.mark.parametrize("tool, kind", [("klayout", FoundryDrc), ("magic", MagicDrc)])
+@pytest.mark.parametrize(
+    "tool, kind",
+    [
+        pytest.param("klayout", FoundryDrc, marks=pytest.mark.needs("klayout")),
+        pytest.param("magic", MagicDrc, marks=pytest.mark.needs("magic")),
+    ],
+)
 def test_a_space_that_is_too_small(tool, kind, gap_nm, broken, root):
-    if not shutil.which(tool):
-        pytest.skip(f"{tool}: not installed")
     found = checked(kind(FoundryDrcParameters("sky130", "top")), root, gap_nm)
     assert list(found.values()) == [broken]
 
 
-@pytest.mark.skipif(not shutil.which("klayout"), reason="klayout: not installed")
+@pytest.mark.needs("klayout")
 def test_a_deck_that_fails_is_reported(root):
     (root / foundry_checks("sky130").klayout).write_text("no_such_word(1)\n")
     with pytest.raises(StepError, match="sky130A_mr.drc failed: .*no_such_word"):
         checked(FoundryDrc(FoundryDrcParameters("sky130", "top")), root, 150)
 
 
-@pytest.mark.skipif(not shutil.which("magic"), reason="magic: not installed")
+@pytest.mark.needs("magic")
 def test_a_technology_that_fails_is_reported(root):
     (root / foundry_checks("sky130").magic / "sky130A.magicrc").write_text("no_such_word\n")
     with pytest.raises(StepError, match="magic_drc: Magic failed"):

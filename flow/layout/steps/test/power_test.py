@@ -1,7 +1,6 @@
 """The power step and the IR drop after it, on the shift register: totals, blocks, causes."""
 
 import json
-import shutil
 
 import pytest
 
@@ -12,7 +11,7 @@ from talbot.flow.layout.steps.ir_drop import IrDrop, IrDropParameters
 from talbot.flow.layout.steps.power import Power, PowerParameters, wire_pf
 from talbot.flow.layout.timing.spef import spef
 
-pytestmark = pytest.mark.skipif(not shutil.which("sta"), reason="sta: not found; install it with: make tools")
+pytestmark = pytest.mark.needs("sta")
 
 
 @pytest.fixture

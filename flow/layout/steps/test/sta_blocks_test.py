@@ -1,7 +1,6 @@
 """A design around a block: its slacks by the block's Liberty are those by the block's cells."""
 
 import json
-import shutil
 
 import pytest
 
@@ -15,8 +14,7 @@ from talbot.flow.layout.steps.sta_blocks import StaBlocks, StaBlocksParameters
 from talbot.flow.layout.timing.constraints import sdc
 from talbot.flow.layout.timing.spef import spef
 
-TOOLS = [tool for tool in ("sta", "yosys") if not shutil.which(tool)]
-pytestmark = pytest.mark.skipif(bool(TOOLS), reason=f"{', '.join(TOOLS)}: not found; install it with: make tools")
+pytestmark = pytest.mark.needs("sta", "yosys")
 TOP = Netlist(
     "Top",
     (Port("clk", "input", 1), Port("in", "input", 1), Port("out", "output", 1)),

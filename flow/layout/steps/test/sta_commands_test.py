@@ -2,7 +2,6 @@
 a SPEF ends a step."""
 
 import re
-import shutil
 
 import pytest
 
@@ -15,7 +14,7 @@ from talbot.flow.layout.timing import boundary
 from talbot.flow.layout.timing.constraints import sdc
 from talbot.flow.layout.timing.spef import spef
 
-pytestmark = pytest.mark.skipif(not shutil.which("sta"), reason="sta: not found; install it with: make tools")
+pytestmark = pytest.mark.needs("sta")
 SCRIPTS = {
     "sta": sta.SCRIPT,
     "power": power.SLEWS,

@@ -1,7 +1,5 @@
 """Two flip-flops in a row: a hold time that the way between them does not reach, and a setup time, are found."""
 
-import shutil
-
 import pytest
 
 from talbot.flow.layout.design import Clock, Design
@@ -11,7 +9,7 @@ from talbot.flow.layout.steps.sta import Sta, StaParameters
 from talbot.flow.layout.timing.constraints import sdc
 from talbot.flow.layout.timing.spef import Tree, spef
 
-pytestmark = pytest.mark.skipif(not shutil.which("sta"), reason="sta: not found; install it with: make tools")
+pytestmark = pytest.mark.needs("sta")
 
 NETLIST = Netlist(
     "Pair",

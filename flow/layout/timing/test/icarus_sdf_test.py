@@ -1,12 +1,10 @@
 """What Icarus does with an SDF: why delays.py writes another one than OpenSTA's."""
 
-import shutil
-
 import pytest
 
 from talbot.base.tools import finish, run
 
-pytestmark = pytest.mark.skipif(not shutil.which("iverilog"), reason="iverilog: not found; install it with: make tools")
+pytestmark = pytest.mark.needs("iverilog")
 VERILOG = """`timescale 1ns/1ps
 module inv (i, nq); input i; output nq; assign nq = ~i; specify (i => nq) = (0, 0); endspecify endmodule
 module top (a, y); input a; output y; wire w; inv x0 (.i(a), .nq(w)); inv x1 (.i(w), .nq(y)); endmodule

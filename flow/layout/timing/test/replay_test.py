@@ -1,7 +1,6 @@
 """A shift register with delays in Icarus: right when it has time, and each thing that is wrong is found."""
 
 import json
-import shutil
 from dataclasses import replace
 
 import pytest
@@ -11,7 +10,7 @@ from talbot.flow.layout.netlist.test import shift_register as small
 from talbot.flow.layout.timing import delays
 from talbot.flow.layout.timing.replay import SETTLED, Timing, replay
 
-pytestmark = pytest.mark.skipif(not shutil.which("iverilog"), reason="iverilog: not found; install it with: make tools")
+pytestmark = pytest.mark.needs("iverilog")
 SDF = """(DELAYFILE (SDFVERSION "3.0")
  (CELL (CELLTYPE "Shift") (INSTANCE) (DELAY (ABSOLUTE
   (INTERCONNECT first\\.d_reg/q u0/i (0.01::0.25) (0.01::0.25)) (INTERCONNECT a u_n/i (0::0) (0::0)))))

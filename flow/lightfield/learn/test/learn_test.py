@@ -81,8 +81,10 @@ def test_bad_arguments(word, message, capsys):
     assert message in capsys.readouterr().err
 
 
+@pytest.mark.needs("torch")
 def test_pytorch_and_numpy_are_one_network(lesson):
-    torch = pytest.importorskip("torch", reason="PyTorch is not installed")
+    import torch
+
     weights, losses = training.train([lesson], 3, 1)
     assert len(losses) == 3 and set(weights) == {*LAYERS, *(f"{name}_bias" for name in LAYERS)}
     seen = lesson.seen.astype(np.float32)
@@ -103,8 +105,10 @@ def test_the_shipped_network_keeps_what_its_inputs_have_on_a_scene_that_it_has_n
     assert own > psnr_db(linear, shot.truth) and own > psnr_db(mixture.light_field, shot.truth) - 0.3
 
 
+@pytest.mark.needs("torch")
 def test_pytorch_and_numpy_are_one_pair_of_branches():
-    torch = pytest.importorskip("torch", reason="PyTorch is not installed")
+    import torch
+
     made = branches.learned([SCENE], 6, 1)
     assert set(made.summary["error"]) == {"dense", *KINDS}
     (shot,) = samples.shots([SCENE], 48)
