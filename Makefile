@@ -10,8 +10,13 @@ TESTS_READY := $(VENV)/.tests-ready
 RENDER_READY := $(VENV)/.render-ready
 LAYOUT_READY := $(VENV)/.layout-ready
 LINT_READY := $(VENV)/.lint-ready
-# Images of containers set it; each of the tests' many processes would compile every module again
-unexport PYTHONDONTWRITEBYTECODE
+# A user's own settings change nothing here (base/environment.py), PYTHONDONTWRITEBYTECODE of containers' images among
+# them: each of the tests' many processes would compile every module again
+unexport $(filter-out PYTHON PYTHONPYCACHEPREFIX PYTHONUNBUFFERED,$(filter PYTHON% PYTEST_%,$(.VARIABLES)))
+unexport MPLBACKEND BASH_ENV ENV CDPATH GREP_OPTIONS GREP_COLOR POSIXLY_CORRECT LD_PRELOAD LANGUAGE
+export PYTHONUTF8 := 1
+export LC_ALL := C.UTF-8
+export MATPLOTLIBRC := /dev/null
 
 # A variable of the command line is an option of the target's command, which takes it as it was typed and refuses what it
 # does not know (talbot/make.py). KNOWN: make's own, and those that go into the environment. PLAIN: targets without a
@@ -20,6 +25,9 @@ KNOWN := PYTHON PDK_ROOT SCHEDULER
 PLAIN := help setup setup-layout sim-help test lint format locks librelane bench tools have-tools clean
 GIVEN := $(foreach name,$(.VARIABLES),$(if $(filter command,$(origin $(name))),$(name)))
 $(foreach name,$(filter-out $(KNOWN),$(GIVEN)),$(eval unexport $(name)))
+# As MAKEFLAGS has them, which `make -e` leaves without: the command line's variables
+space := $(subst ,, )
+export TALBOT_OVERRIDES = $(foreach name,$(GIVEN),$(name)=$(subst $(space),\ ,$(subst \,\\,$(value $(name)))))
 GOALS := $(or $(MAKECMDGOALS),help)
 ifeq ($(MAKELEVEL)$(filter-out $(PLAIN),$(GOALS)),0)
 known := $(KNOWN) $(if $(filter test,$(GOALS)),COMPLETE)
@@ -37,19 +45,28 @@ $(READY): requirements/run.lock pyproject.toml requirements/venv.sh
 	@bash requirements/venv.sh '$(PYTHON)' '$(VENV)' requirements/run.lock
 	@touch $@
 
+# Before packages or tools are installed for them, a command's arguments are checked (base/check.py): the target's recipe
+# once more, with everything taken for ready
+HAVE := $(READY) $(VIDEO_READY) $(TESTS_READY) $(RENDER_READY) $(LAYOUT_READY) $(LINT_READY) have-tools
+CHECK = $(if $(filter-out $(PLAIN),$(GOALS)),MAKELEVEL=0 TALBOT_CHECK=1 $(MAKE) -s $(HAVE:%=-o %) $(filter-out $(PLAIN),$(GOALS)),true)
+
 $(VIDEO_READY): $(READY) requirements/video.lock
+	@$(CHECK)
 	@bash requirements/venv.sh '$(PYTHON)' '$(VENV)' requirements/video.lock
 	@touch $@
 
 $(RENDER_READY): $(READY) requirements/render.lock
+	@$(CHECK)
 	@bash requirements/venv.sh '$(PYTHON)' '$(VENV)' requirements/render.lock
 	@touch $@
 
 $(TESTS_READY): $(READY) requirements/test.lock
+	@$(CHECK)
 	@bash requirements/venv.sh '$(PYTHON)' '$(VENV)' requirements/test.lock
 	@touch $@
 
 $(LAYOUT_READY): $(READY) requirements/layout.lock requirements/pdk.lock
+	@$(CHECK)
 	@bash requirements/venv.sh '$(PYTHON)' '$(VENV)' requirements/layout.lock
 	@$(PY) -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes -r requirements/pdk.lock
 	@touch $@
@@ -166,7 +183,7 @@ mutate: $(TESTS_READY)  ## bugs planted in the RTL, each of which a test must fi
 
 .PHONY: verify
 verify: $(TESTS_READY) $(LAYOUT_READY)  ## all of the verification: build/verify/report.html; goes on where it was [SEED=2]
-	@bash requirements/tools.sh --missing iverilog yosys z3
+	@[ "$$TALBOT_CHECK" ] || BEFORE="$(CHECK)" bash requirements/tools.sh --missing iverilog yosys z3
 	@$(talbot) verify
 
 .PHONY: index
@@ -269,7 +286,7 @@ tools:  ## Icarus, a native Verilator, Yosys, z3, ngspice, OpenSTA and KLayout f
 
 .PHONY: have-tools
 have-tools:  # `make cells` and `make layout` install what is missing themselves, where they may
-	@bash requirements/tools.sh --missing
+	@BEFORE="$(CHECK)" bash requirements/tools.sh --missing
 
 .PHONY: clean
 clean:  ## remove build/ (the simulators' cache too)

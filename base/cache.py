@@ -12,6 +12,7 @@ import os
 from collections.abc import Callable
 from pathlib import Path
 
+from .check import work_begins
 from .files import part_folder
 
 CONTENT = ".content.json"  # digest of each file in a kept folder, and RUNS for a program
@@ -46,6 +47,7 @@ def cached(folder: Path | str, make: Callable[[Path], object]) -> Path:
     folder = Path(folder)
     if _sound(folder):
         return folder
+    work_begins()
     with part_folder(folder.parent) as part:
         make(part)
         files = {name: _state(part / name) for name in _names(part)}

@@ -1,9 +1,11 @@
 """Charts (Matplotlib, no display): `bars` and `curves` make a figure, `svg` and `save` put it out."""
 
+import contextlib
 import io
+import os
 import re
 import textwrap
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
 from types import MappingProxyType
@@ -11,12 +13,15 @@ from typing import Any, BinaryIO
 
 import numpy as np
 from markupsafe import Markup
+from matplotlib import rc_context, rcdefaults
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 from matplotlib.transforms import Bbox
+
+from .supervise import RUN
 
 # Of a label beside its point: offset in points, alignment
 PLACES = ((5, 3, "left", "bottom"), (5, -3, "left", "top"), (-5, 3, "right", "bottom"), (-5, -3, "right", "top"))
@@ -28,6 +33,19 @@ LINE: dict[str, Any] = {"marker": "", "linewidth": 1.6}
 COLOURS = ("#4878a8", "#e8a33d", "#7aa874", "#b8678f", "#8a8f99", "#c9574b")
 
 
+if os.environ.get(RUN):  # in a notebook or a program of the user's they stay as they are
+    rcdefaults()  # a matplotlibrc in the working folder has been read already
+
+
+@contextlib.contextmanager
+def own_style() -> Iterator[None]:
+    """Draw with Matplotlib's defaults, whatever the user has set; what is set comes back."""
+    with rc_context():
+        rcdefaults()
+        yield
+
+
+@own_style()
 def svg(figure: Figure) -> Markup:
     """SVG of a figure, for a page: black is the page's ink, white its paper."""
     FigureCanvasSVG(figure)
@@ -38,6 +56,7 @@ def svg(figure: Figure) -> Markup:
     return Markup(re.sub(r'width="[\d.]+pt" height="[\d.]+pt"', kind, text[text.index("<svg") :], count=1))
 
 
+@own_style()
 def save(figure: Figure, path: Path | BinaryIO) -> None:
     """Write a figure as a PNG to a path or an open file."""
     FigureCanvasAgg(figure)

@@ -6,11 +6,14 @@ import os
 import platform
 import secrets
 import shutil
+import tempfile
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from talbot.models.parameters import ParameterError
 
+from .check import work_begins
+from .failure import FULL
 from .supervise import undisturbed, writing
 
 PART = f".part-{platform.node()}-"  # then the process, so that a killed one's leftovers are recognized
@@ -42,7 +45,8 @@ def check_file(field: str, path: Path) -> None:
     """Raise ParameterError unless ``path`` is, or can become, a file that this user may write."""
     if path.is_dir():
         raise ParameterError(f"{field} = {str(path)!r}: must be a file, not a folder")
-    check_folder(field, path.parent)
+    if not path.exists() or path.is_file():
+        check_folder(field, path.parent)
 
 
 @contextlib.contextmanager
@@ -57,6 +61,10 @@ def part_folder(folder: Path) -> Iterator[Path]:
     part.mkdir(mode=0o700)
     try:
         yield part
+    except OSError as error:
+        if error.errno in FULL and not error.filename:  # of a write: which file it was is not in it
+            error.filename = str(folder)
+        raise
     finally:
         shutil.rmtree(part, ignore_errors=True)
 
@@ -69,6 +77,7 @@ def staged(out: Path | str, replaces: Iterable[str] = ()) -> Iterator[Path]:
     signal ``out`` stays as it was; an ``out`` that was created here and is empty is removed. Raises ParameterError
     where a folder has a file's name, at once for the names in ``replaces``.
     """
+    work_begins()
     out, replaces = Path(out), set(replaces)
     made = not out.exists()
     _check_names(out, replaces)
@@ -115,7 +124,13 @@ def _exchange(out: Path, new: Path, old: Path, written: Iterable[str], gone: Ite
 @contextlib.contextmanager
 def atomic(path: Path | str) -> Iterator[Path]:
     """Yield a temporary path whose file becomes ``path`` on success; the folder of ``path`` is created."""
+    work_begins()
     path = Path(path)
+    if path.exists() and not path.is_file():  # a device or a pipe, /dev/stdout: written to, not replaced
+        with tempfile.TemporaryDirectory() as folder:
+            yield Path(folder) / path.name
+            path.write_bytes((Path(folder) / path.name).read_bytes())
+        return
     with part_folder(path.parent) as part:
         yield part / path.name
         os.replace(part / path.name, path)

@@ -19,6 +19,7 @@ import joblib
 from talbot.models.parameters import ParameterError
 
 from .cache import digest
+from .check import work_begins
 from .files import write
 from .progress import each
 from .sources import code
@@ -63,6 +64,7 @@ def run(jobs: Iterable[Job], store: Path | str, title: str, workers: int = -1) -
     processes, -1 for all cores. An exception in a job ends the run; results of earlier jobs are kept. Raises
     ParameterError.
     """
+    work_begins()
     store = Path(store)
     store.mkdir(parents=True, exist_ok=True)
     jobs = list(jobs)

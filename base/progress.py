@@ -7,6 +7,8 @@ from typing import Any, Self, TypeVar
 
 from tqdm import tqdm
 
+from .check import work_begins
+
 T = TypeVar("T")
 INTERVAL = 2.0  # s between the lines of `Frames` and of `each`
 
@@ -24,6 +26,7 @@ def each(
 
     Items that take no time share a line. total: how many, where ``items`` does not tell.
     """
+    work_begins()
     total = len(items) if isinstance(items, Sized) else total
     began, of = monotonic(), total or "-"
     with tqdm(total=total, desc=title, file=sys.stderr, disable=None) as bar:
@@ -49,6 +52,7 @@ class Steps:
     """
 
     def __init__(self, names: Iterable[str], lines: bool = False) -> None:
+        work_begins()
         self.names, self.lines = list(names), lines
         self.bar = tqdm(
             total=len(self.names),
@@ -80,6 +84,7 @@ class Frames:
     """A bar over frames; where there is no terminal, a line now and then. count: None where it is not known."""
 
     def __init__(self, count: int | None) -> None:
+        work_begins()
         self.count, self.done, self.spoke = count, 0, monotonic()
         self.bar = tqdm(total=count, file=sys.stderr, leave=False, disable=None, unit=" frames", dynamic_ncols=True)
 

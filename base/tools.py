@@ -10,6 +10,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import IO
 
+from .check import work_begins
+from .environment import of_tools
+
 
 class ToolError(RuntimeError):
     """A tool is missing or failed; the message says which and what to do."""
@@ -34,12 +37,14 @@ def finish(
 ) -> subprocess.CompletedProcess[str]:
     """Run ``command`` to its end and return its status and text output.
 
-    env: variables added to this process's. The command has a process group of its own, which any exception (Ctrl-C too)
-    ends as a whole, with what the command started. seconds: time limit. log: file that gets both outputs as they come,
-    then returned as stdout. Raises ToolError when there is no such program, ToolTimeout.
+    env: variables on top of the clean environment of tools (`environment.of_tools`). The command has a process group
+    of its own, which any exception (Ctrl-C too) ends as a whole, with what the command started. seconds: time limit.
+    log: file that gets both outputs as they come, then returned as stdout. Raises ToolError when there is no such
+    program, ToolTimeout.
     """
+    work_begins()
     words = [str(part) for part in command]
-    output = log.open("w") if log else None
+    output = log.open("wb") if log else None
     try:
         child = subprocess.Popen(
             words,
@@ -47,8 +52,9 @@ def finish(
             stdout=output or subprocess.PIPE,
             stderr=subprocess.STDOUT if output else subprocess.PIPE,
             text=True,
+            encoding="utf-8",
             errors="replace",
-            env=dict(os.environ, **(env or {})),
+            env=of_tools(env),
             cwd=cwd,
             start_new_session=True,
         )
@@ -67,7 +73,7 @@ def finish(
             _kill_group(child.pid)
             raise
     if log:
-        out, err = log.read_text(errors="replace"), ""
+        out, err = log.read_text(encoding="utf-8", errors="replace"), ""
     return subprocess.CompletedProcess(words, child.returncode, out, err)
 
 
@@ -90,10 +96,17 @@ def started(
 
     log: gets both outputs. files: open ones that it keeps. Raises ToolError when there is no such program.
     """
+    work_begins()
     words = [str(part) for part in command]
     try:
         child = subprocess.Popen(
-            words, stdin=subprocess.DEVNULL, stdout=log, stderr=log, pass_fds=files, start_new_session=True
+            words,
+            stdin=subprocess.DEVNULL,
+            stdout=log,
+            stderr=log,
+            pass_fds=files,
+            env=of_tools(),
+            start_new_session=True,
         )
     except FileNotFoundError as error:
         raise _missing(words[0]) from error

@@ -2,7 +2,8 @@
 # Tools beside the Python environment, from Debian's packages: Icarus, a native Verilator, Yosys, z3; for cells and
 # layouts ngspice, OpenSTA and KLayout; for the tests of the foundry's checks and of OpenROAD's scripts Magic and Tcl;
 # for waves as FST the headers of zlib and lz4; for make cosim ngspice as a library.
-# With --missing [COMMAND ...] only where one of the commands, by default those of cells and layouts, is missing.
+# With --missing [COMMAND ...] only where one of the commands, by default those of cells and layouts, is missing; the
+# command line BEFORE, which checks what they are wanted for, must succeed then.
 set -euo pipefail
 packages=(iverilog verilator yosys z3 ngspice opensta klayout magic tcl zlib1g-dev liblz4-dev libngspice0-dev)
 
@@ -14,6 +15,7 @@ if [ "${1:-}" = --missing ]; then
         command -v "$command" >/dev/null || wanted+=("$command")
     done
     [ ${#wanted[@]} -gt 0 ] || exit 0
+    bash -c "${BEFORE:-true}" || exit 2
     echo "tools: missing = ${wanted[*]}" >&2
 fi
 

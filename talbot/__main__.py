@@ -7,12 +7,14 @@ signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT, signal.SIGTERM, signal.
 
 import sys  # noqa: E402
 
+from talbot.base import environment, failure  # noqa: E402
 from talbot.base.supervise import supervised  # noqa: E402
 
 
 def main() -> int:
     """Run the command of this process's arguments; returns the exit status."""
-    return supervised(_command)
+    environment.start_again()
+    return supervised(lambda: failure.reported("talbot", _command))
 
 
 def _command() -> int:

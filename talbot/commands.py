@@ -1,16 +1,19 @@
 """The open design flow for angle-sensitive-pixel sensors.
 
 Exit status: 0 right, 1 a check fails (the chip and its golden model differ, a bound is missed, a stream is damaged),
-2 bad input or environment (one line on standard error: field, value and range), 130 Ctrl-C, 143 terminated.
+2 bad input or environment (one line on standard error: field, value and range), 3 an error in Talbot itself (one line,
+and the file that has its traceback), 130 Ctrl-C, 143 terminated.
 """
 
 import argparse
 import importlib
+import os
 from collections.abc import Sequence
 from importlib.metadata import version
 from types import ModuleType
 
-from talbot.base.command import Parser, add_command, execute
+from talbot.base.check import ONLY
+from talbot.base.command import Parser, add_command, execute, guarded
 from talbot.base.page import index
 from talbot.base.paths import RESULTS
 
@@ -97,12 +100,19 @@ def command(name: str) -> ModuleType:
 def main(argv: Sequence[str]) -> int:
     """Run the command of ``argv``; returns the exit status. '--make', from the Makefile, is for `talbot.make`."""
     words = list(argv)
-    if words[:1] == ["--make"]:
+    Parser.of_make = words[:1] == ["--make"]
+    if Parser.of_make:
         _, given, name, *fixed = words
         alone = Parser(prog=f"talbot {name}")
         add_command(alone, command(name))
         words = [name, *arguments(alone, given, fixed)]
     status = execute(parser(words[0] if words else ""), words)
-    if status in (0, 1):
-        index.refresh(RESULTS)
+    if status not in (0, 1) or os.environ.get(ONLY):
+        return status
+    return guarded("talbot", lambda: refreshed(status))
+
+
+def refreshed(status: int) -> int:
+    """Bring the page over all results up to date; returns ``status``."""
+    index.refresh(RESULTS)
     return status

@@ -1,7 +1,8 @@
 """Variables of make's command line as options of a command: `make sim SCENE=coins` is `talbot sim --scene=coins`.
 
 The Makefile names the target and the variables of its own (`--make 'sim PYTHON PDK_ROOT'`); every other one must be an
-argument of the command. Values come from MAKEFLAGS as they were typed: no shell and no make has expanded them.
+argument of the command. Values come from MAKEFLAGS as they were typed: no shell and no make has expanded them. With
+`make -e` those of the environment count, too.
 """
 
 import argparse
@@ -10,7 +11,7 @@ import re
 import sys
 from collections.abc import Mapping, Sequence
 
-from talbot.base.command import Parser
+from talbot.base.command import LIKE, Parser
 from talbot.models.parameters.sensor_file import nearest
 
 YES, NO = ("1", "yes", "true", "on"), ("0", "no", "false", "off")
@@ -36,9 +37,13 @@ def arguments(
     """
     target, *own = given.split()
     known = {action.dest.upper(): action for action in parser.actions if action.option_strings or not fixed}
-    typed = {name: v for name, v in variables(environment.get("MAKEFLAGS", "")).items() if name not in own}
+    flags = environment.get("MAKEFLAGS", "")
+    flags = flags.replace("$(MAKEOVERRIDES)", environment.get("TALBOT_OVERRIDES", ""))  # of make -e
+    typed = {name: v for name, v in variables(flags).items() if name not in own}
+    if "e" in re.match(r"[a-zA-Z]*", flags)[0]:  # pyright: ignore[reportOptionalSubscript]
+        typed = {name: environment[name] for name in known.keys() & environment.keys()} | typed
     for name in sorted(typed.keys() - known.keys()) if environment.get("MAKELEVEL") == "1" else ():
-        must = nearest(name.upper(), [*known, *own], 0.6)
+        must = nearest(name.upper(), [*known, *own], LIKE)
         parser.error(f"{name} = {typed[name]!r}: must be a variable of make {target}{must}")
     for name in known.keys() & environment.keys() - typed.keys():
         print(f"talbot: {name} of the environment is not used: make {target} {name}=...", file=sys.stderr)

@@ -1,11 +1,13 @@
 """Charts: labels over nothing else and inside the axes; colours of a page."""
 
+import re
 from itertools import combinations
 
 import numpy as np
+from matplotlib import rc_context, rcParams
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-from talbot.base.charts import LINE, SCATTER, bars, curves, front, svg
+from talbot.base.charts import LINE, SCATTER, bars, curves, front, own_style, svg
 
 CROWDED = [(1 + 0.02 * i, 5 + 0.05 * i, f"T={i}") for i in range(60)]
 
@@ -56,3 +58,17 @@ def test_a_front_is_a_staircase_of_the_points_that_nothing_dominates():
     points = [(2, 3, "b"), (1, 5, "a"), (1, 4, ""), (3, 1, ""), (2, 2, ""), (3, 1, "")]
     assert [corner[:2] for corner in front(points)] == [(1, 5), (1, 3), (2, 3), (2, 1), (3, 1)]
     assert front([]) == []
+
+
+def test_a_users_settings_of_matplotlib_change_no_chart():
+    plain = svg(bars({"a": 1.0, "b": 3.0}, "um", "t"))
+    with rc_context({"text.usetex": True, "lines.linewidth": 9, "font.size": 30, "svg.fonttype": "none"}):
+        with own_style():
+            figure = bars({"a": 1.0, "b": 3.0}, "um", "t")
+        text = svg(figure)
+        assert rcParams["text.usetex"] and rcParams["font.size"] == 30
+
+    def without_names(text):  # of clip paths, which are random
+        return re.sub(r"[a-z]?[0-9a-f]{10}", "", text)
+
+    assert without_names(text) == without_names(plain)

@@ -1,6 +1,9 @@
+import errno
+import os
+
 import pytest
 
-from talbot.base.files import _exchange, check_folder, insert, marked, staged
+from talbot.base.files import _exchange, check_file, check_folder, insert, marked, part_folder, staged, write
 from talbot.models.parameters import ParameterError
 
 
@@ -85,3 +88,19 @@ def test_a_folder_that_cannot_be_made_is_refused_before_the_work(tmp_path):
     for path in ("/proc/out", __file__, f"{__file__}/out"):  # permissions let root write in /proc, which has no room
         with pytest.raises(ParameterError, match=f"out = '{path}': must be a folder"):
             check_folder("out", path)
+
+
+def test_a_pipe_or_device_is_written_to_not_replaced(tmp_path):
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+    check_file("out", pipe)
+    write(pipe, "text")
+    assert os.read(reader, 99) == b"text" and pipe.is_fifo()
+    os.close(reader)
+
+
+def test_a_full_disk_names_the_folder(tmp_path):
+    with pytest.raises(OSError) as error, part_folder(tmp_path / "out"):
+        raise OSError(errno.ENOSPC, "No space left on device")
+    assert error.value.filename == str(tmp_path / "out")

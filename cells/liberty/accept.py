@@ -16,7 +16,10 @@ def readers(path: str | Path) -> dict[str, str]:
     with tempfile.TemporaryDirectory() as folder:
         script = Path(folder) / "read.tcl"
         script.write_text(f"read_liberty {{{path}}}\nexit\n")
-        yosys, opensta = ["yosys", "-q", "-p", f"read_liberty {path}"], ["sta", "-no_splash", "-exit", str(script)]
+        yosys, opensta = (
+            ["yosys", "-q", "-p", f"read_liberty {path}"],
+            ["sta", "-no_splash", "-no_init", "-exit", str(script)],
+        )
         return {"yosys": _output(yosys), "opensta": _output(opensta)}
 
 

@@ -21,6 +21,7 @@ from typing import Self
 
 import numpy as np
 
+from talbot.base.environment import of_tools
 from talbot.base.tools import ToolError
 from talbot.cells.spice.settings import Settings
 from talbot.cells.spice.wave import Wave
@@ -153,7 +154,7 @@ class Simulator:
         self._stop()
         file = self._folder / "deck.sp"
         file.write_text("\n".join([*self._deck(settings, run, dict.fromkeys(self.outputs, 1e-15)), ".end", ""]))
-        command, env = ["ngspice", "-p", file], dict(os.environ, OMP_NUM_THREADS="1", OMP_THREAD_LIMIT="1")
+        command, env = ["ngspice", "-n", "-p", file], of_tools({"OMP_NUM_THREADS": "1", "OMP_THREAD_LIMIT": "1"})
         try:
             self._child = Popen(
                 command, stdin=PIPE, stdout=PIPE, stderr=STDOUT, start_new_session=True, cwd=self._folder, env=env

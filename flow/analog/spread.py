@@ -113,7 +113,7 @@ def _rms(
     with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
         file = Path(folder) / "deck.sp"
         file.write_text("\n".join([*lines, ""]))
-        done = finish(["ngspice", "-b", file], env={"OMP_NUM_THREADS": "1"})
+        done = finish(["ngspice", "-n", "-b", file], env={"OMP_NUM_THREADS": "1"})
     found = re.search(r"onoise_total = (\S+)", done.stdout)
     if not found:
         raise ToolError(f"ngspice: no noise of the amplifier: {(done.stdout + done.stderr).strip()[-400:]}")

@@ -75,7 +75,7 @@ def swept(process: ModuleType, role: str, length: float) -> npt.NDArray[np.float
             ".end",
         ]
         deck.write_text("\n".join([*lines, ""]))
-        done = finish(["ngspice", "-b", deck], env={"OMP_NUM_THREADS": "1"})
+        done = finish(["ngspice", "-n", "-b", deck], env={"OMP_NUM_THREADS": "1"})
         if not found.exists():
             raise ToolError(f"ngspice: no table of {role}: {(done.stdout + done.stderr).strip()[-400:]}")
         return np.loadtxt(found)[:, 1:].T

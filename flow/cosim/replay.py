@@ -75,7 +75,7 @@ def replay(deck: Deck, run: Run, lanes: int, tile_cols: int, timing: Timing, acc
         file, raw = Path(folder) / "deck.sp", Path(folder) / "deck.raw"
         file.write_text("\n".join([*rest[:-1], *sources, tran, ".end", ""]))
         start = perf_counter()
-        done = finish(["ngspice", "-b", "-r", raw, file], env={"OMP_NUM_THREADS": "1"})
+        done = finish(["ngspice", "-n", "-b", "-r", raw, file], env={"OMP_NUM_THREADS": "1"})
         seconds = perf_counter() - start
         if not raw.exists():
             raise ToolError(f"ngspice: no waves off-line: {(done.stdout + done.stderr).strip()[-400:]}")

@@ -19,6 +19,7 @@ NUMBERS = {
     "shift": ("of the lower lines against the upper ones, in periods", -1, 1),
     "pitch_um": ("pitch of the pixels", 1, 100),
 }
+PITCH_UM = 10.0  # where none is asked for
 WAVELENGTH_UM = 0.55
 
 
@@ -29,6 +30,8 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--kind", default="all", help="amplitude, interleaved, photogate, or all: the best one")
     note = "of one geometry, which is solved in place of the search"
     numbers = {name: f"{said}, {low:g}..{high:g}" for name, (said, low, high) in NUMBERS.items()}
+    numbers["period_um"] = f"{NUMBERS['period_um'][0]}, 0.1..half of the pitch"
+    numbers["pitch_um"] += f" (default: {PITCH_UM:g})"
     for name, said in (METALS | numbers).items():
         parser.add_argument(f"--{name.replace('_', '-')}", help=f"{said}, {note}")
     parser.add_argument("--wavelength-um", help=f"of light, 0.35..1, {note} (default: {WAVELENGTH_UM})")

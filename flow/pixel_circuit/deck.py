@@ -108,7 +108,7 @@ def analyse(deck: Iterable[str], commands: Sequence[str], wanted: Sequence[str])
         write = ["set wr_singlescale", "set wr_vecnames", f"wrdata found.txt {' '.join(wanted)}"]
         text = ["* a drawn pixel", *deck, ".control", *commands, *write, "quit", ".endc", ".end", ""]
         (folder / "deck.sp").write_text("\n".join(text))
-        output = run(["ngspice", "-b", "deck.sp"], {"OMP_NUM_THREADS": "1"}, cwd=folder, seconds=3600)
+        output = run(["ngspice", "-n", "-b", "deck.sp"], {"OMP_NUM_THREADS": "1"}, cwd=folder, seconds=3600)
         file = folder / "found.txt"
         if not file.exists():
             wrong = [line for line in output.splitlines() if "rror" in line or "aborted" in line]

@@ -10,6 +10,7 @@ from typing import Any, Protocol
 
 from pymtl3 import Component, InPort, Interface, OutPort, Wire, mk_bits, update, update_ff
 
+from talbot.base.environment import of_tools
 from talbot.base.tools import ToolError
 
 from .ports import Port, places, port_signals, ports_of, split
@@ -45,7 +46,7 @@ class Driven:
 
     def __init__(self, command: Sequence[str | Path], ports: Sequence[Port]) -> None:
         self.outputs = split(ports)[1]
-        self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=of_tools())
         self._end = weakref.finalize(self, _end, self.process)
         self.send, self.flush = self.process.stdin.write, self.process.stdin.flush
         self.receive = self.process.stdout.readline

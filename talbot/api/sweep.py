@@ -7,7 +7,7 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from talbot.base.charts import save
+from talbot.base.charts import own_style, save
 from talbot.flow.tradeoff.sweeps import SWEEPS, measured
 from talbot.models.parameters import check_choice
 
@@ -44,4 +44,6 @@ def tradeoff(name: str, *, quick: bool = False) -> Tradeoff:
     """
     check_choice("name", name, list(SWEEPS))
     rows = measured(name, quick)
-    return Tradeoff(" ".join((SWEEPS[name].__doc__ or "").split()), rows, SWEEPS[name].plot(rows))
+    with own_style():
+        figure = SWEEPS[name].plot(rows)
+    return Tradeoff(" ".join((SWEEPS[name].__doc__ or "").split()), rows, figure)

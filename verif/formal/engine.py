@@ -12,7 +12,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any, Self
 
-from talbot.base.tools import ToolError, located
+from talbot.base.environment import of_tools
+from talbot.base.tools import ToolError, finish, located
 
 from .netlist import Netlist
 
@@ -36,7 +37,7 @@ def tool(name: str) -> str:
 def version(name: str) -> str:
     """Return the version that a tool prints, one line. Raises FormalError."""
     option = {"yosys": "-V", "z3": "--version", "boolector": "--version"}[name]
-    result = subprocess.run([tool(name), option], capture_output=True, text=True, timeout=300)
+    result = subprocess.run([tool(name), option], capture_output=True, text=True, timeout=300, env=of_tools())
     if result.returncode:
         raise FormalError(f"tool = {name}: {tool(name)} {option} ended with {result.returncode}")
     line = result.stdout.strip().splitlines()[-1]
@@ -143,7 +144,7 @@ class Workplace:
 
     def _yosys(self, script: Iterable[str]) -> None:
         (self.path / "proof.ys").write_text("\n".join(script) + "\n")
-        result = subprocess.run([tool("yosys"), "-q", "proof.ys"], cwd=self.path, capture_output=True, text=True)
+        result = finish([tool("yosys"), "-q", "proof.ys"], cwd=self.path)
         if result.returncode:
             self.folder.cleanup()
             errors = [line for line in (result.stdout + result.stderr).splitlines() if "ERROR" in line]
@@ -159,7 +160,7 @@ class Workplace:
         """Run yosys-smtbmc for at most ``timeout`` seconds."""
         version(engine)  # at its first run the wheel prints other lines, too
         command = [tool("yosys-smtbmc"), "-s", engine, "--unroll", "--noprogress", *options, "proof.smt2"]
-        environment = os.environ | {"PATH": f"{self.path}{os.pathsep}{os.environ['PATH']}"}
+        environment = of_tools({"PATH": f"{self.path}{os.pathsep}{os.environ['PATH']}"})
         begin = time.monotonic()
         process = subprocess.Popen(
             command,

@@ -1,7 +1,6 @@
 """KLayout decks: run in the application, which alone interprets them; their reports; PDKMaster's DRC deck adapted."""
 
 import json
-import os
 import re
 import xml.etree.ElementTree as ET
 from collections import Counter
@@ -32,7 +31,7 @@ DOUBTS = r"    \2 = doubtful(doubtful(\2.interacting(\3), \3, \5, \4), \3, \4, \
 def run_deck(deck: Path, report: Path, variables: Mapping[str, object], **environment: object) -> tuple[int, str]:
     """Run ``deck`` without the user's settings. Returns status and output, which is also the log beside ``report``."""
     log = report.with_suffix(".log")
-    env = {"HOME": os.environ.get("HOME", "/tmp"), "KLAYOUT_HOME": log.parent / ".klayout.log", **environment}
+    env = {"KLAYOUT_HOME": log.parent / ".klayout.log", **environment}
     defines = [word for name, value in variables.items() for word in ("-rd", f"{name}={value}")]
     done = finish(["klayout", "-b", "-r", deck, *defines], {name: str(value) for name, value in env.items()})
     log.write_text(done.stdout + done.stderr)

@@ -1,7 +1,6 @@
 """Design rules by the decks of the foundry's PDK, where it is installed: in KLayout and in Magic."""
 
 import json
-import os
 import re
 from dataclasses import dataclass
 from typing import Any
@@ -76,7 +75,7 @@ class MagicDrc(Step[FoundryDrcParameters]):
         magic, gds, report = inputs["magic"].resolve(), inputs["gds"].resolve(), outputs["report"].resolve()
         script = folder / "drc.tcl"
         script.write_text(MAGIC.format(gds=gds, top=self.parameters.top, report=report))
-        env = {"PDK_ROOT": str(magic).removesuffix(deck.magic), "HOME": os.environ.get("HOME", "/tmp")}
+        env = {"PDK_ROOT": str(magic).removesuffix(deck.magic)}
         done = finish(["magic", *["-dnull", "-noconsole", "-rcfile"], magic / deck.rc, script], env, folder)
         lines = outputs["report"].read_text().splitlines() if outputs["report"].exists() else []
         if done.returncode or lines[-1:] != ["end"]:

@@ -1,0 +1,100 @@
+"""A user's own settings of Python, Matplotlib and the tools, which change nothing of what our programs do."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+
+import pytest
+
+from talbot.base import environment
+from talbot.base.paths import ROOT
+from talbot.base.tools import run
+
+KEPT = {
+    "PATH": "/bin",
+    "LD_LIBRARY_PATH": "/opt/lib",
+    "PDK_ROOT": "/pdk",
+    "PYTHON": "python3",
+    "https_proxy": "http://p",
+}
+KEPT |= {"OMP_NUM_THREADS": "2", "SCHEDULER": "tcp://h:1", "NUMBA_CACHE_DIR": "/scratch", "TALBOT_RUN": "/tmp/x"}
+# fmt: off
+OWN = (
+    "PYTHONPATH", "PYTHONHOME", "PYTHONSTARTUP", "PYTHONOPTIMIZE", "PYTHONWARNINGS", "PYTHONHASHSEED",
+    "MPLBACKEND", "LANG", "MATPLOTLIBRC", "PYTEST_ADDOPTS", "PYTEST_DISABLE_PLUGIN_AUTOLOAD",
+    "NUMBA_DISABLE_JIT", "BASH_ENV", "CDPATH", "GREP_OPTIONS", "MAKEFILES", "MAKEFLAGS", "CFLAGS", "CXXFLAGS",
+    "LDFLAGS", "OBJCACHE", "VERILATOR_ROOT", "SPICE_LIB_DIR", "NGSPICE_MEAS_PRECISION", "KLAYOUT_HOME",
+    "CAD_ROOT", "TCLLIBPATH", "LC_NUMERIC", "LANGUAGE",
+)
+# fmt: on
+PRINT = "import json, os, sys; print(json.dumps([*map(int, sys.flags[:16]), sys.path, dict(os.environ)]))"
+
+
+def test_what_a_user_set_is_gone_and_what_a_machine_needs_stays():
+    found = environment.clean(KEPT | dict.fromkeys(OWN, "x"))
+    assert found == KEPT | environment.FIXED
+
+
+def test_tools_run_in_it(monkeypatch, tmp_path):
+    monkeypatch.setenv("HOME", str(tmp_path))
+    for name in OWN:
+        monkeypatch.setenv(name, str(tmp_path))
+    *_, found = json.loads(run([sys.executable, "-c", PRINT], {"PYTHONPATH": "/mine"}))
+    assert found["HOME"] == environment.NO_HOME and found["PYTHONPATH"] == "/mine"
+    assert (
+        not {*OWN} - {"PYTHONHASHSEED", "PYTHONPATH", "MATPLOTLIBRC"} & found.keys() and found["PYTHONHASHSEED"] == "0"
+    )
+
+
+def test_a_file_of_settings_in_the_home_or_working_folder_is_not_read(monkeypatch, tmp_path):
+    """ngspice with `set interp` writes other points, and OpenSTA's .sta may end it."""
+    if not shutil.which("ngspice") or not shutil.which("sta"):
+        pytest.skip("ngspice and sta: not found")
+    monkeypatch.setenv("HOME", str(tmp_path))
+    (tmp_path / ".spiceinit").write_text("echo mine\nquit\n")
+    (tmp_path / ".sta").write_text('puts "mine"; exit 3\n')
+    (tmp_path / "deck.sp").write_text("* a resistor\nv1 a 0 1\nr1 a 0 1k\n.op\n.print op v(a)\n.end\n")
+    (tmp_path / "end.tcl").write_text("puts yes\n")
+    assert "mine" not in run(["ngspice", "-n", "-b", "deck.sp"], cwd=tmp_path)
+    assert run(["sta", "-no_splash", "-no_init", "-exit", "end.tcl"], cwd=tmp_path) == "yes\n"
+
+
+def talbot(*words, python=(), **variables):
+    """The program in a process with these variables on top."""
+    command = [sys.executable, *python, "-m", "talbot", *words]
+    return subprocess.run(command, cwd=ROOT, env=os.environ | variables, capture_output=True, encoding="utf-8")
+
+
+@pytest.fixture
+def hostile(tmp_path):
+    """A folder with a NumPy of another Python, and variables that name it."""
+    (tmp_path / "numpy.py").write_text('raise ImportError("for another Python")\n')
+    names = {
+        "PYTHONWARNINGS": "error",
+        "PYTHONOPTIMIZE": "2",
+        "MPLBACKEND": "module://matplotlib_inline.backend_inline",
+    }
+    return names | {"PYTHONPATH": str(tmp_path), "PYTHONUTF8": "0", "LC_ALL": "C"}
+
+
+def test_the_program_starts_again_without_them(hostile):
+    done = talbot("sensor", **hostile)
+    assert done.returncode == 0 and not done.stderr and "[array]" in done.stdout
+    assert talbot("sim", "--rows", "x", **hostile).stderr.startswith("talbot: error: rows = 'x'")
+
+
+@pytest.mark.parametrize("python", [["-I"], ["-E"]])
+def test_where_python_reads_no_variables_it_does_not_start_again_for_ever(hostile, python):
+    assert talbot("--version", python=python, **hostile).stdout.startswith("talbot ")
+
+
+def test_the_folder_of_the_program_itself_stays_on_the_path(tmp_path):
+    """A checkout that is reached by PYTHONPATH alone."""
+    program = "from talbot.base.environment import start_again; start_again();" + PRINT
+    for paths in (str(ROOT), f"{tmp_path}{os.pathsep}{ROOT}/"):
+        command = [sys.executable, "-c", program]
+        done = subprocess.run(command, env=os.environ | {"PYTHONPATH": paths}, cwd=tmp_path, capture_output=True)
+        *_, path, found = json.loads(done.stdout)
+        assert found["PYTHONPATH"] == str(ROOT) and str(tmp_path) not in path
