@@ -36,10 +36,11 @@ def run(options: Namespace) -> int:
 
 
 def _print(s: dict[str, Any], folder: Path) -> None:
+    from .page import waivers
+
     print(f"{s['process']}: {s['rows']} x {s['cols']} pixels, {s['width_um']:g} x {s['height_um']:g} um")
     print(f"  GDS of {s['gds_bytes'] / 1e6:.2f} MB in {s['gds_s']:.1f} s; {s['misplaced']} pixels not of their type")
-    waived = ", ".join(f"{w['count']} of {rule} waived" for rule, w in s["waivers"].items())
-    print(f"  DRC: {s['drc_violations']} violations{f' ({waived})' if waived else ''}")
+    print(f"  DRC: {s['drc_violations']} violations{f', {waivers(s)}' if waivers(s) else ''}")
     for deck, files in s["foundry"].items():
         counts = (f"{sum(rules.values())} in {name}" for name, rules in files.items())
         print(f"  the foundry's rules, {deck}: {', '.join(counts)}")

@@ -66,12 +66,20 @@ def write(made: Made, s: dict[str, Any]) -> None:
 
 def _tiles(s: dict[str, Any]) -> list[Tile]:
     same = all(s["lvs_match"].values())
+    waived = waivers(s)
+    kind = "bad" if s["drc_violations"] else "none" if s["waivers"] else "good"
     return [
-        Tile(str(s["drc_violations"]), "violations of design rules", "bad" if s["drc_violations"] else "good"),
+        Tile(str(s["drc_violations"]), f"violations of design rules{f', {waived}' if waived else ''}", kind),
         Tile("matches" if same else "differs", "layout against circuit", "good" if same else "bad"),
         Tile(f"{100 * s['fill_factor']:.0f} %", "of a pixel is photodiode"),
         Tile(f"{s['gds_bytes'] / 1e6:.2f} MB", f"GDS of {s['pixels']:,} pixels, in {s['gds_s']:.1f} s"),
     ]
+
+
+def waivers(s: dict[str, Any]) -> str:
+    """How many violations of which rules are waived, '' for none."""
+    counts = {rule: one["count"] for rule, one in s["waivers"].items()}
+    return f"{sum(counts.values()):,} more are waived ({', '.join(counts)})" if counts else ""
 
 
 def _sections(s: dict[str, Any]) -> list[Section]:
