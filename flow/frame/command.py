@@ -229,7 +229,7 @@ def camera_of(a: Namespace, own: CameraParameters) -> CameraParameters:
 
 
 def _print_figures(s: dict[str, Any], folder: Path) -> None:
-    from .figures import camera_line, depth_line, energy_line, exposure_line, trims_line
+    from .figures import camera_line, depth_line, energy_line, exposure_line, light_line, trims_line
     from .merit import against, decibels, light_field, sent
 
     print(
@@ -260,5 +260,7 @@ def _print_figures(s: dict[str, Any], folder: Path) -> None:
         f"  {s['conversions_made']:,} conversions made, {s['conversions_left_out']:,} left out; "
         f"{s['cycles']:,} cycles = {1e3 * s['frame_s_at_clock']:.2f} ms; {energy_line(s)}"
     )
+    if light_line(s):
+        print(f"  {light_line(s)}")
     print(f"  simulated at {s['rtl_cycles_per_s'] / 1e6:.1f} M cycles/s; wall clock {sum(s['wall_s'].values()):.1f} s")
     print(f"  look at {folder / 'report.html'}")

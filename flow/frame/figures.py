@@ -12,7 +12,7 @@ from talbot.base.verilator import verilator_version
 from talbot.models.afe.trim import TRIM_MAX, TRIM_MIN
 from talbot.models.digital.exposure import integration_cycles, slot_cycles
 from talbot.models.parameters import ELEMENTARY_CHARGE, EnergyParameters, LightParameters
-from talbot.models.parameters.energy import DECISIONS, WINDOW, DigitalEvents, Events
+from talbot.models.parameters.energy import DECISIONS, EYE_LIMIT, WINDOW, DigitalEvents, Events
 from talbot.models.parameters.stream_format import HEADER_BYTES, MARK, TRAILER_BYTES
 
 from .quality import decoding_error, ideal_samples, quality
@@ -61,14 +61,8 @@ def energy_of(result: FrameResult) -> dict[str, float]:
     parts = {name: (1e6 * low, 1e6 * high) for name, (low, high) in energy.frame(events).items()}
     out = {name: low for name, (low, _) in parts.items()} | {"adcs_high": parts["adcs"][1]}
     out["total"], out["total_high"] = (1e6 * total for total in energy.total(events))
-    if asked.frame.mode == "tof":
-        sensor, lens, timing = asked.sensor, asked.sensor.optics.camera, asked.frame.exposing
-        pixels = sensor.array.rows * sensor.array.cols
-        power = LightParameters().power(
-            sensor.electrical.white_current, sensor.array.pitch, pixels, lens.nu_max, lens.magnification
-        )
-        lit = events.resets / sensor.array.cols * timing.t_int * (timing.n_cm + 1) / sensor.chip.f_clk
-        out["light"] = 1e6 * power * lit
+    if (source := light_of(result)) is not None:
+        out["light"] = 1e6 * source["power_w"] * source["lit_s"]
     if asked.frame.mode != "edge":
         return out
     plain = image_mode(events, result.golden.samples)
@@ -76,6 +70,40 @@ def energy_of(result: FrameResult) -> dict[str, float]:
     out["saved_by_edge"] = 1e6 * (_by_sample(plain) - _by_sample(events))
     out["edge_pays_below"] = edge_pays_below(events, result.golden.made)
     return out
+
+
+def light_of(result: FrameResult) -> dict[str, float] | None:
+    """The light source of time of flight, None in other modes.
+
+    power_w: electrical, while it is on. lit_s: of a frame, in which a row integrates. irradiance: of the focal plane in
+    W/m^2 while it is on; mean_irradiance: of frame after frame. eye_limit: of infrared at an eye for more than 1000 s.
+    """
+    sensor, timing = result.request.sensor, result.request.frame.exposing
+    if result.request.frame.mode != "tof":
+        return None
+    events, array, lens, light = events_of(result), sensor.array, sensor.optics.camera, LightParameters()
+    current = sensor.electrical.white_current
+    lit = events.resets / array.cols * timing.t_int * (timing.n_cm + 1) / sensor.chip.f_clk
+    irradiance = light.field(current, array.pitch, lens.nu_max)
+    power = light.power(current, array.pitch, array.rows * array.cols, lens.nu_max, lens.magnification)
+    return {"power_w": power, "lit_s": lit, "irradiance": irradiance} | {
+        "mean_irradiance": irradiance * min(lit / events.seconds, 1.0),
+        "eye_limit": EYE_LIMIT,
+    }
+
+
+def light_line(summary: dict[str, Any]) -> str:
+    """The source of time of flight beside the limit that its light passes or keeps, '' without one."""
+    source = summary.get("light_source")
+    if not source:
+        return ""
+    mean, limit = source["mean_irradiance"], source["eye_limit"]
+    against = f"{mean / limit:.2g} times the limit of" if mean > limit else "within the limit of"
+    return (
+        f"light source: {source['power_w']:.3g} W electrical for {1e3 * source['lit_s']:.3g} ms; "
+        f"{source['irradiance']:.3g} W/m2 at the focal plane, {mean:.3g} in the mean: {against} {limit:g} W/m2 "
+        "for an eye there for more than 1000 s (IEC 62471)"
+    )
 
 
 def edge_pays_below(events: Events, made: int) -> float:
@@ -115,6 +143,12 @@ def energy_line(summary: dict[str, Any]) -> str:
     if "edge_pays_below" in e:
         text += f"; edges save {e['saved_by_edge']:.1f} uJ, and pay below {100 * e['edge_pays_below']:.0f} % converted"
     return f"{text}; {e['total'] * rate / 1e3:.2f} mW at {rate:.3g} frames/s"
+
+
+def digital_line(summary: dict[str, Any]) -> str:
+    """Energy of the digital part by both of its sources."""
+    e = summary["energy_uj"]
+    return f"{e['timing']:.1f} uJ by the table's timing, {e['digital']:.1f} uJ by the layout's gates"
 
 
 def camera_of(result: GoldenResult) -> dict[str, float | None]:
@@ -225,7 +259,7 @@ def summarize(result: FrameResult) -> dict[str, Any]:
         | {"frame_s_at_clock": status["cycles"] / f_clk, "cycles_by_pin": chip.activity}
         | {"stream_mismatches": mismatches(chip.stream, golden.stream)}
         | {"decoded_mismatches": int((result.decoded.samples != golden.sent).sum())}
-        | {"energy_uj": energy_of(result)}
+        | {"energy_uj": energy_of(result), "light_source": light_of(result)}
         | {"rtl_cycles_per_s": chip.cycles / chip.seconds, "rtl_simulated_cycles": chip.cycles}
         | {"tools": _tools() | {"verilator": verilator_version()}}
     )

@@ -12,6 +12,7 @@ from talbot.base.page import Picture, Scale
 from talbot.flow.simulate.frame import WAVES
 from talbot.models.parameters import EnergyParameters, LightParameters, sensor_text, sources
 from talbot.models.parameters.drawn import drawn_sources
+from talbot.models.parameters.sources import Sourced
 
 from . import error_plots, pictures
 from .chip_picture import chip_svg
@@ -175,35 +176,35 @@ def _where(s: dict[str, Any]) -> list[Markup]:
     pins = s["cycles_by_pin"]
     phases = ("pixel_reset", "integrate", "cm_reset", "read", "waiting")
     cycles = {name.replace("_", " "): pins[name] for name in phases}
-    parts = {name: name.replace("_", " ") for name in ("pixel_array", "amplifiers", "adcs", "pads")}
-    parts |= {"timing": "timing, Table 6.1", "digital": "the same, layout"}
-    energy = {shown: s["energy_uj"][name] for name, shown in parts.items()}
+    energy = energy_parts(s)
     return [
         svg(bars(cycles, "cycles", f"Cycles: the amplifiers' phases ({s['cycles']:,} in all)")),
-        svg(bars(energy, "µJ", f"Energy ({s['energy_uj']['total']:.1f} to {s['energy_uj']['total_high']:.1f} µJ)")),
+        svg(bars(energy, "µJ", f"Energy, the lower reading ({s['energy_uj']['total']:.1f} µJ)")),
         svg(bars(s["bytes"], "bytes", f"Bytes ({s['stream_bytes']:,})")),
     ]
 
 
-def assumptions(result: FrameResult) -> list[tuple[str, object, str]]:
-    """Every parameter of the camera, of noise and energy, its value in SI units and where it comes from."""
+def energy_parts(s: dict[str, Any]) -> dict[str, float]:
+    """Parts of ``total`` of the summary ``s`` in uJ: of the digital part's two sources the smaller."""
+    energy = s["energy_uj"]
+    parts = {name.replace("_", " "): energy[name] for name in ("pixel_array", "amplifiers", "adcs", "pads")}
+    name, source = min(("timing", "Table 6.1"), ("digital", "layout"), key=lambda pair: energy[pair[0]])
+    return parts | {f"digital part ({source})": energy[name]}
+
+
+def assumptions(result: FrameResult) -> list[Sourced]:
+    """Every parameter of the camera, of noise, light and energy, named with its part, and where it comes from."""
     sensor = result.request.sensor
     columns = result.request.columns
     source = "ngspice: models/parameters/circuit.json" if columns else "assumed"
-    converter = [(f"converter {name}", value, source) for name, value in vars(sensor.converter).items()]
+    optics, electrical = sensor.optics, sensor.electrical
+    parts = {"camera": optics.camera, "optics": optics, "array": sensor.array, "electrical": electrical}
+    parts |= {"room": result.request.room, "energy": EnergyParameters(), "light source": LightParameters()}
+    drawn = drawn_sources(electrical)
+    rows = [row._replace(name=f"{part} {row.name}") for part, group in parts.items() for row in sources(group)]
+    rows = [row._replace(source=drawn.get(row.name.removeprefix("electrical "), row.source)) for row in rows]
+    rows += [row._replace(name=f"converter {row.name}", source=source) for row in sources(sensor.converter)]
     for name, value in vars(columns).items() if columns else ():
         text = ", ".join(f"{one:.6g}" for one in (value if isinstance(value, tuple) else (value,)))
-        converter.append((f"columns {name}", text, source))
-    optics, array = sensor.optics, sensor.array
-    known = (
-        optics.camera,
-        optics,
-        array,
-        sensor.electrical,
-        result.request.room,
-        EnergyParameters(),
-        LightParameters(),
-    )
-    rows = (row for parameters in known for row in sources(parameters))
-    drawn = drawn_sources(sensor.electrical)
-    return [*((name, value, drawn.get(name, came)) for name, value, came in rows), *converter]
+        rows.append(Sourced(f"columns {name}", text, "", source))
+    return rows

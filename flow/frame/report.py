@@ -9,8 +9,9 @@ from PIL.Image import Image
 
 from talbot.base import page
 from talbot.base.page import Picture, Scale, Tile
+from talbot.models.parameters.sources import Sourced
 
-from .figures import camera_line, energy_line, exposure_line, trims_line
+from .figures import camera_line, digital_line, energy_line, exposure_line, light_line, trims_line
 from .merit import decibels, nothing_sent, table
 from .pictures import sprite
 
@@ -66,16 +67,18 @@ def render(
     views: Sequence[Views],
     where: Sequence[Markup],
     errors: Sequence[Markup],
-    assumed: Sequence[tuple[str, object, str]] = (),
+    assumed: Sequence[Sourced] = (),
 ) -> str:
     """The page as HTML. chip: SVG text. where, errors: SVG of where cycles went, of error against time.
 
-    views: light fields side by side, of as many views. assumed: name, value and source of parameters.
+    views: light fields side by side, of as many views. assumed: parameters, and where they come from.
     """
     texts = {
         "camera": camera_line(summary),
         "exposure": exposure_line(summary),
         "energy": energy_line(summary),
+        "digital": digital_line(summary),
+        "light": light_line(summary),
         "trims": trims_line(summary),
     }
     shown = {"pictures": pictures, "sheets": sheets, "views": views, "where": where, "errors": errors}

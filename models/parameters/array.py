@@ -22,7 +22,7 @@ class ArrayParameters:
 
     rows: int = 384
     cols: int = 384
-    pitch: float = sourced(10e-6, "[Jayasuriya2017], Sec. 3.5.1")
+    pitch: float = sourced(10e-6, "[Jayasuriya2017], Sec. 3.5.1", "m")
 
     def __post_init__(self) -> None:
         check_int("rows", self.rows, 1, ROWS_MAX)

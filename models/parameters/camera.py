@@ -46,10 +46,10 @@ class CameraParameters:
     """
 
     f_number: float = sourced(1.2, "[Jayasuriya2017], Sec. 3.5.1")
-    focal_length: float = sourced(7.96e-3, "our choice: 384 pixels see 480 of the motorcycle pair's")
-    focus: float = sourced(0.207, "our choice: 3 m of the scene")
+    focal_length: float = sourced(7.96e-3, "our choice: 384 pixels see 480 of the motorcycle pair's", "m")
+    focus: float = sourced(0.207, "our choice: 3 m of the scene", "m")
     scale: float = sourced(14.5, "our choice: the lens sees half the disparity of the pair's baseline")
-    exit_pupil: float | None = sourced(None, "assumed: telecentric")
+    exit_pupil: float | None = sourced(None, "assumed: telecentric", "m")
 
     def __post_init__(self) -> None:
         check_real("f_number", self.f_number, 0.5, 32)

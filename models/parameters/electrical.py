@@ -53,22 +53,22 @@ class ElectricalParameters:
         RMS 1/f noise of a column's amplifier over the rows of a frame, 0..1e5 electrons per diode.
     """
 
-    white_current: float = sourced(0.25e-9, "assumed, of modulated light: 80 % of a full well in 51.2 us")
-    full_well: float = sourced(1e5, "assumed")
+    white_current: float = sourced(0.25e-9, "assumed, of modulated light: 80 % of a full well in 51.2 us", "A")
+    full_well: float = sourced(1e5, "assumed", "electrons")
     difference_gain: float = sourced(4.0, "our choice: edges reach the converter's range")
-    read_noise: float = sourced(30.0, "assumed")
-    dark_current: float = sourced(1e-15, "assumed")
+    read_noise: float = sourced(30.0, "assumed", "electrons")
+    dark_current: float = sourced(1e-15, "assumed", "A")
     gain_fpn: float = sourced(0.002, "assumed")
-    offset_fpn: float = sourced(20.0, "assumed")
-    f_mod: float = sourced(20e6, "our choice")
-    code: int = sourced(0, "a sine")
-    chip_rate: float = sourced(250e6, "our choice: a tap sees 0.6 m")
-    code_delay: float = sourced(0.0, "none")
+    offset_fpn: float = sourced(20.0, "assumed", "electrons")
+    f_mod: float = sourced(20e6, "our choice", "Hz")
+    code: int = sourced(0, "a sine", "chips")
+    chip_rate: float = sourced(250e6, "our choice: a tap sees 0.6 m", "Hz")
+    code_delay: float = sourced(0.0, "none", "s")
     contrast: float = sourced(1.0, "ideal")
-    ambient_current: float = sourced(0.0, "none")
-    swing: float = sourced(1.0, "assumed")
-    column_fpn: float = sourced(10.0, "assumed")
-    flicker_noise: float = sourced(10.0, "assumed")
+    ambient_current: float = sourced(0.0, "none", "A")
+    swing: float = sourced(1.0, "assumed", "V")
+    column_fpn: float = sourced(10.0, "assumed", "electrons")
+    flicker_noise: float = sourced(10.0, "assumed", "electrons")
 
     def __post_init__(self) -> None:
         check_real("white_current", self.white_current, 1e-21, 1e-3)
@@ -135,16 +135,16 @@ class ConverterParameters:
         Seed of every draw above, 0..2**32-1.
     """
 
-    inl: float = sourced(0.0, "ideal")
-    dnl: float = sourced(0.0, "ideal")
-    offset: float = sourced(0.0, "ideal")
-    noise: float = sourced(0.0, "ideal")
-    ktc: float = sourced(0.0, "ideal")
+    inl: float = sourced(0.0, "ideal", "LSB")
+    dnl: float = sourced(0.0, "ideal", "LSB")
+    offset: float = sourced(0.0, "ideal", "LSB")
+    noise: float = sourced(0.0, "ideal", "LSB")
+    ktc: float = sourced(0.0, "ideal", "LSB")
     unit_mismatch: float = sourced(0.0, "ideal")
-    amplifier_offset: float = sourced(0.0, "ideal")
-    amplifier_gain: float = sourced(0.0, "ideal")
-    amplifier_square: float = sourced(0.0, "ideal")
-    amplifier_cube: float = sourced(0.0, "ideal")
+    amplifier_offset: float = sourced(0.0, "ideal", "LSB")
+    amplifier_gain: float = sourced(0.0, "ideal", "LSB")
+    amplifier_square: float = sourced(0.0, "ideal", "LSB")
+    amplifier_cube: float = sourced(0.0, "ideal", "LSB")
     seed: int = sourced(1, "any")
 
     def __post_init__(self) -> None:

@@ -101,23 +101,23 @@ class EnergyParameters:
     [Jayasuriya2017], Table 6.1.
     """
 
-    pixel_array: float = sourced(300e-6, TABLE)
-    amplifiers: float = sourced(900e-6, TABLE)
-    timing: float = sourced(500e-6, TABLE)
-    adcs: float = sourced(100e-6, TABLE)
-    frame_rate: float = sourced(30.0, "assumed: the table has none")
+    pixel_array: float = sourced(300e-6, TABLE, "W")
+    amplifiers: float = sourced(900e-6, TABLE, "W")
+    timing: float = sourced(500e-6, TABLE, "W")
+    adcs: float = sourced(100e-6, TABLE, "W")
+    frame_rate: float = sourced(30.0, "assumed: the table has none", "Hz")
     pixels: float = sourced(384 * 384, TABLE)
     edge_share: float = sourced(0.1, "[Jayasuriya2017], Sec. 6.3: 120 of 1200 kbit")
-    pad_load: float = sourced(10e-12, "assumed")
-    pad_voltage: float = sourced(1.8, "assumed")
-    cycle: float = sourced(28.31e-12, LAYOUT)
-    row: float = sourced(279.1e-12, LAYOUT)
-    sample: float = sourced(14.44e-12, LAYOUT)
-    decision: float = sourced(3.19e-12, LAYOUT)
-    byte: float = sourced(0.0, LAYOUT)
-    division: float = sourced(6.652e-12, LAYOUT)
+    pad_load: float = sourced(10e-12, "assumed", "F")
+    pad_voltage: float = sourced(1.8, "assumed", "V")
+    cycle: float = sourced(28.31e-12, LAYOUT, "J")
+    row: float = sourced(279.1e-12, LAYOUT, "J")
+    sample: float = sourced(14.44e-12, LAYOUT, "J")
+    decision: float = sourced(3.19e-12, LAYOUT, "J")
+    byte: float = sourced(0.0, LAYOUT, "J")
+    division: float = sourced(6.652e-12, LAYOUT, "J")
     glitches: float = sourced(1.004, LAYOUT)
-    leakage: float = sourced(1.49e-6, LAYOUT)
+    leakage: float = sourced(1.49e-6, LAYOUT, "W")
 
     def __post_init__(self) -> None:
         ends = {"frame_rate": (0.1, 1e5), "pixels": (1, 2**31), "pad_load": (0, 1e-9), "pad_voltage": (0.1, 10)}
@@ -186,6 +186,9 @@ class EnergyParameters:
         return self.glitches * sum(energy * count for energy, count in zip(each, events, strict=True))
 
 
+EYE_LIMIT = 100.0  # W/m^2 of infrared at an eye for more than 1000 s [IEC62471]
+
+
 @dataclass(frozen=True)
 class LightParameters:
     """The modulated light of time of flight, from the photocurrent of white back to the source.
@@ -208,7 +211,7 @@ class LightParameters:
 
     quantum_efficiency: float = sourced(0.7, "assumed")
     gratings: float = sourced(0.5, "[Jayasuriya2017], Ch. 2: phase gratings, up to 50 % relative quantum efficiency")
-    wavelength: float = sourced(850e-9, "assumed")
+    wavelength: float = sourced(850e-9, "assumed", "m")
     fill: float = sourced(0.4, "assumed")
     transmission: float = sourced(0.9, "assumed")
     efficiency: float = sourced(0.3, "assumed")
@@ -224,8 +227,8 @@ class LightParameters:
         """Of a diode under its gratings, A/W."""
         return self.quantum_efficiency * self.gratings * ELEMENTARY_CHARGE * self.wavelength / PHOTON
 
-    def power(self, white_current: float, pitch: float, pixels: int, nu_max: float, magnification: float) -> float:
-        """Electrical power of a source that lights a white field in the focal plane, and nothing beside it.
+    def field(self, white_current: float, pitch: float, nu_max: float) -> float:
+        """Irradiance that the source gives a white field in the focal plane.
 
         Parameters
         ----------
@@ -233,11 +236,29 @@ class LightParameters:
             Photocurrent of one diode in A.
         pitch : float
             Of the pixels in m.
-        pixels : int
-            Of the array.
         nu_max : float
             Tangent of the lens's rim at the sensor, the angle theta: irradiance there is sin(theta)**2 times the
             transmission times the field's own, which is white.
+
+        Returns
+        -------
+        float
+            In W/m^2.
+        """
+        sensor = white_current / (self.responsivity * self.fill * pitch**2)
+        return sensor * (1 + nu_max**2) / (self.transmission * nu_max**2)
+
+    def power(self, white_current: float, pitch: float, pixels: int, nu_max: float, magnification: float) -> float:
+        """Electrical power of a source that lights a white field in the focal plane, and nothing beside it.
+
+        Parameters
+        ----------
+        white_current, pitch : float
+            As in `field`.
+        pixels : int
+            Of the array.
+        nu_max : float
+            As in `field`.
         magnification : float
             Of the lens.
 
@@ -246,6 +267,4 @@ class LightParameters:
         float
             In W.
         """
-        sensor = white_current / (self.responsivity * self.fill * pitch**2)  # W/m^2
-        field = sensor * (1 + nu_max**2) / (self.transmission * nu_max**2)
-        return field * pixels * (pitch / magnification) ** 2 / self.efficiency
+        return self.field(white_current, pitch, nu_max) * pixels * (pitch / magnification) ** 2 / self.efficiency

@@ -35,7 +35,7 @@ class OpticsParameters:
 
     camera: CameraParameters = CameraParameters()
     m: float = sourced(0.7, "assumed")
-    aperture_sigma: float = sourced(0.2, "assumed")
+    aperture_sigma: float = sourced(0.2, "assumed", "rad")
     vignetting_power: float = sourced(4.0, "the natural cos^4 law")
     diattenuation: float = sourced(1 / 3, "[Jayasuriya2017], Ch. 4: extinction ratio 2")
     views: int = sourced(5, "[Jayasuriya2017], Sec. 3.5.1")

@@ -53,9 +53,9 @@ class RoomParameters:
         Part of a full well that white is to give, 0.01..1.
     """
 
-    illuminance: float = sourced(500.0, "EN 12464-1: offices, writing and reading")
-    efficacy: float = sourced(243.0, "CIE V: 683 lm/W times 106.9 nm, for equal energy from 400 to 700 nm")
-    wavelength: float = sourced(550e-9, "our choice: the middle of 400 to 700 nm")
+    illuminance: float = sourced(500.0, "EN 12464-1: offices, writing and reading", "lux")
+    efficacy: float = sourced(243.0, "CIE V: 683 lm/W times 106.9 nm, for equal energy from 400 to 700 nm", "lm/W")
+    wavelength: float = sourced(550e-9, "our choice: the middle of 400 to 700 nm", "m")
     quantum_efficiency: float = sourced(0.5, "assumed")
     signal: float = sourced(0.8, "our choice: headroom for highlights")
 

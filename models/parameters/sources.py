@@ -1,10 +1,31 @@
 """Where each default comes from: kept with the field, shown in the report."""
 
 from dataclasses import field, fields
-from typing import Any
+from typing import Any, NamedTuple
 
 
-def sourced(default: Any, source: str) -> Any:
+class Sourced(NamedTuple):
+    """A parameter's value and where it comes from.
+
+    Attributes
+    ----------
+    name : str
+        Of the field.
+    value : any
+        Its value.
+    unit : str
+        Of the value, '' of a pure number.
+    source : str
+        Of the default; 'set' where the value is another.
+    """
+
+    name: str
+    value: Any
+    unit: str
+    source: str
+
+
+def sourced(default: Any, source: str, unit: str = "") -> Any:
     """Dataclass field with a default and its source.
 
     Parameters
@@ -13,16 +34,18 @@ def sourced(default: Any, source: str) -> Any:
         The default.
     source : str
         Bibliography key and place, 'our choice', or 'assumed'.
+    unit : str
+        Of the value, '' of a pure number.
 
     Returns
     -------
     any
         As of `dataclasses.field`.
     """
-    return field(default=default, metadata={"source": source})
+    return field(default=default, metadata={"source": source, "unit": unit})
 
 
-def sources(parameters: Any) -> list[tuple[str, Any, str]]:
+def sources(parameters: Any) -> list[Sourced]:
     """Values of a parameter object and the sources of their defaults, of the fields that have one.
 
     Parameters
@@ -32,11 +55,12 @@ def sources(parameters: Any) -> list[tuple[str, Any, str]]:
 
     Returns
     -------
-    list of (str, any, str)
-        Name, value, and source; 'set' where the value is not the default.
+    list of Sourced
+        In the order of the fields.
     """
     rows = []
     for item in (item for item in fields(parameters) if "source" in item.metadata):
         value = getattr(parameters, item.name)
-        rows.append((item.name, value, item.metadata["source"] if value == item.default else "set"))
+        source = item.metadata["source"] if value == item.default else "set"
+        rows.append(Sourced(item.name, value, item.metadata["unit"], source))
     return rows

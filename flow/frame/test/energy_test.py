@@ -3,7 +3,10 @@
 import numpy as np
 import pytest
 
-from talbot.flow.frame.figures import edge_pays_below, image_mode
+from talbot.flow.frame.figures import edge_pays_below, image_mode, light_line, summarize
+from talbot.flow.frame.job import simulate_frame
+from talbot.flow.frame.outputs import assumptions, energy_parts
+from talbot.flow.frame.request import request
 from talbot.models.parameters import (
     CameraParameters,
     ConverterParameters,
@@ -83,12 +86,47 @@ def test_light_reaches_the_sensor_through_the_same_pupil(f_number):
 )
 def test_every_default_names_its_source(kind):
     rows = sources(kind())
-    assert len(rows) > 3 and all(source and source != "set" for _, _, source in rows)
-    name, value, _ = rows[0]
-    changed = {n: s for n, _, s in sources(kind(**{name: value / 2}))}
+    assert len(rows) > 3 and all(row.source and row.source != "set" for row in rows)
+    name, value = rows[0].name, rows[0].value
+    changed = {row.name: row.source for row in sources(kind(**{name: value / 2}))}
     assert changed[name] == "set" and list(changed.values()).count("set") == 1
 
 
 def test_an_ideal_converter_is_all_zero():
     ideal = vars(ConverterParameters())
     assert not np.any([value for name, value in ideal.items() if name != "seed"])
+
+
+@pytest.fixture(scope="module")
+def echo():
+    """A small frame in time of flight."""
+    return simulate_frame(request(24, 36, mode="tof"))
+
+
+def test_the_chart_of_energy_has_every_part_of_the_total_once(echo):
+    s = summarize(echo)
+    energy, parts = s["energy_uj"], energy_parts(s)
+    assert sum(parts.values()) == pytest.approx(energy["total"])
+    assert min(energy["timing"], energy["digital"]) in parts.values()
+    swapped = s | {"energy_uj": energy | {"timing": 0.0}}
+    assert "digital part (Table 6.1)" in energy_parts(swapped)
+
+
+def test_every_assumption_has_one_name_and_a_unit(echo):
+    rows = {row.name: row for row in assumptions(echo)}
+    assert len(rows) == len(assumptions(echo))
+    assert (rows["room wavelength"].value, rows["light source wavelength"].value) == (550e-9, 850e-9)
+    assert rows["room wavelength"].unit == rows["array pitch"].unit == "m"
+    assert rows["room quantum_efficiency"].value != rows["light source quantum_efficiency"].value
+
+
+def test_light_of_time_of_flight_stands_beside_the_limit_for_an_eye(echo):
+    s = summarize(echo)
+    source, lens = s["light_source"], echo.request.sensor.optics.camera
+    field = (10e-6 / lens.magnification) ** 2 * 24 * 36  # m^2
+    assert source["power_w"] * 0.3 / field == pytest.approx(source["irradiance"])
+    assert s["energy_uj"]["light"] == pytest.approx(1e6 * source["power_w"] * source["lit_s"])
+    assert source["mean_irradiance"] <= source["irradiance"]
+    assert f"{source['mean_irradiance'] / 100:.2g} times the limit of 100 W/m2" in light_line(s)
+    dim = s | {"light_source": source | {"mean_irradiance": 30.0}}
+    assert "within the limit of 100 W/m2" in light_line(dim)
