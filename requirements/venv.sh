@@ -5,17 +5,16 @@ python=$1 folder=$2 lock=$3
 
 fail() { echo "setup: $*" >&2; exit 2; }
 
-fits() { "$1" -c 'import sys; sys.exit(not (3, 11) <= sys.version_info < (3, 14))' 2>/dev/null; }
+fits() { "$1" -c 'import sys; sys.exit(not (3, 11) <= sys.version_info < (3, 15))' 2>/dev/null; }
 found() { "$1" -c 'import platform, sys; print("Python", platform.python_version(), "at", sys.executable)' 2>/dev/null \
     || echo nothing; }
 given=$python
 if [ "$python" = python3 ]; then # the default: this one, or another of the system's
-    for python in python3 python3.13 python3.12 python3.11; do
+    for python in python3 python3.14 python3.13 python3.12 python3.11; do
         ! fits "$python" || break
     done
 fi
-# PyMTL3 3.1.17 uses what Python 3.14 took away
-fits "$python" || fail "python = '$given': must be Python 3.11, 3.12 or 3.13, is $(found "$given") (make PYTHON=/path/to/python3)"
+fits "$python" || fail "python = '$given': must be Python 3.11 to 3.14, is $(found "$given") (make PYTHON=/path/to/python3)"
 command -v g++ >/dev/null || fail "g++ = not found: a C++ compiler is needed (Debian: apt-get install g++)"
 
 if [ ! -x "$folder/bin/python" ]; then

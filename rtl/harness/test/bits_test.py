@@ -4,17 +4,11 @@ import operator
 import random
 
 import pytest
-from pymtl3 import Bits, Bits1, Bits8, bitstruct, mk_bits
+from pymtl3 import Bits, Bits1, Bits8, mk_bits, mk_bitstruct
 
 from talbot.rtl.harness.bits import SHORT, SLOW
 
-
-@bitstruct
-class Pair:
-    high: Bits1
-    low: mk_bits(7)
-
-
+Pair = mk_bitstruct("Pair", {"high": Bits1, "low": mk_bits(7)})
 WIDTHS = 1, 7, 8, 64, 384
 NUMBERS = [0, 1, -1, -128, -129, 127, 128, 255, 256, 2**63, 2**64 - 1, 2**64, 2**400, True, False]
 OTHERS = [Pair(1, 5), None, "1", 1.0, Bits8(1) == 1]

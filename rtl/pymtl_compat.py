@@ -1,0 +1,86 @@
+"""What PyMTL3 3.1.17 lacks on Python 3.14, restored by `talbot.rtl` before any block imports PyMTL3.
+
+Names of `ast` that are gone: `Num`, `Str`, `Constant.n`, `visit_Num`. They mean what they mean in Python 3.13: a literal
+is an instance of `Num` or `Str` by its value; a visitor without `visit_Constant` gets it as `visit_Num` or `visit_Str`.
+And `__annotations__` in the namespace of a class (PEP 649), which `pymtl3.bitstruct` reads.
+"""
+
+import ast
+import importlib.util
+import inspect
+import sys
+from types import ModuleType
+
+BITSTRUCTS = "pymtl3.datatypes.bitstructs"
+
+
+def _literal(name: str, *types: type) -> type:
+    """Return the class ``name`` whose instances are the constants of these ``types``, bool not being a number."""
+
+    def __instancecheck__(cls, node):
+        return isinstance(node, ast.Constant) and type(node.value) in types
+
+    def __new__(cls, value=None, **place):
+        """Make a constant. place: its line and column, and the value where the caller names it (n, s)."""
+        names = [key for key in ("n", "s") if key in place]
+        return ast.Constant(value=place.pop(names[0]) if names else value, **place)
+
+    kind = type(f"Of{name}", (type,), {"__instancecheck__": __instancecheck__})
+    return kind(name, (), {"__new__": __new__})
+
+
+Num = _literal("Num", int, float, complex)
+Str = _literal("Str", str)
+
+
+def visit_constant(visitor: ast.NodeVisitor, node: ast.Constant):
+    """Visit ``node`` by the visitor's `visit_Num` or `visit_Str`, where it has that one."""
+    name = "visit_Num" if isinstance(node, Num) else "visit_Str" if isinstance(node, Str) else ""
+    return getattr(visitor, name, visitor.generic_visit)(node)
+
+
+def restore(module: ModuleType = ast) -> None:
+    """Give ``module`` what it lacks of these names."""
+    if hasattr(module, "Num"):
+        return
+    module.Num, module.Str = Num, Str
+    module.Constant.n = property(lambda node: node.value)
+    module.NodeVisitor.visit_Constant = visit_constant
+
+
+def annotated(cls: type) -> type:
+    """Return ``cls``, or a copy of it, with `__annotations__` in its namespace."""
+    if "__annotations__" in vars(cls):
+        return cls
+    made = "__dict__", "__weakref__", "__annotate__", "__annotate_func__", "__annotations_cache__"
+    namespace = {name: value for name, value in vars(cls).items() if name not in made}
+    namespace |= {"__qualname__": cls.__qualname__, "__annotations__": inspect.get_annotations(cls)}
+    return type(cls)(cls.__name__, cls.__bases__, namespace)
+
+
+class BitstructFinder:
+    """Finds PyMTL3's module of bit structs, once, and lets it get each class from `annotated`.
+
+    So PyMTL3, which takes a third of a second to import, is imported by who needs it alone.
+    """
+
+    def find_spec(self, name, path=None, target=None):
+        """Return the spec of that module; None for every other."""
+        if name != BITSTRUCTS:
+            return None
+        sys.meta_path.remove(self)
+        spec = importlib.util.find_spec(name)
+        execute = spec.loader.exec_module
+
+        def exec_module(module):
+            execute(module)
+            process = module._process_class
+            module._process_class = lambda cls, *words, **options: process(annotated(cls), *words, **options)
+
+        spec.loader.exec_module = exec_module
+        return spec
+
+
+if sys.version_info >= (3, 14):
+    restore()
+    sys.meta_path.insert(0, BitstructFinder())
