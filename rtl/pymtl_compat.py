@@ -1,6 +1,6 @@
 """What PyMTL3 3.1.17 lacks on Python 3.14, restored by `talbot.rtl` before any block imports PyMTL3.
 
-Names of `ast` that are gone: `Num`, `Str`, `Constant.n`, `visit_Num`. They mean what they mean in Python 3.13: a literal
+Names of `ast` that are gone: `Num`, `Str`, `Constant.n`, `visit_Num`. They mean what they do in Python 3.13: a literal
 is an instance of `Num` or `Str` by its value; a visitor without `visit_Constant` gets it as `visit_Num` or `visit_Str`.
 And `__annotations__` in the namespace of a class (PEP 649), which `pymtl3.bitstruct` reads.
 """

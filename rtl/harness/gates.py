@@ -7,6 +7,7 @@ which computes 512 copies at a time: all 2^26 requests of a divider take seconds
 import ctypes
 import json
 import re
+import shutil
 import tempfile
 from pathlib import Path
 
@@ -27,7 +28,7 @@ Words = npt.NDArray[np.uint64]
 ALL = np.uint64(2**64 - 1)
 WIDE = 512  # copies that one machine instruction computes at most
 
-SCRIPT = """read_verilog -sv top.v; hierarchy -check -top {top}; proc; opt_expr; opt_clean; techmap -map {shiftx};
+SCRIPT = """read_verilog -sv top.v; hierarchy -check -top {top}; proc; opt_expr; opt_clean; techmap -map shiftx.v;
 opt_expr; opt_clean; techmap; opt_expr; opt_clean; flatten; dffunmap; abc -g AND; aigmap; opt_clean;
 write_aiger -ascii -symbols gates.aag"""
 SHIFTX = Path(__file__).parent / "shiftx.v"
@@ -100,10 +101,8 @@ def unpacked(words: Words) -> npt.NDArray[np.int64]:
 def _compile(folder: Path, verilog: str, top: str) -> None:
     with tempfile.TemporaryDirectory(prefix="talbot-") as work:
         (Path(work) / "top.v").write_text(verilog)
-        run(
-            [located("yosys") or "yosys", "-q", "-p", SCRIPT.format(top=top, shiftx=SHIFTX).replace("\n", " ")],
-            cwd=work,
-        )
+        shutil.copy(SHIFTX, work)  # Yosys as WebAssembly sees no file behind a link to a folder, as talbot/rtl is
+        run([located("yosys") or "yosys", "-q", "-p", SCRIPT.format(top=top).replace("\n", " ")], cwd=work)
         lines = iter((Path(work) / "gates.aag").read_text().splitlines())
     _, n_in, n_state, n_out, n_gates = map(int, next(lines).split()[1:])
     inputs, state, outputs, gates = (
