@@ -15,7 +15,7 @@ SCRIPT = ROOT / "requirements" / "venv.sh"
 def test_a_python_that_does_not_fit_is_refused_in_one_line(tmp_path, python, found):
     done = subprocess.run(["bash", SCRIPT, python, tmp_path / "venv", "x.lock"], capture_output=True, text=True)
     assert done.returncode == 2 and done.stderr.count("\n") == 1
-    assert f"python = '{python}': must be Python 3.11, 3.12 or 3.13, is {found} (make PYTHON=" in done.stderr
+    assert f"python = '{python}': must be Python 3.11 to 3.14, is {found} (make PYTHON=" in done.stderr
     assert not (tmp_path / "venv").exists()
 
 
