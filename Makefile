@@ -281,7 +281,7 @@ cells-stability: $(LAYOUT_READY) have-tools  ## stiff and extreme cases of the c
 	@$(talbot) cells-stability
 
 .PHONY: tools
-tools:  ## Icarus, a native Verilator, Yosys, z3, ngspice, OpenSTA and KLayout from Debian's packages (needs root)
+tools:  ## Icarus, a native Verilator, Yosys, z3, ngspice, OpenSTA and KLayout from Debian's packages; without root in the user's cache
 	@bash requirements/tools.sh
 
 .PHONY: have-tools

@@ -30,11 +30,30 @@ DENIED = re.compile(
 FIXED = {"LC_ALL": "C.UTF-8", "PYTHONUTF8": "1", "MATPLOTLIBRC": os.devnull}
 OF_MAKE = "MAKEFLAGS", "MAKELEVEL"  # of the make that started this program, for talbot.make
 NO_HOME = "/nonexistent"  # as Debian's account nobody has it
+# Folders of the tools that requirements/tools.sh unpacks for a user who is not root, behind those of the system
+UNPACKED = {"PATH": "bin", "CPATH": "include", "LIBRARY_PATH": "lib", "LD_RUN_PATH": "lib"}
 
 
 def clean(environment: Mapping[str, str] = os.environ) -> dict[str, str]:
-    """Return ``environment`` without a user's settings: messages in English, text in UTF-8."""
-    return {name: value for name, value in environment.items() if not DENIED.fullmatch(name)} | FIXED
+    """Return ``environment`` without a user's settings: messages in English, text in UTF-8, unpacked tools on PATH."""
+    kept = {name: value for name, value in environment.items() if not DENIED.fullmatch(name)}
+    return kept | FIXED | with_unpacked(environment)
+
+
+def with_unpacked(environment: Mapping[str, str]) -> dict[str, str]:
+    """Return the variables that find what requirements/tools.sh unpacked; {} where it has not."""
+    folder = os.path.join(_cache(environment), "talbot", "tools")
+    if not os.path.isdir(os.path.join(folder, "bin")):
+        return {}
+    values = {}
+    for name, part in UNPACKED.items():
+        paths = [path for path in environment.get(name, "").split(os.pathsep) if path]
+        values[name] = os.pathsep.join(dict.fromkeys([*paths, os.path.join(folder, part)]))
+    return values
+
+
+def _cache(environment: Mapping[str, str]) -> str:
+    return environment.get("XDG_CACHE_HOME") or os.path.join(os.path.expanduser("~"), ".cache")
 
 
 def of_tools(more: Mapping[str, str] | None = None) -> dict[str, str]:
@@ -42,7 +61,7 @@ def of_tools(more: Mapping[str, str] | None = None) -> dict[str, str]:
 
     more: variables on top. The user's cache, where YoWASP keeps its compiled tools, stays where it is.
     """
-    cache = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.path.expanduser("~"), ".cache")
+    cache = _cache(os.environ)
     own = {"HOME": NO_HOME, "XDG_CACHE_HOME": cache, "YOWASP_CACHE_DIR": os.path.join(cache, "YoWASP")}
     own["PYTHONHASHSEED"] = "0"
     environment = {name: value for name, value in clean().items() if name != "XDG_CONFIG_HOME"}

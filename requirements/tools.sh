@@ -1,32 +1,142 @@
 #!/usr/bin/env bash
-# Tools beside the Python environment, from Debian's packages: Icarus, a native Verilator, Yosys, z3; for cells and
-# layouts ngspice, OpenSTA and KLayout; for the tests of the foundry's checks and of OpenROAD's scripts Magic and Tcl;
-# for waves as FST the headers of zlib and lz4; for make cosim ngspice as a library.
+# The tools that PyPI does not have, from Debian's packages: Icarus, a native Verilator, Yosys, z3; for cells and layouts
+# ngspice, OpenSTA and KLayout; for the tests of the foundry's checks and of OpenROAD's scripts Magic and Tcl; for waves
+# as FST the headers of zlib and lz4; for make cosim ngspice as a library.
+# As root they are installed. As another user apt fetches and verifies them with folders of its own, and they are
+# unpacked in the user's cache: the system is not touched. base/environment.py adds them to PATH.
 # With --missing [COMMAND ...] only where one of the commands, by default those of cells and layouts, is missing; the
-# command line BEFORE, which checks what they are wanted for, must succeed then.
+# command line BEFORE, which checks what they are for, must succeed then.
 set -euo pipefail
 packages=(iverilog verilator yosys z3 ngspice opensta klayout magic tcl zlib1g-dev liblz4-dev libngspice0-dev)
+folder=${XDG_CACHE_HOME:-${HOME:?}/.cache}/talbot/tools # talbot.base.paths.TOOLS
 
-wanted=()
+fail() { echo "tools: $*" >&2; exit 2; }
+
+missing=()
 if [ "${1:-}" = --missing ]; then
     shift
     [ $# -gt 0 ] || set -- iverilog verilator yosys ngspice sta klayout
     for command in "$@"; do
-        command -v "$command" >/dev/null || wanted+=("$command")
+        [ -x "$folder/bin/$command" ] || command -v "$command" >/dev/null || missing+=("$command")
     done
-    [ ${#wanted[@]} -gt 0 ] || exit 0
+    [ ${#missing[@]} -gt 0 ] || exit 0
     bash -c "${BEFORE:-true}" || exit 2
-    echo "tools: missing = ${wanted[*]}" >&2
+    echo "tools: missing = ${missing[*]}" >&2
 fi
 
-if ! command -v apt-get >/dev/null; then
-    echo "tools: apt-get = not found: install ${packages[*]} with this system's own package manager" >&2
-    exit 2
+command -v apt-get >/dev/null \
+    || fail "apt-get = not found: install ${packages[*]} with this system's own package manager"
+
+apt_options=(-o DPkg::Lock::Timeout=600) # another apt may hold the lock for a while (unattended upgrades)
+# Leave out of `packages` what this release does not have (Debian 13 has no Magic)
+known_packages() {
+    local package known=()
+    for package in "${packages[@]}"; do
+        if [[ $(LC_ALL=C apt-cache "${apt_options[@]}" policy "$package") =~ "Candidate: "[^\(] ]]; then
+            known+=("$package")
+        else
+            echo "tools: $package = not in this release: left out" >&2
+        fi
+    done
+    packages=("${known[@]}")
+}
+if [ "$(id -u)" -eq 0 ]; then
+    apt-get "${apt_options[@]}" update -qq
+    known_packages
+    exec apt-get "${apt_options[@]}" install -y --no-install-recommends "${packages[@]}"
 fi
-if [ "$(id -u)" -ne 0 ]; then
-    echo "tools: user = $(id -un): must be root; run: sudo apt-get install ${packages[*]}" >&2
-    exit 2
+
+# A program of the unpacked packages with the libraries and settings that it looks for elsewhere
+wrap() { # NAME PROGRAM [VARIABLE=VALUE ...] [-- ARGUMENT ...]
+    local name=$1 program=$2 settings=() arguments=()
+    shift 2
+    [ -e "$new/root${program#"$root"}" ] || return 0 # the system has it, or the release lacks it
+    while [ $# -gt 0 ] && [ "$1" != -- ]; do settings+=("$1"); shift; done
+    [ $# -eq 0 ] || { shift; arguments=("$@"); }
+    {
+        printf '#!/bin/sh\n'
+        # shellcheck disable=SC2016 # expanded by the program's shell
+        printf '%s=%q${%s:+:$%s}\n' LD_LIBRARY_PATH "$libraries" LD_LIBRARY_PATH LD_LIBRARY_PATH \
+            PATH "$folder/bin" PATH PATH
+        printf 'export LD_LIBRARY_PATH PATH %s\n' "${settings[*]+${settings[*]@Q}}"
+        printf 'exec %q %s "$@"\n' "$program" "${arguments[*]+${arguments[*]@Q}}"
+    } >"$new/bin/$name"
+    chmod +x "$new/bin/$name"
+}
+
+mkdir -p "$folder"
+exec 9>"$folder/lock"
+flock 9 # two first runs at once
+apt_options=(-qq -o "Dir::State::Lists=$folder/apt/lists" -o "Dir::Cache=$folder/apt" -o "APT::Sandbox::User=$(id -un)"
+    -o Debug::NoLocking=1)
+mkdir -p "$folder/apt/lists/partial" "$folder/apt/archives/partial"
+echo "tools: fetching ${packages[*]} for $(id -un), in $folder (about 200 MB, 800 MB unpacked)"
+if ! apt-get "${apt_options[@]}" update 2>"$folder/apt/errors"; then
+    # A mirror that stands still: its lists are signed, but of a day that is past
+    grep -q 'is expired' "$folder/apt/errors" || { cat "$folder/apt/errors" >&2; exit 2; }
+    echo "tools: the mirror's lists are expired: their signatures alone are checked" >&2
+    apt_options+=(-o Acquire::Check-Valid-Until=false)
+    apt-get "${apt_options[@]}" update
 fi
-# Another apt may hold the lock for a while (unattended upgrades)
-apt-get -o DPkg::Lock::Timeout=600 update -qq
-apt-get -o DPkg::Lock::Timeout=600 install -y --no-install-recommends "${packages[@]}"
+known_packages
+apt-get "${apt_options[@]}" -y --no-install-recommends --download-only install "${packages[@]}" >/dev/null
+new=$folder/new root=$folder/root
+rm -rf "$new"
+mkdir -p "$new/root" "$new/bin"
+for package in "$folder"/apt/archives/*.deb; do dpkg-deb -x "$package" "$new/root"; done
+rm -rf "$folder/apt"
+
+triplet=$(cd "$new/root/usr/lib" && echo *-linux-gnu)
+edit() { # EXPRESSION FILE ...: those of the files that are there
+    local expression=$1 file
+    shift
+    for file; do [ ! -f "$file" ] || sed -i -E "$expression" "$file"; done
+}
+lib=$root/usr/lib/$triplet
+libraries=$lib:$lib/blas:$lib/lapack:$lib/pulseaudio:$root/usr/lib/klayout:$root/lib/$triplet
+# Scripts that name their own files by absolute paths
+edit "s#/usr/share/yosys#$root&#" "$new"/root/usr/bin/yosys-{smtbmc,witness}
+edit "s#/usr/lib/[^ /]*/ngspice#$root&#" "$new/root/usr/share/ngspice/scripts/spinit"
+edit "s#/usr/lib/[^ /]*/magic#$root&#" "$new/root/usr/lib/$triplet/magic/tcl/magic.tcl"
+[ ! -d "$new/root/usr/share/verilator/bin" ] || ln -sf ../../../bin/verilator_bin "$new/root/usr/share/verilator/bin/"
+for name in yosys berkeley-abc yosys-smtbmc z3; do wrap "$name" "$root/usr/bin/$name"; done
+wrap iverilog "$root/usr/bin/iverilog" -- -B "$lib/ivl"
+wrap vvp "$root/usr/bin/vvp" -- -M "$lib/ivl"
+wrap verilator "$root/usr/bin/verilator" "VERILATOR_ROOT=$root/usr/share/verilator"
+wrap verilator_coverage "$root/usr/bin/verilator_coverage" "VERILATOR_ROOT=$root/usr/share/verilator"
+wrap ngspice "$root/usr/bin/ngspice" "SPICE_LIB_DIR=$root/usr/share/ngspice"
+release() { echo "${1##*/}"; } # the first of the files that a pattern names
+tcl=$(release "$new"/root/usr/share/tcltk/tcl8*)
+for name in sta tclsh; do wrap "$name" "$root/usr/bin/$name" "TCL_LIBRARY=$root/usr/share/tcltk/$tcl"; done
+if [ -d "$new/root/usr/lib/$triplet/magic" ]; then
+    # Its own program looks for magic.tcl in /usr; without a window (-dnull) Tcl's runs it as well
+    wrap magic "$root/usr/bin/tclsh" "CAD_ROOT=$lib" "TCL_LIBRARY=$root/usr/share/tcltk/$tcl" \
+        -- "$lib/magic/tcl/magic.tcl" -nowrapper
+fi
+ruby=$(release "$new"/root/usr/lib/ruby/[0-9]*)
+wrap klayout "$root/usr/lib/klayout/klayout" "QT_PLUGIN_PATH=$lib/qt5/plugins" \
+    "RUBYLIB=$root/usr/lib/ruby/$ruby:$lib/ruby/$ruby:$root/usr/lib/ruby/vendor_ruby"
+
+# Headers and libraries to compile with, alone: the rest of these folders would hide the system's
+mkdir "$new/include" "$new/lib"
+for header in zlib.h zconf.h lz4.h lz4frame.h lz4hc.h ngspice; do
+    for path in "$new/root/usr/include/$header" "$new/root/usr/include/$triplet/$header"; do
+        [ ! -e "$path" ] || ln -s "$root${path#"$new/root"}" "$new/include/"
+    done
+done
+for name in z:1 lz4:1 ngspice:0; do
+    library=lib${name%:*}.so.${name#*:}
+    for path in "$new/root/usr/lib/$triplet/$library" "/usr/lib/$triplet/$library"; do
+        [ -e "$path" ] || continue
+        ln -s "${path/#$new/$folder}" "$new/lib/$library"
+        ln -s "$library" "$new/lib/lib${name%:*}.so"
+        break
+    done
+done
+
+for part in root include lib bin; do
+    rm -rf "${folder:?}/$part"
+    mv "$new/$part" "$folder/$part"
+done
+rmdir "$new"
+echo "tools: ready in $folder/bin: $(cd "$folder/bin" && echo *)"

@@ -171,7 +171,10 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Register the marker."""
+    """Register the marker, and find the tools that `make tools` unpacks for a user who is not root."""
+    from talbot.base.environment import with_unpacked
+
+    os.environ |= with_unpacked(os.environ)
     config.addinivalue_line("markers", "needs(*names): skipped where a tool is missing (talbot/verif/needs.py)")
 
 

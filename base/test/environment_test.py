@@ -98,3 +98,14 @@ def test_the_folder_of_the_program_itself_stays_on_the_path(tmp_path):
         done = subprocess.run(command, env=os.environ | {"PYTHONPATH": paths}, cwd=tmp_path, capture_output=True)
         *_, path, found = json.loads(done.stdout)
         assert found["PYTHONPATH"] == str(ROOT) and str(tmp_path) not in path
+
+
+def test_tools_that_make_tools_unpacks_come_after_the_systems(tmp_path):
+    folder = tmp_path / "talbot" / "tools"
+    user = {"XDG_CACHE_HOME": str(tmp_path), "PATH": f"/usr/bin{os.pathsep}/bin", "CPATH": ""}
+    assert environment.with_unpacked(user) == {}
+    (folder / "bin").mkdir(parents=True)
+    found = environment.with_unpacked(user)
+    assert found["PATH"] == os.pathsep.join(("/usr/bin", "/bin", str(folder / "bin")))
+    assert found["CPATH"] == str(folder / "include") and found["LIBRARY_PATH"] == str(folder / "lib")
+    assert environment.clean(user | found)["PATH"] == found["PATH"]  # once
