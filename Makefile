@@ -42,8 +42,7 @@ help:  ## this list
 	@echo "A command's options are variables: make sim SCENE=photo.png THRESHOLD=12 PHASE=0 (see make sim-help)"
 
 $(READY): requirements/run.lock pyproject.toml requirements/venv.sh
-	@bash requirements/venv.sh '$(PYTHON)' '$(VENV)' requirements/run.lock
-	@touch $@
+	@bash requirements/venv.sh '$(PYTHON)' '$(VENV)' '$@' requirements/run.lock
 
 # Before packages or tools are installed for them, a command's arguments are checked (base/check.py): the target's recipe
 # once more, with everything taken for ready
@@ -52,28 +51,22 @@ CHECK = $(if $(filter-out $(PLAIN),$(GOALS)),MAKELEVEL=0 TALBOT_CHECK=1 $(MAKE) 
 
 $(VIDEO_READY): $(READY) requirements/video.lock
 	@$(CHECK)
-	@bash requirements/venv.sh '$(PYTHON)' '$(VENV)' requirements/video.lock
-	@touch $@
+	@bash requirements/venv.sh '$(PYTHON)' '$(VENV)' '$@' requirements/video.lock
 
 $(RENDER_READY): $(READY) requirements/render.lock
 	@$(CHECK)
-	@bash requirements/venv.sh '$(PYTHON)' '$(VENV)' requirements/render.lock
-	@touch $@
+	@bash requirements/venv.sh '$(PYTHON)' '$(VENV)' '$@' requirements/render.lock
 
 $(TESTS_READY): $(READY) requirements/test.lock
 	@$(CHECK)
-	@bash requirements/venv.sh '$(PYTHON)' '$(VENV)' requirements/test.lock
-	@touch $@
+	@bash requirements/venv.sh '$(PYTHON)' '$(VENV)' '$@' requirements/test.lock
 
 $(LAYOUT_READY): $(READY) requirements/layout.lock requirements/pdk.lock
 	@$(CHECK)
-	@bash requirements/venv.sh '$(PYTHON)' '$(VENV)' requirements/layout.lock
-	@$(PY) -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes -r requirements/pdk.lock
-	@touch $@
+	@bash requirements/venv.sh '$(PYTHON)' '$(VENV)' '$@' requirements/layout.lock requirements/pdk.lock
 
 $(LINT_READY): $(TESTS_READY) $(LAYOUT_READY) requirements/lint.lock
-	@bash requirements/venv.sh '$(PYTHON)' '$(VENV)' requirements/lint.lock
-	@touch $@
+	@bash requirements/venv.sh '$(PYTHON)' '$(VENV)' '$@' requirements/lint.lock
 
 .PHONY: setup
 setup: $(TESTS_READY)  ## the Python environment in .venv with all that tests use, from the lock files
@@ -222,19 +215,19 @@ ifeq ($(BACKEND),openroad)
 layout: KNOWN += BACKEND
 endif
 .PHONY: layout
-layout: $(TESTS_READY) $(LAYOUT_READY) $(if $(filter openroad,$(BACKEND)),,have-tools)  ## the chip, DESIGN=quad_divider, or the whole die, DESIGN=asp_sensor, to GDS, checked [BACKEND=openroad PDK=sky130 UTILIZATION=0.8 UNTIMED=1 LIBERTY='a.lib b.lib' ANALOG=folder]
+layout: $(if $(filter openroad,$(BACKEND)),,have-coriolis) $(TESTS_READY) $(LAYOUT_READY) $(if $(filter openroad,$(BACKEND)),,have-tools)  ## the chip, DESIGN=quad_divider, or the whole die, DESIGN=asp_sensor, to GDS, checked [BACKEND=openroad PDK=sky130 UTILIZATION=0.8 UNTIMED=1 LIBERTY='a.lib b.lib' ANALOG=folder]
 	@$(talbot) $(if $(filter openroad,$(BACKEND)),openroad,layout)
 
 .PHONY: layout-pareto
-layout-pareto: $(TESTS_READY) $(LAYOUT_READY) have-tools  ## the divider's variants and widths laid out: area, clock, energy: build/layout/sweep/ (LIBERTY='a.lib b.lib')
+layout-pareto: have-coriolis $(TESTS_READY) $(LAYOUT_READY) have-tools  ## the divider's variants and widths laid out: area, clock, energy: build/layout/sweep/ (LIBERTY='a.lib b.lib')
 	@$(talbot) layout-sweep pareto
 
 .PHONY: layout-effort
-layout-effort: $(TESTS_READY) $(LAYOUT_READY) have-tools  ## a layout's quality against the placer's effort: build/layout/sweep/ (LIBERTY='a.lib b.lib')
+layout-effort: have-coriolis $(TESTS_READY) $(LAYOUT_READY) have-tools  ## a layout's quality against the placer's effort: build/layout/sweep/ (LIBERTY='a.lib b.lib')
 	@$(talbot) layout-sweep effort
 
 .PHONY: layout-energy
-layout-energy: $(TESTS_READY) $(LAYOUT_READY) have-tools  ## switching energy of the chip's events, from frames at its layout's gates: build/layout/energy/ (LIBERTY='a.lib b.lib')
+layout-energy: have-coriolis $(TESTS_READY) $(LAYOUT_READY) have-tools  ## switching energy of the chip's events, from frames at its layout's gates: build/layout/energy/ (LIBERTY='a.lib b.lib')
 	@$(talbot) layout-energy
 
 .PHONY: layout-timing
@@ -243,7 +236,7 @@ layout-timing: $(LAYOUT_READY) have-tools  ## the cells' timing that is shipped,
 
 layout-hierarchy: KNOWN += DESIGNS
 .PHONY: layout-hierarchy
-layout-hierarchy: $(TESTS_READY) $(LAYOUT_READY) have-tools  ## the chip laid out flat and around two blocks laid out before: build/layout/hierarchy/ (DESIGNS='phase_path phase_path_macros' LIBERTY='a.lib b.lib')
+layout-hierarchy: have-coriolis $(TESTS_READY) $(LAYOUT_READY) have-tools  ## the chip laid out flat and around two blocks laid out before: build/layout/hierarchy/ (DESIGNS='phase_path phase_path_macros' LIBERTY='a.lib b.lib')
 	@for design in $(or $(DESIGNS),asp_chip asp_chip_macros); do \
 		$(talbot) layout $$design || [ $$? = 1 ] || exit 2; \
 	done
@@ -287,6 +280,10 @@ tools:  ## Icarus, a native Verilator, Yosys, z3, ngspice, OpenSTA and KLayout f
 .PHONY: have-tools
 have-tools:  # `make cells` and `make layout` install what is missing themselves, where they may
 	@BEFORE="$(CHECK)" bash requirements/tools.sh --missing
+
+.PHONY: have-coriolis
+have-coriolis:  # before anything is installed
+	@bash requirements/venv.sh --coriolis '$(PYTHON)' '$(VENV)'
 
 .PHONY: clean
 clean:  ## remove build/ (the simulators' cache too)

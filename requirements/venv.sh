@@ -1,9 +1,29 @@
 #!/usr/bin/env bash
-# The Python environment: venv.sh PYTHON FOLDER LOCK. Every package at the version and hash of the file LOCK.
+# The Python environment: venv.sh PYTHON FOLDER READY LOCK ... makes the file READY once every package of the files LOCK is
+# in FOLDER at its version and hash. venv.sh --coriolis PYTHON FOLDER: whether that Python can have Coriolis.
 set -euo pipefail
-python=$1 folder=$2 lock=$3
+only=
+[ "$1" != --coriolis ] || { only=coriolis; shift; }
+python=$1 folder=$2 ready=${3:-}
+here=$(cd "$(dirname "$0")" && pwd)
 
 fail() { echo "setup: $*" >&2; exit 2; }
+
+# Who sets up may differ from who uses it
+umask 022
+# A user's own settings of Python and pip change nothing here; how to reach a registry is this machine's
+for name in ${!PYTHON@} ${!PIP_@}; do
+    case $name in
+        PIP_INDEX_URL | PIP_EXTRA_INDEX_URL | PIP_FIND_LINKS | PIP_NO_INDEX | PIP_TRUSTED_HOST | PIP_CERT | PIP_CLIENT_CERT) ;;
+        PIP_PROXY | PIP_DEFAULT_TIMEOUT | PIP_TIMEOUT | PIP_RETRIES | PIP_CACHE_DIR | PIP_NO_CACHE_DIR | PIP_CONFIG_FILE) ;;
+        PIP_KEYRING_PROVIDER) ;;
+        *) unset "$name" ;;
+    esac
+done
+export PIP_USER=0 PIP_DISABLE_PIP_VERSION_CHECK=1 # of pip.conf
+
+[ -d "$here/../talbot/rtl/" ] || fail "talbot/rtl = not a link: the checkout must have symbolic links (Windows: use WSL and" \
+    "its own file system, or git config core.symlinks true; then git checkout -- talbot)"
 
 fits() { "$1" -c 'import sys; sys.exit(not (3, 11) <= sys.version_info < (3, 15))' 2>/dev/null; }
 found() { "$1" -c 'import platform, sys; print("Python", platform.python_version(), "at", sys.executable)' 2>/dev/null \
@@ -15,16 +35,43 @@ if [ "$python" = python3 ]; then # the default: this one, or another of the syst
     done
 fi
 fits "$python" || fail "python = '$given': must be Python 3.11 to 3.14, is $(found "$given") (make PYTHON=/path/to/python3)"
-command -v g++ >/dev/null || fail "g++ = not found: a C++ compiler is needed (Debian: apt-get install g++)"
 
-if [ ! -x "$folder/bin/python" ]; then
+if [ -n "$only" ]; then
+    [ ! -x "$folder/bin/python" ] || python=$folder/bin/python
+    "$python" -c 'import platform, sys
+sys.exit(not (sys.version_info < (3, 13) and (sys.platform, platform.machine()) == ("linux", "x86_64")))' \
+        || fail "python = '$python': must be Python 3.11 or 3.12 on Linux x86-64, for which alone Coriolis, which places and" \
+            "routes, has packages, is $(found "$python") on $(uname -sm) (rm -r $folder; make PYTHON=python3.12)"
+    exit
+fi
+command -v g++ >/dev/null || fail "g++ = not found: a C++ compiler is needed (Debian: apt-get install g++; macOS: xcode-select --install)"
+
+# One set-up at a time: a lock on this script, which ends with this process. macOS has no flock(1)
+exec 9<"$0"
+lock='import fcntl, sys; fcntl.flock(9, fcntl.LOCK_EX | (fcntl.LOCK_NB if sys.argv[1:] else 0))'
+"$python" -c "$lock" now 2>/dev/null || { echo "setup: waiting for another set-up of this checkout"; "$python" -c "$lock" || true; }
+shift 3
+newer=
+for lock in "$@" "$0" "$here/../pyproject.toml"; do
+    [ "$ready" -nt "$lock" ] || newer=1
+done
+[ -n "$newer" ] || { touch "$ready"; exit 0; } # that one has done it
+
+if ! "$folder/bin/python" -m pip --version >/dev/null 2>&1; then
     echo "setup: making $folder with $(found "$python")"
+    rm -rf "$folder" # half-made, or its Python is gone
     # Debian splits ensurepip off Python; virtualenv brings a pip of its own.
     "$python" -m venv "$folder" 2>/dev/null || { rm -rf "$folder"; "$python" -m virtualenv -q "$folder"; } 2>/dev/null \
         || fail "venv = unavailable in '$python': install python3-venv (Debian: apt-get install python3-venv) or virtualenv"
 fi
 
-echo "setup: installing the packages of $lock"
-"$folder/bin/python" -m pip install --quiet --disable-pip-version-check --require-hashes -r "$lock"
-"$folder/bin/python" -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
+requirements=()
+for lock in "$@"; do
+    requirements+=(-r "$lock")
+done
+echo "setup: installing the packages of $*"
+# A lock names all that its packages depend on
+"$folder/bin/python" -m pip install --quiet --no-deps --require-hashes "${requirements[@]}"
+"$folder/bin/python" -m pip install --quiet --no-deps --no-build-isolation --editable .
+touch "$ready"
 echo "setup: ready, $(found "$folder/bin/python")"

@@ -1,19 +1,107 @@
-"""What set-up says of the Python that it finds."""
+"""Set-up: what it says of the Python that it finds, that nothing of a user's own reaches it, and two at once."""
 
 import os
+import shutil
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
 from talbot.base.paths import ROOT
 
 SCRIPT = ROOT / "requirements" / "venv.sh"
+# A Python that makes environments without packages, and says what of the environment reached pip
+FAKE = """#!/usr/bin/env bash
+case "$*" in
+    *fcntl*) exec "$REAL" "$@" ;;
+    "-m venv "*) mkdir -p "$3/bin" && cp "$0" "$3/bin/python" ;;
+    "-m pip --version") exit 0 ;;
+    "-m pip install "*) env | grep -E '^(PIP_|PYTHON)' | sort >>"$LOG"; echo "umask $(umask)" >>"$LOG"; sleep 0.3 ;;
+    *version_info*) exit "${UNFIT:-0}" ;;
+    *) echo "Python 3.12.1 at fake" ;;
+esac
+"""
+
+
+@pytest.fixture
+def checkout(tmp_path):
+    """A checkout with the script alone, `python3` that installs nothing, and the environment for both."""
+    folder = tmp_path / "Prüf stand"
+    for part in ("requirements", "rtl", "talbot"):
+        (folder / part).mkdir(parents=True)
+    shutil.copy(SCRIPT, folder / "requirements")
+    (folder / "talbot" / "rtl").symlink_to("../rtl")
+    (folder / "pyproject.toml").touch()
+    (folder / "a.lock").touch()
+    for name in ("python3", "g++"):
+        (tmp_path / name).write_text(FAKE, encoding="utf-8")
+        (tmp_path / name).chmod(0o755)
+    unset = {name: text for name, text in os.environ.items() if not name.startswith(("PIP_", "PYTHON"))}
+    path = f"{tmp_path}:{os.environ['PATH']}"
+    return folder, unset | {"PATH": path, "REAL": sys.executable, "LOG": str(tmp_path / "log")}
+
+
+def start(checkout, *words, **environment):
+    folder, given = checkout
+    command = ["bash", "requirements/venv.sh", *(words or ("python3", ".venv", ".venv/.ready", "a.lock"))]
+    return subprocess.Popen(
+        command, cwd=folder, env=given | environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, encoding="utf-8"
+    )
+
+
+def test_settings_of_a_user_do_not_reach_pip_and_those_of_a_registry_do(checkout):
+    settings = {"PIP_TARGET": "/t", "PIP_PREFIX": "/p", "PIP_USER": "1", "PIP_REQUIRE_VIRTUALENV": "1"}
+    settings |= {"PYTHONPATH": "/x", "PYTHONHOME": "/h", "PYTHONUSERBASE": "/u"}
+    registry = {"PIP_INDEX_URL": "https://mirror", "PIP_CERT": "/c.pem", "PIP_CONFIG_FILE": "/p.conf"}
+    done = start(checkout, **settings, **registry)
+    assert (done.communicate()[1], done.returncode) == ("", 0)
+    log = Path(checkout[1]["LOG"]).read_text(encoding="utf-8").splitlines()
+    expected = {f"{name}={text}" for name, text in (registry | {"PIP_USER": "0"}).items()}
+    assert set(log) == expected | {"PIP_DISABLE_PIP_VERSION_CHECK=1", "umask 0022"}
+
+
+def test_two_at_once_install_once(checkout):
+    both = [start(checkout) for _ in range(2)]
+    texts = [one.communicate() for one in both]
+    assert [one.returncode for one in both] == [0, 0], texts
+    assert sorted("waiting for another set-up" in out for out, _ in texts) == [False, True]
+    assert Path(checkout[1]["LOG"]).read_text(encoding="utf-8").count("umask") == 2  # the lock's packages, and Talbot
+
+
+def test_an_environment_without_pip_is_made_again(checkout):
+    (broken := checkout[0] / ".venv" / "bin").mkdir(parents=True)
+    (broken / "python").symlink_to("/bin/false")
+    done = start(checkout)
+    assert "making .venv" in done.communicate()[0] and (checkout[0] / ".venv" / ".ready").exists()
+
+
+def test_a_checkout_without_links_is_refused_before_anything_is_made(checkout):
+    link = checkout[0] / "talbot" / "rtl"
+    link.unlink()
+    link.write_text("../rtl", encoding="utf-8")  # as Git writes it with core.symlinks = false
+    done = start(checkout)
+    _, err = done.communicate()
+    assert done.returncode == 2 and err.startswith("setup: talbot/rtl = not a link: ") and err.count("\n") == 1
+    assert not (checkout[0] / ".venv").exists()
+
+
+@pytest.mark.parametrize("unfit", [0, 1])
+def test_coriolis_is_refused_in_one_line_where_it_has_no_packages(checkout, unfit):
+    (checkout[0] / ".venv" / "bin").mkdir(parents=True)
+    python = checkout[0] / ".venv" / "bin" / "python"
+    shutil.copy(Path(checkout[1]["PATH"].split(":")[0]) / "python3", python)
+    done = start(checkout, "--coriolis", sys.executable, ".venv", UNFIT=str(unfit))
+    _, err = done.communicate()
+    assert (done.returncode, err.count("\n")) == (2 * unfit, unfit) and ("must be Python 3.11 or 3.12" in err) == bool(
+        unfit
+    )
 
 
 @pytest.mark.parametrize("python, found", [("/bin/false", "nothing"), ("/nowhere/python", "nothing")])
 def test_a_python_that_does_not_fit_is_refused_in_one_line(tmp_path, python, found):
-    done = subprocess.run(["bash", SCRIPT, python, tmp_path / "venv", "x.lock"], capture_output=True, text=True)
+    words = ["bash", SCRIPT, python, tmp_path / "venv", tmp_path / "ready", "x.lock"]
+    done = subprocess.run(words, capture_output=True, encoding="utf-8")
     assert done.returncode == 2 and done.stderr.count("\n") == 1
     assert f"python = '{python}': must be Python 3.11 to 3.14, is {found} (make PYTHON=" in done.stderr
     assert not (tmp_path / "venv").exists()
@@ -26,7 +114,7 @@ def test_another_python_of_the_system_is_found_and_named(tmp_path):
     (tmp_path / f"python3.{sys.version_info.minor}").symlink_to(sys.executable)
     (tmp_path / "empty.lock").touch()
     done = subprocess.run(
-        ["bash", SCRIPT, "python3", tmp_path / "venv", tmp_path / "empty.lock"],
+        ["bash", SCRIPT, "python3", tmp_path / "venv", tmp_path / "ready", tmp_path / "empty.lock"],
         cwd=tmp_path,
         env=dict(os.environ, PATH=f"{tmp_path}:{os.environ['PATH']}"),
         capture_output=True,
