@@ -140,7 +140,7 @@ calibrate: $(READY)  ## pixel types, trims and lens from noisy frames on a bench
 
 .PHONY: test
 test: $(TESTS_READY)  ## the fast tests of every block and model (under 10 minutes on 2 cores) [COMPLETE=1: fail where a test lacks a tool]
-	@$(PY) -m pytest -n auto --dist loadfile $(if $(filter-out 0 no false off,$(COMPLETE)),--complete)
+	@$(PY) -m pytest -n auto --dist worksteal $(if $(filter-out 0 no false off,$(COMPLETE)),--complete)
 
 SOURCES = $(shell git ls-files '*.py' ':!:*/test/*' ':!:*_bench.py' ':!:rtl' ':!:conftest.py')
 .PHONY: lint

