@@ -1,6 +1,6 @@
 """Write the documents for a host: docs/registers.*, the tables of host.md, chip.md and stream.md, the C header.
 
-For other tools, by PeakRDL: build/registers/ with a site (html/index.html), IP-XACT and a C header of structs.
+build/registers/ has the map for other tools: a page, IP-XACT and a C header of structs (PeakRDL).
 """
 
 from argparse import ArgumentParser, Namespace
@@ -33,12 +33,18 @@ def run(options: Namespace) -> int:
         if not (options.out / name).is_file():
             raise ParameterError(f"out = {str(options.out)!r}: must be a folder with {name}")
     chip = register_map()
-    write(options.out / "registers.md", registers.markdown(chip))
-    write(options.out / "registers.html", registers.html(chip))
+    maps = {"registers.md": registers.markdown(chip), "registers.html": registers.html(chip)}
+    for name, text in maps.items():
+        write(options.out / name, text)
     write(options.header, c_header(chip))
     exports.export(options.exports)
     for mark, table in tables.TABLES.items():
         insert(options.out / "host.md", mark, table())
     for name in DOCUMENTS[1:]:
         insert(options.out / name, "tile", tables.tile_order())
+    print(f"{len(chip.fields)} fields of registers, {len(tables.TABLES)} tables of host.md")
+    print(f"  {options.out}: {', '.join((*maps, *DOCUMENTS))}")
+    print(f"  {options.header}")
+    print(f"  {options.exports}: {', '.join((exports.PAGE, exports.IPXACT, exports.HEADER))}")
+    print(f"  look at {options.exports / exports.PAGE}")
     return 0

@@ -56,14 +56,14 @@ def markdown(chip: RegisterMap) -> str:
     return f"# Registers of AspChip\n\n{note}\n\n{table(COLUMNS, (row.cells for row in rows(chip)))}\n"
 
 
-def html(chip: RegisterMap) -> str:
-    """The map as a page."""
+def html(chip: RegisterMap, listed: bool = False) -> str:
+    """The map as a page. listed: in the index of results."""
     table = [[cell.replace("`", "") for cell in row.cells] for row in rows(chip)]
     return (
         render(
             Path(__file__).with_name("registers.html"),
             "Registers of AspChip",
-            listed=False,
+            listed=listed,
             note=NOTE,
             columns=COLUMNS,
             table=table,
