@@ -25,6 +25,28 @@ for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"):
 # Collection makes objects that all stay: to look for cycles among them took a third of its time
 gc.disable()
 
+
+@pytest.fixture(autouse=True, scope="session")
+def every_page_is_checked():
+    """Fail a test that makes a page with a request, a picture without a text or a table without a box."""
+    from jinja2 import Template
+
+    from talbot.base.page import FOLDER
+    from talbot.base.page.check import faults
+
+    plain = Template.render
+
+    def render(self, *args, **values):
+        text = plain(self, *args, **values)
+        if str(FOLDER) in getattr(self.environment.loader, "searchpath", ()) and text.startswith("<!DOCTYPE html>"):
+            assert not (found := faults(text)), f"{self.name}: {'; '.join(found)}"
+        return text
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Template, "render", render)
+        yield
+
+
 PACKAGE = Path(__file__).parent / "talbot"
 NETLISTS = pytest.StashKey()  # rtl.harness.netlists.Netlists of --netlist
 

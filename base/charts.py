@@ -12,7 +12,7 @@ from types import MappingProxyType
 from typing import Any, BinaryIO
 
 import numpy as np
-from markupsafe import Markup
+from markupsafe import Markup, escape
 from matplotlib import rc_context, rcdefaults
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -47,16 +47,29 @@ def own_style() -> Iterator[None]:
 
 @own_style()
 def svg(figure: Figure) -> Markup:
-    """SVG of a figure, for a page: black is the page's ink, white its paper."""
+    """SVG of a figure, for a page: black is the page's ink, white its paper; `described` in words."""
     FigureCanvasSVG(figure)
     out = io.StringIO()
     figure.savefig(out, format="svg", bbox_inches="tight", transparent=True, metadata={"Date": None})
     text = out.getvalue().replace("#000000", "currentColor")
-    kind = 'class="broad"' if figure.get_figwidth() >= BROAD else ""
-    return Markup(re.sub(r'width="[\d.]+pt" height="[\d.]+pt"', kind, text[text.index("<svg") :], count=1))
+    kind = 'class="broad" ' if figure.get_figwidth() >= BROAD else ""
+    kind += f'role="img" aria-label="{escape(described(figure))}"'
+    return Markup(re.sub(r'width="[\d.]+pt" height="[\d.]+pt"', lambda _: kind, text[text.index("<svg") :], count=1))
 
 
 @own_style()
+def described(figure: Figure) -> str:
+    """What a figure shows, in words: titles, axes and series of each part."""
+    parts = []
+    for axes in figure.axes:
+        title = next((text for where in ("left", "center", "right") if (text := axes.get_title(where))), "")
+        against = " against ".join(text for text in (axes.get_ylabel(), axes.get_xlabel()) if text)
+        ticks = [tick.get_text() for tick in axes.get_yticklabels()][::-1] if axes.containers else []
+        series = [str(label) for label in axes.get_legend_handles_labels()[1]]
+        parts.append("; ".join(text for text in (title, against, ", ".join(filter(None, ticks + series))) if text))
+    return " ".join(". ".join(part for part in parts if part).split()) or "chart"
+
+
 def save(figure: Figure, path: Path | BinaryIO) -> None:
     """Write a figure as a PNG to a path or an open file."""
     FigureCanvasAgg(figure)

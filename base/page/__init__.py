@@ -7,6 +7,7 @@ import base64
 import io
 import json
 import re
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -15,7 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
-from markupsafe import Markup
+from markupsafe import Markup, escape
 from PIL import Image as pillow
 from PIL.Image import Image
 
@@ -33,6 +34,12 @@ UNITS = (
     (r"(?<=\d) x (?=\d)", " × "),
     (r"<=(?= ?-?[\d.])", "≤"),
     (r">=(?= ?-?[\d.])", "≥"),
+)
+# A heading, or what gets a box; neither tables nor charts hold others
+BOXED = re.compile(
+    r'<h[1-3][^>]*>(?P<heading>.*?)</h[1-3]>|(?P<sheet><div class="sheet">)'
+    r'|<table\b.*?</table>|<svg\b[^>]*class="broad".*?</svg>',
+    re.DOTALL,
 )
 
 
@@ -113,6 +120,31 @@ def units(value: object) -> str:
     return text
 
 
+def contained(html: str) -> Markup:
+    """HTML in which what may be wider than a screen, a table, a broad chart or a sheet, has a box that scrolls.
+
+    The box can be focused, and is named after the heading before it.
+    """
+    names: Counter[str] = Counter()
+    heading = ""
+
+    def box(match: re.Match[str]) -> str:
+        nonlocal heading
+        if match["heading"] is not None:
+            heading = Markup(match["heading"]).striptags()
+            return match[0]
+        kind = {"<table": "table", "<svg": "chart"}.get(match[0].split(maxsplit=1)[0].rstrip(">"), "pictures")
+        name = f"{heading}: {kind}" if heading else kind
+        names[name] += 1
+        label = escape(f"{name} {names[name]}" if names[name] > 1 else name)
+        start = (
+            f'<div class="{"sheet " if match["sheet"] else ""}wide" tabindex="0" role="region" aria-label="{label}">'
+        )
+        return start if match["sheet"] else f"{start}{match[0]}</div>"
+
+    return Markup(BOXED.sub(box, html))
+
+
 def card(title: str, tiles: Sequence[Tile] = (), picture: Image | None = None) -> str:
     """What the index shows of a page, as JSON."""
     src = ""
@@ -130,7 +162,7 @@ def render(template: Path, title: str, *, picture: Image | None = None, listed: 
     """
     loader = FileSystemLoader([template.parent, FOLDER])
     environment = Environment(loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True)
-    environment.filters["units"] = units
+    environment.filters |= {"units": units, "contained": contained}
     environment.globals["parts"] = environment.get_template("parts.html").module
     values = {"tiles": ()} | values
     shown = card(title, values["tiles"], picture) if listed else ""

@@ -3,6 +3,8 @@
 import html
 import json
 import re
+from collections import Counter
+from collections.abc import Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -35,10 +37,23 @@ def cards(folder: Path) -> list[Card]:
     return [found for path in sorted(pages, key=lambda path: -pages[path]) if (found := read(path, folder))]
 
 
+def told_apart(cards: Sequence[Card]) -> list[Card]:
+    """The cards, those of one title with what their folder or file is called, too."""
+    titles = Counter(card.title for card in cards)
+    places = Counter((card.title, Path(card.folder).name) for card in cards)
+    out = []
+    for card in cards:
+        place = Path(card.folder).name
+        if places[card.title, place] > 1:
+            place = card.href.removesuffix(".html")
+        out.append(card._replace(title=f"{card.title} ({place})") if titles[card.title] > 1 else card)
+    return out
+
+
 def refresh(folder: Path) -> Path:
     """Write the index of ``folder`` where it would change, none where there is no page; returns its path."""
     groups: dict[str, list[Card]] = {}
-    for card in cards(folder):
+    for card in told_apart(cards(folder)):
         groups.setdefault(card.href.partition("/")[0], []).append(card)
     path, text = folder / NAME, render(FOLDER / "index.html", "Talbot: results", listed=False, groups=groups)
     if groups and not path.is_file() or path.is_file() and path.read_text(errors="replace") != text:

@@ -29,6 +29,8 @@ def chip_svg(sensor: SensorParameters, frame: FrameParameters, width: float = 36
     parts.append(_text(width / 2, 14, f"die {side * 1e3:.3g} mm, pitch {pitch * 1e6:g} µm", 10))
     tile = _tile(sensor, frame, width + 24, 24, 46)
     view = f'viewBox="0 0 {width + 320} {width}" font-family="sans-serif"'
+    label = f"the die with {rows} x {cols} pixels and {sensor.chip.lanes} converters, and the pixel types of one tile"
+    view += f' role="img" aria-label="{label}"'
     return f'<svg class="broad" xmlns="http://www.w3.org/2000/svg" {view}>{"".join(parts + tile)}</svg>'
 
 

@@ -6,11 +6,11 @@ from html import escape
 INK, SOFT, ACCENT = "currentColor", "#8a94a344", "#4878a8"
 
 
-def _svg(width: float, height: float, parts: Sequence[str]) -> str:
+def _svg(width: float, height: float, parts: Sequence[str], label: str) -> str:
     style = (
         f'font-family="system-ui, sans-serif" font-size="12" style="max-width:{width:.0f}px;width:100%" fill="{INK}"'
     )
-    size = f'viewBox="0 0 {width:.0f} {height:.0f}"'
+    size = f'viewBox="0 0 {width:.0f} {height:.0f}" role="img" aria-label="{escape(label)}"'
     return f'<svg xmlns="http://www.w3.org/2000/svg" {size} {style}>{"".join(parts)}</svg>'
 
 
@@ -32,7 +32,7 @@ def floors(layers: Sequence[str], width: float = 640, high: float = 34) -> str:
         for i, room in enumerate(rooms):
             x, y, wide = i * width / len(rooms) + 1, k * (high + 6) + 1, width / len(rooms) - 6
             parts += [_box(x, y, wide, high), _text(x + wide / 2, y + high / 2, room)]
-    return _svg(width, len(layers) * (high + 6), parts)
+    return _svg(width, len(layers) * (high + 6), parts, f"floors from the top down: {', '.join(layers)}")
 
 
 def matrix(blocks: Mapping[str, str], bits: Mapping[tuple[str, str], int], cell: float = 58, high: float = 30) -> str:
@@ -51,7 +51,7 @@ def matrix(blocks: Mapping[str, str], bits: Mapping[tuple[str, str], int], cell:
                 title = f"<title>{escape(name)} to {escape(other)}: {count} bits</title>"
                 number = _text((k + 0.5) * cell, (i + 0.5) * high, count)
                 parts.append(f"<g>{title}{_box(k * cell + 9, i * high + 5, cell - 18, high - 10)}{number}</g>")
-    return _svg(len(names) * cell, len(names) * high, parts)
+    return _svg(len(names) * cell, len(names) * high, parts, f"bits from block to block of {', '.join(names)}")
 
 
 def machine(states: Mapping[str, int], transitions: Sequence[tuple[str, str]], high: float = 30) -> str:
@@ -74,4 +74,5 @@ def machine(states: Mapping[str, int], transitions: Sequence[tuple[str, str]], h
         curve = f"M{x:.1f} {start:.1f}C{bend:.1f} {start:.1f} {bend:.1f} {end:.1f} {x:.1f} {end:.1f}"
         title = f"<title>{escape(a)} to {escape(b)}</title>"
         parts.append(f'<path d="{curve}" fill="none" stroke="{INK}" marker-end="url(#to)">{title}</path>')
-    return _svg(2 * reach + wide, len(order) * high, parts)
+    words = ", ".join(f"{a} to {b}" for a, b in transitions)
+    return _svg(2 * reach + wide, len(order) * high, parts, f"states {', '.join(order)}; transitions {words}")

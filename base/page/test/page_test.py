@@ -8,9 +8,10 @@ import pytest
 from matplotlib.figure import Figure
 from PIL import Image
 
-from talbot.base.charts import svg
+from talbot.base.charts import bars, curves, svg
 from talbot.base.command import main
 from talbot.base.page import TABLES, Picture, Scale, Section, Tile, command, index, render, units
+from talbot.base.page.check import faults
 
 BAR = Scale(np.stack([np.arange(256, dtype=np.uint8)] * 3, -1), -1.0, 2.5, "m")
 PICTURE = Picture("depth", "", "how far", Image.new("RGB", (7, 5), (200, 200, 200)), BAR)
@@ -58,6 +59,63 @@ def test_a_page_is_one_file_without_a_request():
     assert "<script" not in page()
 
 
+@pytest.mark.parametrize(
+    "html, fault",
+    [
+        ('<script src="https://cdn.example/a.js"></script>', "script fetches https://cdn.example/a.js"),
+        ('<script src="//cdn.example/a.js"></script>', "script fetches //cdn.example/a.js"),
+        ('<link rel="stylesheet" href="http://x.example/a.css">', "link fetches http://x.example/a.css"),
+        ("<style>@import 'a.css';</style>", "style: @import 'a.css'"),
+        ("<style>@font-face { src:url(https://x.example/f) }</style>", "style: url(https://x.example/f)"),
+        ("<script>fetch('a.json')</script>", "script: fetch("),
+        ('<img src="a.png">', "img a.png: no alt"),
+        ('<img src="a.png" alt=" ">', "img a.png: no alt"),
+        ("<svg><g></g></svg>", "svg: no role=img with aria-label"),
+        ("<div><table></table></div>", "table: not in a box that scrolls"),
+        ('<div class="wide"></div><table></table>', "box that scrolls: no tabindex and aria-label"),
+    ],
+)
+def test_faults_of_a_page(html, fault):
+    assert fault in faults(html)
+
+
+def test_what_is_no_fault():
+    html = (
+        '<a href="https://example.org">a link</a><img src="data:image/png;base64,AA==" alt="a"><style>a { b:c }</style>'
+    )
+    html += (
+        '<svg role="img" aria-label="a chart"><use xlink:href="#a"/><svg></svg></svg><img src="views/a.png" alt="a">'
+    )
+    html += '<p><div class="wide" tabindex="0" role="region" aria-label="a table"><table><tr><td></table></div>'
+    assert faults(html) == []
+
+
+def test_what_may_be_wider_than_a_screen_has_a_box_that_is_named():
+    broad = svg(Figure((12, 3)))
+    sections = [Section("A & B", head=("a", "b"), rows=ROWS), Section(head=("c",), rows=ROWS, charts=[broad])]
+    text = page(sections=sections)
+    names = re.findall(r'<div class="wide" tabindex="0" role="region" aria-label="(.*?)">', text)
+    assert names == ["A &amp; B: table", "A &amp; B: chart", "A &amp; B: table 2"]
+    assert faults(text) == []
+
+
+def test_a_chart_is_described_in_words():
+    text = svg(curves({"a": [(1, 2, "")], "b": [(1, 2, "")]}, "time, ms", "error", "Error < time"))
+    assert 'role="img" aria-label="Error &lt; time; error against time, ms; a, b"' in text
+    assert 'aria-label="Parts; x, y"' in svg(bars({"x": 1, "y": 2}, "uJ", "Parts"))
+
+
+def test_cards_of_one_title_are_told_apart(tmp_path):
+    for name in ("sim/a/report.html", "sim/b/report.html", "sim/b/other.html"):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(page(picture=PICTURE.image))
+    index.refresh(tmp_path)
+    text = (tmp_path / "index.html").read_text()
+    titles = re.findall("<div><b>(.*?)</b>", text)
+    assert sorted(titles) == ["A &amp; B (a)", "A &amp; B (sim/b/other)", "A &amp; B (sim/b/report)"]
+    assert re.findall('alt="(.*?)"', text) == titles
+
+
 def test_the_index_lists_pages_that_have_a_card_the_newest_first(tmp_path, capsys):
     for age, name in enumerate(("sim/b/report.html", "sim/a/report.html", "verify/report.html")):
         path = tmp_path / name
@@ -96,4 +154,4 @@ def test_what_is_broad_has_more_than_a_column():
     wide = PICTURE._replace(image=Image.new("RGB", (20, 5)))
     figures = [Figure((width, 3)) for width in (4.6, 12)]
     text = page(sections=[Section(pictures=[PICTURE, wide], charts=[svg(figure) for figure in figures])])
-    assert text.count('<figure class="broad">') == text.count('class="broad" viewBox') == 1
+    assert text.count('<figure class="broad">') == text.count('class="broad" role="img"') == 1
