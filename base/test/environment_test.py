@@ -2,7 +2,6 @@
 
 import json
 import os
-import shutil
 import subprocess
 import sys
 
@@ -48,10 +47,9 @@ def test_tools_run_in_it(monkeypatch, tmp_path):
     )
 
 
+@pytest.mark.needs("ngspice", "sta")
 def test_a_file_of_settings_in_the_home_or_working_folder_is_not_read(monkeypatch, tmp_path):
     """ngspice with `set interp` writes other points, and OpenSTA's .sta may end it."""
-    if not shutil.which("ngspice") or not shutil.which("sta"):
-        pytest.skip("ngspice and sta: not found")
     monkeypatch.setenv("HOME", str(tmp_path))
     (tmp_path / ".spiceinit").write_text("echo mine\nquit\n")
     (tmp_path / ".sta").write_text('puts "mine"; exit 3\n')

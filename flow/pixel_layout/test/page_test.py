@@ -2,9 +2,9 @@
 
 import pytest
 
-pytest.importorskip("klayout")
-
 from talbot.flow.pixel_layout.page import _tiles, waivers
+
+pytestmark = pytest.mark.needs("layout")
 
 SUMMARY = {
     "drc_violations": 0,
