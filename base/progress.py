@@ -19,6 +19,11 @@ def line(text: str) -> None:
         print(f"        {text}", file=sys.stderr, flush=True)
 
 
+def say(text: str) -> None:
+    """Print a line that a user must see, above the bars of a terminal."""
+    tqdm.write(text, file=sys.stderr)
+
+
 def each(
     items: Iterable[T], title: str, name: Callable[[T], object] = lambda item: "", total: int | None = None
 ) -> Iterator[T]:

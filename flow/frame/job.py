@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from talbot.base.files import check_folder, staged
+from talbot.base.progress import say
 from talbot.flow.simulate.frame import Waves
 from talbot.models.afe import FrontEnd, trim_codes, trim_gain
 from talbot.models.capture import Exposure, Region, Views, choose_views, exposed, integrate, moving_currents
@@ -54,6 +55,8 @@ class Clock:
 def see(request: FrameRequest) -> tuple[Scene, Plan]:
     """The scene that ``request`` names and the plan of its frame. Raises ParameterError."""
     scene = load(request.scene, Sampling.of(request.sensor), request.depth)
+    for note in scene.notes:
+        say(note)
     return scene, plan(scene, request.sensor, request.frame)
 
 

@@ -8,6 +8,7 @@ from .light_field import light_field_estimate
 from .polarization import Polarization, demosaiced, polarization, specular_tags
 from .psnr import psnr_db, psnr_without_mean_db
 from .rebuild import Rebuilt, rebuild
+from .refocus import all_in_focus, disparity_of, refocus
 
 __all__ = [
     "FULL",
@@ -15,9 +16,11 @@ __all__ = [
     "Polarization",
     "Rebuilt",
     "Solver",
+    "all_in_focus",
     "demosaic",
     "demosaiced",
     "diode_noise",
+    "disparity_of",
     "edge_images",
     "image_from_edges",
     "light_field_estimate",
@@ -25,6 +28,7 @@ __all__ = [
     "psnr_db",
     "psnr_without_mean_db",
     "rebuild",
+    "refocus",
     "specular_tags",
     "sum_image",
     "sum_noise",

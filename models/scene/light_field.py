@@ -31,7 +31,7 @@ class LightField:
     ----------
     values : array (views, views, height, width) or (views, views, height, width, 3)
         l[v, u, y, x], gray or RGB, 1..31 views each way. uint8 and uint16 are sRGB codes; float16 to float64 is linear
-        radiance, 0..16, 1 = diffuse white.
+        radiance, -16..16, 1 = diffuse white: an estimate may be below 0, a sensor sees 0 there.
     disparity : array (height, width) or (views, views, height, width), or None
         Of the middle view, or of what every view shows, in pixels per view step, -1e4..1e4, positive towards the
         camera: view (v, u) shows at (y, x) what the middle one shows at (y + dv d, x + du d). Without it no image is
@@ -81,7 +81,7 @@ class LightField:
         if values.dtype.name not in CODES + FLOATS:
             raise ParameterError(f"light field = {values.dtype} array: must be of {', '.join(CODES + FLOATS)}")
         if values.dtype.name in FLOATS:
-            check_values("light field", values, 0, RADIANCE_MAX)
+            check_values("light field", values, -RADIANCE_MAX, RADIANCE_MAX)
         one, every = shape[2:4], shape[:4]
         for name, low, high, shapes in (
             ("disparity", -1e4, 1e4, (one, every)),
@@ -121,7 +121,7 @@ class LightField:
         Returns
         -------
         float64 (height, width)
-            Linear luminance, 0..16.
+            Linear luminance, -16..16.
         """
         codes = self.values[v, u]
         if codes.dtype == np.uint8:
@@ -140,14 +140,14 @@ class LightField:
         Returns
         -------
         Scene
-            Of the array's size: the largest centred part with its proportions.
+            Of the array's size: the largest centred part with its proportions. Light below 0 is 0, which a note says.
         """
         size, middle = sampling.shape, self.views // 2
         box = resample.centre_box(*self.shape, *size)
         same = self.shape == size
         field = np.empty((self.views, self.views, *size), sampling.dtype)
         for v, u in np.ndindex(self.views, self.views):
-            light = self.view(v, u)
+            light = np.maximum(self.view(v, u), 0)
             # Means may round past the ends
             field[v, u] = light if same else np.clip(resample.resize(light, *size, box), 0, RADIANCE_MAX)
         disparity = surfaces = None
@@ -176,7 +176,16 @@ class LightField:
             None if behind is None else camera.scaled(behind, sampling.camera),
             surfaces if len(field) > 1 else None,
             self.echo if same else None,
+            notes=self._below_zero(),
         )
+
+    def _below_zero(self) -> tuple[str, ...]:
+        """What the sensor does not see of the light field, in a line."""
+        least = float(self.values.min())
+        if least >= 0:
+            return ()
+        share = float((self.values < 0).mean())
+        return (f"{self.name}: {100 * share:.2g} % of the light field is below 0, to {least:.3g}: clipped to 0",)
 
     def cropped(self, rows: int, cols: int) -> "LightField":
         """The middle of the picture.

@@ -21,11 +21,12 @@ import numpy as np
 import numpy.typing as npt
 from PIL import Image
 
-from talbot.models.parameters import ParameterError, check_int
+from talbot.models.parameters import ParameterError, check_int, check_real
 
 from .echo import Echo
 from .light_field import LightField
 from .picture_file import FLOAT_MAX, encode16, read_picture
+from .scene import RADIANCE_MAX
 
 SUFFIXES = ".npy", ".npz"
 PICTURES = "png|jpe?g|tiff?|webp|bmp|ppm|pgm"
@@ -97,26 +98,34 @@ def read_light_field(path: str | Path, views: Any = None) -> LightField:
     return LightField(tiles.swapaxes(1, 2), name=path.stem)
 
 
-def write_light_field(light_field: LightField, path: str | Path) -> None:
+def write_light_field(light_field: LightField, path: str | Path, white: float = 1.0) -> str:
     """Write a light field in the form of the path's name.
 
     Parameters
     ----------
     light_field : LightField
-        The light field. Pictures take its codes as they are; linear radiance becomes sRGB codes, gray of 16 bits,
-        colours of 8.
+        The light field. Pictures take its codes as they are; linear radiance of 0..white becomes sRGB codes, gray of 16
+        bits, colours of 8, and is clipped to that.
     path : path
         x.npy, x.npz, an image file (16 bits: .png, .tif), or a folder without a dot in its name, which is created.
         Disparity goes into .npz and folders alone, depth, Stokes parameters and highlights into .npz.
+    white : float
+        Radiance of a picture's largest code, 0.001..16: what is read from it is the radiance over ``white``.
+
+    Returns
+    -------
+    str
+        What was clipped, in a line; empty where nothing was, as in .npy and .npz.
 
     Raises
     ------
     ParameterError
-        For radiance above 1, or 16-bit colours, in pictures, and for another kind of file.
+        For 16-bit colours in pictures, another kind of file, and a white out of range.
     OSError
         If it cannot be written.
     """
     path, values = Path(path), light_field.values
+    check_real("white", white, 1e-3, RADIANCE_MAX)
     if path.suffix.lower() == ".npy":
         np.save(path, values)
     elif path.suffix.lower() == ".npz":
@@ -129,35 +138,47 @@ def write_light_field(light_field: LightField, path: str | Path) -> None:
         given = {name: array for name, array in arrays.items() if array is not None}
         np.savez_compressed(path, allow_pickle=False, light_field=values, **given)
     elif re.fullmatch(rf"\.(?:{PICTURES})", path.suffix, re.I):
-        tiles = _codes(values).swapaxes(1, 2)
-        side = light_field.views
-        picture = Image.fromarray(tiles.reshape(side * tiles.shape[1], side * tiles.shape[3], *tiles.shape[4:]))
+        tiles = _codes(values, white).swapaxes(1, 2)
+        high, tall, wide, broad, *colours = tiles.shape
+        picture = Image.fromarray(tiles.reshape(high * tall, wide * broad, *colours))
         try:
             picture.save(path)
         except OSError as error:
             if not str(error).startswith("cannot write mode"):
                 raise
             raise ParameterError(f"path = {path.name!r}: must be .png or .tif, for 16 bits ({error})") from None
+        return _clipped(values, white)
     elif path.suffix:
         raise ParameterError(
             f"path = {path.name!r}: must end in .npy, .npz, .png or .tif, or be a folder without a dot"
         )
     else:
-        codes = _codes(values)
+        codes = _codes(values, white)
         path.mkdir(exist_ok=True)
         for i, view in enumerate(codes.reshape(-1, *codes.shape[2:])):
             Image.fromarray(view).save(path / f"input_Cam{i:03d}.png")
         if light_field.disparity is not None:
             Image.fromarray(light_field.disparity.astype(np.float32)).save(path / DISPARITY)
+        return _clipped(values, white)
+    return ""
 
 
-def _codes(values: npt.NDArray[Any]) -> npt.NDArray[Any]:
+def _clipped(values: npt.NDArray[Any], white: float) -> str:
+    low, high = float(values.min()), float(values.max())
+    if values.dtype.kind != "f" or (low >= 0 and high <= white):
+        return ""
+    share = float(((values < 0) | (values > white)).mean())
+    return (
+        f"light field = {low:.3g}..{high:.3g}: {100 * share:.2g} % of the values are clipped to 0..{white:g} in "
+        "pictures; .npy and .npz keep them"
+    )
+
+
+def _codes(values: npt.NDArray[Any], white: float) -> npt.NDArray[Any]:
     """What a PNG can hold of them: uint8, or uint16 of gray."""
     colour = values.ndim == 5
     if values.dtype.kind == "f":
-        if values.max() > 1:
-            raise ParameterError(f"light field = {values.max():g}: must be at most 1 in pictures; write .npy or .npz")
-        codes = encode16(values.astype(float)) * (255 if colour else 65535)
+        codes = encode16(np.clip(values.astype(float) / white, 0, 1)) * (255 if colour else 65535)
         return np.rint(codes).astype(np.uint8 if colour else np.uint16)
     if colour and values.dtype == np.uint16:
         raise ParameterError("light field = uint16 colours: must be 8 bits in pictures; write .npy or .npz")

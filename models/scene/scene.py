@@ -64,6 +64,8 @@ class Scene:
         From a time after the frame's start in s to the scene at that time, of the same size; None: nothing moves.
     speed : float
         Of what moves, 0..1e7 px/s.
+    notes : tuple of str
+        What was changed for a sensor to see it, a line each.
 
     Raises
     ------
@@ -86,6 +88,7 @@ class Scene:
     static: bool = True
     moved: Callable[[float], "Scene"] | None = None
     speed: float = 0.0
+    notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         check_int("views", self.views, 1, 31)

@@ -68,7 +68,8 @@ class Run:
 
         image: 2-D, relative radiance, Image (rows, cols); in edge mode rebuilt from the differences, of mean 0.
         edges (edge and raw mode): one image of differences a pixel type, in codes, Image (types, tile rows, tile cols).
-        light_field (raw mode): LightField of linear radiance in as many views as the scene has.
+        light_field (raw mode): LightField of linear radiance in as many views as the scene has; below 0 where noise and
+        error take it there. It is without the scene's disparity: its `disparity()` is what its views show.
         disparity (raw mode): px of the array per view step, Image (rows, cols), NaN where the mixture is not sure.
         depth (tof mode): in m, Image (rows, cols), NaN where there is no amplitude.
 
@@ -93,8 +94,8 @@ class Run:
         if what == "light_field":
             method = method or result.light_field_method
             found = result.estimate if method == result.light_field_method else estimate(result, method)
-            values = np.clip(found.light_field, 0, RADIANCE_MAX)
-            return LightField(values, found.disparity, f"{result.request.name}_{method}")
+            values = np.clip(found.light_field, -RADIANCE_MAX, RADIANCE_MAX)
+            return LightField(values, name=f"{result.request.name}_{method}")
         if what == "edges":
             return Image.of(result.edges)
         if what == "depth":

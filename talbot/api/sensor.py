@@ -31,11 +31,12 @@ from talbot.models.parameters import (
     sensor_text,
 )
 from talbot.models.parameters.sensor_file import keys, nearest
-from talbot.models.scene import LightField, Sampling, open_clip
+from talbot.models.scene import Sampling, open_clip
 from talbot.models.scene import scenes as named_scenes
 from talbot.pixels.designs import IDEAL
 from talbot.pixels.tabled import pixel_of, tabled, untabled
 
+from .light_field import LightField
 from .run import Run
 
 scenes = tuple(named_scenes)
@@ -210,10 +211,10 @@ class Sensor:
             cut = Window(*window)
             given["window"] = lambda full: cut
         if isinstance(scene, str | Path):
-            scene = str(scene)
-        elif not isinstance(scene, LightField):
-            scene = LightField(scene)
-        return request(sensor=self.parameters, scene=scene, mode=mode, **given)
+            seen = str(scene)
+        else:
+            seen = (scene if isinstance(scene, LightField) else LightField(scene)).data
+        return request(sensor=self.parameters, scene=seen, mode=mode, **given)
 
     def __repr__(self) -> str:
         """What is not the default, by name."""

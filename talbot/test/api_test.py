@@ -87,7 +87,46 @@ def test_a_light_field_is_replaced_whole(tmp_path):
     talbot.LightField(codes[:3, :3]).save(tmp_path / "lf")
     found = talbot.LightField.load(tmp_path / "lf")
     np.testing.assert_array_equal(found.values, codes[:3, :3])
-    assert found.disparity is None and len(list((tmp_path / "lf").iterdir())) == 9
+    assert found.data.disparity is None and len(list((tmp_path / "lf").iterdir())) == 9
+
+
+def test_an_estimate_is_saved_loaded_refocused_and_seen_again(tmp_path, capsys):
+    y, x = np.indices((21, 31), float)
+    steps = np.arange(-1, 2)
+    views = np.array([[0.5 + 0.45 * np.sin(2 * (x + u)) * np.cos(1.5 * (y + v)) for u in steps] for v in steps])
+    own, sensor = talbot.LightField(views), talbot.Sensor(rows=21, cols=31)
+    run = sensor.golden(own, mode="raw")
+    estimate = run.reconstruct("light_field")
+    values = np.where(estimate.values < np.quantile(estimate.values, 0.1), -0.23, estimate.values + 0.4)
+    field = talbot.LightField(values, name="estimate")
+    assert values.max() > 1.05 and field.data.disparity is None
+    for name in ("x.npy", "x.npz", "x.png", "x"):
+        field.save(tmp_path / name)
+        said = capsys.readouterr().err
+        found = talbot.LightField.load(tmp_path / name, 3 if name == "x.png" else None)
+        if name.startswith("x.n"):
+            np.testing.assert_array_equal(found.values, values)
+            assert not said
+        else:
+            np.testing.assert_allclose(found.view(1, 2), np.clip(field.view(1, 2), 0, 1), atol=1e-4)
+            assert said.count("\n") == 1 and "are clipped to 0..1 in pictures" in said
+        again = sensor.golden(found, mode="edge")
+        assert ("below 0, to -0.23: clipped to 0" in capsys.readouterr().err) == name.startswith("x.n")
+        assert again.result.exposed.scene.light_field.min() == 0
+    assert main(["sim", f"--scene={tmp_path / 'x.npz'}", "--rows=21", "--cols=31", f"--out={tmp_path / 'out'}"]) == 0
+    assert "below 0, to -0.23: clipped to 0" in capsys.readouterr().err
+    inside = np.s_[3:-3, 3:-3]
+    sharp = {d: np.std((estimate.refocus(d) - views[1, 1])[inside]) for d in (-1, 0, 1)}
+    assert min(sharp, key=sharp.get) == 1
+    disparity = estimate.disparity()
+    assert disparity.sure[inside].mean() > 0.9 and abs(disparity[disparity.sure & (x > 3) & (x < 27)] - 1).mean() < 0.2
+    assert np.std((estimate.all_in_focus() - views[1, 1])[inside]) < 1.2 * sharp[1] and disparity._repr_png_()
+    known = talbot.LightField(views, disparity=np.ones((21, 31)))
+    assert (known.disparity() == 1).all() and known.disparity().sure.all()
+    np.testing.assert_array_equal(known.all_in_focus(), known.all_in_focus(np.ones((21, 31))))
+    for wrong in (lambda: own.refocus(101), lambda: own.disparity(near=-3), lambda: own.all_in_focus(np.ones(3))):
+        with pytest.raises(talbot.ParameterError, match="disparity = (101|array)|near = -3"):
+            wrong()
 
 
 def test_sensors():

@@ -1,7 +1,13 @@
 """Light fields of one's own: every form written and read again, what the sensor sees of them, what is refused."""
 
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
 from PIL import Image
 
 from talbot.models.parameters import ParameterError
@@ -30,6 +36,45 @@ def test_every_form_is_read_as_it_was_written(tmp_path, name, values):
         np.testing.assert_array_equal(found.values, values)
     if name in ("x.npz", "x"):
         np.testing.assert_array_equal(found.disparity, disparity)
+
+
+@settings(max_examples=25, deadline=None)
+@given(
+    arrays(
+        st.sampled_from([np.float16, np.float32, np.float64]),
+        st.tuples(st.integers(1, 3), st.integers(1, 5), st.integers(1, 5)).map(lambda s: (s[0], s[0], *s[1:])),
+        elements=st.floats(-16, 16, width=16),
+    ),
+    st.sampled_from([1.0, 2.5, 16.0]),
+)
+def test_an_estimate_is_kept_by_arrays_and_clipped_by_pictures(values, white):
+    field = LightField(values)
+    with TemporaryDirectory() as name:
+        folder = Path(name)
+        for path in (folder / "x.npy", folder / "x.npz"):
+            assert write_light_field(field, path, white) == ""
+            kept = read_light_field(path).values
+            assert kept.dtype == values.dtype
+            np.testing.assert_array_equal(kept, values)
+        seen = np.clip(values.astype(float) / white, 0, 1)
+        for path in (folder / "x.png", folder / "x"):
+            said = write_light_field(field, path, white)
+            assert bool(said) == bool((values < 0).any() or (values > white).any())
+            assert not said or f"clipped to 0..{white:g}" in said
+            found = read_light_field(path, len(values) if path.suffix else None)
+            for v, u in np.ndindex(values.shape[:2]):
+                np.testing.assert_allclose(found.view(v, u), seen[v, u], atol=2 / 65535)
+
+
+def test_a_sensor_sees_no_light_below_zero():
+    values = FLOAT.copy()
+    values[:, :, :8] -= 1
+    scene = LightField(values, name="estimate").scene(SMALL)
+    np.testing.assert_array_equal(scene.light_field, np.maximum(values, 0))
+    (note,) = scene.notes
+    assert note.startswith("estimate: 50 % of the light field is below 0, to -1: clipped to 0")
+    assert LightField(values).scene(Sampling(rows=5, cols=7)).light_field.min() >= 0
+    assert not LightField(FLOAT).scene(SMALL).notes
 
 
 def test_folder_of_the_stanford_archive(tmp_path):
@@ -92,7 +137,7 @@ def test_views_that_are_equal_are_one():
         (np.zeros((1, 1, 5, 6), int), {}, "int64 array: must be of uint8, uint16, float16"),
         (np.zeros((1, 1, 5, 6), object), {}, "object array: must be of"),
         (np.full((1, 1, 5, 6), np.nan), {}, "light field = nan"),
-        (np.full((1, 1, 5, 6), 17.0), {}, r"light field = 17: every value must be a finite number in \[0, 16\]"),
+        (np.full((1, 1, 5, 6), 17.0), {}, r"light field = 17: every value must be a finite number in \[-16, 16\]"),
         (np.zeros((1, 1, 5, 6)), {"disparity": np.zeros((6, 5))}, r"disparity = .* must be numbers, \(5, 6\)"),
         (np.zeros((1, 1, 5, 6)), {"disparity": np.full((5, 6), np.inf)}, "disparity = inf"),
     ],
@@ -166,8 +211,8 @@ def test_more_that_is_refused(tmp_path):
         read_light_field(tmp_path / "x.npy", 3)
     with pytest.raises(ParameterError, match="depth = .*: must be left out"):
         load(str(tmp_path / "x.npy"), SMALL, depth="d.npy")
-    with pytest.raises(ParameterError, match="must be at most 1 in pictures"):
-        write_light_field(LightField(FLOAT * 2), tmp_path / "x.png")
+    with pytest.raises(ParameterError, match="white = 0: must be"):
+        write_light_field(LightField(FLOAT), tmp_path / "x.png", white=0)
     with pytest.raises(ParameterError, match="must be 8 bits in pictures"):
         write_light_field(LightField(np.stack([DEEP] * 3, -1)), tmp_path / "folder")
     assert not (tmp_path / "folder").exists()
