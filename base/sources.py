@@ -7,15 +7,19 @@ its strings name (``[sys.executable, "-m", "talbot.rtl.export"]``, ``import_modu
 """
 
 import ast
+import contextlib
+import json
 import re
+import sys
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from functools import cache, cached_property
 from itertools import accumulate
 from pathlib import Path
 
 from .cache import digest
-from .paths import PACKAGE, ROOT
+from .files import write
+from .paths import BUILD, PACKAGE, ROOT
 
 DATA = frozenset(
     (".md", ".toml", ".sv", ".v", ".cpp", ".vlt", ".rdl", ".tcl", ".lib", ".html", ".css", ".js", ".json", ".yaml")
@@ -23,6 +27,8 @@ DATA = frozenset(
 SKIPPED = frozenset(("build", "__pycache__", ".venv", ".git", "node_modules"))
 ENDINGS = "|".join(suffix[1:] for suffix in sorted(DATA))
 DATA_NAME = re.compile(rf"[\w*./-]*[\w*-]\.(?:{ENDINGS})")
+PARSED = BUILD / "sources.json"  # what was read of texts, by their digest
+TEXTS = 5000  # that are kept there at most
 
 
 @dataclass(frozen=True)
@@ -53,10 +59,11 @@ class Text:
 class Syntax:
     """What a module's text says wherever it is: of `Text`, before names are looked up in a tree.
 
-    named: candidates for modules' names; files: names of data files, with * too.
+    imports: level (-1: import without from), module, names with what each binds. named: candidates for modules' names;
+    files: names of data files, with * too.
     """
 
-    imports: list[ast.Import | ast.ImportFrom]
+    imports: list[tuple[int, str, list[tuple[str, str]]]]
     named: list[str]
     patterns: list[str]
     files: list[str]
@@ -69,6 +76,15 @@ class Tree:
     def __init__(self, root: Path = ROOT) -> None:
         self.root, self.package = root, root / PACKAGE.name
         self._texts: dict[str, Text] = {}
+        self._digests: dict[Path, str] = {}
+
+    def digest(self, files: Iterable[Path]) -> str:
+        """The digest of files: their places below the root and their contents."""
+        for file in (files := list(files)):
+            self._digests[file] = self._digests.get(file) or digest(file)
+        return digest(
+            *(part for file in files for part in (file.relative_to(self.root).as_posix(), self._digests[file]))
+        )
 
     @cached_property
     def modules(self) -> dict[str, Path]:
@@ -131,7 +147,7 @@ class Tree:
     def _text(self, module: str) -> Text:
         if module not in self._texts:
             path = self.modules[module]
-            syntax = _syntax(path.read_text())
+            syntax = _syntax(path.read_text(encoding="utf-8"))
             package = module if path.name == "__init__.py" else module.rpartition(".")[0]
             self._texts[module] = Text(
                 path,
@@ -145,16 +161,16 @@ class Tree:
 
     def _imports(self, syntax: Syntax, package: str) -> Iterator[tuple[str, Reference]]:
         """The references of import statements by the name that each binds."""
-        for node in syntax.imports:
-            if isinstance(node, ast.Import):
-                yield from ((alias.name, Reference(alias.name)) for alias in node.names if alias.name in self.modules)
-            else:
-                base = _absolute(node, package)
-                for alias in node.names:
-                    if (module := f"{base}.{alias.name}") in self.modules:
-                        yield alias.asname or alias.name, Reference(module)
-                    elif base in self.modules:
-                        yield alias.asname or alias.name, Reference(base, "" if alias.name == "*" else alias.name)
+        for level, named, names in syntax.imports:
+            if level < 0:
+                yield from ((name, Reference(name)) for name, _ in names if name in self.modules)
+                continue
+            base = _absolute(level, named, package)
+            for name, bound in names:
+                if (module := f"{base}.{name}") in self.modules:
+                    yield bound, Reference(module)
+                elif base in self.modules:
+                    yield bound, Reference(base, "" if name == "*" else name)
 
     def _files_named(self, name: str, folder: Path) -> list[Path]:
         if "*" in name:
@@ -176,16 +192,45 @@ def _files(folder: Path, suffixes: Iterable[str]) -> list[Path]:
     return found
 
 
-def _absolute(node: ast.ImportFrom, package: str) -> str:
-    if not node.level:
-        return node.module or ""
+def _absolute(level: int, module: str, package: str) -> str:
+    if not level:
+        return module
     parts = package.split(".")
-    return ".".join(parts[: len(parts) - node.level + 1] + ([node.module] if node.module else []))
+    return ".".join(parts[: len(parts) - level + 1] + ([module] if module else []))
+
+
+def _syntax(text: str) -> Syntax:
+    """Kept by the text itself, so that a tree with one file changed, or a copy of a tree, parses one file."""
+    key, known = digest(text), _parsed()
+    if key not in known:
+        known[key] = _read(text)
+    return known[key]
 
 
 @cache
-def _syntax(text: str) -> Syntax:
-    """Kept by the text itself, so that a tree with one file changed, or a copy of a tree, parses one file."""
+def _parsed() -> dict[str, Syntax]:
+    """What earlier processes read of texts; nothing where the file is not as `_keep` wrote it."""
+    with contextlib.suppress(OSError, ValueError, TypeError):
+        check, found = json.loads(PARSED.read_bytes())
+        if check == _check(found):
+            return {key: Syntax(*values) for key, values in found.items()}
+    return {}
+
+
+def _check(found: object) -> str:
+    return digest(Path(__file__), sys.version, json.dumps(found))
+
+
+def _keep(before: int) -> None:
+    """Keep what was read, where it is more than ``before`` texts."""
+    known = _parsed()
+    if len(known) > before:
+        found = {key: astuple(syntax) for key, syntax in list(known.items())[-TEXTS:]}
+        with contextlib.suppress(OSError):  # a folder of another user, a full disk
+            write(PARSED, json.dumps([_check(found), found]))
+
+
+def _read(text: str) -> Syntax:
     tree = ast.parse(text)
     nodes = list(ast.walk(tree))
     strings = dict.fromkeys(_strings(nodes))
@@ -193,7 +238,12 @@ def _syntax(text: str) -> Syntax:
     started = set(_started(nodes))
     dotted = {word for word in programs | {*strings} if "." in word} | started
     return Syntax(
-        [node for node in nodes if isinstance(node, (ast.Import, ast.ImportFrom))],
+        [
+            (node.level, node.module or "", names) if isinstance(node, ast.ImportFrom) else (-1, "", names)
+            for node in nodes
+            if isinstance(node, (ast.Import, ast.ImportFrom))
+            for names in [[(alias.name, alias.asname or alias.name) for alias in node.names]]
+        ],
         [name for word in sorted(dotted) for name in (word, f"{word}.__main__")]
         + (["conftest"] if "pytest" in programs | started else []),
         list(dict.fromkeys(_patterns(nodes))),
@@ -264,8 +314,10 @@ def modules(root: Path = ROOT) -> Mapping[str, Path]:
 
 @cache
 def _code(root: Path, starts: tuple[str | Path, ...], chosen: tuple[tuple[str, str], ...]) -> str:
-    files = _tree(root).closure(starts, dict(chosen))
-    return digest(*(part for file in files for part in (str(file.relative_to(root)), file)))
+    tree, before = _tree(root), len(_parsed())
+    found = tree.digest(tree.closure(starts, dict(chosen)))
+    _keep(before)
+    return found
 
 
 def code(*starts: str | Path, chosen: Mapping[str, str] | None = None, root: Path = ROOT) -> str:

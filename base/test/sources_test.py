@@ -78,3 +78,22 @@ def test_another_text_is_another_digest(root):
 def test_a_start_that_is_none(root):
     with pytest.raises(KeyError, match="nowhere: neither a module nor a file"):
         Tree(root).closure(["nowhere"])
+
+
+@pytest.mark.parametrize("damage", [lambda text: "", lambda text: text[:-9], lambda text: text.replace("deep", "own")])
+def test_what_is_kept_of_texts_counts_only_where_it_is_whole(root, tmp_path, monkeypatch, damage):
+    from talbot.base import sources
+
+    monkeypatch.setattr(sources, "PARSED", tmp_path / "parsed.json")
+
+    def found():
+        sources.forget()
+        sources._parsed.cache_clear()
+        return code("talbot.plain.x", root=root)
+
+    first = found()
+    text = (tmp_path / "parsed.json").read_text()
+    assert "models.deep" in text and found() == first
+    (tmp_path / "parsed.json").write_text(damage(text))
+    assert found() == first
+    assert (tmp_path / "parsed.json").read_text() == text

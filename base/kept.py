@@ -1,0 +1,133 @@
+"""Values that take long to compute, kept on disk under the content of all that decides them.
+
+`kept` names a value by its function's code (`base.sources`), the content of the arguments and the code of their
+classes and functions. A file that is damaged counts as none; a store has a largest size, and what was used least
+recently goes first. Programs and folders are kept by `base.cache`.
+"""
+
+import contextlib
+import dataclasses
+import functools
+import hashlib
+import os
+import pickle
+import sys
+import types
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+
+from .cache import digest
+from .files import write
+from .paths import BUILD
+from .sources import code
+
+T = TypeVar("T")
+STORE = BUILD / "kept"
+MOST = 256 << 20  # bytes of a store
+HEAD = hashlib.sha256().digest_size
+PLAIN = (type(None), bool, int, float, complex, str, bytes, slice, range, np.generic, np.dtype)
+
+
+class Unnamed(TypeError):
+    """The content of an object cannot be told."""
+
+
+def kept(store: str, compute: Callable[..., T], *arguments: object, most: int = MOST) -> T:
+    """Return ``compute(*arguments)``, now or earlier; computed where an argument's content cannot be told.
+
+    store: name of the folder of such values. compute: a function of a module, whose value can be pickled. most: size of
+    the store in bytes.
+    """
+    try:
+        file = STORE / store / _key(compute, arguments)
+    except (Unnamed, ValueError):  # ValueError: an empty cell of a closure
+        return compute(*arguments)
+    with contextlib.suppress(OSError):
+        data = memoryview(file.read_bytes())
+        if data[:HEAD] == hashlib.sha256(data[HEAD:]).digest():
+            with contextlib.suppress(OSError):  # of another user
+                os.utime(file)
+            return pickle.loads(data[HEAD:])
+    value = compute(*arguments)
+    data = pickle.dumps(value, pickle.HIGHEST_PROTOCOL)
+    with contextlib.suppress(OSError):  # a full disk, a folder of another user: then it is computed again
+        write(file, hashlib.sha256(data).digest() + data)
+        _bound(file.parent, most)
+    return value
+
+
+def content(value: object) -> tuple[str, set[str]]:
+    """The digest of an object's content, and the package's modules whose code it consists of. Raises Unnamed.
+
+    Objects are their class and attributes; of a dataclass, its fields; a function is its name and what it holds.
+    """
+    found, modules = hashlib.sha256(), set[str]()
+    for part in _parts(value, modules, ()):
+        found.update(part)
+    return found.hexdigest(), modules
+
+
+def _key(compute: Callable[..., object], arguments: tuple[object, ...]) -> str:
+    text, modules = content((compute, arguments))
+    return digest(code(*sorted(modules)), text, sys.version, np.__version__)
+
+
+def _parts(value: Any, modules: set[str], above: tuple[int, ...]) -> Iterator[bytes | memoryview]:
+    """What identifies ``value``, piece by piece; ``modules`` gets those of its code. above: objects that hold it."""
+    if isinstance(value, PLAIN):
+        yield f"{type(value).__name__} {value!r};".encode()
+        return
+    if id(value) in above:
+        raise Unnamed(f"{type(value).__name__}: holds itself")
+    above = (*above, id(value))
+    if isinstance(value, np.ndarray) and not value.dtype.hasobject:
+        yield f"array {value.dtype.str} {value.shape};".encode()
+        yield np.ascontiguousarray(value).reshape(-1).view(np.uint8).data
+        return
+    if isinstance(value, Path):
+        yield f"file {digest(value) if value.exists() else value};".encode()
+        return
+    if isinstance(value, functools.partial):
+        held: Any = value.func, value.args, value.keywords
+    elif isinstance(value, types.MethodType):
+        held = value.__func__, value.__self__
+    elif isinstance(value, tuple | list):
+        held = value
+    elif isinstance(value, dict):
+        held = value.items()
+    elif (wrapped := getattr(value, "__wrapped__", None)) is not None:  # functools.cache
+        held = (wrapped,)
+    elif isinstance(value, types.FunctionType):
+        held = value.__defaults__, value.__kwdefaults__, [cell.cell_contents for cell in value.__closure__ or ()]
+    elif isinstance(value, type):
+        held = ()
+    elif dataclasses.is_dataclass(value):
+        held = [(field.name, getattr(value, field.name)) for field in dataclasses.fields(value)]
+    elif hasattr(value, "__dict__"):
+        held = vars(value).items()
+    else:
+        raise Unnamed(type(value).__name__)
+    named = value if isinstance(value, types.FunctionType | type) else type(value)
+    modules |= {named.__module__} if named.__module__.startswith("talbot.") else set()
+    yield f"{named.__module__}.{named.__qualname__} {len(held)}(".encode()
+    for item in held:
+        yield from _parts(item, modules, above)
+    yield b")"
+
+
+def _bound(folder: Path, most: int) -> None:
+    """Remove what was used least recently, until the files of ``folder`` have ``most`` bytes."""
+    states = []
+    for file in folder.iterdir():
+        with contextlib.suppress(OSError):
+            state = file.stat()
+            states.append((state.st_mtime_ns, state.st_size, file))
+    left = sum(size for _, size, _ in states)
+    for _, size, file in sorted(states)[:-1]:
+        if left > most and file.is_file():
+            with contextlib.suppress(OSError):
+                file.unlink()
+            left -= size
