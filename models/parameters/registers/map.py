@@ -1,7 +1,11 @@
 """Fields and addresses of asp_chip.rdl, from which RTL, host and document are generated."""
 
+import contextlib
+import hashlib
+import json
+import os
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass, replace
 from functools import cache, cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
@@ -12,6 +16,7 @@ if TYPE_CHECKING:
     from systemrdl.node import AddrmapNode, FieldNode, RegNode
 
 SOURCE = Path(__file__).parent / "asp_chip.rdl"
+KEPT = SOURCE.parent / "__pycache__" / "asp_chip.json"
 
 
 @dataclass(frozen=True)
@@ -200,9 +205,33 @@ def compiled() -> "AddrmapNode":
 
 @cache
 def register_map() -> RegisterMap:
-    """Register map of the chip; the first call takes 0.1 s, most of it the import of the compiler."""
+    """Register map of the chip, kept as Python keeps modules: compiling it again takes longer than a frame."""
+    key = hashlib.sha256(SOURCE.read_bytes() + Path(__file__).read_bytes()).hexdigest()
+    if fields := _kept(key):
+        return RegisterMap(fields)
     registers = compiled().registers(unroll=True)
-    return RegisterMap(tuple(f for register in registers for f in _fields(register)))
+    fields = tuple(f for register in registers for f in _fields(register))
+    values = [astuple(f) for f in fields]
+    part = KEPT.with_name(f"{KEPT.name}.{os.getpid()}")
+    with contextlib.suppress(OSError):  # a folder that only root may write
+        KEPT.parent.mkdir(exist_ok=True)
+        part.write_text(json.dumps([key, _check(values), values]), encoding="utf-8")
+        part.replace(KEPT)
+    return RegisterMap(fields)
+
+
+def _kept(key: str) -> tuple[Field, ...]:
+    """The fields of an earlier process; none where the file is of another source, or damaged."""
+    try:
+        of, check, values = json.loads(KEPT.read_text(encoding="utf-8"))
+        fields = tuple(replace(Field(*row), choices=tuple(map(tuple, row[-2]))) for row in values)
+    except (OSError, ValueError, TypeError):
+        return ()
+    return fields if of == key and check == _check(values) else ()
+
+
+def _check(values: object) -> str:
+    return hashlib.sha256(json.dumps(values).encode()).hexdigest()
 
 
 def trim_range() -> tuple[int, int]:
