@@ -4,8 +4,10 @@ A page that is given a ``card`` is listed by `base.page.index`.
 """
 
 import base64
+import contextlib
 import io
 import json
+import os
 import re
 from collections import Counter
 from collections.abc import Iterable, Sequence
@@ -15,10 +17,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from jinja2 import Environment, FileSystemBytecodeCache, FileSystemLoader, StrictUndefined
 from markupsafe import Markup, escape
 from PIL import Image as pillow
 from PIL.Image import Image
+
+from talbot.base.paths import BUILD
 
 FOLDER = Path(__file__).parent
 TABLES = FOLDER / "tables.html"  # a page of `Section`s
@@ -155,13 +159,23 @@ def card(title: str, tiles: Sequence[Tile] = (), picture: Image | None = None) -
     return json.dumps({"title": title, "tiles": tiles[:CARD_TILES], "picture": src})
 
 
+def _templates() -> FileSystemBytecodeCache | None:
+    """Where compiled templates are kept; None where this user may not write there."""
+    folder = BUILD / "templates"
+    with contextlib.suppress(OSError):
+        folder.mkdir(parents=True, exist_ok=True)
+    return FileSystemBytecodeCache(str(folder)) if os.access(folder, os.W_OK) else None
+
+
 def render(template: Path, title: str, *, picture: Image | None = None, listed: bool = True, **values: Any) -> str:
     """HTML of a Jinja2 ``template`` with ``values``, text escaped. Raises jinja2.UndefinedError for a missing value.
 
     values: ``tiles``, a sequence of `Tile`, are at the top. listed: in the index, where ``picture`` is on its card.
     """
     loader = FileSystemLoader([template.parent, FOLDER])
-    environment = Environment(loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True)
+    environment = Environment(
+        loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True, bytecode_cache=_templates()
+    )
     environment.filters |= {"units": units, "contained": contained}
     environment.globals["parts"] = environment.get_template("parts.html").module
     values = {"tiles": ()} | values

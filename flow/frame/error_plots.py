@@ -1,52 +1,79 @@
-"""Error against run time of this scene, for the report, measured again in every run.
+"""Error against run time of this scene, for the report: measured once for the same exposure, scene and sensor.
 
 `make tradeoff` has the full ones.
 """
 
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
-from matplotlib.figure import Figure
+import numpy as np
+import numpy.typing as npt
+from markupsafe import Markup
 
-from talbot.base.charts import curves
+from talbot.base.drawn import drawn
+from talbot.base.kept import kept
+from talbot.models.afe import FrontEnd
 from talbot.models.chip import golden_frame
+from talbot.models.parameters import FrameParameters, SensorParameters
 
 from . import hardware
 from .quality import decoding_error, snr
 from .result import FrameResult
 
 LADDER = (0, 1, 2, 4, 8, 16, 32, 64, 127)
+SIMULATORS = 2  # that run side by side
+Values = npt.NDArray[np.float64]
 
 
-def figures(result: FrameResult, summary: dict[str, Any]) -> list[Figure]:
-    """Plots of the chip over the threshold, in edge mode, and of the capture model."""
+def figures(result: FrameResult, summary: dict[str, Any]) -> list[Markup]:
+    """Plots of the chip over the threshold, in edge mode, and of the capture model, as SVG."""
     out = [_threshold(result, summary)] if result.request.frame.mode == "edge" else []
     return [*out, _capture(result)] if result.exposed.views.tried else out
 
 
-def _threshold(result: FrameResult, summary: dict[str, Any]) -> Figure:
+def _threshold(result: FrameResult, summary: dict[str, Any]) -> Markup:
     """SNR of the decoded differences against bytes and frame time, each threshold run through the Verilog."""
-    sensor, samples = result.request.sensor, result.exposed.samples
+    sensor, exposed = result.request.sensor, result.exposed
+    frame = replace(result.request.frame, threshold=0, frame_number=0)
+    program = str(result.program)  # the name of its folder is its content
+    measured = kept("thresholds", swept, program, sensor, frame, exposed.samples, exposed.ideal, exposed.front_end)
     points, labelled = [], 0
-    for threshold in LADDER:
-        frame = replace(result.request.frame, threshold=threshold)
-        golden = golden_frame(samples, sensor, frame, result.exposed.front_end)
-        chip = hardware.simulate(result.program, sensor, frame, samples, result.exposed.front_end)
-        error = decoding_error(golden.sent, result.exposed.ideal, golden.read, frame)
-        quality = snr(error, result.exposed.ideal[golden.read])
+    for threshold, size, cycles, quality in measured:
         if quality is None:
             continue
-        apart = abs(len(chip.stream) - labelled) > 0.1 * labelled  # else labels overlap
-        label = f"T={threshold}: {1e3 * chip.status['cycles'] / sensor.chip.f_clk:.2f} ms" if apart else ""
-        labelled = len(chip.stream) if apart else labelled
-        points.append((len(chip.stream), quality, label))
+        apart = abs(size - labelled) > 0.1 * labelled  # else labels overlap
+        label = f"T={threshold}: {1e3 * cycles / sensor.chip.f_clk:.2f} ms" if apart else ""
+        labelled = size if apart else labelled
+        points.append((size, quality, label))
     here = summary["stream_bytes"], summary["snr_db"]
     mark, title = None if None in here else here, "Threshold: error against bytes, and the chip's frame time"
-    return curves({"differences": points}, "bytes a frame", "SNR (dB; nothing sent: 0)", title, log_x=True, mark=mark)
+    labels = "bytes a frame", "SNR (dB; nothing sent: 0)"
+    return drawn("curves", {"differences": points}, *labels, title, log_x=True, mark=mark)
 
 
-def _capture(result: FrameResult) -> Figure:
+def swept(
+    program: str, sensor: SensorParameters, frame: FrameParameters, samples: Values, ideal: Values, front_end: FrontEnd
+) -> list[tuple[int, int, int, float | None]]:
+    """Run ``frame`` through the Verilog at each threshold of LADDER: (threshold, bytes, cycles, SNR in dB).
+
+    samples, ideal: of one exposure, as in `Exposed`. Raises ToolError.
+    """
+
+    def at(threshold: int) -> tuple[int, int, int, float | None]:
+        asked = replace(frame, threshold=threshold)
+        chip = hardware.simulate(Path(program), sensor, asked, samples, front_end)
+        golden = golden_frame(samples, sensor, asked, front_end)
+        error = decoding_error(golden.sent, ideal, golden.read, asked)
+        return threshold, len(chip.stream), chip.status["cycles"], snr(error, ideal[golden.read])
+
+    with ThreadPoolExecutor(SIMULATORS) as pool:
+        return list(pool.map(at, LADDER))
+
+
+def _capture(result: FrameResult) -> Markup:
     """Error of the capture against time, over the numbers of views that were tried on this scene."""
     tried = [(1e3 * seconds, error, str(views)) for views, error, seconds in result.exposed.views.tried if error]
     labels = "time (ms); number: views along the pupil", "RMS error (codes)"
-    return curves({"differences": tried}, *labels, "Capture: error against 31 x 31 views", log_y=True)
+    return drawn("curves", {"differences": tried}, *labels, "Capture: error against 31 x 31 views", log_y=True)

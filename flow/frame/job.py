@@ -12,10 +12,11 @@ import numpy as np
 import numpy.typing as npt
 
 from talbot.base.files import check_folder, staged
+from talbot.base.kept import kept
 from talbot.base.progress import say
 from talbot.flow.simulate.frame import Waves
 from talbot.models.afe import FrontEnd, trim_codes, trim_gain
-from talbot.models.capture import Exposure, Region, Views, choose_views, exposed, integrate, moving_currents
+from talbot.models.capture import Exposure, Region, Views, captured, exposed, integrate, moving_currents
 from talbot.models.capture import expose as expose_pair
 from talbot.models.chip import front_end_of, golden_frame
 from talbot.models.digital.stream import decode_stream
@@ -75,8 +76,11 @@ def expose(
     """
     sensor, frame = request.lit, request.frame
     front_end = _numbered(front_end or trimmed(request), sensor, number)
-    views = views or choose_views(scene, sensor, frame.exposing, request.views, read=todo.read)
-    pairs = moving_currents(scene, sensor, todo, frame.exposing, regions=views.regions)
+    timing = frame.exposing
+    if views:  # of a sequence: no frame comes again
+        pairs = moving_currents(scene, sensor, todo, timing, regions=views.regions)
+    else:
+        views, pairs = kept("captured", captured, scene, sensor, todo, timing, request.views)
 
     def samples(noise: float) -> Values:
         exposure = _exposure(request, noise, number)
@@ -110,7 +114,8 @@ def flat_field(request: FrameRequest) -> Values:
     One frame of the same chip with noise of its own, from which the trims are measured as on a bench.
     """
     sensor, frame = request.lit, request.frame
-    pair = integrate(load("flat:50", Sampling.of(sensor)), sensor, Region(1, np.ones(sensor.shape, bool)))[0]
+    flat, everywhere = load("flat:50", Sampling.of(sensor)), Region(1, np.ones(sensor.shape, bool))
+    pair = kept("flat", integrate, flat, sensor, everywhere)[0]
     exposure = replace(_exposure(request, request.noise), timing=replace(frame.exposing, n_cm=0))
     light, dark = expose_pair(pair, exposure, tap=BENCH), expose_pair(0 * pair, replace(exposure, noise=0.0))
     light, dark = (_of_columns(request, one[None], "edge")[0] for one in (light, dark))

@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 from markupsafe import Markup
 
-from talbot.base.charts import bars, svg
+from talbot.base.drawn import drawn
 from talbot.base.page import Picture, Scale
 from talbot.flow.simulate.frame import WAVES
 from talbot.models.parameters import EnergyParameters, LightParameters, sensor_text, sources
@@ -45,7 +45,7 @@ def write(folder: Path, result: FrameResult, summary: dict[str, Any]) -> None:
     fields = _fields(result, summary)
     for name, field in zip(("views", "views_decoded"), fields, strict=False):
         pictures.view_sheet(field[1]).save(folder / f"{name}.png")
-    curves = [svg(figure) for figure in error_plots.figures(result, summary)]
+    curves = error_plots.figures(result, summary)
     every = [picture for single in singles for picture in (single, *(e for e in errors if e.title == single.name))]
     page = render(summary, every, chip, sheets, _views(fields), _where(summary), curves, assumptions(result))
     (folder / "report.html").write_text(page)
@@ -178,9 +178,9 @@ def _where(s: dict[str, Any]) -> list[Markup]:
     cycles = {name.replace("_", " "): pins[name] for name in phases}
     energy = energy_parts(s)
     return [
-        svg(bars(cycles, "cycles", f"Cycles: the amplifiers' phases ({s['cycles']:,} in all)")),
-        svg(bars(energy, "µJ", f"Energy, the lower reading ({s['energy_uj']['total']:.1f} µJ)")),
-        svg(bars(s["bytes"], "bytes", f"Bytes ({s['stream_bytes']:,})")),
+        drawn("bars", cycles, "cycles", f"Cycles: the amplifiers' phases ({s['cycles']:,} in all)"),
+        drawn("bars", energy, "µJ", f"Energy, the lower reading ({s['energy_uj']['total']:.1f} µJ)"),
+        drawn("bars", s["bytes"], "bytes", f"Bytes ({s['stream_bytes']:,})"),
     ]
 
 

@@ -3,13 +3,15 @@
 Defined in docs/figures.md. None where a figure has no meaning: no such samples, no error at all, too few pixels.
 """
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from skimage.metrics import structural_similarity
+from PIL import __version__ as VERSION
 
+from talbot.base.kept import kept
 from talbot.models.capture import cells
 from talbot.models.chip import golden_frame
 from talbot.models.parameters import FrameParameters
@@ -95,13 +97,27 @@ def image_quality(result: GoldenResult) -> dict[str, float | str | None]:
     """
     part = part_read(result.golden.read)
     truth = np.asarray(result.exposed.scene.image, float)[part]
-    seen, size = coded_sum(result)[part], len(result.stream)
-    images = {"": result.image[part], "_gray": np.zeros_like(truth), "_sum": seen}
-    images |= {f"_{name}": coded(seen, name, size) for name in CODECS}
-    out: dict[str, float | str | None] = {"image_jpegxl_absent": absent("jpegxl")}
-    for name, image in images.items():
-        out[f"image_psnr{name}_db"] = None if image is None else psnr_without_mean_db(image, truth)
-        out[f"image_ssim{name}"] = None if image is None else ssim(image, truth)
+    codecs = [name for name in CODECS if not absent(name)]
+    figures = kept(
+        "images", image_figures, result.image[part], truth, coded_sum(result)[part], len(result.stream), codecs, VERSION
+    )
+    none = {f"image_{figure}": None for name in CODECS for figure in (f"psnr_{name}_db", f"ssim_{name}")}
+    return {"image_jpegxl_absent": absent("jpegxl")} | none | figures
+
+
+def image_figures(
+    image: Values, truth: Values, seen: Values, size: int, codecs: Sequence[str], version: str
+) -> dict[str, float | None]:
+    """PSNR and SSIM against ``truth`` of ``image``, of flat gray, of ``seen``, and of it in ``size`` bytes of a codec.
+
+    version: of Pillow, which has most codecs.
+    """
+    images = {"": image, "_gray": np.zeros_like(truth), "_sum": seen}
+    images |= {f"_{name}": coded(seen, name, size) for name in codecs}
+    out: dict[str, float | None] = {}
+    for name, shown in images.items():
+        out[f"image_psnr{name}_db"] = None if shown is None else psnr_without_mean_db(shown, truth)
+        out[f"image_ssim{name}"] = None if shown is None else ssim(shown, truth)
     return out
 
 
@@ -115,6 +131,8 @@ def ssim(image: Values, truth: Values) -> float | None:
     """Structural similarity after the image has the mean of the truth, peak 1."""
     if min(truth.shape) < SSIM_WINDOW:
         return None
+    from skimage.metrics import structural_similarity  # it imports much of SciPy
+
     level = image - image.mean() + truth.mean()
     found: Any = structural_similarity(level, truth, data_range=1.0, win_size=SSIM_WINDOW)
     return float(found)

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from talbot.base.kept import kept
 from talbot.models.afe import FrontEnd
 from talbot.models.capture import Views
 from talbot.models.chip import GoldenFrame
@@ -70,7 +71,7 @@ class GoldenResult:
         """The 2-D image rebuilt from the decoded edges and the scene's disparity."""
         exposed, edges = self.exposed, self.decoded.samples[..., 0]
         trim, timing = exposed.front_end.trim, self.request.frame.exposing
-        return rebuild(edges, self.decoded.read, exposed.scene, self.sensor, trim, timing)
+        return kept("rebuilt", rebuild, edges, self.decoded.read, exposed.scene, self.sensor, trim, timing)
 
     @property
     def edges(self) -> npt.NDArray[np.float64]:

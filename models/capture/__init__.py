@@ -6,7 +6,7 @@ from .moving import moving_currents
 from .operator import CaptureOperator
 from .pupil import Region, cells, integrate
 from .ratio import capture_ratio
-from .views import Views, choose_views
+from .views import Views, captured, choose_views
 
 __all__ = [
     "CaptureOperator",
@@ -15,6 +15,7 @@ __all__ = [
     "Views",
     "capture",
     "capture_ratio",
+    "captured",
     "cells",
     "choose_views",
     "currents",

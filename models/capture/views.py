@@ -8,9 +8,10 @@ import numpy.typing as npt
 
 from talbot.models.parameters import AmpTiming, ParameterError, SensorParameters, check_int, check_real
 from talbot.models.pixel.trim import optical_gains
-from talbot.models.plan import LeftOut, codes_per_unit
+from talbot.models.plan import LeftOut, Plan, codes_per_unit
 from talbot.models.scene import Scene
 
+from .moving import moving_currents
 from .pupil import Region, cells, integrate
 
 Values = npt.NDArray[np.float64]
@@ -120,6 +121,40 @@ def choose_views(
     found = _rms(np.where(quiet[probe.pixels], grid, error))
     regions = tuple(r for r in (Region(scene.views, quiet), Region(most, ~quiet)) if r.pixels.any())
     return Views(regions, most, found, _saved(scene, quiet, most), tuple(probe.tried))
+
+
+def captured(
+    scene: Scene, sensor: SensorParameters, plan: Plan, timing: AmpTiming, views: int | None = None
+) -> tuple[Views, npt.NDArray[np.floating]]:
+    """Choose the views of a capture and capture the scene through them.
+
+    Parameters
+    ----------
+    scene : Scene
+        Of the sensor's size.
+    sensor : SensorParameters
+        The sensor.
+    plan : Plan
+        Plan of the same scene and sensor.
+    timing : AmpTiming
+        Of the frame as it exposes.
+    views : int, optional
+        As in `choose_views`.
+
+    Returns
+    -------
+    Views
+        As of `choose_views`.
+    array (taps, 2, rows, cols)
+        As of `moving_currents`.
+
+    Raises
+    ------
+    ParameterError
+        As both.
+    """
+    chosen = choose_views(scene, sensor, timing, views, read=plan.read)
+    return chosen, moving_currents(scene, sensor, plan, timing, regions=chosen.regions)
 
 
 class _Probe:

@@ -16,7 +16,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.fft import dctn, idctn
 
 from talbot.models.compiled import njit
 from talbot.models.parameters import ParameterError, SensorParameters, check_int, check_real
@@ -203,6 +202,8 @@ def _inverse_laplacian(shape: tuple[int, int]) -> Callable[[Floats], Floats]:
     y, x = (2 - 2 * np.cos(np.pi * np.arange(n) / n) for n in shape)
     eigen = y[:, None] + x[None, :]
     eigen[0, 0] = np.inf
+    from scipy.fft import dctn, idctn  # it imports for long
+
     return lambda image: np.asarray(idctn(np.asarray(dctn(image, norm="ortho")) / eigen, norm="ortho"))
 
 

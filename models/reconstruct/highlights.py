@@ -2,7 +2,6 @@
 
 import numpy as np
 import numpy.typing as npt
-from scipy.ndimage import gaussian_filter
 
 from talbot.models.parameters import ParameterError
 
@@ -58,4 +57,6 @@ def without_highlights(disparity: Floats, spread: Floats, tags: Bools, sure: flo
 
 
 def _around(values: Floats) -> Floats:
+    from scipy.ndimage import gaussian_filter  # it imports for long
+
     return gaussian_filter(values, AROUND, truncate=REACH, mode="constant")

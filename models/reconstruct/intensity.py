@@ -4,7 +4,6 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy.ndimage import distance_transform_edt
 
 from talbot.models.digital.exposure import integration_cycles
 from talbot.models.parameters import ELEMENTARY_CHARGE, AmpTiming, ElectricalParameters, SensorParameters
@@ -131,5 +130,7 @@ def sum_image(
         return out
     if not read.any():
         return np.zeros_like(out)
+    from scipy.ndimage import distance_transform_edt  # it imports for long
+
     nearest = np.asarray(distance_transform_edt(~read, return_distances=False, return_indices=True))
     return out[nearest[0], nearest[1]]

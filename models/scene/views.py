@@ -4,7 +4,6 @@ from functools import lru_cache, partial
 
 import numpy as np
 import numpy.typing as npt
-from scipy.ndimage import maximum_filter
 
 from . import warp
 from .sampling import Sampling
@@ -153,6 +152,8 @@ class Pictured:
         if wanted.all():
             return lambda dv, du: self._view(dv, du, np.ones_like(whole), self.use)
         # A hole is filled from at most the reach away, and a pixel is warped from as far.
+        from scipy.ndimage import maximum_filter  # it imports for long
+
         use = self.use & np.asarray(maximum_filter(whole, 4 * self.reach + 1), bool)
         return lambda dv, du: self._view(dv, du, whole, use)
 

@@ -1,0 +1,18 @@
+"""SVG of the charts of `base.charts`, kept: a page that shows one again does without Matplotlib."""
+
+from typing import Any, Literal
+
+from markupsafe import Markup
+
+from .kept import kept
+
+
+def drawn(chart: Literal["bars", "curves"], *arguments: object, **named: object) -> Markup:
+    """The SVG of a chart of these arguments, now or earlier."""
+    return kept("charts", _drawn, chart, arguments, named)
+
+
+def _drawn(chart: str, arguments: tuple[Any, ...], named: dict[str, Any]) -> Markup:
+    from . import charts
+
+    return charts.svg(getattr(charts, chart)(*arguments, **named))
