@@ -51,7 +51,7 @@ def cached(folder: Path | str, make: Callable[[Path], object]) -> Path:
     with part_folder(folder.parent) as part:
         make(part)
         files = {name: _state(part / name) for name in _names(part)}
-        (part / CONTENT).write_text(json.dumps(files, indent=0))
+        (part / CONTENT).write_text(json.dumps(files, indent=0), encoding="utf-8")
         if folder.exists() and not _sound(folder):
             with part_folder(folder.parent) as damaged, contextlib.suppress(FileNotFoundError):
                 folder.rename(damaged / folder.name)
@@ -77,7 +77,7 @@ def _state(file: Path) -> str:
 def _sound(folder: Path) -> bool:
     """Whether every file that was made in ``folder`` is as it was; what was added later does not count."""
     try:
-        files = json.loads((folder / CONTENT).read_text())
+        files = json.loads((folder / CONTENT).read_text(encoding="utf-8"))
         return all(kept in (state := _state(folder / name), state.removesuffix(RUNS)) for name, kept in files.items())
     except (OSError, ValueError, AttributeError):
         return False

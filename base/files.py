@@ -155,7 +155,7 @@ def marked(document: Path | str, mark: str) -> tuple[str, str, str, str]:
     """The text before such a place, both comments, the text after. Raises ParameterError as `insert`, OSError."""
     first, last = f"<!-- {mark} -->\n", f"<!-- end of {mark} -->"
     try:
-        before, found, rest = Path(document).read_text().partition(first)
+        before, found, rest = Path(document).read_text(encoding="utf-8").partition(first)
     except UnicodeDecodeError:
         raise ParameterError(f"document = {document}: must be a text file") from None
     _, ends, after = rest.partition(last)

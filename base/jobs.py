@@ -88,7 +88,7 @@ def run(jobs: Iterable[Job], store: Path | str, title: str, workers: int = -1) -
 def kept(file: Path) -> list[Any]:
     """The one value of a JSON file; [] where there is no file, or not the whole of one."""
     try:
-        return [json.loads(file.read_text())]
+        return [json.loads(file.read_text(encoding="utf-8"))]
     except (FileNotFoundError, ValueError):
         return []
 

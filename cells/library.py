@@ -50,7 +50,7 @@ def characterize_library(
     entries = [build.Entry(cell, m, s.area) for cell, m, s in zip(cells, measured, found, strict=True)]
     tree = build.library(f"{title}__{corner}", c, entries, process, {} if wanted else sources.constants(library))
     with staged(folder) as part:
-        (part / f"{corner}.lib").write_text(text(tree))
+        (part / f"{corner}.lib").write_text(text(tree), encoding="utf-8")
         summary = _summary(measured, tree) | (
             compare.summary(compare.library(tree, known), process.FITTED) if known else {}
         )
@@ -60,9 +60,9 @@ def characterize_library(
         summary["problems"] += [f"{tool}: {said}" for tool, said in read_by.items() if said not in accept.GOOD]
         corners = _corners(folder) | {corner: dict(summary)}
         for suffix, content in sources.files(library, {n for s in corners.values() for n in s["names"]}).items():
-            (part / f"{title}.{suffix}").write_text(content)
+            (part / f"{title}.{suffix}").write_text(content, encoding="utf-8")
         every = {"corner": corner, **summary, "corners": corners}
-        (part / "summary.json").write_text(json.dumps(every, indent=1) + "\n")
+        (part / "summary.json").write_text(json.dumps(every, indent=1) + "\n", encoding="utf-8")
     _keep_failed(folder / "failed" / corner, measured)
     return summary
 
@@ -87,7 +87,7 @@ def _has_models(cell: Cell, process: ModuleType, conditions: Conditions) -> None
 def _corners(folder: Path) -> dict[str, dict[str, Any]]:
     """Summaries of the corners of earlier runs whose library is still in the folder."""
     try:
-        known = json.loads((folder / "summary.json").read_text()).get("corners", {})
+        known = json.loads((folder / "summary.json").read_text(encoding="utf-8")).get("corners", {})
     except (OSError, ValueError):
         return {}
     return {name: summary for name, summary in known.items() if (folder / f"{name}.lib").exists()}

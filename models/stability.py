@@ -268,7 +268,7 @@ def _pictures() -> list[Case]:
             path = Path(folder) / "picture.tif"
             Image.fromarray(pixels).save(path)
             out.append(_refused(f"picture: {name} in a pixel", str(path)))
-        (Path(folder) / "text.png").write_text("no picture")
+        (Path(folder) / "text.png").write_text("no picture", encoding="utf-8")
         out.append(_refused("picture: not an image", str(Path(folder) / "text.png")))
         out.append(_refused("picture: no such file", str(Path(folder) / "none.png")))
     return out

@@ -109,7 +109,7 @@ def write(out: str | Path, made: Iterable[Block], pdk: str, supply_um: float) ->
     """Write <block>.lef and <block>.gds of every block into ``out``."""
     with staged(out) as part:
         for block in made:
-            (part / f"{block.name}.lef").write_text(lef(block, pdk, supply_um))
+            (part / f"{block.name}.lef").write_text(lef(block, pdk, supply_um), encoding="utf-8")
             write_gds(black_box(block, pdk, supply_um), part / f"{block.name}.gds")
 
 

@@ -34,7 +34,7 @@ class Netlist:
         with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
             out = Path(folder) / "netlist.json"
             run(["yosys", "-q", "-p", SCRIPT.format(path=path, top=top, prepare=prepare, out=out)])
-            module = json.loads(out.read_text())["modules"][top]
+            module = json.loads(out.read_text(encoding="utf-8"))["modules"][top]
         self.readers: dict[int, list[Reader]] = {}
         self.nets: dict[str, list[int]] = {name: net["bits"] for name, net in module["netnames"].items()}
         public = sorted(self.nets, key=lambda name: (not module["netnames"][name]["hide_name"], -len(name)))

@@ -29,8 +29,8 @@ BY_NAME = *PARTS, *PACKERS, *WRAPPERS
 def translate(name: str, sensor: SensorParameters) -> str:
     """The Verilog of top, part, packer or wrapper ``name`` for ``sensor``, as text. Raises ParameterError."""
     if name in WRAPPERS:
-        own = (WRAPPER / f"{name}.v").read_text()
-        bus = [(WRAPPER / f"{BUS}.v").read_text()] if BUS in own else []
+        own = (WRAPPER / f"{name}.v").read_text(encoding="utf-8")
+        bus = [(WRAPPER / f"{BUS}.v").read_text(encoding="utf-8")] if BUS in own else []
         return "\n".join((own, *bus, translate(WRAPPERS[name], sensor)))
     return translate_component(build_top(name, sensor), name)
 

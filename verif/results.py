@@ -184,4 +184,6 @@ class BlockResults:
 def write_step(step: str, by_block: dict[str, BlockResults], out: Path = OUT) -> None:
     """Write <step>.json into folder ``out``."""
     with staged(out) as part:
-        (part / f"{step}.json").write_text(json.dumps(by_block, indent=1, allow_nan=False, default=asdict) + "\n")
+        (part / f"{step}.json").write_text(
+            json.dumps(by_block, indent=1, allow_nan=False, default=asdict) + "\n", encoding="utf-8"
+        )

@@ -17,7 +17,7 @@ _CELL = re.compile(r'^[ \t]*cell\s*\(\s*"?([\w.$]+)"?\s*\)\s*\{', re.M)
 
 def read(path: str | Path) -> Group:
     """The outermost group of a Liberty file. Raises ParameterError naming what is wrong."""
-    return parse(Path(path).read_text(), str(path))
+    return parse(Path(path).read_text(encoding="utf-8"), str(path))
 
 
 def parse(text: str, origin: str = "liberty") -> Group:
@@ -36,12 +36,12 @@ def parse(text: str, origin: str = "liberty") -> Group:
 
 def is_library(path: Path) -> bool:
     """Whether a file begins as a Liberty file does, after comments: library (...)."""
-    return bool(_LIBRARY.match(path.read_text(errors="replace")[:10_000]))
+    return bool(_LIBRARY.match(path.read_text(encoding="utf-8", errors="replace")[:10_000]))
 
 
 def is_whole(path: Path) -> bool:
     """Whether a file ends as a Liberty file does, before comments: with a brace."""
-    return bool(_END.search(path.read_text(errors="replace")[-1_000:]))
+    return bool(_END.search(path.read_text(encoding="utf-8", errors="replace")[-1_000:]))
 
 
 def areas(path: Path) -> dict[str, float]:

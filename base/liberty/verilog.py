@@ -14,4 +14,6 @@ def write_models(liberty: Path, verilog: Path, options: str = "") -> None:
     Raises ToolError.
     """
     run(["yosys", "-q", "-p", f"read_liberty {options} {liberty}; proc; write_verilog -noattr {verilog}"])
-    verilog.write_text(re.sub(r"(?m)^(  reg \w+);$", r"\1 = 1'($random);", verilog.read_text()))
+    verilog.write_text(
+        re.sub(r"(?m)^(  reg \w+);$", r"\1 = 1'($random);", verilog.read_text(encoding="utf-8")), encoding="utf-8"
+    )

@@ -56,14 +56,14 @@ def refresh(folder: Path) -> Path:
     for card in told_apart(cards(folder)):
         groups.setdefault(card.href.partition("/")[0], []).append(card)
     path, text = folder / NAME, render(FOLDER / "index.html", "Talbot: results", listed=False, groups=groups)
-    if groups and not path.is_file() or path.is_file() and path.read_text(errors="replace") != text:
+    if groups and not path.is_file() or path.is_file() and path.read_text(errors="replace", encoding="utf-8") != text:
         write(path, text)
     return path
 
 
 def read(path: Path, folder: Path) -> Card | None:
     """The card of a page below ``folder``, None where it has none."""
-    with path.open(errors="replace") as file:
+    with path.open(encoding="utf-8", errors="replace") as file:
         found = CARD.search(file.read(HEAD))
     if not found:
         return None

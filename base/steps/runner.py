@@ -58,7 +58,7 @@ class Runner:
             raise StepError(f"{step.name}: nothing gives its input {', '.join(missing)}")
         made = self._made(step, self.paths)
         self.paths |= _outputs(step, made)
-        self.records[step.name] = json.loads((made / RECORD).read_text())
+        self.records[step.name] = json.loads((made / RECORD).read_text(encoding="utf-8"))
         return self.records[step.name]
 
     def _made(self, step: Step[Any], paths: Mapping[str, Path], nice: int = 0) -> Path:
@@ -87,7 +87,7 @@ class Runner:
                 "tools": tools,
                 "inputs": hashes,
             }
-            (part / RECORD).write_text(json.dumps(record, indent=1, default=str) + "\n")
+            (part / RECORD).write_text(json.dumps(record, indent=1, default=str) + "\n", encoding="utf-8")
             self.note(ended(step.name, record["wall_s"]))
 
         with self._running[step.name]:  # a second one that asks for it waits

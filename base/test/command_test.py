@@ -40,7 +40,9 @@ def test_an_unforeseen_exception_is_one_line_status_3_and_a_traceback_in_a_file(
     path = Path(re.search(r"its traceback is in (\S+);", line)[1])
     assert found == 3 and line.startswith("talbot: error: internal: KeyError: 'no\\nsuch'; ") and "CONTRIBUTING" in line
     assert path.parent == tmp_path / ("build" if checkout else "tmp")
-    assert "Traceback" in path.read_text() and "in run\n    raise error" in path.read_text()
+    assert "Traceback" in path.read_text(encoding="utf-8") and "in run\n    raise error" in path.read_text(
+        encoding="utf-8"
+    )
 
 
 def test_the_traceback_comes_where_no_folder_takes_it(status, tmp_path, monkeypatch):
@@ -78,7 +80,7 @@ def test_a_full_disk_is_named_and_what_to_free(status, monkeypatch, tmp_path, er
 
 
 def test_a_full_disk_behind_standard_output(status, monkeypatch):
-    with open("/dev/full", "w") as full:
+    with open("/dev/full", "w", encoding="utf-8") as full:
         monkeypatch.setattr(sys, "stdout", full)
         full.write("x")
         found, (line,) = status(OSError(errno.ENOSPC, "No space left on device"))

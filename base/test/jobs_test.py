@@ -14,7 +14,7 @@ from talbot.models.parameters import ParameterError
 def square(number, log):
     if number < 0:
         raise ValueError("negative")
-    with Path(log).open("a") as file:
+    with Path(log).open("a", encoding="utf-8") as file:
         file.write(f"{number}\n")
     return {"square": number * number}
 

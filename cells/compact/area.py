@@ -38,7 +38,7 @@ def mapped(verilog: str, top: str, liberty: str) -> Mapped:
             f"abc -liberty {liberty}; opt_clean -purge; tee -q -o {report} stat -json"
         )
         tools.run(["yosys", "-q", "-p", script])
-        cells = json.loads(report.read_text())["design"]["num_cells_by_type"]
+        cells = json.loads(report.read_text(encoding="utf-8"))["design"]["num_cells_by_type"]
     area = areas(Path(liberty))
     if left := sorted(cells.keys() - area.keys()):
         raise tools.ToolError(f"yosys: {top}: cells {', '.join(left)} are missing in {liberty}")
@@ -78,7 +78,7 @@ def run(options: Namespace) -> int:
         raise ParameterError(f"liberty = {ours}: must be a file (talbot cells-compact)")
     STORE.mkdir(parents=True, exist_ok=True)
     theirs = STORE / "sky130_fd_sc_hd.lib"
-    theirs.write_text(liberty())
+    theirs.write_text(liberty(), encoding="utf-8")
     found = compare(options.verilog, options.blocks.split(","), ours, theirs)
     total = [sum(pair[k]["um2"] for pair in found.values()) for k in (0, 1)]
     text = f"{_blocks(found, total)}\n\n{_cells(found, 0, ours)}\n\n{_cells(found, 1, theirs)}"

@@ -23,7 +23,7 @@ def run(options: Namespace) -> int:
         gds = written(options.out)
     except NoLayout as error:
         return failures([str(error)])
-    names = list(json.loads(gds.with_name("areas.json").read_text()))
+    names = list(json.loads(gds.with_name("areas.json").read_text(encoding="utf-8")))
     print(f"{len(names)} cells in {options.out}")
     if options.no_check:
         return 0

@@ -40,7 +40,7 @@ class Recipe:
 
 def recipe(name: str) -> Recipe | None:
     """The Recipe kept for cell ``name``, or None."""
-    kept = json.loads(RECIPES.read_text()).get(name)
+    kept = json.loads(RECIPES.read_text(encoding="utf-8")).get(name)
     return Recipe(kept[0], kept[1], kept[2], tuple(kept[3])) if kept else None
 
 

@@ -44,7 +44,7 @@ def run(options: Namespace) -> int:
     rest = first, last, not scratch
     todo = [jobs.Job(f"{name}.{suffix}", best, (name, *rest), (recipe(name), Canvas())) for name in names]
     found = jobs.run(todo, "build/cells/compact/search", "cells searched", options.workers)
-    kept = json.loads(RECIPES.read_text())
+    kept = json.loads(RECIPES.read_text(encoding="utf-8"))
     better = {name: made for name, made in zip(names, found, strict=True) if made}
     for name, (sites, met1, seed, _) in better.items():
         was = kept.get(name, ["none"])[0]

@@ -54,11 +54,11 @@ def written(folder: str | Path = FOLDER, canvas: Canvas | None = None) -> Path:
     """The library's GDS in ``folder``; all files are written there unless they are of this code and ``canvas``."""
     canvas, folder = canvas or Canvas(), Path(folder)
     stamp, mark = digest(code(__name__), canvas), folder / "content"
-    if not (mark.exists() and mark.read_text() == stamp):
+    if not (mark.exists() and mark.read_text(encoding="utf-8") == stamp):
         drawn = library(canvas, folder / "drawn")
         with staged(folder) as part:
             write(drawn, canvas, part)
-            (part / mark.name).write_text(stamp)
+            (part / mark.name).write_text(stamp, encoding="utf-8")
     return folder / "compact.gds"
 
 
@@ -73,16 +73,18 @@ def write(made: Any, canvas: Canvas, folder: Path) -> None:
 
     export_gds(made, folder / "compact.gds", canvas)
     factory = SpiceNetlistFactory(params=prims_spiceparams)
-    (folder / "compact.spi").write_text("".join(factory.export_circuit(cell.circuit) for cell in made.cells))
+    (folder / "compact.spi").write_text(
+        "".join(factory.export_circuit(cell.circuit) for cell in made.cells), encoding="utf-8"
+    )
     schematics: list[Schematic] = [cell.schematic for cell in made.cells]
-    (folder / "compact.v").write_text(verilog(schematics))
+    (folder / "compact.v").write_text(verilog(schematics), encoding="utf-8")
     areas = {cell.name: cell.drawing["width"] * canvas.height for cell in made.cells}
-    (folder / "compact.lib").write_text(liberty(schematics, areas))
+    (folder / "compact.lib").write_text(liberty(schematics, areas), encoding="utf-8")
     gds, tech = folder / "compact.gds", extraction_platform("sky130")
     macros = (abstract(gds, schematic.name, tech, _pins(schematic), SITE) for schematic in schematics)
-    (folder / "compact.lef").write_text(lef_library(SITE, canvas.site, canvas.height, macros))
+    (folder / "compact.lef").write_text(lef_library(SITE, canvas.site, canvas.height, macros), encoding="utf-8")
     rounded = {name: round(area, 4) for name, area in areas.items()}
-    (folder / "areas.json").write_text(json.dumps(rounded, indent=1) + "\n")
+    (folder / "areas.json").write_text(json.dumps(rounded, indent=1) + "\n", encoding="utf-8")
     _exports(made, folder / "decks", folder / "coriolis" / "compact")
 
 
@@ -124,15 +126,15 @@ def _exports(made: Any, decks: Path, package: Path) -> None:
     texts = klayout.FileExporter(tech=tech, gds_layers=gds_layers, prims_spiceparams=prims_spiceparams)()
     for folder in (decks, package):
         folder.mkdir(parents=True)
-    texts["drc"] += PLATFORM.masks.read_text() if PLATFORM.masks else ""
+    texts["drc"] += PLATFORM.masks.read_text(encoding="utf-8") if PLATFORM.masks else ""
     for kind in ("drc", "lvs"):
-        (decks / f"sky130.{kind}").write_text(texts[kind])
+        (decks / f"sky130.{kind}").write_text(texts[kind], encoding="utf-8")
     spec = coriolis.CoriolisExportSpec(globalnets=("vdd", "vss"), net_direction_cb=_direction)
     exporter = coriolis.FileExporter(tech=tech, gds_layers=gds_layers, spec=spec)
-    (package / "techno.py").write_text(exporter())
-    (package / f"{NAME}.py").write_text(exporter(made))
-    (package / f"{NAME}_fix.py").write_text(BLOCKAGES)
-    (package / "__init__.py").write_text("")
+    (package / "techno.py").write_text(exporter(), encoding="utf-8")
+    (package / f"{NAME}.py").write_text(exporter(made), encoding="utf-8")
+    (package / f"{NAME}_fix.py").write_text(BLOCKAGES, encoding="utf-8")
+    (package / "__init__.py").write_text("", encoding="utf-8")
 
 
 def _direction(net: str) -> str:

@@ -51,7 +51,7 @@ def _schematic_ports(gds: Path, name: str) -> list[str]:
     for suffix in (".spice", ".spi"):
         beside = gds.with_suffix(suffix)
         if beside.exists():
-            for line in beside.read_text().replace("\n+", " ").splitlines():
+            for line in beside.read_text(encoding="utf-8").replace("\n+", " ").splitlines():
                 words = line.split()
                 if words[:1] and words[0].lower() == ".subckt" and words[1] == name:
                     return [word for word in words[2:] if "=" not in word]

@@ -15,7 +15,7 @@ def readers(path: str | Path) -> dict[str, str]:
     path = Path(path).absolute()
     with tempfile.TemporaryDirectory() as folder:
         script = Path(folder) / "read.tcl"
-        script.write_text(f"read_liberty {{{path}}}\nexit\n")
+        script.write_text(f"read_liberty {{{path}}}\nexit\n", encoding="utf-8")
         yosys, opensta = (
             ["yosys", "-q", "-p", f"read_liberty {path}"],
             ["sta", "-no_splash", "-no_init", "-exit", str(script)],

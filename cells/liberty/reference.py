@@ -31,7 +31,7 @@ def folder(path: str | Path, corner: str) -> dict[str, Group]:
 def cell(path: str | Path) -> Group:
     """The group 'cell' of one file. Raises ParameterError."""
     try:
-        return _group("cell", (_short(Path(path).name),), json.loads(Path(path).read_text()))
+        return _group("cell", (_short(Path(path).name),), json.loads(Path(path).read_text(encoding="utf-8")))
     except (ValueError, AttributeError, RecursionError) as error:
         raise ParameterError(f"reference = {path}: is not a cell in SkyWater's JSON ({error})") from None
 

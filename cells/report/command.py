@@ -48,9 +48,9 @@ def run(options: Namespace) -> int:
     picture = pictures.error_against_time(found, curve.DEFAULT)
     page |= {"curve": found, "curve_picture": picture, "off_grid": curve.by_cell(measured)}
     with staged(options.out) as part:
-        (part / "index.html").write_text(html(page))
+        (part / "index.html").write_text(html(page), encoding="utf-8")
         figures = {name: page.get(name) for name in ("tables", "curve", "off_grid", "variants", "alone")}
-        (part / "report.json").write_text(json.dumps(figures, indent=1) + "\n")
+        (part / "report.json").write_text(json.dumps(figures, indent=1) + "\n", encoding="utf-8")
     for title, kinds in page["tables"].items():
         print(f"{options.corners}, {title}")
         for kind, e in kinds.items():

@@ -153,7 +153,9 @@ class Simulator:
             return self._child
         self._stop()
         file = self._folder / "deck.sp"
-        file.write_text("\n".join([*self._deck(settings, run, dict.fromkeys(self.outputs, 1e-15)), ".end", ""]))
+        file.write_text(
+            "\n".join([*self._deck(settings, run, dict.fromkeys(self.outputs, 1e-15)), ".end", ""]), encoding="utf-8"
+        )
         command, env = ["ngspice", "-n", "-p", file], of_tools({"OMP_NUM_THREADS": "1", "OMP_THREAD_LIMIT": "1"})
         try:
             self._child = Popen(
@@ -221,7 +223,7 @@ def _command(child: Popen[bytes], text: str, timeout: float) -> str:
 def _cpu_seconds(pid: int) -> float:
     """CPU seconds that a process has used; the clock's seconds where the system has no /proc."""
     try:
-        fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+        fields = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8", errors="replace").rpartition(")")[2].split()
     except OSError:
         return time.monotonic()
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")

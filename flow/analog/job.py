@@ -148,7 +148,7 @@ def make(
     }
     with staged(out, page.NAMES) as folder:
         page.write(folder, summary, rows, found)
-        (folder / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n")
+        (folder / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n", encoding="utf-8")
     if table:
         write(table, json.dumps(summary["converter"], indent=1, allow_nan=False) + "\n")
     return summary

@@ -60,7 +60,7 @@ def write(folder: Path, summary: dict[str, Any], rows: list[Row], found: Found) 
             ),
         ],
     )
-    (folder / "datasheet.html").write_text(text)
+    (folder / "datasheet.html").write_text(text, encoding="utf-8")
 
 
 def _size(name: str, value: object) -> str:

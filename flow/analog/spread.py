@@ -112,7 +112,7 @@ def _rms(
     ]
     with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
         file = Path(folder) / "deck.sp"
-        file.write_text("\n".join([*lines, ""]))
+        file.write_text("\n".join([*lines, ""]), encoding="utf-8")
         done = finish(["ngspice", "-n", "-b", file], env={"OMP_NUM_THREADS": "1"})
     found = re.search(r"onoise_total = (\S+)", done.stdout)
     if not found:

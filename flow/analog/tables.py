@@ -74,7 +74,7 @@ def swept(process: ModuleType, role: str, length: float) -> npt.NDArray[np.float
             ".endc",
             ".end",
         ]
-        deck.write_text("\n".join([*lines, ""]))
+        deck.write_text("\n".join([*lines, ""]), encoding="utf-8")
         done = finish(["ngspice", "-n", "-b", deck], env={"OMP_NUM_THREADS": "1"})
         if not found.exists():
             raise ToolError(f"ngspice: no table of {role}: {(done.stdout + done.stderr).strip()[-400:]}")

@@ -17,7 +17,7 @@ def decks(pdk: str) -> tuple[str, str]:
     """The decks of design rules and of LVS, text. Raises StepError where PDKMaster's are not as they were."""
     masks = analog_masks(pdk)
     rules, lvs = common_decks(pdk)
-    text = "\n".join([*rules, masks.rules.read_text(), masks.thick.read_text(), ""])
+    text = "\n".join([*rules, masks.rules.read_text(encoding="utf-8"), masks.thick.read_text(encoding="utf-8"), ""])
     text = without_rules(text, masks.contradicted)
     for line, other in masks.connections.items():
         if lvs.count(f"\n{line}\n") != 1:
@@ -26,7 +26,7 @@ def decks(pdk: str) -> tuple[str, str]:
     first = "extract_devices("
     if first not in lvs or lvs.count(ALIGN) != 1:
         raise StepError("lvs: the deck has no extract_devices, or no single line 'align'")
-    lvs = lvs.replace(first, masks.lvs.read_text() + first, 1)
+    lvs = lvs.replace(first, masks.lvs.read_text(encoding="utf-8") + first, 1)
     return text, lvs.replace(ALIGN, f"{ALIGN}netlist.simplify\nschematic.simplify\n")
 
 

@@ -101,7 +101,7 @@ def make(
         for name, cell in drawn.items():
             write_gds(cell.layout, folder / f"{name}.gds", cell.cell)
         for name, block in blocks.items():
-            (folder / f"{name}.lef").write_text(block.lef(masks))
+            (folder / f"{name}.lef").write_text(block.lef(masks), encoding="utf-8")
         note("drc")
         rules = {name: drc(folder / f"{name}.gds", pdk, folder / f"{name}.lyrdb") for name in drawn}
         note("lvs")
@@ -114,7 +114,9 @@ def make(
         found = {name: _extracted(made, masks, name) for name in dict.fromkeys(wire_corner(c) for c in corners)}
         typical = found[wire_corner(corners[0])]
         for name, (circuit, _) in typical.items():
-            (folder / f"{name}.extracted.spice").write_text("\n".join([*circuit.lines(process_of(pdk)), ""]))
+            (folder / f"{name}.extracted.spice").write_text(
+                "\n".join([*circuit.lines(process_of(pdk)), ""]), encoding="utf-8"
+            )
         note("measure")
         rows = list(_array(typical["sar_lane"][1], masks, sizes, setup.spec))
         rows += amplifier.capacitors(made["amplifier"], typical["amplifier"][1], masks, spec)
@@ -136,7 +138,7 @@ def make(
         }
         note("report")
         page.write(folder, summary, masks.base)
-        (folder / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n")
+        (folder / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n", encoding="utf-8")
     if table:
         text = {"command": f"make analog-layout, {corners[0]}", **_table(setup, sizes, typical, corners[0], workers)}
         write(table, json.dumps(text, indent=1) + "\n")

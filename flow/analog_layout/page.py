@@ -90,7 +90,7 @@ def write(folder: Path, s: dict[str, Any], process: PixelProcess) -> None:
             ),
         ],
     )
-    (folder / "analog_layout.html").write_text(text)
+    (folder / "analog_layout.html").write_text(text, encoding="utf-8")
 
 
 def picture(gds: Path, process: PixelProcess) -> Figure:

@@ -41,7 +41,7 @@ def write(out: Path, pdk: str) -> None:
     masks = analog_masks(pdk)
     with staged(out) as part:
         for name, block in drawn_blocks(pdk).items():
-            (part / f"{name}.lef").write_text(block.lef(masks))
+            (part / f"{name}.lef").write_text(block.lef(masks), encoding="utf-8")
             write_gds(block.layout, part / f"{name}.gds", block.cell)
             report = part / f"{name}.lvsdb"
             if not lvs(part / f"{name}.gds", block.spice(masks), pdk, report, block.boxes):

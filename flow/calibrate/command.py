@@ -43,7 +43,7 @@ def run(options: Namespace) -> int:
         with staged(asked.folder, page.NAMES) as part:
             page.write(part, done)
             summary = done.summary | {"arguments": typed}
-            (part / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n")
+            (part / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n", encoding="utf-8")
     _print(done.summary, asked.folder)
     return 0
 

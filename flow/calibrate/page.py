@@ -24,7 +24,7 @@ def write(folder: Path, done: Calibrated) -> None:
     """Write everything but summary.json into ``folder``, which exists."""
     s, sweep = done.summary, done.sweep
     table = done.calibration.table
-    (folder / "calibration.json").write_text(json.dumps(table, indent=1, allow_nan=False) + "\n")
+    (folder / "calibration.json").write_text(json.dumps(table, indent=1, allow_nan=False) + "\n", encoding="utf-8")
     np.savez(folder / "sweep.npz", holes=sweep.holes, diodes=sweep.diodes, places=sweep.places, gains=sweep.gains)
     text = render(
         TABLES,
@@ -47,7 +47,7 @@ def write(folder: Path, done: Calibrated) -> None:
             Section("Pixel types", head=HEAD, rows=[_row(i, kind) for i, kind in enumerate(s["types"])]),
         ],
     )
-    (folder / "calibrate.html").write_text(text)
+    (folder / "calibrate.html").write_text(text, encoding="utf-8")
 
 
 def picture_rows(s: dict[str, Any]) -> list[tuple[str, ...]]:

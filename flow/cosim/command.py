@@ -84,7 +84,7 @@ def run(options: Namespace) -> int:
         steps.note("report")
         with staged(out, page.names(MODES)) as part:
             page.write(part, done, found)
-            (part / "summary.json").write_text(json.dumps(found, indent=1, allow_nan=False) + "\n")
+            (part / "summary.json").write_text(json.dumps(found, indent=1, allow_nan=False) + "\n", encoding="utf-8")
     _print(found, out)
     missed = [line for line in found["faults"] if line["planted"] != line["name"]]
     return int(bool(missed) or any(row["beyond"] for row in found["rows"]))

@@ -129,8 +129,10 @@ def _run(
         seconds = timing.period, timing.edge, accuracy.step, max_cycles * timing.period, timing.high
         head = " ".join(f"{one:.9g}" for one in seconds)
         for k, deck in enumerate(decks):
-            (folder / f"deck.{k}").write_text("\n".join([*deck.lines, ""]))
-            (folder / f"drive.{k}").write_text("\n".join([f"{head} {','.join(deck.answers)}", *deck.drive, ""]))
+            (folder / f"deck.{k}").write_text("\n".join([*deck.lines, ""]), encoding="utf-8")
+            (folder / f"drive.{k}").write_text(
+                "\n".join([f"{head} {','.join(deck.answers)}", *deck.drive, ""]), encoding="utf-8"
+            )
         begun = any(deck.flat or any(line.startswith(".ic ") for line in deck.lines) for deck in decks)
         more = [f"+{file}={folder / file}" for file in ("deck", "drive", "cycles", "points", "lockstep")]
         more += [f"+parts={len(decks)}", *(["+whole=1"] if whole else []), *(["+uic=1"] if begun else [])]
@@ -139,7 +141,7 @@ def _run(
                 *(binary, folder / "samples", folder / "converter", script), max_cycles=max_cycles, more=more
             )
         parts = [_points(folder / f"points.{k}", deck.lanes) for k, deck in enumerate(decks)]
-        spent = [json.loads((folder / f"lockstep.{k}").read_text()) for k in range(len(decks))]
+        spent = [json.loads((folder / f"lockstep.{k}").read_text(encoding="utf-8")) for k in range(len(decks))]
         stats = spent[0] | {"seconds": max(one["seconds"] for one in spent)}
         stats |= {name: sum(one[name] for one in spent) for name in ("processor_seconds", "accepted", "rejected")}
         cycles = [_cycles(folder / f"cycles.{k}", len(deck.answers)) for k, deck in enumerate(decks)]

@@ -39,7 +39,7 @@ def write(folder: Path, rows: Sequence[Row], s: Mapping[str, Any]) -> None:
     text = render(
         TABLES, "The chip's Verilog and a circuit in lock-step", about=_about(s), tiles=_tiles(s), sections=sections
     )
-    (folder / PAGE).write_text(text)
+    (folder / PAGE).write_text(text, encoding="utf-8")
 
 
 HEAD = ("", "samples", "codes that differ", "largest, LSB", "at the lane, LSB", "decisions", "that differ")

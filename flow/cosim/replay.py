@@ -73,7 +73,7 @@ def replay(deck: Deck, run: Run, lanes: int, tile_cols: int, timing: Timing, acc
     tran = f".tran {accuracy.step:.6g} {stop:.9g} 0 {accuracy.step:.6g}"
     with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
         file, raw = Path(folder) / "deck.sp", Path(folder) / "deck.raw"
-        file.write_text("\n".join([*rest[:-1], *sources, tran, ".end", ""]))
+        file.write_text("\n".join([*rest[:-1], *sources, tran, ".end", ""]), encoding="utf-8")
         start = perf_counter()
         done = finish(["ngspice", "-n", "-b", "-r", raw, file], env={"OMP_NUM_THREADS": "1"})
         seconds = perf_counter() - start

@@ -20,7 +20,7 @@ def write_vcd(path: Path, run: Run, period: float) -> None:
     names += [(f"lane{i}", "model_held", 0) for i in range(lanes)]
     names += [("circuit", node.replace(".", "_"), 0) for node in run.waves]
     ids = {(scope, name): f"s{i}" for i, (scope, name, _) in enumerate(names)}
-    with path.open("w") as file:
+    with path.open("w", encoding="utf-8") as file:
         _head(file, names, ids)
         for time, changes in _merged(run, period, lanes, ids):
             file.write(f"#{round(time / TICK)}\n" + "".join(changes))

@@ -56,7 +56,7 @@ def write(folder: Path, found: Depth) -> None:
         tiles=_headline(s),
         sections=groups,
     )
-    (folder / "depth.html").write_text(text)
+    (folder / "depth.html").write_text(text, encoding="utf-8")
 
 
 def rows(s: dict[str, Any]) -> list[tuple[str, ...]]:

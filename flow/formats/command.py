@@ -52,9 +52,11 @@ def run(options: Namespace) -> int:
         write_csv(part / "formats.csv", rows)
         if beside:
             write_csv(part / "company.csv", beside)
-        (part / "formats.md").write_text(f"# Token formats and scan orders\n\n{text}\n{lines(in_company)}")
+        (part / "formats.md").write_text(
+            f"# Token formats and scan orders\n\n{text}\n{lines(in_company)}", encoding="utf-8"
+        )
         save(chart(rows), part / "formats.png")
-        (part / "report.html").write_text(page([*found, *in_company], chart(rows), source))
+        (part / "report.html").write_text(page([*found, *in_company], chart(rows), source), encoding="utf-8")
     if options.document:
         insert(options.document, MARKS[0], text)
         if beside:

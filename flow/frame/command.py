@@ -168,7 +168,7 @@ def tell_replaced(before: dict[str, Any] | None, typed: dict[str, Any]) -> None:
 def arguments_of(folder: Path) -> dict[str, Any] | None:
     """The arguments of the run whose results are in ``folder``, None where there is none."""
     try:
-        found = json.loads((folder / "summary.json").read_text())["arguments"]
+        found = json.loads((folder / "summary.json").read_text(encoding="utf-8"))["arguments"]
         return found if found["scene"] else None
     except (OSError, ValueError, LookupError, TypeError):
         return None

@@ -207,5 +207,5 @@ def run(
             summary = summarize(result)
             summary |= {"wall_s": clock.seconds, "arguments": dict(arguments or {})}
             outputs.write(folder, result, summary)
-        (folder / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n")
+        (folder / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n", encoding="utf-8")
     return summary

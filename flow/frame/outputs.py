@@ -36,7 +36,7 @@ def write(folder: Path, result: FrameResult, summary: dict[str, Any]) -> None:
     """Write everything but summary.json into ``folder``, which exists."""
     (folder / "stream.bin").write_bytes(result.chip.stream)
     result.decoded.save(folder / "decoded.npz")
-    (folder / "sensor.toml").write_text(sensor_text(result.request.sensor))
+    (folder / "sensor.toml").write_text(sensor_text(result.request.sensor), encoding="utf-8")
     singles, errors, sheets = shown(result, summary), error_maps(result, summary), _sheets(result)
     for picture in (*singles, *errors, *sheets):
         picture.image.save(folder / f"{picture.name}.png")
@@ -48,7 +48,7 @@ def write(folder: Path, result: FrameResult, summary: dict[str, Any]) -> None:
     curves = error_plots.figures(result, summary)
     every = [picture for single in singles for picture in (single, *(e for e in errors if e.title == single.name))]
     page = render(summary, every, chip, sheets, _views(fields), _where(summary), curves, assumptions(result))
-    (folder / "report.html").write_text(page)
+    (folder / "report.html").write_text(page, encoding="utf-8")
 
 
 def shown(result: GoldenResult, summary: dict[str, Any]) -> list[Picture]:

@@ -112,7 +112,7 @@ def run(
         summary = done.summary | {"arguments": dict(arguments)}
         with staged(request.folder, page.NAMES) as part:
             page.write(part, done)
-            (part / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n")
+            (part / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n", encoding="utf-8")
     show(summary, request.folder)
     tell_replaced(before, dict(arguments))
     return int(differs(summary))

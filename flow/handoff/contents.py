@@ -44,7 +44,7 @@ class Broken(RuntimeError):
 
 def waived(design: Design, path: Path = WAIVERS) -> list[dict[str, str]]:
     """Waivers of a design, each with design, rule and reason. Raises ParameterError for one without a reason."""
-    found = [waiver for waiver in json.loads(Path(path).read_text()) if waiver["design"] == design.name]
+    found = [waiver for waiver in json.loads(Path(path).read_text(encoding="utf-8")) if waiver["design"] == design.name]
     for waiver in found:
         if not waiver.get("reason"):
             raise ParameterError(f"waiver of {waiver['rule']} = no reason: must have one")
@@ -65,11 +65,11 @@ def contents(
         **{f"{place}/{design.name}.{suffix}": folder / f"{design.name}.{suffix}" for suffix, place in REQUIRED.items()},
     }
     if (page := sources["reports/report.html"]).is_file():
-        sources |= {f"reports/{name}": folder / name for name in SHOWN.findall(page.read_text())}
+        sources |= {f"reports/{name}": folder / name for name in SHOWN.findall(page.read_text(encoding="utf-8"))}
     if missing := sorted(str(path.relative_to(folder)) for path in sources.values() if not path.is_file()):
         must = f"must be a finished layout (make layout DESIGN={design.name})"
         raise ParameterError(f"{folder} = without {', '.join(missing)}: {must}")
-    summary = json.loads(sources["reports/summary.json"].read_text())
+    summary = json.loads(sources["reports/summary.json"].read_text(encoding="utf-8"))
     rules = {waiver["rule"] for waiver in waivers}
     if lines := [line for line in broken(summary) if line.partition(" = ")[0] not in rules]:
         raise Broken("\n".join(lines))

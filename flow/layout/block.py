@@ -87,7 +87,7 @@ def draw(folder: Path, name: str, runner: Runner, options: Options) -> list[Pict
     if f"{step}.netlist" not in runner.paths or f"ir_drop_{first}.picture" not in runner.paths:
         return []
     keys = f"{step}.placement", "library.areas", "floorplan.floorplan"
-    placement, areas, plan = (json.loads(runner.paths[key].read_text()) for key in keys)
+    placement, areas, plan = (json.loads(runner.paths[key].read_text(encoding="utf-8")) for key in keys)
     netlist, tech = Netlist.read(runner.paths[f"{step}.netlist"]), coriolis_platform(options.pdk)
     file = f"{name}.blocks.png"
     by_block(folder / file, netlist, placement["instances"], areas, tech, blocks(netlist), plan)

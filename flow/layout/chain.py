@@ -63,7 +63,7 @@ def input_files(design: Design, options: Options, folder: Path) -> dict[str, Pat
     """
     export_verilog(folder / "rtl", [design.top], design.options)
     constraints = folder / "rtl" / f"{design.top}.sdc"
-    constraints.write_text(sdc(design))
+    constraints.write_text(sdc(design), encoding="utf-8")
     return {
         "rtl": folder / "rtl" / f"{design.top}.sv",
         "sdc": constraints,

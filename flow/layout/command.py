@@ -52,7 +52,7 @@ def run(arguments: Namespace) -> int:
     else:
         summary, lines = block(chosen, options, arguments)
     print(f"{arguments.design}: laid out")
-    print(closing(json.loads(summary.read_text()), lines, summary.with_name("report.html")))
+    print(closing(json.loads(summary.read_text(encoding="utf-8")), lines, summary.with_name("report.html")))
     return failures(f"{arguments.design}: {line}" for line in lines)
 
 

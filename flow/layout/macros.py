@@ -28,9 +28,9 @@ def macro_files(design: Design, runners: Mapping[str, Runner], corners: Sequence
 
 def check_same(design: Design, rtl: Path, runners: Mapping[str, Runner]) -> None:
     """Raise StepError unless the design's Verilog (file ``rtl``) has the modules that its macros were laid out from."""
-    own = modules(rtl.read_text())
+    own = modules(rtl.read_text(encoding="utf-8"))
     for macro in macro_designs(design):
-        for name, text in modules(runners[macro.name].paths["rtl"].read_text()).items():
+        for name, text in modules(runners[macro.name].paths["rtl"].read_text(encoding="utf-8")).items():
             if own.get(name) != text:
                 other = f"that of {macro.name}, which is laid out"
                 raise StepError(f"{design.name}: its module {name} differs from {other}")

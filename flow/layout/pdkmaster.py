@@ -63,14 +63,14 @@ def export_coriolis(folder: Path, description: Any, standard: StandardCells, tec
     export = FileExporter(tech=description.tech, gds_layers=description.gds_layers, spec=spec)
     package, library = folder / "exported", standard.library
     package.mkdir(parents=True)
-    (package / "__init__.py").write_text("")
-    (package / "techno.py").write_text(export())
+    (package / "__init__.py").write_text("", encoding="utf-8")
+    (package / "techno.py").write_text(export(), encoding="utf-8")
     text, feeds = re.subn(r"feedNames = '.*'", f"feedNames = '{','.join(tech.fill_cells)}'", export(library))
     if feeds != 1:
         raise StepError(f"library: PDKMaster's export names cells that fill rows {feeds} times, once was expected")
-    (package / "StdCellLib.py").write_text(text)
+    (package / "StdCellLib.py").write_text(text, encoding="utf-8")
     if standard.fix:
-        (package / "StdCellLib_fix.py").write_text(standard.fix)
+        (package / "StdCellLib_fix.py").write_text(standard.fix, encoding="utf-8")
 
 
 def export_decks(description: Any, devices: Any) -> dict[str, str]:

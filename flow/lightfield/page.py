@@ -48,7 +48,7 @@ def write(folder: Path, fields: Fields) -> None:
         labels=[f"{d:+.2f}" for row in focus for d in row],
         groups=[group for group in groups if group[1]],
     )
-    (folder / "lightfield.html").write_text(text)
+    (folder / "lightfield.html").write_text(text, encoding="utf-8")
 
 
 def headline(s: dict[str, Any]) -> list[Tile]:

@@ -65,6 +65,6 @@ def run(options: Namespace) -> int:
             for suffix, source in results.items():
                 shutil.copyfile(checked.paths[source], part / f"{chosen.name}.{suffix}")
             summary = summarize(chosen, tech, found, folder, size, checked)
-            (part / "summary.json").write_text(json.dumps(summary, indent=1) + "\n")
+            (part / "summary.json").write_text(json.dumps(summary, indent=1) + "\n", encoding="utf-8")
     print(folder / "summary.json")
     return failures(f"{chosen.name}: {line}" for line in broken(summary))

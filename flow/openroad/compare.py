@@ -35,7 +35,7 @@ def run(options: Namespace) -> int:
     before = ""
     if options.document:
         marked(options.document, "back ends")  # refused before the work
-        before = options.document.read_text()
+        before = options.document.read_text(encoding="utf-8")
     text = table([design(name).name for name in options.designs], options.out, before)
     if options.document:
         insert(options.document, "back ends", text)
@@ -50,7 +50,11 @@ def table(names: Sequence[str], out: Path, before: str = "") -> str:
     for name in names:
         for backend, folder in (("embedded", name), ("OpenROAD", f"{name}-openroad")):
             first, path = f"| {name} | {backend} |", out / folder / "summary.json"
-            cells = row(json.loads(path.read_text())) if path.is_file() else [NOT_RUN] + [""] * (columns - 3)
+            cells = (
+                row(json.loads(path.read_text(encoding="utf-8")))
+                if path.is_file()
+                else [NOT_RUN] + [""] * (columns - 3)
+            )
             kept = [] if path.is_file() else [line for line in before.splitlines() if line.startswith(first)]
             lines.append(kept[0] if kept else f"{first} {' | '.join(cells)} |")
     return "\n".join(lines)

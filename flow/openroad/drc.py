@@ -21,7 +21,7 @@ class Drc(drc.Drc):
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         every = super().run(inputs, outputs)["drc_violations"]
         names = set(openroad_platform(self.parameters.pdk).deck_layers)
-        found = json.loads(outputs["summary"].read_text())
+        found = json.loads(outputs["summary"].read_text(encoding="utf-8"))
         wiring = sum(
             count
             for rule, count in found.items()

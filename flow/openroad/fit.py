@@ -58,16 +58,18 @@ def fit(name: str, folder: Path) -> tuple[Fit, Path]:
     """The Fit and the netlist's path of the project of design ``name``; files go to ``folder``. Raises ToolError."""
     chosen = design(name)
     rtl(chosen, folder)
-    (folder / "cells.lib").write_text(functions.small_liberty())
+    (folder / "cells.lib").write_text(functions.small_liberty(), encoding="utf-8")
     netlist, stat, script = folder / "netlist.v", folder / "stat.txt", folder / "fit.ys"
     names = {"top": chosen.top, "liberty": folder / "cells.lib", "stat": stat, "netlist": netlist}
     names["sources"] = folder / f"{chosen.top}.sv"
-    script.write_text(SCRIPT.format(constant=f"{sky130_hd.LIBRARY}__{functions.CONSTANT}", **names))
+    script.write_text(SCRIPT.format(constant=f"{sky130_hd.LIBRARY}__{functions.CONSTANT}", **names), encoding="utf-8")
     tools.run(["yosys", "-q", "-s", script])
-    cells, area = counted(stat.read_text())
+    cells, area = counted(stat.read_text(encoding="utf-8"))
     if cells is None or area is None:
         raise tools.ToolError(f"yosys: {stat}: no number of cells or no area")
-    flip_flops = len(re.findall(rf"(?m)^\s+{sky130_hd.LIBRARY}__{functions.FLIP_FLOP} ", netlist.read_text()))
+    flip_flops = len(
+        re.findall(rf"(?m)^\s+{sky130_hd.LIBRARY}__{functions.FLIP_FLOP} ", netlist.read_text(encoding="utf-8"))
+    )
     tiles = chosen.frame.removeprefix(FRAME)
     return Fit(name, tiles, cells, flip_flops, area, core_um2(tiles)), netlist
 

@@ -51,12 +51,15 @@ class IrDrop(CornerStep[IrDropParameters]):
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         p, folder = self.parameters, outputs["supply"].parent
         script, activity = folder / "script.log", folder / "activity.log"
-        activity.write_text(activities(Netlist.read(inputs["netlist"]), json.loads(inputs["activity"].read_text())))
+        activity.write_text(
+            activities(Netlist.read(inputs["netlist"]), json.loads(inputs["activity"].read_text(encoding="utf-8"))),
+            encoding="utf-8",
+        )
         files = {name: inputs[name].resolve() for name in ("liberty", "database", "sdc", "spef")}
         files |= {"activity": activity, "supply_csv": outputs["supply"], "ground_csv": outputs["ground"]}
-        script.write_text(SCRIPT.format(volts=p.volts, supply=p.supply, ground=p.ground, **files))
+        script.write_text(SCRIPT.format(volts=p.volts, supply=p.supply, ground=p.ground, **files), encoding="utf-8")
         done = finish([*openroad(), "-no_init", "-no_splash", "-exit", script])
-        (folder / "openroad.log").write_text(done.stdout + done.stderr)
+        (folder / "openroad.log").write_text(done.stdout + done.stderr, encoding="utf-8")
         if done.returncode or not all(path.is_file() for path in outputs.values()):
             raise StepError(f"{self.name}: openroad: {(done.stdout + done.stderr).strip().splitlines()[-3:]}")
         drop = (p.volts - min(voltages(outputs["supply"]))) * 1000
@@ -87,5 +90,5 @@ def _escaped(name: str) -> str:
 
 def voltages(path: Path) -> list[float]:
     """The voltages of a file that OpenROAD wrote."""
-    with path.open() as file:
+    with path.open(encoding="utf-8") as file:
         return [float(row["Voltage"]) for row in csv.DictReader(file, skipinitialspace=True)]

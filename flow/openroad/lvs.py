@@ -28,12 +28,12 @@ class Lvs(Step[PdkParameters]):
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         netlist = routed_netlist(inputs["powered"], top_of(inputs["powered"]))
-        cells = subcircuits(inputs["cells"].read_text())
-        outputs["spice"].write_text(spice(netlist, cells))
-        deck = openroad_platform(self.parameters.pdk).lvs.read_text()
+        cells = subcircuits(inputs["cells"].read_text(encoding="utf-8"))
+        outputs["spice"].write_text(spice(netlist, cells), encoding="utf-8")
+        deck = openroad_platform(self.parameters.pdk).lvs.read_text(encoding="utf-8")
         ports = (net for port in netlist.ports for net in port.bits())
         same = "".join(f'same_nets!("{netlist.name}", "{net}", "{net}")\n' for net in ports)
-        outputs["deck"].write_text(deck.replace("PORTS\n", same))
+        outputs["deck"].write_text(deck.replace("PORTS\n", same), encoding="utf-8")
         paths = {"gds": inputs["gds"].resolve(), "spice": outputs["spice"], "report": outputs["report"]}
         _, output = run_deck(outputs["deck"], outputs["report"], paths)
         if ("LVS OK" in output) == ("LVS Failed" in output):
@@ -44,7 +44,7 @@ class Lvs(Step[PdkParameters]):
 
 def top_of(verilog: Path) -> str:
     """The module of a netlist's file."""
-    found = re.search(r"(?m)^module (\S+)", verilog.read_text())
+    found = re.search(r"(?m)^module (\S+)", verilog.read_text(encoding="utf-8"))
     if not found:
         raise StepError(f"lvs: {verilog}: no module")
     return found[1]

@@ -27,7 +27,7 @@ def merge(source: Path, lefs: Sequence[Path], cells: Path, tech: OpenRoadPlatfor
     import klayout.db as db
 
     mapped = target.with_suffix(".map")
-    mapped.write_text(layer_map(tech))
+    mapped.write_text(layer_map(tech), encoding="utf-8")
     options = db.LoadLayoutOptions()
     config = options.lefdef_config
     config.dbu, config.read_lef_with_def, config.lef_files = 0.001, False, [str(path) for path in lefs]

@@ -15,7 +15,7 @@ def write_synthesized(folder: Path, top: str, tech: OpenRoadPlatform) -> None:
     """Write netlist.v in ``folder`` from Yosys's netlist.json and registers.json there."""
     names = register_names(folder / "registers.json", top)
     netlist = Netlist.from_yosys(folder / "netlist.json", top, Buffer(*tech.buffer), registers=names)
-    (folder / "netlist.v").write_text(netlist.verilog())
+    (folder / "netlist.v").write_text(netlist.verilog(), encoding="utf-8")
 
 
 def routed_netlist(verilog: Path, top: str) -> Netlist:
@@ -23,7 +23,7 @@ def routed_netlist(verilog: Path, top: str) -> Netlist:
     with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
         path = Path(folder) / "netlist.json"
         run(["yosys", "-q", "-p", f"read_verilog {verilog}; write_json {path}"])
-        module = json.loads(path.read_text())["modules"][top]
+        module = json.loads(path.read_text(encoding="utf-8"))["modules"][top]
     names: dict[Any, str] = {}
     ports = tuple(Port(name, port["direction"], len(port["bits"])) for name, port in module["ports"].items())
     for port in ports:

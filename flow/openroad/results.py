@@ -58,7 +58,7 @@ def summarize(
         "cell_area_um2": round(sum(um2.get(i.cell, 0.0) for i in netlist.instances), 2),
         "area_um2": round(size_um[0] * size_um[1], 2),
         "attempts": [],
-        "wire_um": wire_um((folder / "final.def").read_text()),
+        "wire_um": wire_um((folder / "final.def").read_text(encoding="utf-8")),
         **{name: found.get(name) for name in ("open_nets", "router_drc_violations", "router_antennas")},
         "clock_buffers": sum(i.name.startswith("clkbuf") for i in netlist.instances),
         "evictions": 0,
@@ -93,7 +93,7 @@ def _of(key: str, name: str, corner: str) -> bool:
 
 def total_pf(path: Path) -> float | None:
     """Capacitance of all nets of a SPEF, pF; None without the file."""
-    return round(sum(wire_pf(path.read_text()).values()), 3) if path.is_file() else None
+    return round(sum(wire_pf(path.read_text(encoding="utf-8")).values()), 3) if path.is_file() else None
 
 
 def wire_um(text: str) -> float:

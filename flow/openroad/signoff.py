@@ -56,13 +56,17 @@ def given(
     made.mkdir(exist_ok=True)
     netlist = routed_netlist(folder / "final.v", design.top)
     netlist.write(made / "netlist.json")
-    (made / "final.sdc").write_text(sdc(design))
-    (made / "floorplan.json").write_text(json.dumps({"width_um": size_um[0], "height_um": size_um[1]}))
+    (made / "final.sdc").write_text(sdc(design), encoding="utf-8")
+    (made / "floorplan.json").write_text(
+        json.dumps({"width_um": size_um[0], "height_um": size_um[1]}), encoding="utf-8"
+    )
     both = (folder / name for name in ("netlist.v", "final.v"))  # repair may leave no instance of a cell
-    used = {cell for path in both for cell in re.findall(rf"{tech.library}__\w+", path.read_text())}
+    used = {cell for path in both for cell in re.findall(rf"{tech.library}__\w+", path.read_text(encoding="utf-8"))}
     for corner in tech.corners:
-        (made / f"{corner}.lib").write_text(only((root / tech.liberty[corner]).read_text(), used))
-    (made / "functional.lib").write_text(text(with_latches(read(made / f"{tech.corners[0]}.lib"))))
+        (made / f"{corner}.lib").write_text(
+            only((root / tech.liberty[corner]).read_text(encoding="utf-8"), used), encoding="utf-8"
+        )
+    (made / "functional.lib").write_text(text(with_latches(read(made / f"{tech.corners[0]}.lib"))), encoding="utf-8")
     write_models(made / "functional.lib", made / "cells.v", "-ignore_miss_func")
     return {
         "rtl": folder / f"{design.top}.sv",

@@ -86,8 +86,10 @@ def run(folder: Path, top: str, tech: OpenRoadPlatform, root: Path, note: Callab
     scripts, tools and inputs are those of an earlier run is not run again. note: called with each stage's name. Raises
     ToolError with the last lines of a stage that failed.
     """
-    text = (root / tech.liberty[tech.corners[0]]).read_text()  # cells are chosen by their slowest delays
-    (folder / "synthesis.lib").write_text(without(text, tech.dont_use))
+    text = (root / tech.liberty[tech.corners[0]]).read_text(
+        encoding="utf-8"
+    )  # cells are chosen by their slowest delays
+    (folder / "synthesis.lib").write_text(without(text, tech.dont_use), encoding="utf-8")
     wires = wire_corners(tech, root)
     pdk = [*tech.liberty.values(), tech.tech_lef, tech.cell_lef]
     pdk += [path for name in wires for path in tech.rcx_rules[name] if (root / path).is_file()]
@@ -129,5 +131,5 @@ def _run(folder: Path, stage: Stage, key: str, top: str, tech: OpenRoadPlatform,
     figures |= {f"seconds.{name}": round(time.perf_counter() - begin, 1), f"mib.{name}": peak}
     record = {"key": key, "result": digest(folder / stage.gives), "figures": figures}
     with staged(folder) as part:
-        (part / f"{name}.json").write_text(json.dumps(record, indent=1) + "\n")
+        (part / f"{name}.json").write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
     return figures

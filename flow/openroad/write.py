@@ -20,7 +20,7 @@ from .variables import variables
 def rtl(design: Design, folder: Path) -> str:
     """The Verilog of a Design, exported now: text. Raises ToolError."""
     (path,) = export_verilog(folder, [design.top], design.options)
-    return path.read_text()
+    return path.read_text(encoding="utf-8")
 
 
 def write(design: Design, tech: OpenRoadPlatform, folder: Path) -> list[str]:
@@ -36,8 +36,8 @@ def write(design: Design, tech: OpenRoadPlatform, folder: Path) -> list[str]:
     if (project := f"{FRAME}{design.name}") in PROJECTS:
         files |= project_files(DESIGNS[project], rtl(DESIGNS[project], folder / "tinytapeout" / "src"))
     files |= {str(path): text for path, text in ClockGate(*tech.clock_gate).files().items()}
-    files |= {script.name: script.read_text() for script in SCRIPTS.glob("*.tcl")}
+    files |= {script.name: script.read_text(encoding="utf-8") for script in SCRIPTS.glob("*.tcl")}
     for name, text in files.items():
         with staged((folder / name).parent) as part:
-            (part / Path(name).name).write_text(text)
+            (part / Path(name).name).write_text(text, encoding="utf-8")
     return [f"{design.top}.sv", *sorted(files)]

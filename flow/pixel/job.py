@@ -74,7 +74,7 @@ def make(
         axes = axes_of(curves[betas[0]].response)
         shares = stacked(types, plan, curves)
         np.savez_compressed(folder / "response.npz", response=shares, types=names, **axes)
-        (folder / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n")
+        (folder / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n", encoding="utf-8")
     return summary
 
 

@@ -28,5 +28,5 @@ def make(geometry: PixelGeometry, wavelength_um: float, out: Path) -> dict[str, 
     with staged(out, NAMES) as folder:
         shares = found.shares[0].transpose(1, 2, 0)[:, :, None]  # diode, angle, wavelength, polarization
         np.savez_compressed(folder / "response.npz", response=shares, **axes_of(found))
-        (folder / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n")
+        (folder / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n", encoding="utf-8")
     return summary

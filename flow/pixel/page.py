@@ -93,7 +93,7 @@ def write(
             _errors(wrong),
         ],
     )
-    (folder / "pixel.html").write_text(text)
+    (folder / "pixel.html").write_text(text, encoding="utf-8")
 
 
 HEAD = ("beta", "is", "alpha", "m", "sigma", "quantum efficiency", "extinction ratio", "diattenuation", "residual")

@@ -107,7 +107,7 @@ def analyse(deck: Iterable[str], commands: Sequence[str], wanted: Sequence[str])
         folder = Path(name)
         write = ["set wr_singlescale", "set wr_vecnames", f"wrdata found.txt {' '.join(wanted)}"]
         text = ["* a drawn pixel", *deck, ".control", *commands, *write, "quit", ".endc", ".end", ""]
-        (folder / "deck.sp").write_text("\n".join(text))
+        (folder / "deck.sp").write_text("\n".join(text), encoding="utf-8")
         output = run(["ngspice", "-n", "-b", "deck.sp"], {"OMP_NUM_THREADS": "1"}, cwd=folder, seconds=3600)
         file = folder / "found.txt"
         if not file.exists():

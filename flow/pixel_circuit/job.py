@@ -104,10 +104,12 @@ def make(
     note("report")
     process = made.process
     with staged(out, (*FILES, *page.NAMES)) as folder:
-        (folder / "pixel.spice").write_text(spice("pixel", made.circuit, process.transistor, process.diode))
-        (folder / "sensor.toml").write_text(sensor_file(electrical, sources(usual, spread_)))
+        (folder / "pixel.spice").write_text(
+            spice("pixel", made.circuit, process.transistor, process.diode), encoding="utf-8"
+        )
+        (folder / "sensor.toml").write_text(sensor_file(electrical, sources(usual, spread_)), encoding="utf-8")
         page.write(folder, summary)
-        (folder / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n")
+        (folder / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n", encoding="utf-8")
     if table:
         write(table, json.dumps(sensor_table(summary, sources(usual, spread_)), indent=1, allow_nan=False) + "\n")
     return summary

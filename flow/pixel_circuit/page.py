@@ -72,7 +72,7 @@ def write(folder: Path, s: dict[str, Any]) -> None:
             ),
         ],
     )
-    (folder / NAMES[0]).write_text(text)
+    (folder / NAMES[0]).write_text(text, encoding="utf-8")
 
 
 def _row(name: str, one: dict[str, Any]) -> tuple[str, ...]:

@@ -30,12 +30,14 @@ def common_decks(pdk: str) -> tuple[list[str], str]:
         devices = imported(tech.package).prims_spiceparams
         exported = export_decks(imported(f"{tech.package}.pdkmaster"), devices)
         for name, text in exported.items():
-            (folder / name).write_text(text)
+            (folder / name).write_text(text, encoding="utf-8")
 
     kept = cached(STORE / digest(code("talbot.flow.layout.pdkmaster"), pdk), make)
-    masks = [tech.masks.read_text()] if tech.masks else []
+    masks = [tech.masks.read_text(encoding="utf-8")] if tech.masks else []
     process = pixel_process(pdk)
-    rules, lvs = (with_taps((kept / name).read_text(), process.active, process.tap) for name in ("drc", "lvs"))
+    rules, lvs = (
+        with_taps((kept / name).read_text(encoding="utf-8"), process.active, process.tap) for name in ("drc", "lvs")
+    )
     return [rules, *hole_rules(tech), *via_rules(tech), *masks], lvs
 
 
@@ -45,8 +47,8 @@ def decks(pdk: str) -> tuple[str, str]:
     rules, lvs = common_decks(pdk)
     if lvs.count(mark) != 1:
         raise StepError("lvs: the deck has no single line 'netlist' before which diodes could be extracted")
-    text = "\n".join([*rules, process.masks.read_text(), ""])
-    return text, lvs.replace(mark, f"\n{process.lvs.read_text()}{mark}")
+    text = "\n".join([*rules, process.masks.read_text(encoding="utf-8"), ""])
+    return text, lvs.replace(mark, f"\n{process.lvs.read_text(encoding='utf-8')}{mark}")
 
 
 def drc(gds: Path, pdk: str, report: Path) -> dict[str, int]:

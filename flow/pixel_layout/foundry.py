@@ -47,13 +47,13 @@ def draw_straight(array: ArrayLayout, gds: Path) -> None:
 def _klayout(gds: Path, pdk: str, deck: Path) -> dict[str, int]:
     outputs = {"report": gds.with_suffix(".foundry.lyrdb"), "summary": gds.with_suffix(".foundry.json")}
     FoundryDrc(FoundryDrcParameters(pdk, _top(gds))).run({"gds": gds, "deck": deck}, outputs)
-    return json.loads(outputs["summary"].read_text())
+    return json.loads(outputs["summary"].read_text(encoding="utf-8"))
 
 
 def _magic(gds: Path, pdk: str, technology: Path) -> dict[str, int]:
     report = gds.with_suffix(".magic.txt")
     MagicDrc(FoundryDrcParameters(pdk, _top(gds))).run({"gds": gds, "magic": technology}, {"report": report})
-    rows = (line.split("\t", 1) for line in report.read_text().splitlines()[:-1])
+    rows = (line.split("\t", 1) for line in report.read_text(encoding="utf-8").splitlines()[:-1])
     return {rule: int(count) for count, rule in rows}
 
 

@@ -107,7 +107,7 @@ def make(
         }
         note("report")
         page.write(made, summary)
-        (folder / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n")
+        (folder / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n", encoding="utf-8")
     if table:
         write(table, json.dumps(line_table(pdk, lines), indent=1, allow_nan=False) + "\n")
     if responses:
@@ -134,7 +134,7 @@ def _draw(made: Made) -> float:
     top = draw_array(layout, made.array, draw_pixels(layout, made.array))
     write_gds(layout, made.path("pixel_array.gds"), top)
     seconds = perf_counter() - start
-    made.path("pixel_array.lef").write_text(array_lef(made.array))
+    made.path("pixel_array.lef").write_text(array_lef(made.array), encoding="utf-8")
     return seconds
 
 
@@ -159,7 +159,7 @@ def _spice(made: Made) -> list[tuple[str, str]]:
     names = process.deck_model, process.deck_diode
     ring, tile = Diode("ring", "vdda", *made.small.well_ring_um), made.array.tile
     one = spice("pixel", pixel.circuit, *names)
-    made.path("pixel.spice").write_text(one)
+    made.path("pixel.spice").write_text(one, encoding="utf-8")
     return [
         ("pixel", spice(pixel.name, pixel.circuit, *names)),
         ("tile", one + spice_array("tile", "pixel", tile.rows, tile.cols, 0, None, process.deck_diode)),

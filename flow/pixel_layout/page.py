@@ -61,7 +61,7 @@ def write(made: Made, s: dict[str, Any]) -> None:
         tiles=_tiles(s),
         sections=[Section(pictures=shown), *_sections(s)],
     )
-    made.path("pixel_layout.html").write_text(text)
+    made.path("pixel_layout.html").write_text(text, encoding="utf-8")
 
 
 def _tiles(s: dict[str, Any]) -> list[Tile]:

@@ -43,7 +43,7 @@ def write(folder: Path, frame: PolarFrame) -> None:
             *_depths(frame),
         ],
     )
-    (folder / "polar.html").write_text(text)
+    (folder / "polar.html").write_text(text, encoding="utf-8")
 
 
 HEAD = ("", "psi, mean error", "psi, float samples", "degree, RMS error", "highlights, F1")

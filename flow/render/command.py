@@ -73,7 +73,7 @@ def run(options: Namespace) -> int:
                 )
                 made |= {"sha256": _checksum(part / f"{name}.npz"), "by": _versions(), "command": _command(name, made)}
                 known[name] = made | {"seconds": round(perf_counter() - start)}
-                (part / MANIFEST).write_text(json.dumps(known, indent=1, sort_keys=True) + "\n")
+                (part / MANIFEST).write_text(json.dumps(known, indent=1, sort_keys=True) + "\n", encoding="utf-8")
     for name in names:
         file = out / f"{name}.npz"
         print(f"{name}: {file.stat().st_size:,} bytes, {known[name]['seconds']} s, {file}")
@@ -100,7 +100,7 @@ def _done(out: Path, name: str, known: dict[str, Any], made: dict[str, Any]) -> 
 
 def _manifest(out: Path) -> dict[str, Any]:
     try:
-        return json.loads((out / MANIFEST).read_text())
+        return json.loads((out / MANIFEST).read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return {}
 

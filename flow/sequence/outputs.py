@@ -68,8 +68,8 @@ def run(
         summary = _about(request, clip, last) | of_all(frames, last, clock.seconds)
         summary |= {"processor_s": {"python": sum(spent[:2]), "simulator": sum(spent[2:])}}
         summary |= {"arguments": dict(arguments or {}), "each": frames}
-        (folder / "report.html").write_text(_page(summary, name, shown))
-        (folder / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n")
+        (folder / "report.html").write_text(_page(summary, name, shown), encoding="utf-8")
+        (folder / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n", encoding="utf-8")
     return summary
 
 
@@ -129,7 +129,7 @@ STEPS = {
 
 
 def _first(folder: Path, result: FrameResult) -> None:
-    (folder / "sensor.toml").write_text(sensor_text(result.request.sensor))
+    (folder / "sensor.toml").write_text(sensor_text(result.request.sensor), encoding="utf-8")
     scene = pictures.gray(result.exposed.scene.image)
     pictures.enlarge(scene, WIDTH).save(folder / "scene.png")
 

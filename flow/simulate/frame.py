@@ -89,9 +89,9 @@ def run_frame(
             reason = " (no frame end)" if result.returncode == NO_FRAME_END else ""
             tail = (result.stdout + result.stderr).strip()[-800:]
             raise ToolError(f"the simulation stopped with status {result.returncode}{reason}: {tail}")
-        activity = json.loads((folder / "activity").read_text())
+        activity = json.loads((folder / "activity").read_text(encoding="utf-8"))
         integrated = activity.pop("integrated")
         stats = folder / "stats"
-        seconds = json.loads(stats.read_text())["seconds"] if stats.exists() else spent
+        seconds = json.loads(stats.read_text(encoding="utf-8"))["seconds"] if stats.exists() else spent
         stream, miso = (folder / "stream").read_bytes(), (folder / "miso").read_bytes()
         return FrameRun(stream, miso, activity, integrated, activity.pop("cycles"), seconds)

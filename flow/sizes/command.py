@@ -38,8 +38,10 @@ def run(options: Namespace) -> int:
     with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
         sizes = [measure(path, path.stem) for path in export_verilog(Path(folder), options.tops, sensor)]
     with staged(options.out) as part:
-        (part / "sizes.json").write_text(json.dumps([asdict(size) for size in sizes], indent=1) + "\n")
-        (part / "sizes.md").write_text(markdown(sizes))
+        (part / "sizes.json").write_text(
+            json.dumps([asdict(size) for size in sizes], indent=1) + "\n", encoding="utf-8"
+        )
+        (part / "sizes.md").write_text(markdown(sizes), encoding="utf-8")
     if options.document:
         insert(options.document, "sizes", readme_table(sizes))
     print(markdown(sizes), end="")

@@ -38,7 +38,7 @@ class Size:
 @cache
 def areas() -> dict[str, float]:
     """Area of every cell of the library in NAND2 equivalents by name."""
-    pairs = re.findall(r"cell \((\w+)\)\s*{\s*area : ([\d.]+);", LIBRARY.read_text())
+    pairs = re.findall(r"cell \((\w+)\)\s*{\s*area : ([\d.]+);", LIBRARY.read_text(encoding="utf-8"))
     return {name: float(area) for name, area in pairs}
 
 
@@ -58,7 +58,7 @@ def synthesize(path: Path, top: str) -> Counter[str]:
         if result.returncode:
             tail = "\n".join((result.stdout + result.stderr).strip().splitlines()[-5:])
             raise ToolError(f"yosys refused {path}:\n{tail}")
-        return Counter(json.loads(report.read_text())["design"]["num_cells_by_type"])
+        return Counter(json.loads(report.read_text(encoding="utf-8"))["design"]["num_cells_by_type"])
 
 
 def measure(path: Path, top: str) -> Size:

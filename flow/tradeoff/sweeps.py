@@ -96,7 +96,7 @@ def run_sweeps(
             save(SWEEPS[name].plot(rows), folder / f"{name}.png")
     done = [name for name in SWEEPS if (out / f"{name}.csv").exists()]
     with staged(out) as folder:
-        (folder / "tradeoff.html").write_text(_page(out, done))
+        (folder / "tradeoff.html").write_text(_page(out, done), encoding="utf-8")
     return tables
 
 

@@ -39,7 +39,7 @@ def circuit_converter(table: Path = TABLE) -> ConverterParameters:
     ParameterError
         For a value out of range.
     """
-    return ConverterParameters(**json.loads(table.read_text())["parameters"])
+    return ConverterParameters(**json.loads(table.read_text(encoding="utf-8"))["parameters"])
 
 
 @dataclass(frozen=True)
@@ -179,6 +179,6 @@ def circuit_columns(table: Path = TABLE) -> ColumnCurves:
     ParameterError
         For a value out of range.
     """
-    written = json.loads(table.read_text())["columns"]
+    written = json.loads(table.read_text(encoding="utf-8"))["columns"]
     given: dict[str, Any] = {name: tuple(one) if isinstance(one, list) else one for name, one in written.items()}
     return ColumnCurves(**given)

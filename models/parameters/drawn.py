@@ -62,7 +62,7 @@ def drawn_lines(table: Path = LINES) -> LineParameters:
     ParameterError
         For a value out of range.
     """
-    return LineParameters(**json.loads(table.read_text())["parameters"])
+    return LineParameters(**json.loads(table.read_text(encoding="utf-8"))["parameters"])
 
 
 def drawn_electrical(electrical: ElectricalParameters, table: Path = PIXEL) -> ElectricalParameters:
@@ -85,7 +85,7 @@ def drawn_electrical(electrical: ElectricalParameters, table: Path = PIXEL) -> E
     ParameterError
         For a value out of range.
     """
-    return replace(electrical, **json.loads(table.read_text())["parameters"])
+    return replace(electrical, **json.loads(table.read_text(encoding="utf-8"))["parameters"])
 
 
 def drawn_sources(electrical: ElectricalParameters, table: Path = PIXEL) -> dict[str, str]:
@@ -103,7 +103,11 @@ def drawn_sources(electrical: ElectricalParameters, table: Path = PIXEL) -> dict
     dict of str to str
         Source by name; none for other pixels.
     """
-    return json.loads(table.read_text())["sources"] if electrical == drawn_electrical(electrical, table) else {}
+    return (
+        json.loads(table.read_text(encoding="utf-8"))["sources"]
+        if electrical == drawn_electrical(electrical, table)
+        else {}
+    )
 
 
 @cache
@@ -121,5 +125,5 @@ def drawn_curves(table: Path = CURVES) -> Mapping[tuple[float, float, float], np
         Sine of the angle in air, ascending; share of the light on the pixel that reaches each diode. Gamma is 0 or
         more: of -gamma they are those of gamma.
     """
-    found = json.loads(table.read_text())["curves"]
+    found = json.loads(table.read_text(encoding="utf-8"))["curves"]
     return {(c["beta"], c["gamma_deg"], c["alpha"]): np.array([c["sines"], *c["shares"]]) for c in found}

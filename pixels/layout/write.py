@@ -61,7 +61,7 @@ def write(out: str | Path, made: ArrayLayout) -> None:
     layout.dbu = 0.001
     cell = draw_array(layout, made, draw_pixels(layout, made))
     with staged(out) as part:
-        (part / f"{NAME}.lef").write_text(array_lef(made))
+        (part / f"{NAME}.lef").write_text(array_lef(made), encoding="utf-8")
         write_gds(layout, part / f"{NAME}.gds", cell)
 
 

@@ -71,7 +71,7 @@ class Operating:
 
 @cache
 def _tables() -> dict[str, dict[str, list[float]]]:
-    return json.loads(TABLES.read_text())
+    return json.loads(TABLES.read_text(encoding="utf-8"))
 
 
 def operating(role: str, length: float, efficiency: float) -> Operating:

@@ -49,7 +49,7 @@ def file(cell: str, suffix: str) -> Path:
 
 def area(cell: str) -> float:
     """The um2 of a cell: SIZE in its LEF."""
-    macro = read_macros(file(cell, "lef").read_text())[f"{LIBRARY}__{cell}"]
+    macro = read_macros(file(cell, "lef").read_text(encoding="utf-8"))[f"{LIBRARY}__{cell}"]
     return macro.width_um * macro.height_um
 
 

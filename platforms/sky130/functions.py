@@ -109,7 +109,7 @@ def _add(
 
 
 def _verilog(cell: str) -> str:
-    return file(cell, "functional.v").read_text()
+    return file(cell, "functional.v").read_text(encoding="utf-8")
 
 
 def _pins(verilog: str, direction: str) -> list[str]:

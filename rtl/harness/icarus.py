@@ -76,7 +76,7 @@ def compile_program(program: Path, sources: Sequence[Path], top: str, texts: Seq
     with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
         files = [f"{folder}/text{number}.v" for number in range(len(texts))]
         for file, text in zip(files, texts):
-            Path(file).write_text(text)
+            Path(file).write_text(text, encoding="utf-8")
         files += map(str, sources)  # after the bench: cells without a time scale take the bench's
         with atomic(program) as part:
             roots = [word for root in (top, *more) for word in ("-s", root)]

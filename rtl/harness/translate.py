@@ -154,7 +154,7 @@ def translate_component(top: Component, name: str) -> str:
         os.environ["COLUMNS"] = COLUMNS
         try:
             top.apply(VerilogTranslationPass())
-            text = Path(top.get_metadata(VerilogTranslationPass.translated_filename)).read_text()
+            text = Path(top.get_metadata(VerilogTranslationPass.translated_filename)).read_text(encoding="utf-8")
             return tidy(_with_ordered_ports(text, names))
         finally:
             os.chdir(before)

@@ -75,9 +75,9 @@ def kept_library(name: str, top: str, ports: Sequence[Port], text: str) -> Path:
 def _compile(library: Path, text: str) -> None:
     with tempfile.TemporaryDirectory(prefix="talbot-") as work:
         source, wrapper = Path(work) / "verilated.sv", Path(work) / "wrapper.cpp"
-        source.write_text(text)
+        source.write_text(text, encoding="utf-8")
         made = verilate(Path(work), "VerilatedBench", [source], OPTIONS)
-        wrapper.write_text(WRAPPER)
+        wrapper.write_text(WRAPPER, encoding="utf-8")
         compile_program(library, [*made, wrapper], [*COMPILED, *runtime()])
 
 

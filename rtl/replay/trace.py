@@ -84,8 +84,8 @@ class Trace:
 
 def load(path: Path | str, cycles: bool = True) -> Trace:
     """The Trace of a .json file that `Trace.save` wrote; without its lines unless ``cycles``."""
-    head = json.loads(Path(path).read_text())
-    lines = Path(path).with_suffix(".trace").read_text().splitlines() if cycles else []
+    head = json.loads(Path(path).read_text(encoding="utf-8"))
+    lines = Path(path).with_suffix(".trace").read_text(encoding="utf-8").splitlines() if cycles else []
     return Trace(
         head["cls"],
         head["module"],

@@ -57,8 +57,8 @@ def simulate(
     simulation. Raises IcarusError, ToolError.
     """
     program = folder / "host.hex"
-    program.write_text("\n".join(f"{word:03x}" for word in [*words, END]) + "\n")
-    texts = [f"`define TOP {top}\n{BENCH.read_text()}", *filter(None, [more])]
+    program.write_text("\n".join(f"{word:03x}" for word in [*words, END]) + "\n", encoding="utf-8")
+    texts = [f"`define TOP {top}\n{BENCH.read_text(encoding='utf-8')}", *filter(None, [more])]
     compile_program(folder / "host.vvp", sources, "host", texts, *(("Tap",) if more else ()))
     said = run(["vvp", "-n", folder / "host.vvp", f"+program={program}", *options]).splitlines()
     return [line for line in said if line and line[0] in "01xzte"]

@@ -35,7 +35,7 @@ def write(source: Path) -> None:
             lines.append(f".. autofunction:: {name}\n")
         else:
             lines.append(f".. py:data:: {name}\n\n   {', '.join(f'`{item}`' for item in value)}\n")
-    (source / "api.md").write_text("\n".join([*lines, "```", ""]))
+    (source / "api.md").write_text("\n".join([*lines, "```", ""]), encoding="utf-8")
 
 
 def as_text(app: Any, what: str, name: str, thing: Any, options: Any, lines: list[str]) -> None:

@@ -23,7 +23,7 @@ CLOCKED = "clk", "reset"  # to every block; their resets come from `resets`
 
 def write(source: Path) -> None:
     """Write architecture.md."""
-    (source / "architecture.md").write_text("\n".join([*_floors(), *_blocks(), *_machines()]) + "\n")
+    (source / "architecture.md").write_text("\n".join([*_floors(), *_blocks(), *_machines()]) + "\n", encoding="utf-8")
 
 
 def _figure(svg: str) -> list[str]:
@@ -32,7 +32,9 @@ def _figure(svg: str) -> list[str]:
 
 def layers() -> dict[str, list[str]]:
     """Title of each contract of layers -> its layers, the highest first."""
-    contracts = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["importlinter"]["contracts"]
+    contracts = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["importlinter"][
+        "contracts"
+    ]
     return {contract["name"]: contract["layers"] for contract in contracts if contract["type"] == "layers"}
 
 

@@ -38,7 +38,7 @@ def collect(root: Path, source: Path) -> list[str]:
     """Write the documents of ``root`` and their pictures into ``source``; returns a line for each link to nothing."""
     broken: list[str] = []
     for name in documents(root):
-        text = (root / name).read_text()
+        text = (root / name).read_text(encoding="utf-8")
         pictures = [name.parent / link for link in IMAGE.findall(text) if "://" not in link]
         for picture in pictures:
             if not (root / picture).is_file():
@@ -48,7 +48,7 @@ def collect(root: Path, source: Path) -> list[str]:
             shutil.copyfile(root / picture, source / picture)
         path = source / page_of(name)
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(linked(text, name, root, broken))
+        path.write_text(linked(text, name, root, broken), encoding="utf-8")
     return broken
 
 

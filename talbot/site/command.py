@@ -64,7 +64,9 @@ def run(options: Namespace) -> int:
         architecture.write(source)
         steps.note("gallery")
         gallery.write(source, RESULTS)
-        (source / "index.md").write_text((source / "index.md").read_text() + contents(source))
+        (source / "index.md").write_text(
+            (source / "index.md").read_text(encoding="utf-8") + contents(source), encoding="utf-8"
+        )
         steps.note("HTML")
         with staged(options.out) as part:
             warnings = build(source, part, Path(folder) / "doctrees")

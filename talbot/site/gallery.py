@@ -75,7 +75,7 @@ def write(source: Path, results: Path) -> None:
         figures = "; ".join(f"{tile.value} {tile.label}" for tile in card.tiles)
         lines += [f"### {card.title}", "", f"`{card.folder}`, {card.when}: {figures}", ""]
         lines += [f"![{card.title}](pictures/result{number}.webp)", ""]
-    (source / "gallery.md").write_text("\n".join(lines))
+    (source / "gallery.md").write_text("\n".join(lines), encoding="utf-8")
 
 
 def picture(card: index.Card, results: Path, out: Path) -> None:

@@ -43,7 +43,7 @@ def begun(child):
     """Wait for the first line of `talbot`, which holds signals back: before it, Python ends by rules of its own."""
     bit, until = 1 << signal.SIGTERM - 1, time.monotonic() + 200
     while child.poll() is None and time.monotonic() < until:
-        masks = re.findall(r"Sig(?:Blk|Cgt):\s*(\w+)", Path(f"/proc/{child.pid}/status").read_text())
+        masks = re.findall(r"Sig(?:Blk|Cgt):\s*(\w+)", Path(f"/proc/{child.pid}/status").read_text(encoding="utf-8"))
         if any(int(mask, 16) & bit for mask in masks):
             return
         time.sleep(0.005)

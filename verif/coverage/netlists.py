@@ -13,6 +13,6 @@ from .program import compile_program
 
 def netlist_in_verilator(dut: Any, given: Netlist, cells: Iterable[Path]) -> Driven:
     """Run the Netlist ``given`` for the elaborated component ``dut`` in Verilator. Raises ToolError."""
-    text, ports = "".join(file.read_text() for file in (*cells, given.path)), ports_of(dut)
+    text, ports = "".join(file.read_text(encoding="utf-8") for file in (*cells, given.path)), ports_of(dut)
     program = compile_program(text, given.module or type(dut).__name__, ports)
     return Driven([program.folder / "replay", "--drive", "0"], ports)

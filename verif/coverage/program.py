@@ -129,13 +129,15 @@ def compile_program(
     def make(folder: Path) -> None:
         runtime = _runtime(version)
         source, public, model = folder / "dut.v", folder / "public.vlt", folder / "model"
-        source.write_text(verilog)
-        (folder / "ports.h").write_text(lines)
+        source.write_text(verilog, encoding="utf-8")
+        (folder / "ports.h").write_text(lines, encoding="utf-8")
         names = sorted({name.split(".")[-1] for machine in registers for name, _ in machine})
-        public.write_text("`verilator_config\n" + "".join(f'public_flat_rd -module "*" -var "{n}"\n' for n in names))
+        public.write_text(
+            "`verilator_config\n" + "".join(f'public_flat_rd -module "*" -var "{n}"\n' for n in names), encoding="utf-8"
+        )
         tool([verilator, *flags, "--top-module", top, "--Mdir", "model", "public.vlt", "dut.v"], cwd=folder)
         unit = folder / "unit.cpp"
-        unit.write_text("".join(f'#include "{p}"\n' for p in [*sorted(model.glob("*.cpp")), MAIN]))
+        unit.write_text("".join(f'#include "{p}"\n' for p in [*sorted(model.glob("*.cpp")), MAIN]), encoding="utf-8")
         include = verilator_folder() / "include"
         includes = [option for path in (runtime, model, folder, include, include / "vltstd") for option in ("-I", path)]
         objects = (runtime / f"{name}.o" for name in RUNTIME)
@@ -154,9 +156,10 @@ def _runtime(version: str) -> Path:
 
     def make(folder: Path) -> None:
         # Verilator 5.48 also counts toggles of lower words for the higher ones in vectors of more than 64 bits
-        text = (include / "verilated_cov.h").read_text()
+        text = (include / "verilated_cov.h").read_text(encoding="utf-8")
         (folder / "verilated_cov.h").write_text(
-            text.replace("j < width - i * VL_EDATASIZE;", "j < VL_EDATASIZE && j < width - i * VL_EDATASIZE;")
+            text.replace("j < width - i * VL_EDATASIZE;", "j < VL_EDATASIZE && j < width - i * VL_EDATASIZE;"),
+            encoding="utf-8",
         )
         compile_runtime(folder, ["-O1", "-DVM_COVERAGE=1", "-I", folder], RUNTIME)
 

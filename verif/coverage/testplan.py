@@ -99,7 +99,7 @@ def plan_file(folder: str) -> Path:
 def load_plan(path: Path) -> TestPlan:
     """Return the TestPlan of a file, checked. Raises ParameterError that names the field."""
     try:
-        raw = yaml.safe_load(path.read_text())
+        raw = yaml.safe_load(path.read_text(encoding="utf-8"))
     except (OSError, yaml.YAMLError) as error:
         raise ParameterError(f"testplan = {path}: {error}") from None
     name = path.name
@@ -213,7 +213,7 @@ def tests_in(folder: str) -> frozenset[str]:
 def _tests_of(path: Path) -> set[str]:
     return {
         node.name
-        for node in ast.walk(ast.parse(path.read_text()))
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
         if isinstance(node, ast.FunctionDef) and node.name.startswith("test")
     }
 

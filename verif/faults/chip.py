@@ -69,7 +69,7 @@ def run(waves: Sequence[Wave], icarus: bool = False) -> list[Trace]:
                 f"the chip under a waveform stopped with status {result.returncode}: "
                 f"{(result.stdout + result.stderr)[-800:]}"
             )
-        out = _bits(trace.read_text()) if icarus else np.frombuffer(trace.read_bytes(), np.uint8)
+        out = _bits(trace.read_text(encoding="utf-8")) if icarus else np.frombuffer(trace.read_bytes(), np.uint8)
         out = out.reshape(-1, OUTPUTS)
     ends = np.cumsum([w.size for w in waves])
     return [Trace(w, out[end - w.size : end]) for w, end in zip(waves, ends, strict=True)]

@@ -125,8 +125,8 @@ class Workplace:
         self.folder = tempfile.TemporaryDirectory(prefix="talbot-formal-")
         self.path = Path(self.folder.name)
         for module, text in texts.items():
-            (self.path / f"{module}.v").write_text(text)
-        (self.path / "wrapper.sv").write_text(wrapper)
+            (self.path / f"{module}.v").write_text(text, encoding="utf-8")
+        (self.path / "wrapper.sv").write_text(wrapper, encoding="utf-8")
         for name in ("boolector", "z3"):  # yosys-smtbmc looks for the bare name
             if Path(located(name) or "").name.startswith("yowasp"):
                 (self.path / name).symlink_to(tool(name))
@@ -135,15 +135,15 @@ class Workplace:
             self._yosys([*read, "write_json flat.json"])
             netlist = Netlist(self._json("flat"), top, self._json("hierarchy"))
             edit(netlist)
-            (self.path / "edited.json").write_text(json.dumps(netlist.design))
+            (self.path / "edited.json").write_text(json.dumps(netlist.design), encoding="utf-8")
             read = ["read_json edited.json"]
         self._yosys([*read, *smt2(only)])
 
     def _json(self, name: str) -> dict[str, Any]:
-        return json.loads((self.path / f"{name}.json").read_text())
+        return json.loads((self.path / f"{name}.json").read_text(encoding="utf-8"))
 
     def _yosys(self, script: Iterable[str]) -> None:
-        (self.path / "proof.ys").write_text("\n".join(script) + "\n")
+        (self.path / "proof.ys").write_text("\n".join(script) + "\n", encoding="utf-8")
         result = finish([tool("yosys"), "-q", "proof.ys"], cwd=self.path)
         if result.returncode:
             self.folder.cleanup()

@@ -19,7 +19,7 @@ SIZE = "rows", "cols", "lanes", "tile_rows", "tile_cols"
 def read(path: Path) -> list[Proof]:
     """Return the proofs of one file. Raises ParameterError."""
     try:
-        entries = yaml.safe_load(path.read_text())
+        entries = yaml.safe_load(path.read_text(encoding="utf-8"))
         return [_proof(path.parent, sized) for entry in entries for sized in _sizes(entry)]
     except (yaml.YAMLError, TypeError, KeyError) as error:
         raise ParameterError(f"{path} = {str(error).splitlines()[0]}: must be a list of proofs (README.md)") from None

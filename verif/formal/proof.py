@@ -86,7 +86,7 @@ class Proof:
     @property
     def text(self) -> str:
         """Text of the sources and the wrapper."""
-        return "\n".join(path.read_text() for path in (*self.sources, self.wrapper))
+        return "\n".join(path.read_text(encoding="utf-8") for path in (*self.sources, self.wrapper))
 
     @property
     def assumed(self) -> tuple[str, ...]:

@@ -71,7 +71,7 @@ def make_input(seed: int, batch: int, index: int, pool: Sequence[Sent] | None = 
 @contextlib.contextmanager
 def bounded_memory(extra: int) -> Iterator[None]:
     """Limit what this process may add to its address space, in bytes; beyond it, MemoryError is raised."""
-    now = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+    now = int(Path("/proc/self/statm").read_text(encoding="utf-8").split()[0]) * resource.getpagesize()
     soft, hard = resource.getrlimit(resource.RLIMIT_AS)
     limit = now + extra if hard == resource.RLIM_INFINITY else min(now + extra, hard)
     resource.setrlimit(resource.RLIMIT_AS, (limit, hard))

@@ -66,7 +66,10 @@ def summarize(seed: int, done: Sequence[Batch], swept: Sequence[Sweep]) -> dict[
 
 def running(folder: Path) -> list[str]:
     """Return the inputs that were being decoded when a process ended, by the marks of the batches."""
-    return [f"batch {mark.suffix[1:]}, input {mark.read_text().strip()}" for mark in sorted(folder.glob("at.*"))]
+    return [
+        f"batch {mark.suffix[1:]}, input {mark.read_text(encoding='utf-8').strip()}"
+        for mark in sorted(folder.glob("at.*"))
+    ]
 
 
 def add_arguments(parser: ArgumentParser) -> None:

@@ -72,7 +72,7 @@ def plant(block: str, path: Path, folder: Path, number: int, seed: int, bits: bo
     else:
         mutants, text = rewritten(verilog, trace.cls, folder_of(block), number, seed)
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / "mutants.v").write_text(text)
+    (folder / "mutants.v").write_text(text, encoding="utf-8")
     compile_program(text, trace.cls, trace.ports, mutant=True)
     return Planted(block, path, folder, mutants)
 

@@ -93,7 +93,7 @@ def try_original(path: str, folder: str, tests: bool) -> None:
 
 def mutated(path: str, folder: str) -> tuple[Trace, str]:
     """Return the Trace without its lines, and the Verilog with all mutants."""
-    return load(path, cycles=False), (Path(folder) / "mutants.v").read_text()
+    return load(path, cycles=False), (Path(folder) / "mutants.v").read_text(encoding="utf-8")
 
 
 def judge(path: str, folder: str, mutant: Mutant) -> Judgement:

@@ -42,8 +42,8 @@ def yosys(script: str, files: Mapping[str, str]) -> dict[str, bytes]:
     """Run a Yosys script in a temporary folder with ``files`` (name -> text); returns the files after it."""
     with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
         for name, text in files.items():
-            (Path(folder) / name).write_text(text)
-        (Path(folder) / "script.ys").write_text(script.replace("; ", "\n") + "\n")
+            (Path(folder) / name).write_text(text, encoding="utf-8")
+        (Path(folder) / "script.ys").write_text(script.replace("; ", "\n") + "\n", encoding="utf-8")
         tool(["yosys", "-q", "script.ys"], cwd=folder)
         return {path.name: path.read_bytes() for path in Path(folder).iterdir()}
 

@@ -33,7 +33,7 @@ class Planted:
 
     def text(self) -> str:
         """Return the file with the bug. Raises ParameterError."""
-        text = (ROOT / self.file).read_text()
+        text = (ROOT / self.file).read_text(encoding="utf-8")
         for find, replace in self.changes:
             if text.count(find) != 1:
                 raise ParameterError(f"{FILE.name}: {self.name}: {find!r} = {text.count(find)} times: must be once")
@@ -47,7 +47,7 @@ def read() -> list[Planted]:
         Planted(
             entry["name"], entry["block"], entry["file"], tuple(map(tuple, entry["changes"])), tuple(entry["tests"])
         )
-        for entry in yaml.safe_load(FILE.read_text())
+        for entry in yaml.safe_load(FILE.read_text(encoding="utf-8"))
     ]
     for bug in found:
         if bug.block not in TOPS:
@@ -74,7 +74,7 @@ def is_caught(bug: Planted) -> bool:
         shutil.copytree(ROOT, copy, symlinks=True, ignore=LEFT_OUT)
         (ROOT / "build").mkdir(exist_ok=True)
         (copy / "build").symlink_to(ROOT / "build")
-        (copy / bug.file).write_text(text)
+        (copy / bug.file).write_text(text, encoding="utf-8")
         options = "-x", "-p", "no:cacheprovider", "-p", "no:xdist", "--hypothesis-seed=1"
         done = finish([sys.executable, "-m", "pytest", *options, *bug.tests], {"PYTHONPATH": str(copy)}, copy)
     if done.returncode not in (pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED) or " error" in done.stdout:

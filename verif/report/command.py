@@ -64,8 +64,10 @@ def run(options: Namespace) -> int:
     fallen = limits.fallen(summary, held)
     seconds = perf_counter() - start
     with staged(out) as part:
-        (part / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False, default=asdict) + "\n")
-        (part / "report.html").write_text(render(summary, done, problems, fallen, held, seconds))
+        (part / "summary.json").write_text(
+            json.dumps(summary, indent=1, allow_nan=False, default=asdict) + "\n", encoding="utf-8"
+        )
+        (part / "report.html").write_text(render(summary, done, problems, fallen, held, seconds), encoding="utf-8")
     return print_failures(summary, [*problems, *fallen], out)
 
 

@@ -24,7 +24,7 @@ Limits = dict[str, dict[str, dict[str, Any]]]  # group or block -> figure -> {mi
 def read(path: Path = FILE) -> Limits:
     """Return the limits of a file. Raises ParameterError."""
     try:
-        limits = json.loads(path.read_text())
+        limits = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         raise ParameterError(f"limits = {path}: {error}") from None
     for group, named in limits.items():

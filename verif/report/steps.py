@@ -68,7 +68,9 @@ def explained(by_block: dict[str, BlockResults]) -> bool:
 def read_step(step: Step, out: Path) -> tuple[dict[str, BlockResults], str]:
     """Return the results of a step that has run, and '' or what is wrong with the file."""
     try:
-        return from_json(dict[str, BlockResults], json.loads((out / f"{step.name}.json").read_text())), ""
+        return from_json(
+            dict[str, BlockResults], json.loads((out / f"{step.name}.json").read_text(encoding="utf-8"))
+        ), ""
     except FileNotFoundError:
         return {}, f"step {step.name} = no results: {step.name}.json is missing"
     except ValueError as error:

@@ -49,9 +49,9 @@ def synthesize(verilog: str, top: str) -> Gates:
     """Map module ``top`` of ``verilog`` to gates. Raises ToolError."""
     with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
         path, out = Path(folder) / "design.v", Path(folder) / "gates.json"
-        path.write_text(verilog)
+        path.write_text(verilog, encoding="utf-8")
         run(["yosys", "-q", "-p", SCRIPT.format(path=path, top=top, out=out)])
-        return ordered(json.loads(out.read_text())["modules"][top])
+        return ordered(json.loads(out.read_text(encoding="utf-8"))["modules"][top])
 
 
 def ordered(module: dict[str, Any]) -> Gates:

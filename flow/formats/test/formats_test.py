@@ -94,7 +94,7 @@ def test_command(tmp_path, codes, capsys, monkeypatch):
     assert main(command, arguments) == 0
     said = capsys.readouterr()
     assert "| byte pairs |" in said.out and "needs Yosys" in said.out and "sizes left out: yosys: not found" in said.err
-    with open(tmp_path / "out" / "formats.csv") as file:
+    with open(tmp_path / "out" / "formats.csv", encoding="utf-8") as file:
         assert {row["order"] for row in csv.DictReader(file)} == set(ORDERS)
     assert (tmp_path / "out" / "formats.png").read_bytes()[:4] == b"\x89PNG"
     text = document.read_text()

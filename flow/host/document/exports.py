@@ -19,6 +19,6 @@ def export(folder: Path) -> None:
 
     chip = compiled()
     with staged(folder, (PAGE, IPXACT, HEADER, SITE)) as part:
-        (part / PAGE).write_text(registers.html(register_map(), listed=True))
+        (part / PAGE).write_text(registers.html(register_map(), listed=True), encoding="utf-8")
         IPXACTExporter(vendor="talbot", library="asp").export(chip, str(part / IPXACT))
         CHeaderExporter().export(chip, str(part / HEADER))

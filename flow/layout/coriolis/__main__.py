@@ -14,7 +14,7 @@ from .session import configure, load
 
 def main(path: str) -> int:
     """Run the request in the file ``path``."""
-    request = json.loads(Path(path).read_text())
+    request = json.loads(Path(path).read_text(encoding="utf-8"))
     begin = time.perf_counter()
     configure(request)
     from .block import make_block
@@ -32,7 +32,7 @@ def main(path: str) -> int:
     result = {"straps": block.straps, "pins": block.pins, "instances": instances(cell)}
     result |= {"shapes": shapes(cell), "masters": masters(cell)}
     result |= {"times": times | {"save": time.perf_counter() - begin}}
-    Path("result.json").write_text(json.dumps(result))
+    Path("result.json").write_text(json.dumps(result), encoding="utf-8")
     return 0
 
 

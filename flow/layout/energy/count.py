@@ -83,7 +83,7 @@ def counted_verilog(netlist: Netlist) -> str:
 
 def read_counts(file: Path, netlist: Netlist) -> dict[str, Part]:
     """The PARTS of a run whose counters wrote ``file``. Raises StepError where one is not whole."""
-    text = file.read_text()
+    text = file.read_text(encoding="utf-8")
     cycles = {int(part): int(count) for part, count in re.findall(r"(?m)^cycles (\d+) (\d+)$", text)}
     nets = {plain: net for net, plain in nets_of(netlist).items()}
     found: dict[int, dict[str, int]] = {}

@@ -76,7 +76,7 @@ class CountingBench(Step[NoParameters]):
         netlist = Netlist.read(inputs["netlist"])
         with tempfile.TemporaryDirectory(prefix="talbot-") as name:
             chip = Path(name) / "chip.v"
-            chip.write_text(counted_verilog(netlist))
+            chip.write_text(counted_verilog(netlist), encoding="utf-8")
             build = Build.of(SensorParameters())
             shutil.copyfile(icarus_program(build, Path(name), [chip, inputs["cells"]], ("Meter",)), outputs["program"])
         return {"nets": len(nets_of(netlist))}
@@ -109,7 +109,9 @@ class Transitions(Step[FrameParameters]):
         golden = golden_frame(samples, asked.sensor, asked.frame, front_end)
         if seen.stream != golden.stream:
             raise StepError(f"{self.name}: the netlist's frame is not the golden chip's")
-        outputs["counts"].write_text(json.dumps({name: vars(part) for name, part in parts.items()}, indent=0) + "\n")
+        outputs["counts"].write_text(
+            json.dumps({name: vars(part) for name, part in parts.items()}, indent=0) + "\n", encoding="utf-8"
+        )
         return {
             "cycles": {name: part.cycles for name, part in parts.items()},
             "transitions": {name: sum(part.transitions.values()) for name, part in parts.items()},
@@ -146,7 +148,7 @@ class Slews(CornerStep[PowerParameters]):
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         found = PowerStep(self.parameters).slews(inputs, {"instances": outputs["slews"]})
-        outputs["slews"].write_text(json.dumps([[*pin, ns] for pin, ns in found.items()]) + "\n")
+        outputs["slews"].write_text(json.dumps([[*pin, ns] for pin, ns in found.items()]) + "\n", encoding="utf-8")
         return {"pins": len(found)}
 
 
@@ -180,11 +182,11 @@ class Measure(CornerStep[PowerParameters]):
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         netlist, cells = Netlist.read(inputs["netlist"]), Remembered(read(inputs["liberty"]))
-        wires, where = wire_pf(inputs["spef"].read_text()), blocks(netlist)
-        slews = {(name, pin): ns for name, pin, ns in json.loads(inputs["slews"].read_text())}
+        wires, where = wire_pf(inputs["spef"].read_text(encoding="utf-8")), blocks(netlist)
+        slews = {(name, pin): ns for name, pin, ns in json.loads(inputs["slews"].read_text(encoding="utf-8"))}
         frames, instances, leakage = {}, {}, 0.0
         for frame in EVERY:
-            parts, pj = json.loads(inputs[frame.name].read_text()), {}
+            parts, pj = json.loads(inputs[frame.name].read_text(encoding="utf-8")), {}
             by_block = dict.fromkeys(where.values(), 0.0)
             for part in PARTS:
                 activity = {net: (float(count), 0.0) for net, count in parts[part]["transitions"].items()}
@@ -197,5 +199,5 @@ class Measure(CornerStep[PowerParameters]):
                         by_block[where[name]] += energy
             split = {name: round(pj, 3) for name, pj in sorted(by_block.items(), key=lambda item: -item[1])}
             frames[frame.name] = {"pj": pj, "by_block": split}
-        outputs["instances"].write_text(json.dumps(instances, indent=0) + "\n")
+        outputs["instances"].write_text(json.dumps(instances, indent=0) + "\n", encoding="utf-8")
         return {"frames": frames, "leakage_uw": round(leakage, 6), "supply_v": cells.supply_v}

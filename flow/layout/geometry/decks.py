@@ -34,7 +34,7 @@ def run_deck(deck: Path, report: Path, variables: Mapping[str, object], **enviro
     env = {"KLAYOUT_HOME": log.parent / ".klayout.log", **environment}
     defines = [word for name, value in variables.items() for word in ("-rd", f"{name}={value}")]
     done = finish(["klayout", "-b", "-r", deck, *defines], {name: str(value) for name, value in env.items()})
-    log.write_text(done.stdout + done.stderr)
+    log.write_text(done.stdout + done.stderr, encoding="utf-8")
     return done.returncode, done.stdout + done.stderr
 
 
@@ -67,7 +67,7 @@ def broken_rules(decks: Mapping[Path, str], gds: Path, report: Path) -> dict[str
     decks: text of each, by the file that it is written to. report: KLayout's report database, of all.
     """
     for file, text in decks.items():
-        file.write_text(text)
+        file.write_text(text, encoding="utf-8")
     reports = [report] if len(decks) == 1 else [file.with_suffix(".lyrdb") for file in decks]
     runs = (delayed(run_exported)(file, gds, part) for file, part in zip(decks, reports, strict=True))
     done: Any = Parallel(len(decks), prefer="threads")(runs)  # joblib has no types
@@ -90,7 +90,7 @@ def check_rules(
     """
     decks = dict(zip((outputs["deep"], outputs["flat"]), deep_and_flat(deck, deep, flat), strict=True))
     found = broken_rules(decks, gds, outputs["report"])
-    outputs["summary"].write_text(json.dumps(found, indent=1) + "\n")
+    outputs["summary"].write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
     return found
 
 
@@ -111,8 +111,8 @@ def _join(parts: Iterable[Path], report: Path) -> None:
 def is_circuit(deck: str, gds: Path, spice: str, report: Path) -> bool:
     """Whether ``gds`` is the circuit that ``spice``, text, has last, by an exported deck of LVS. Raises StepError."""
     file, source = report.with_suffix(".lvs"), report.with_suffix(".spice")
-    file.write_text(deck)
-    source.write_text(spice)
+    file.write_text(deck, encoding="utf-8")
+    source.write_text(spice, encoding="utf-8")
     _, output = run_exported(file, gds, report, SPICE_FILE=source)
     if ("LVS OK" in output) == ("LVS Failed" in output):
         raise StepError(f"lvs: KLayout gave no verdict: {output.strip().splitlines()[-1:]}")

@@ -37,7 +37,7 @@ class Macro:
     @classmethod
     def read(cls, path: str | Path, tech: CoriolisPlatform) -> "Macro":
         """From a LEF as the step `lef` writes it. Raises ParameterError."""
-        found = read_macro(Path(path).read_text())
+        found = read_macro(Path(path).read_text(encoding="utf-8"))
         names = {metal.lef: metal.name for metal in tech.metals}
         straps = sorted(((box[0] + box[2]) / 2, net) for net in SUPPLIES for _, box in found.pins[net].boxes)
         pins = {name: pin for name, pin in found.pins.items() if name not in SUPPLIES}

@@ -102,7 +102,7 @@ class Pair:
         """Whether two networks in BLIF are equal. Raises StepError without a verdict."""
         files = self.folder / "gold.blif", self.folder / "gate.blif"
         for path, blif in zip(files, (gold, gate), strict=True):
-            path.write_text(blif)
+            path.write_text(blif, encoding="utf-8")
         output = run(["yosys-abc", "-s", "-c", PROOF.format(seconds=self.seconds, gold=files[0], gate=files[1])])
         if ("are equivalent" in output) == ("NOT EQUIVALENT" in output):
             raise StepError(f"equivalence: ABC gave no verdict: {' '.join(output.split())[-200:]}")

@@ -25,7 +25,7 @@ def supplies(plan: Mapping[str, Any]) -> tuple[str, str]:
 
 def register_names(path: Path, top: str) -> set[str]:
     """Return every name of every register of the module ``top`` of Yosys's JSON, one of simple flip-flops."""
-    module = json.loads(path.read_text())["modules"][top]
+    module = json.loads(path.read_text(encoding="utf-8"))["modules"][top]
     bits = {cell["connections"]["Q"][0] for cell in module["cells"].values() if "DFF" in cell["type"]}
     return {full for name, net in module["netnames"].items() for bit, full in named_bits(name, net) if bit in bits}
 
@@ -89,13 +89,13 @@ class Netlist:
     @classmethod
     def read(cls, path: Path) -> "Netlist":
         """Read a file that `write` wrote."""
-        data = json.loads(path.read_text())
+        data = json.loads(path.read_text(encoding="utf-8"))
         ports, instances = (Port(**p) for p in data["ports"]), (Instance(**i) for i in data["instances"])
         return cls(data["name"], tuple(ports), tuple(instances))
 
     def write(self, path: Path) -> None:
         """Write as JSON."""
-        path.write_text(json.dumps(asdict(self), indent=0) + "\n")
+        path.write_text(json.dumps(asdict(self), indent=0) + "\n", encoding="utf-8")
 
     @classmethod
     def from_yosys(
@@ -107,7 +107,7 @@ class Netlist:
         one of ``macros``, as in the Verilog, any other cell u<number>. registers: names that come before others of a
         flip-flop's output. Raises StepError for a constant pin.
         """
-        modules = json.loads(path.read_text())["modules"]
+        modules = json.loads(path.read_text(encoding="utf-8"))["modules"]
         module = modules[top]
         names, ports, extra = {}, [], []
         for name, port in module["ports"].items():

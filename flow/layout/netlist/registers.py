@@ -55,7 +55,7 @@ class Cut:
 
         Raises StepError on other cells than simple gates and flip-flops, and as `with_enables`.
         """
-        module = json.loads(path.read_text())["modules"][top]
+        module = json.loads(path.read_text(encoding="utf-8"))["modules"][top]
         wrong = {cell["type"] for cell in module["cells"].values()} - {REGISTER, *LATCHES, *GATES}
         if wrong:
             raise StepError(f"equivalence: {top} has cells of {', '.join(sorted(wrong))}")

@@ -53,7 +53,7 @@ def _texts(
     netlist: Netlist, placement: Path, layout: "db.Layout", tech: CoriolisPlatform
 ) -> Iterator[tuple[str, Pin, str, list[tuple[int, int, int]]]]:
     """(net, pin, cell, [(level, x, y)]) of every pin and port."""
-    placed = json.loads(placement.read_text())["instances"]
+    placed = json.loads(placement.read_text(encoding="utf-8"))["instances"]
     cells: dict[str, Labels] = {}
     for instance, (_, cell, x, y, orientation) in zip(netlist.instances, placed, strict=True):
         if not instance.pins:

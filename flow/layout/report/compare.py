@@ -58,7 +58,7 @@ def read(folder: Path, name: str) -> dict[str, Any]:
     path = folder / design(name).name / "summary.json"
     if not path.is_file():
         raise ParameterError(f"design = {name}: must have been laid out: no {path}; make layout DESIGN={name}")
-    found = json.loads(path.read_text())
+    found = json.loads(path.read_text(encoding="utf-8"))
     if not found.get("macros"):  # of a design with macros, the cells include theirs and all clock buffers
         found["cells"] += found.get("clock_buffers") or 0
     return found
@@ -120,11 +120,11 @@ def run(options: Namespace) -> int:
     ]
     found = {label: dict(zip(names, values, strict=True)) for label, values in rows}
     with staged(folder, ["table.json", "report.html"]) as part:
-        (part / "table.json").write_text(json.dumps(found, indent=1) + "\n")
+        (part / "table.json").write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
         sections = [Section(head=["", *names], rows=list(map(_cells, rows)), kind="pinned")]
         sections += [Section("Pictures", pictures=pictures)] * bool(pictures)
         page = render(TABLES, "Layouts side by side", about=ABOUT, sections=sections)
-        (part / "report.html").write_text(page)
+        (part / "report.html").write_text(page, encoding="utf-8")
     width = max(len(label) for label in found)
     for label, values in [("", names), *rows]:
         print(f"{label:{width}}  " + "  ".join(f"{value:>28.28}" for value in values))

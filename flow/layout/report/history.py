@@ -59,7 +59,7 @@ def figures(summary: dict[str, Any]) -> dict[str, Any]:
 
 def history(path: Path, summary: dict[str, Any]) -> list[Run]:
     """Runs in the file ``path`` and this one, the newest last; a run with the figures of the one before is left out."""
-    runs = list(map(Run.read, path.read_text().splitlines())) if path.exists() else []
+    runs = list(map(Run.read, path.read_text(encoding="utf-8").splitlines())) if path.exists() else []
     found = figures(summary)
     if not runs or runs[-1].figures != found:
         when = datetime.now(UTC).strftime("%Y-%m-%d %H:%M:%S")

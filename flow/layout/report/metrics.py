@@ -17,7 +17,7 @@ BOUNDS = {"is": "", "least": "at least", "most": "at most"}  # of a rule, as wor
 # amplifiers and the converters' comparators are analog. What the sensor of Table 6.1 did not have is in none of them
 TABLE_6_1 = {"pixel_array": (), "amplifiers": ("amp",), "timing": ("seq", "regs", "balancer"), "adcs": ("bank",)}
 CHECKS = "foundry_drc", "magic_drc", "antenna"
-RULES = json.loads((Path(__file__).parent / "rules.json").read_text())
+RULES = json.loads((Path(__file__).parent / "rules.json").read_text(encoding="utf-8"))
 
 
 @dataclass

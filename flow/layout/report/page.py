@@ -57,8 +57,8 @@ def write_report(
     broken: lines of `metrics.broken`. pictures: beside that of the layout.
     """
     runs = history(folder / "history.jsonl", summary)
-    (part / "history.jsonl").write_text("".join(run.line() for run in runs))
-    (part / "summary.json").write_text(json.dumps(summary, indent=1) + "\n")
+    (part / "history.jsonl").write_text("".join(run.line() for run in runs), encoding="utf-8")
+    (part / "summary.json").write_text(json.dumps(summary, indent=1) + "\n", encoding="utf-8")
     shown = {"layout": layout, "pictures": pictures, "history": table(runs)}
     tables = {"corners": _corners(summary), "blocks": _blocks(summary), "table": _table(summary)}
     tables |= {"tiles": tiles(summary, broken), "figures": _figures(summary), "attempts": _attempts(summary)}
@@ -72,7 +72,7 @@ def write_report(
         **tables,
         **shown,
     )
-    (part / "report.html").write_text(page)
+    (part / "report.html").write_text(page, encoding="utf-8")
 
 
 def closing(summary: dict[str, Any], broken: Sequence[str], report: Path) -> str:

@@ -56,7 +56,10 @@ def check(path: Path, black_box: Path) -> list[str]:
     Raises ParameterError unless it has the pins of ``black_box`` with their directions.
     """
     own, wanted = (
-        {pin.name: pin.direction.upper() for pin in read_macro(file.read_text(errors="replace")).pins.values()}
+        {
+            pin.name: pin.direction.upper()
+            for pin in read_macro(file.read_text(errors="replace", encoding="utf-8")).pins.values()
+        }
         for file in (path, black_box)
     )
     if lacking := [pin for pin in wanted if pin not in own]:

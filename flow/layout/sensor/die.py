@@ -134,7 +134,7 @@ def lay_out_die(
         for suffix, source in results.items():
             shutil.copyfile(runner.paths[source], part / f"{SENSOR}.{suffix}")
         blocks = part / f"{SENSOR}.blocks.png"
-        by_block(blocks, json.loads(runner.paths["die_plan.plan"].read_text()), black_boxes)
+        by_block(blocks, json.loads(runner.paths["die_plan.plan"].read_text(encoding="utf-8")), black_boxes)
         pin_map(runner, options, part)
         layout = render(runner.paths["die_gds.gds"], tech)
         layout.image.save(part / f"{SENSOR}.png")
@@ -147,11 +147,11 @@ def lay_out_die(
 def pin_map(runner: Runner, options: Options, part: Path) -> None:
     """Write PACKAGE: the pin map and the drawing of the package. Raises StepError for bond wires that cross."""
     process, pixel = pad_process(options.pdk), pixel_process(options.pdk)
-    total, found = package.leads(json.loads(runner.paths["die_plan.plan"].read_text()))
+    total, found = package.leads(json.loads(runner.paths["die_plan.plan"].read_text(encoding="utf-8")))
     if crossed := package.crossings(found):
         raise StepError(f"package: the bond wires of {' and '.join(crossed[0])} cross")
     volt = {lead.signal: package.volts(lead, process, pixel.supply_v, pixel.gate_v) for lead in found}
     cells = (*process.signals.values(), *process.supplies.values())
-    clamps = package.protection(runner.paths["die_pads.spice"].read_text(), cells)
-    (part / PACKAGE[0]).write_text(package.table(total, found, volt, clamps))
+    clamps = package.protection(runner.paths["die_pads.spice"].read_text(encoding="utf-8"), cells)
+    (part / PACKAGE[0]).write_text(package.table(total, found, volt, clamps), encoding="utf-8")
     package.draw([part / name for name in PACKAGE[1:]], total, found)

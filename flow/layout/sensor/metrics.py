@@ -13,7 +13,7 @@ from .package import leads
 from .plan import BLOCKS
 from .steps.die_sta import DieSta
 
-RULES = json.loads((Path(__file__).parent / "rules.json").read_text())
+RULES = json.loads((Path(__file__).parent / "rules.json").read_text(encoding="utf-8"))
 ROUTED = "nets", "routed", "abutted", "tracks", "wire_um", "pads", "decoupling_pf"
 CHECKED = "open_nets", "shorts", "drc_violations", "lvs_match", "antenna_violations"
 DROPS = "pixel_drop_mv", "pixel_spread_mv", "pixel_drop_both_mv"  # of a drawn array
@@ -41,8 +41,8 @@ def summarize(name: str, options: Options, runner: Runner, black_boxes: Sequence
     for record in records.values():
         metrics |= record["metrics"]
         tools |= record["tools"]
-    plan = json.loads(runner.paths["die_plan.plan"].read_text())
-    nets = json.loads(runner.paths["die_parasitics.nets"].read_text())
+    plan = json.loads(runner.paths["die_plan.plan"].read_text(encoding="utf-8"))
+    nets = json.loads(runner.paths["die_parasitics.nets"].read_text(encoding="utf-8"))
     loads = {net: found["load_pf"] for net, found in nets.items()}
     total, bonded = leads(plan)
     return {

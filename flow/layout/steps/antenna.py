@@ -26,7 +26,7 @@ class Antenna(Step[PdkParameters]):
         for level, bad in violations(layout, layout.top_cell(), tech).items():
             boxes = {str(polygon.bbox().to_dtype(layout.dbu)) for polygon in bad.each()}
             found[tech.metals[level].name] = sorted(boxes)
-        outputs["summary"].write_text(json.dumps(found, indent=1) + "\n")
+        outputs["summary"].write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
         return {"antenna_violations": sum(map(len, found.values()))}
 
     def tech(self) -> CoriolisPlatform:

@@ -58,7 +58,7 @@ class Arrange(Step[ArrangeParameters]):
         p, tech = self.parameters, coriolis_platform(self.parameters.pdk)
         netlist = Netlist.read(inputs["netlist"])
         placement, floorplan, areas = (
-            json.loads(inputs[name].read_text()) for name in ("placement", "floorplan", "areas")
+            json.loads(inputs[name].read_text(encoding="utf-8")) for name in ("placement", "floorplan", "areas")
         )
         plan = planned(netlist, placement, floorplan, areas, tech)
         before = sum(plan.lengths().values())
@@ -68,11 +68,11 @@ class Arrange(Step[ArrangeParameters]):
                 arranged(plan, plan.instances.keys() - own, p.effort, p.spread)
         except RuntimeError as error:  # the rows are too full
             for name in ("netlist", "placement"):
-                outputs[name].write_text("")
+                outputs[name].write_text("", encoding="utf-8")
             return dict.fromkeys(self.metrics) | {"stopped": str(error)}
         made, placement["instances"] = plan.listed(netlist, placement["instances"], tech.fill_cells)
         made.write(outputs["netlist"])
-        outputs["placement"].write_text(json.dumps(placement, indent=0) + "\n")
+        outputs["placement"].write_text(json.dumps(placement, indent=0) + "\n", encoding="utf-8")
         return {"stopped": None, "before_um": round(before, 1), "wire_um": round(sum(plan.lengths().values()), 1)}
 
 
@@ -82,7 +82,7 @@ def printed_to(path: Path) -> Iterator[None]:
     sys.stdout.flush()
     kept = os.dup(1)
     try:
-        with path.open("w") as file:
+        with path.open("w", encoding="utf-8") as file:
             os.dup2(file.fileno(), 1)
             yield
     finally:

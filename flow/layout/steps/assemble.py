@@ -48,21 +48,26 @@ class Assemble(Step[AssembleParameters]):
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         modules, tech = self.parameters.macros, coriolis_platform(self.parameters.pdk)
-        netlist, placement = Netlist.read(inputs["netlist"]), json.loads(inputs["placement"].read_text())
-        placed = json.loads(inputs["floorplan"].read_text())["macros"]
+        netlist, placement = (
+            Netlist.read(inputs["netlist"]),
+            json.loads(inputs["placement"].read_text(encoding="utf-8")),
+        )
+        placed = json.loads(inputs["floorplan"].read_text(encoding="utf-8"))["macros"]
         netlists = {module: Netlist.read(inputs[f"{module}.netlist"]) for module in modules}
-        placements = {module: json.loads(inputs[f"{module}.placement"].read_text()) for module in modules}
+        placements = {
+            module: json.loads(inputs[f"{module}.placement"].read_text(encoding="utf-8")) for module in modules
+        }
         flat = flattened(netlist, {macro["instance"]: netlists[macro["cell"]] for macro in placed})
         flat.write(outputs["netlist"])
         inside = {macro["instance"]: placements[macro["cell"]] for macro in placed}
         places = {macro["instance"]: (macro["x_um"], macro["y_um"]) for macro in placed}
         whole = merged_placement(netlist, placement, inside, places)
-        outputs["placement"].write_text(json.dumps(whole, indent=0) + "\n")
+        outputs["placement"].write_text(json.dumps(whole, indent=0) + "\n", encoding="utf-8")
         insert_macros(inputs["gds"], outputs["gds"], [(inputs[f"{m['cell']}.gds"], m) for m in placed], tech)
-        cells = inputs["cells"].read_text()
-        own = [inputs[f"{module}.spice"].read_text().removesuffix(cells) for module in modules]
-        outputs["spice"].write_text("\n".join([*own, cells]))
-        areas = json.loads(inputs["areas"].read_text())
+        cells = inputs["cells"].read_text(encoding="utf-8")
+        own = [inputs[f"{module}.spice"].read_text(encoding="utf-8").removesuffix(cells) for module in modules]
+        outputs["spice"].write_text("\n".join([*own, cells]), encoding="utf-8")
+        areas = json.loads(inputs["areas"].read_text(encoding="utf-8"))
         logic = [instance.cell for instance in flat.instances if instance.pins]
         return {
             "cells": len(logic),

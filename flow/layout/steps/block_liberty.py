@@ -56,12 +56,12 @@ class BlockLiberty(CornerStep[BlockLibertyParameters]):
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         clock, folder = self.parameters.clock, outputs["liberty"].parent
-        netlist, plan = Netlist.read(inputs["netlist"]), json.loads(inputs["areas"].read_text())
+        netlist, plan = Netlist.read(inputs["netlist"]), json.loads(inputs["areas"].read_text(encoding="utf-8"))
         files = Sources(inputs["liberty"], inputs["verilog"], folder, inputs["spef"])
         found = measure(netlist, clock, files, SLEWS, LOADS)
         corner, area = self.parameters.corner, plan["width_um"] * plan["height_um"]
         model = liberty(netlist, clock, found, corner, inputs["liberty"], area, supplies(plan))
-        outputs["liberty"].write_text(model)
+        outputs["liberty"].write_text(model, encoding="utf-8")
         error = self.model_error(netlist, files, outputs["liberty"])
         return {"model_error_ns": error, "arcs": len(found.delays) + len(found.checks)}
 
@@ -69,7 +69,7 @@ class BlockLiberty(CornerStep[BlockLibertyParameters]):
         """Largest difference (ns) between the model in a wrapper and the netlist, off the grid. Raises StepError."""
         run(["yosys", "-q", "-p", f"read_liberty -lib {made}; hierarchy -check -top {netlist.name}"])
         wrapper = files.folder / "wrapper.log"
-        wrapper.write_text(_wrapper(netlist))
+        wrapper.write_text(_wrapper(netlist), encoding="utf-8")
         point = (CHECK_SLEW_NS,), (CHECK_LOAD_PF,)
         own = measure(netlist, self.parameters.clock, files, *point)
         model = measure(netlist, self.parameters.clock, Sources(made, wrapper, files.folder, top="Wrapper"), *point)

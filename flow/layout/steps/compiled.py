@@ -37,7 +37,7 @@ class Compiled(Step[PdkParameters]):
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         tech, devices = coriolis_platform(self.parameters.pdk), extraction_platform(self.parameters.pdk)
-        rules = RoutingRules.of(tech, json.loads(inputs["rules"].read_text()))
+        rules = RoutingRules.of(tech, json.loads(inputs["rules"].read_text(encoding="utf-8")))
         layer, layout = rules.layers[0], db.Layout()
         top, half = layout.create_cell("top"), layer.width // 2
         pins = [db.Box(at - half, at - PIN_NM, at + half, at + PIN_NM) for at in PINS_NM]

@@ -30,7 +30,7 @@ class Drc(Step[PdkParameters]):
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         tech = coriolis_platform(self.parameters.pdk)
-        masks = [tech.masks.read_text()] if tech.masks else []
-        deck, flat = self.exported(inputs["deck"].read_text()), (*hole_rules(tech), *masks)
+        masks = [tech.masks.read_text(encoding="utf-8")] if tech.masks else []
+        deck, flat = self.exported(inputs["deck"].read_text(encoding="utf-8")), (*hole_rules(tech), *masks)
         found = check_rules(deck, via_rules(tech), flat, inputs["gds"], outputs)
         return {"drc_violations": sum(count for rule, count in found.items() if not rule.startswith(WARNING))}

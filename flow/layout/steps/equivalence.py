@@ -72,7 +72,9 @@ class Equivalence(Step[EquivalenceParameters]):
             pair = Pair(gold, gate, states, gate_states, folder, p.seconds, guess).settled()
             held, proofs = pair.given, pair.prove(p.reset)
         lacking = {gold.names[bit][0]: gold.names.get(held[bit], [held[bit]])[0] for bit in missing}
-        outputs["summary"].write_text(json.dumps({"proofs": proofs, "missing": lacking}, indent=1) + "\n")
+        outputs["summary"].write_text(
+            json.dumps({"proofs": proofs, "missing": lacking}, indent=1) + "\n", encoding="utf-8"
+        )
         constants, idle = (sum(value in values for value in held.values()) for values in (("0", "1"), (ANY,)))
         verdict = "proven" if all(proofs.values()) else "failed"
         doubles = len(held) - constants - idle

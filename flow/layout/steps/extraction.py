@@ -32,11 +32,11 @@ class Extraction(Step[PdkParameters]):
         pdk, netlist = self.parameters.pdk, Netlist.read(inputs["netlist"])
         tech, devices = coriolis_platform(pdk), extraction_platform(pdk)
         layout, corners = read_gds(inputs["gds"]), [tech.wires[name] for name in outputs]
-        left, bottom, *_ = json.loads(inputs["plan"].read_text()).get("frame", (0.0, 0.0))
+        left, bottom, *_ = json.loads(inputs["plan"].read_text(encoding="utf-8")).get("frame", (0.0, 0.0))
         layout.top_cell().transform(db.DTrans(left, bottom))  # to where the cells were placed
         found = list(extract(layout, netlist, inputs["placement"], tech, devices, corners))
         for name, nets in zip(outputs, found, strict=True):
-            outputs[name].write_text(spef(netlist, nets))
+            outputs[name].write_text(spef(netlist, nets), encoding="utf-8")
         ff = [net.femtofarad for net in found[0].values()]
         ohm = max(sum(ohm for *_, ohm in net.resistors) for net in found[0].values())
         return {"wire_pf": round(sum(ff) / 1000, 3), "largest_ff": round(max(ff), 2), "largest_ohm": round(ohm, 1)}

@@ -33,5 +33,5 @@ class Fill(Step[PdkParameters]):
         write_gds(layout, outputs["gds"])
         dense = {name: density for name, density in after.items() if density > tech.fill.density_most}
         summary = {"before": before, "after": after, "too dense": dense}
-        outputs["summary"].write_text(json.dumps(summary, indent=1) + "\n")
+        outputs["summary"].write_text(json.dumps(summary, indent=1) + "\n", encoding="utf-8")
         return {"squares": squares, "before": before, "after": after, "density_violations": len(dense)}

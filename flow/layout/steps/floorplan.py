@@ -61,7 +61,7 @@ class Floorplan(Step[FloorplanParameters]):
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         p, tech = self.parameters, coriolis_platform(self.parameters.pdk)
-        netlist, areas = Netlist.read(inputs["netlist"]), json.loads(inputs["areas"].read_text())
+        netlist, areas = Netlist.read(inputs["netlist"]), json.loads(inputs["areas"].read_text(encoding="utf-8"))
         macros = [(name, Macro.read(inputs[module], tech), (x, y)) for name, module, x, y in p.macros]
         self.check(netlist, areas, {name: macro.name for name, macro, _ in macros})
         cells = sum(areas.get(i.cell, 0) for i in netlist.instances) * (1 + CLOCK_CELLS_SHARE)
@@ -82,7 +82,7 @@ class Floorplan(Step[FloorplanParameters]):
         size = {"rows": rows, "columns": columns, "width_um": width, "height_um": height}
         tree = largest_free(width, height, [macro["outer"] for macro in placed])
         plan = size | {"pins": pins(netlist.ports), "macros": placed, "tree": tree} | given
-        outputs["floorplan"].write_text(json.dumps(plan, indent=1))
+        outputs["floorplan"].write_text(json.dumps(plan, indent=1), encoding="utf-8")
         inside = sum(macro.width_um * macro.height_um for _, macro, _ in macros)
         areas_um2 = dict(zip(AREAS, (round(width * height, 2), round(inside, 2)), strict=True))
         return size | areas_um2 | {"utilization": utilization}

@@ -57,7 +57,7 @@ class FoundryDrc(Step[FoundryDrcParameters]):
         if status:
             raise StepError(f"foundry_drc: {inputs['deck'].name} failed: {_error_line(output)}")
         found = violations(outputs["report"])
-        outputs["summary"].write_text(json.dumps(found, indent=1) + "\n")
+        outputs["summary"].write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
         return {"foundry_drc_violations": sum(found.values())}
 
 
@@ -74,10 +74,10 @@ class MagicDrc(Step[FoundryDrcParameters]):
         folder, deck = outputs["report"].parent.resolve(), _checks(self.parameters.pdk)
         magic, gds, report = inputs["magic"].resolve(), inputs["gds"].resolve(), outputs["report"].resolve()
         script = folder / "drc.tcl"
-        script.write_text(MAGIC.format(gds=gds, top=self.parameters.top, report=report))
+        script.write_text(MAGIC.format(gds=gds, top=self.parameters.top, report=report), encoding="utf-8")
         env = {"PDK_ROOT": str(magic).removesuffix(deck.magic)}
         done = finish(["magic", *["-dnull", "-noconsole", "-rcfile"], magic / deck.rc, script], env, folder)
-        lines = outputs["report"].read_text().splitlines() if outputs["report"].exists() else []
+        lines = outputs["report"].read_text(encoding="utf-8").splitlines() if outputs["report"].exists() else []
         if done.returncode or lines[-1:] != ["end"]:
             raise StepError(f"magic_drc: Magic failed: {_error_line(done.stdout + done.stderr)}")
         script.unlink()

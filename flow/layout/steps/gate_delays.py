@@ -47,16 +47,16 @@ class GateDelays(CornerStep[GateDelaysParameters]):
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         p, folder = self.parameters, outputs["activity"].parent
-        netlist, delays = Netlist.read(inputs["netlist"]), read(inputs["sdf"].read_text())
+        netlist, delays = Netlist.read(inputs["netlist"]), read(inputs["sdf"].read_text(encoding="utf-8"))
         lacking = [i.name for i in netlist.instances if set(i.pins) - CONSTANTS and i.name not in delays.paths]
         if lacking:
             raise StepError(f"{self.name}: the SDF has no delay of {', '.join(lacking[:5])}")
-        timing, cells = Timing(p.period_ns, p.input_delay, p.output_delay), inputs["cells"].read_text()
+        timing, cells = Timing(p.period_ns, p.input_delay, p.output_delay), inputs["cells"].read_text(encoding="utf-8")
         found = replay(netlist, cells, inputs["head"], timing, folder, delays, count=True)
-        (folder / "verdict.log").write_text("\n".join((*found.first, *found.late[:100])) + "\n")
+        (folder / "verdict.log").write_text("\n".join((*found.first, *found.late[:100])) + "\n", encoding="utf-8")
         for name in ("cells", "netlist", "delays", "bench"):
             (folder / f"{name}.log").unlink()
-        outputs["activity"].write_text(json.dumps(found.activity, indent=0) + "\n")
+        outputs["activity"].write_text(json.dumps(found.activity, indent=0) + "\n", encoding="utf-8")
         good, margins = not found.wrong and not found.late, found.margins or (0.0, 0.0)
         paths, (setup, hold) = sum(map(len, delays.paths.values())), margins
         counts = {"passed": int(good), "failed": int(not good), "cycles": found.cycles, "paths": paths}

@@ -46,7 +46,7 @@ class GateFrames(Step[NoParameters]):
                 same = "equal" if chip.stream == golden.stream and made == golden.made and not wrong else "DIFFERENT"
                 cycles, sent = cycles + chip.cycles, sent + len(chip.stream)
                 lines.append(f"{mode}: {len(chip.stream)} bytes in {chip.cycles} cycles: {same}")
-        outputs["log"].write_text("\n".join(lines) + "\n")
+        outputs["log"].write_text("\n".join(lines) + "\n", encoding="utf-8")
         failed = sum(line.endswith("DIFFERENT") for line in lines)
         return {"passed": len(lines) - failed, "failed": failed, "cycles": cycles, "bytes": sent}
 

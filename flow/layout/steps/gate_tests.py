@@ -58,7 +58,7 @@ class GateTests(Step[GateTestsParameters]):
             pytest = [sys.executable, "-m", "pytest", f"rtl/{p.folder}", "-p", "no:xdist", "-p", "no:cacheprovider"]
             files = f"--basetemp={folder}/tmp", f"--junitxml={folder}/tests.xml", f"--cells={inputs['cells'].resolve()}"
             done = finish([*pytest, *files, *netlists, f"--netlist-in={p.simulator}"], cwd=ROOT)
-            outputs["report"].with_suffix(".log").write_text(done.stdout + done.stderr)
+            outputs["report"].with_suffix(".log").write_text(done.stdout + done.stderr, encoding="utf-8")
             report = Path(folder) / "tests.xml"
             if done.returncode not in (0, 1) or not report.exists():
                 raise StepError(f"{self.name}: pytest printed: {(done.stdout + done.stderr).strip().splitlines()[-1:]}")

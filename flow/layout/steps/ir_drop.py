@@ -45,9 +45,9 @@ class IrDrop(CornerStep[IrDropParameters]):
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         tech = coriolis_platform(self.parameters.pdk)
-        netlist, plan = Netlist.read(inputs["netlist"]), json.loads(inputs["plan"].read_text())
-        placed = json.loads(inputs["placement"].read_text())
-        areas, power = (json.loads(inputs[name].read_text()) for name in ("areas", "power"))
+        netlist, plan = Netlist.read(inputs["netlist"]), json.loads(inputs["plan"].read_text(encoding="utf-8"))
+        placed = json.loads(inputs["placement"].read_text(encoding="utf-8"))
+        areas, power = (json.loads(inputs[name].read_text(encoding="utf-8")) for name in ("areas", "power"))
         cells = currents(netlist, placed["instances"], areas, power, tech)
         rows, height = round(plan["height_um"] / tech.row_um), plan["height_um"]
         found, lost = [], []
@@ -63,7 +63,7 @@ class IrDrop(CornerStep[IrDropParameters]):
         total = found[0] + found[1]
         at = [(cell.x_um, (cell.row + 0.5) * tech.row_um) for cell in cells]
         rounded = [[round(x, 3), round(y, 3), float(mv)] for (x, y), mv in zip(at, total, strict=True)]
-        outputs["cells"].write_text(json.dumps(rounded, indent=0) + "\n")
+        outputs["cells"].write_text(json.dumps(rounded, indent=0) + "\n", encoding="utf-8")
         picture(outputs["picture"], at, total, placed["straps"], plan)
         return {
             "supply_drop_mv": float(f"{found[0].max():.4g}"),

@@ -21,10 +21,12 @@ class Lef(Step[PdkParameters]):
     tools = ("python klayout",)
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
-        tech, directions = coriolis_platform(self.parameters.pdk), ports(inputs["verilog"].read_text())
-        plan = json.loads(inputs["plan"].read_text())
+        tech, directions = coriolis_platform(self.parameters.pdk), ports(inputs["verilog"].read_text(encoding="utf-8"))
+        plan = json.loads(inputs["plan"].read_text(encoding="utf-8"))
         own = supplies(plan)
-        outputs["lef"].write_text(abstract(inputs["gds"], directions, tech, own, framed="frame" in plan))
+        outputs["lef"].write_text(
+            abstract(inputs["gds"], directions, tech, own, framed="frame" in plan), encoding="utf-8"
+        )
         if wrong := read_back(outputs["lef"], inputs["gds"], directions, tech, own):
             raise StepError(f"lef: read back, it differs from the GDS: {'; '.join(wrong)}")
         return {"pins": len(directions)}

@@ -47,19 +47,19 @@ class Library(Step[PdkParameters]):
         library = standard.library
         cells = [cell for cell in library.cells if cell.name != "Gallery"]
         rules = pdkmaster.routing_rules(tech, description.tech.primitives)
-        outputs["geometry"].write_text(json.dumps(pdkmaster.layout_geometry(tech), indent=1) + "\n")
-        outputs["rules"].write_text(json.dumps(rules, indent=1) + "\n")
+        outputs["geometry"].write_text(json.dumps(pdkmaster.layout_geometry(tech), indent=1) + "\n", encoding="utf-8")
+        outputs["rules"].write_text(json.dumps(rules, indent=1) + "\n", encoding="utf-8")
         pdkmaster.export_coriolis(outputs["coriolis"], description, standard, tech)
         for name, deck in pdkmaster.export_decks(description, devices).items():
-            outputs[name].write_text(deck)
+            outputs[name].write_text(deck, encoding="utf-8")
         standard.write_gds(outputs["gds"])
-        outputs["spice"].write_text(pdkmaster.export_spice(cells, devices))
+        outputs["spice"].write_text(pdkmaster.export_spice(cells, devices), encoding="utf-8")
         areas = {cell.name: pdkmaster.cell_area(cell) for cell in cells}
-        outputs["areas"].write_text(json.dumps(areas, indent=1))
+        outputs["areas"].write_text(json.dumps(areas, indent=1), encoding="utf-8")
         ports = {cell.name: [port.name for port in cell.circuit.ports if port.name not in SUPPLIES] for cell in cells}
         logic = [name for name in ports if not name.startswith(UNUSED)]
         found = liberty.functions(outputs["gds"], logic, device_models(pdk), extraction_platform(pdk))
         chosen = {name: cell for name, cell in found.items() if not cell.storage or cell.storage.kind != "latch"}
-        outputs["liberty"].write_text(liberty.liberty(chosen, ports, areas))
+        outputs["liberty"].write_text(liberty.liberty(chosen, ports, areas), encoding="utf-8")
         write_models(outputs["liberty"], outputs["verilog"])
         return {"cells": len(cells)}

@@ -29,9 +29,12 @@ class Lvs(Step[PdkParameters]):
     tools = ("klayout",)
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
-        deck = hierarchical(inputs["deck"].read_text(), coriolis_platform(self.parameters.pdk).active)
+        deck = hierarchical(inputs["deck"].read_text(encoding="utf-8"), coriolis_platform(self.parameters.pdk).active)
         outputs["deck"].write_text(
-            with_ports(deck, Netlist.read(inputs["netlist"]), supplies(json.loads(inputs["plan"].read_text())))
+            with_ports(
+                deck, Netlist.read(inputs["netlist"]), supplies(json.loads(inputs["plan"].read_text(encoding="utf-8")))
+            ),
+            encoding="utf-8",
         )
         _, output = run_exported(outputs["deck"], inputs["gds"], outputs["report"], SPICE_FILE=inputs["spice"])
         if not outputs["report"].exists() or ("LVS OK" in output) == ("LVS Failed" in output):

@@ -76,14 +76,14 @@ class Place(Step[PlaceParameters]):
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         netlist = Netlist.read(inputs["netlist"])
         names = plain_names(netlist, self.parameters.clock)
-        plan = json.loads(inputs["floorplan"].read_text())
+        plan = json.loads(inputs["floorplan"].read_text(encoding="utf-8"))
         macros = plain_macros(netlist, plan["macros"])
         request = self.request(inputs, plan, names, netlist, macros)
         with tempfile.TemporaryDirectory(dir=outputs["log"].parent) as work:
             result = self.coriolis(Path(work), netlist.blif(MODEL, names, macros), request, outputs)
         if "stopped" in result:
             for name in ("gds", "netlist", "placement", "shapes", "masters"):
-                outputs[name].write_text("")
+                outputs[name].write_text("", encoding="utf-8")
             return dict.fromkeys(self.metrics) | {"stopped": result["stopped"]}
         make_solid(outputs["gds"], request["macros"], coriolis_platform(self.parameters.pdk))
         placed, own = placement(names, result), own_name(names)
@@ -93,10 +93,10 @@ class Place(Step[PlaceParameters]):
         for name, (cell, pins) in macros.items():
             module = next(instance.cell for instance in netlist.instances if instance.name == name)
             masters[module] = {pin: masters[cell][plain] for pin, plain in pins.items()}
-        outputs["masters"].write_text(json.dumps(masters))
+        outputs["masters"].write_text(json.dumps(masters), encoding="utf-8")
         final = placed_netlist(netlist, names, result["instances"], macros)
         final.write(outputs["netlist"])
-        outputs["placement"].write_text(json.dumps(placed, indent=0) + "\n")
+        outputs["placement"].write_text(json.dumps(placed, indent=0) + "\n", encoding="utf-8")
         cells = sum(bool(instance.pins) for instance in final.instances)
         return {
             "stopped": None,
@@ -110,27 +110,31 @@ class Place(Step[PlaceParameters]):
         """Draw the ports in place of Coriolis's, which may be on metal of cells, and label the straps."""
         tech, layout = coriolis_platform(self.parameters.pdk), read_gds(outputs["gds"])
         replaced = [box for made in shapes.values() for box in made["ports"]]
-        own = RoutingRules.of(tech, json.loads(rules.read_text()))
+        own = RoutingRules.of(tech, json.loads(rules.read_text(encoding="utf-8")))
         ports = plan.get("ports") or edge_ports(placed["pins"], layout.top_cell().bbox(), own, tech)
         drawn = draw_ports(layout, ports, replaced, tech)
         for net, made in shapes.items():
             made["ports"] = [drawn[net]] if net in drawn else []
         label_straps(layout, placed["straps"], tech)
         write_gds(layout, outputs["gds"])
-        outputs["shapes"].write_text(json.dumps(shapes))
+        outputs["shapes"].write_text(json.dumps(shapes), encoding="utf-8")
 
     def coriolis(self, work: Path, blif: str, request: dict[str, Any], outputs: Files) -> dict[str, Any]:
         """Run it in the folder ``work``; returns its result, {"stopped": its last message} if it gave up."""
-        (work / f"{MODEL}.blif").write_text(blif)
-        (work / "request.json").write_text(json.dumps(request))
+        (work / f"{MODEL}.blif").write_text(blif, encoding="utf-8")
+        (work / "request.json").write_text(json.dumps(request), encoding="utf-8")
         command = [sys.executable, "-m", "talbot.flow.layout.coriolis", "request.json"]
         done = finish(command, {"PYTHONPATH": str(ROOT)}, work)
-        outputs["log"].write_text(done.stdout + done.stderr)
+        outputs["log"].write_text(done.stdout + done.stderr, encoding="utf-8")
         if done.returncode or not (work / "result.json").exists():
-            lines = [line for line in outputs["log"].read_text().splitlines() if "rror" in line or "coriolis:" in line]
+            lines = [
+                line
+                for line in outputs["log"].read_text(encoding="utf-8").splitlines()
+                if "rror" in line or "coriolis:" in line
+            ]
             return {"stopped": (lines or ["it ended with no message"])[-1].strip()}
         next(work.glob("*.gds")).replace(outputs["gds"])
-        return json.loads((work / "result.json").read_text())
+        return json.loads((work / "result.json").read_text(encoding="utf-8"))
 
     def request(
         self, inputs: Files, plan: dict[str, Any], names: Mapping[str, str], netlist: Netlist, macros: MacroNames

@@ -54,15 +54,17 @@ class Power(CornerStep[PowerParameters]):
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         p, netlist = self.parameters, Netlist.read(inputs["netlist"])
-        cells, activity = Cells(read(inputs["liberty"])), json.loads(inputs["activity"].read_text())
-        wires, slews = wire_pf(inputs["spef"].read_text()), self.slews(inputs, outputs)
+        cells, activity = Cells(read(inputs["liberty"])), json.loads(inputs["activity"].read_text(encoding="utf-8"))
+        wires, slews = wire_pf(inputs["spef"].read_text(encoding="utf-8")), self.slews(inputs, outputs)
         found = powers(netlist, cells, activity, wires, slews, p.period_ns)
         where = blocks(netlist)
         by_block: dict[str, float] = {}
         for name, power in found.items():
             by_block[where[name]] = by_block.get(where[name], 0.0) + power.total
         total = sum(power.total for power in found.values())
-        outputs["instances"].write_text(json.dumps({name: power.total for name, power in found.items()}, indent=0))
+        outputs["instances"].write_text(
+            json.dumps({name: power.total for name, power in found.items()}, indent=0), encoding="utf-8"
+        )
         by_kind = {kind: sum(getattr(power, kind) for power in found.values()) for kind in KINDS}
         return {
             "power_uw": round(total, 4),

@@ -91,15 +91,20 @@ class Repair(Step[RepairParameters]):
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         p, tech = self.parameters, coriolis_platform(self.parameters.pdk)
-        netlist, placement = Netlist.read(inputs["netlist"]), json.loads(inputs["placement"].read_text())
-        areas = json.loads(inputs["areas"].read_text())
+        netlist, placement = (
+            Netlist.read(inputs["netlist"]),
+            json.loads(inputs["placement"].read_text(encoding="utf-8")),
+        )
+        areas = json.loads(inputs["areas"].read_text(encoding="utf-8"))
         layout, counts, lengths = (
             read_gds(inputs["gds"]),
             {"clock_drivers": 0, "halfway": 0, "sized": 0, "buffers": 0, "estimate_ns": None},
             dict[str, float](),
         )
         if p.corner:
-            begin = planned(netlist, placement, json.loads(inputs["floorplan"].read_text()), areas, tech)
+            begin = planned(
+                netlist, placement, json.loads(inputs["floorplan"].read_text(encoding="utf-8")), areas, tech
+            )
             begin.femtofarad_um = femtofarad_um(tech, wire_corner(p.corner))
             outputs_of = (net for port in netlist.ports if port.direction == "output" for net in port.bits())
             begin.outside = dict.fromkeys(outputs_of, p.load_pf)
@@ -108,9 +113,9 @@ class Repair(Step[RepairParameters]):
         draw(layout, read_gds(inputs["masks"]), areas, placement["instances"])
         write_gds(layout, outputs["gds"])
         netlist.write(outputs["netlist"])
-        outputs["verilog"].write_text(netlist.verilog())
-        outputs["lengths"].write_text(json.dumps(lengths, indent=0) + "\n")
-        outputs["placement"].write_text(json.dumps(placement, indent=0) + "\n")
+        outputs["verilog"].write_text(netlist.verilog(), encoding="utf-8")
+        outputs["lengths"].write_text(json.dumps(lengths, indent=0) + "\n", encoding="utf-8")
+        outputs["placement"].write_text(json.dumps(placement, indent=0) + "\n", encoding="utf-8")
         cells = [instance.cell for instance in netlist.instances if instance.pins]
         return counts | {"cells": len(cells), "cell_area_um2": round(sum(areas.get(cell, 0) for cell in cells), 2)}
 

@@ -61,26 +61,26 @@ class Route(Step[RouteParameters]):
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         tech = coriolis_platform(self.parameters.pdk)
         placement, shapes, masters, areas = (
-            json.loads(inputs[name].read_text()) for name in ("placement", "shapes", "masters", "areas")
+            json.loads(inputs[name].read_text(encoding="utf-8")) for name in ("placement", "shapes", "masters", "areas")
         )
         pins = pin_boxes(Netlist.read(inputs["netlist"]), placement["instances"], masters)
         for net in pins.keys() | shapes.keys():
             made = shapes.setdefault(net, {"segments": [], "vias": [], "ports": []})
             made["pins"] = [*pins.get(net, []), *([box] for box in made.pop("ports"))]
-        rules = RoutingRules.of(tech, json.loads(inputs["rules"].read_text()))
-        area, plan = None, json.loads(inputs["plan"].read_text())
+        rules = RoutingRules.of(tech, json.loads(inputs["rules"].read_text(encoding="utf-8")))
+        area, plan = None, json.loads(inputs["plan"].read_text(encoding="utf-8"))
         if "frame" in plan:
             left, bottom, right, top = (round(1000 * value) for value in plan["frame"])
             area = left + EDGE_NM, bottom + EDGE_NM, right - EDGE_NM, top - EDGE_NM
         board = Board(read_gds(inputs["gds"]), rules, dict(sorted(shapes.items())), area)
         diodes = Diodes(placement["instances"], masters, read_gds(inputs["cells"]), areas, tech)
         wanted = [net for net, pins in board.pins.items() if len(pins) > 1]
-        found = route(board, wanted, tech, diodes, json.loads(inputs["lengths"].read_text()))
+        found = route(board, wanted, tech, diodes, json.loads(inputs["lengths"].read_text(encoding="utf-8")))
         segments = {net: found.routes[net].listed(rules) if net in found.routes else [] for net in board.nets}
         placement["segments"] = segments
         write_gds(board.drawn(), outputs["gds"])
-        outputs["placement"].write_text(json.dumps(placement, indent=0) + "\n")
-        outputs["diodes"].write_text(json.dumps({"nets": diodes.nets, "fill": diodes.fill}) + "\n")
+        outputs["placement"].write_text(json.dumps(placement, indent=0) + "\n", encoding="utf-8")
+        outputs["diodes"].write_text(json.dumps({"nets": diodes.nets, "fill": diodes.fill}) + "\n", encoding="utf-8")
         lengths = [length for made in segments.values() for _, length, _ in made]
         return {
             "open_nets": len(found.open),

@@ -48,7 +48,7 @@ class Sta(CornerStep[StaParameters]):
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         script = SCRIPT.format(top=self.parameters.top, sdf=outputs["sdf"], **inputs)
         report = opensta(outputs["report"].with_name("sta.log"), script)
-        outputs["report"].write_text(report)
+        outputs["report"].write_text(report, encoding="utf-8")
         setup, hold = (worst_slack(report, kind) for kind in ("setup", "hold"))
         f_max = round(1000 / (self.parameters.period_ns - setup), 2)
         slacks = {"wns_ns": round(setup, 4), "whs_ns": round(hold, 4)}

@@ -39,10 +39,10 @@ class StaBlocks(CornerStep[StaBlocksParameters]):
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         p, folder, netlist = self.parameters, outputs["report"].parent, Netlist.read(inputs["netlist"])
         files = {name: folder / f"{name}.log" for name in ("verilog", "sdf")} | {"spef": inputs["spef"]}
-        files["verilog"].write_text(netlist.verilog())
+        files["verilog"].write_text(netlist.verilog(), encoding="utf-8")
         libraries = "\nread_liberty ".join(str(inputs[name]) for name in ("liberty", *p.macros))
         script = SCRIPT.format(top=p.top, liberty=libraries, sdc=inputs["sdc"], **files)
         report = opensta(folder / "sta.log", script)
-        outputs["report"].write_text(report)
+        outputs["report"].write_text(report, encoding="utf-8")
         setup, hold = (round(worst_slack(report, kind), 4) for kind in ("setup", "hold"))
         return {"blocks_wns_ns": setup, "blocks_whs_ns": hold}

@@ -88,14 +88,14 @@ class Stimulus(Step[StimulusParameters]):
         with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
             folder = Path(folder)
             export_verilog(folder, [CHIP], self.parameters.options)
-            chip, own = (folder / f"{CHIP}.sv").read_text(), inputs["rtl"].read_text()
+            chip, own = (folder / f"{CHIP}.sv").read_text(encoding="utf-8"), inputs["rtl"].read_text(encoding="utf-8")
             if top in EXAMPLES:
                 head = in_host(self.parameters, inputs["rtl"], folder, outputs["trace"])
             elif set(modules(own).items()) <= set(modules(chip).items()):
                 head = in_frame(self.parameters, folder, outputs["trace"])
             else:
                 head = in_tests(top, own, folder, outputs["trace"])
-        outputs["head"].write_text(json.dumps(head, indent=1) + "\n")
+        outputs["head"].write_text(json.dumps(head, indent=1) + "\n", encoding="utf-8")
         return {name: head[name] for name in self.metrics}
 
 
@@ -108,10 +108,10 @@ def in_frame(parameters: StimulusParameters, folder: Path, trace: Path) -> dict[
 
     design = folder / "hierarchy.json"
     run(["yosys", "-q", "-p", f"read_verilog -sv {folder / CHIP}.sv; hierarchy -top {CHIP}; proc; write_json {design}"])
-    tree = json.loads(design.read_text())["modules"]
+    tree = json.loads(design.read_text(encoding="utf-8"))["modules"]
     path = instance_of(tree, CHIP, parameters.top) or ()
     ports = ports_of(tree, parameters.top)
-    (folder / "tap.v").write_text(tap("Clock.clk", ".".join(("Clock.bench.chip", *path)), ports))
+    (folder / "tap.v").write_text(tap("Clock.clk", ".".join(("Clock.bench.chip", *path)), ports), encoding="utf-8")
     window = partial(middle, tiles=parameters.tiles) if parameters.tiles else None
     asked = request(parameters.rows, parameters.cols, scene=SCENE, mode="tof", phase=True, window=window)
     chip = replace(asked.sensor.chip, divider=parameters.divider, n_frac=parameters.n_frac)
@@ -122,8 +122,8 @@ def in_frame(parameters: StimulusParameters, folder: Path, trace: Path) -> dict[
     seen = simulate(program, asked.sensor, asked.frame, exposed.samples, exposed.front_end, more=more)
     if seen.stream != golden_frame(exposed.samples, asked.sensor, asked.frame, exposed.front_end).stream:
         raise StepError("stimulus: the chip's frame is not the golden chip's")
-    lines = recorded((folder / "tap.trace").read_text())
-    trace.write_text("\n".join(lines) + "\n")
+    lines = recorded((folder / "tap.trace").read_text(encoding="utf-8"))
+    trace.write_text("\n".join(lines) + "\n", encoding="utf-8")
     head = {"source": "frame", "scene": SCENE, "instance": ".".join(path)}
     return head | {"ports": ports, "cycles": len(lines), "results": results(lines, ports)}
 
@@ -149,11 +149,11 @@ def in_host(parameters: StimulusParameters, rtl: Path, folder: Path, trace: Path
     """Record a wrapper whose Verilog is the file ``rtl`` behind its host, to the file ``trace``; the head."""
     design, top = folder / "wrapper.json", parameters.top
     run(["yosys", "-q", "-p", f"read_verilog -sv {rtl}; hierarchy -top {top}; proc; write_json {design}"])
-    ports = ports_of(json.loads(design.read_text())["modules"], top)
+    ports = ports_of(json.loads(design.read_text(encoding="utf-8"))["modules"], top)
     written = folder / "tap.trace"
     simulate_host(top, EXAMPLES[top], [rtl], folder, tap("host.clk", "host.dut", ports), [f"+tap={written}"])
-    lines = recorded(written.read_text())
-    trace.write_text("\n".join(lines) + "\n")
+    lines = recorded(written.read_text(encoding="utf-8"))
+    trace.write_text("\n".join(lines) + "\n", encoding="utf-8")
     return {"source": "host", "ports": ports, "cycles": len(lines), "results": results(lines, ports)}
 
 
@@ -213,7 +213,7 @@ def in_tests(top: str, own: str, folder: Path, trace: Path) -> dict[str, Any]:
         text = run([sys.executable, "-c", OF_A_TRACE, path], cwd=ROOT)
         if modules(text) == modules(own):
             trace.write_bytes(path.with_suffix(".trace").read_bytes())
-            head = json.loads(path.read_text())
-            found = results(trace.read_text().splitlines(), head["ports"])
+            head = json.loads(path.read_text(encoding="utf-8"))
+            found = results(trace.read_text(encoding="utf-8").splitlines(), head["ports"])
             return {"source": "tests", "ports": head["ports"], "cycles": head["cycles"], "results": found}
     raise StepError(f"stimulus: no test of {top} builds it with the parameters that are laid out")

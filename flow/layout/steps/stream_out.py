@@ -55,8 +55,8 @@ class StreamOut(Step[StreamOutParameters]):
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         tech, layout = coriolis_platform(self.parameters.pdk), read_gds(inputs["gds"])
-        netlist, plan = Netlist.read(inputs["netlist"]), json.loads(inputs["plan"].read_text())
-        rules = json.loads(inputs["rules"].read_text())
+        netlist, plan = Netlist.read(inputs["netlist"]), json.loads(inputs["plan"].read_text(encoding="utf-8"))
+        rules = json.loads(inputs["rules"].read_text(encoding="utf-8"))
         (top,) = layout.top_cells()
         top.name = netlist.name
         relabel(layout, {net for port in netlist.ports for net in port.bits()} | set(SUPPLIES), tech, supplies(plan))
@@ -72,9 +72,11 @@ class StreamOut(Step[StreamOutParameters]):
         top.shapes(layout.layer(*tech.outline)).insert(outline)
         write_gds(layout, outputs["gds"])
         flat = Netlist.read(inputs["flat"]) if "flat" in inputs else netlist
-        outputs["verilog"].write_text(flat.verilog())
-        drawn = with_diodes(netlist, **json.loads(inputs["diodes"].read_text()))
-        outputs["spice"].write_text(drawn.spice(inputs["cells"].read_text(), supplies(plan)))
+        outputs["verilog"].write_text(flat.verilog(), encoding="utf-8")
+        drawn = with_diodes(netlist, **json.loads(inputs["diodes"].read_text(encoding="utf-8")))
+        outputs["spice"].write_text(
+            drawn.spice(inputs["cells"].read_text(encoding="utf-8"), supplies(plan)), encoding="utf-8"
+        )
         width, height = top.dbbox().width(), top.dbbox().height()
         size = {"width_um": round(width, 3), "height_um": round(height, 3), "area_um2": round(width * height, 2)}
         return size | {"instances": len(flat.instances)} | changed

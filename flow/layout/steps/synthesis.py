@@ -102,7 +102,7 @@ class Synthesis(Step[SynthesisParameters]):
         with tempfile.TemporaryDirectory(prefix="talbot-") as name:
             folder = Path(name)
             for path, text in CLOCK_GATE.files(folder).items():
-                path.write_text(text)
+                path.write_text(text, encoding="utf-8")
             made = {"registers": folder / "registers.json", "design": folder / "design.il"}
             blocks = "\n".join(f"blackbox {macro}" for macro in p.macros)
             gates = f"script {folder / GATES}" if gated else ""
@@ -110,7 +110,10 @@ class Synthesis(Step[SynthesisParameters]):
             names = register_names(made["registers"], p.top)
             netlist, tried = self.best(folder, inputs, names, gated)
         netlist.write(outputs["netlist"])
-        outputs["verilog"].write_text("\n".join([netlist.verilog(), *(inputs[name].read_text() for name in p.macros)]))
+        outputs["verilog"].write_text(
+            "\n".join([netlist.verilog(), *(inputs[name].read_text(encoding="utf-8") for name in p.macros)]),
+            encoding="utf-8",
+        )
         area = sum(um2[i.cell] for i in netlist.instances if i.cell not in p.macros)
         registers = sum(is_register(i.cell) for i in netlist.instances)
         clock_gates = sum(i.cell in (cells.gate.cell for cells in CLOCK_CELLS) for i in netlist.instances)
@@ -126,7 +129,7 @@ class Synthesis(Step[SynthesisParameters]):
         p, aim = self.parameters, AIM * self.parameters.period_ns * 1000
         files = {name: folder / name for name in ("mapping", "json")} | {"design": folder / "design.il"}
         limit = LIMIT.format(most=p.fan_out, aim=aim) if p.fan_out else ""
-        files["mapping"].write_text(START + mapping + limit + "print_stats\n")
+        files["mapping"].write_text(START + mapping + limit + "print_stats\n", encoding="utf-8")
         yosys(folder, MAP.format(aim=aim, timing=inputs.get("timing", inputs["liberty"]), **files))
         netlist = Netlist.from_yosys(files["json"], p.top, BUFFER, p.macros, names).with_input_buffers(p.macros, BUFFER)
         if p.load_pf > BARE_PF:
@@ -162,5 +165,5 @@ class TimedSynthesis(Synthesis):
 
 def yosys(folder: Path, script: str) -> None:
     """Run a script of Yosys in ``folder``. Raises ToolError."""
-    (folder / "script.ys").write_text(script)
+    (folder / "script.ys").write_text(script, encoding="utf-8")
     run(["yosys", "-q", "-s", folder / "script.ys"])

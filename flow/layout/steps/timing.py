@@ -64,7 +64,7 @@ class Timing(Step[TimingParameters]):
         metrics = {"cells": len(sources), "failed": 0, "key": key}
         if not p.measured and (found := tables.shipped(p.pdk, key)):
             for corner, written in found[0].items():
-                outputs[corner].write_text(written)
+                outputs[corner].write_text(written, encoding="utf-8")
             return metrics | {"simulations": found[1], "shipped": True}
         todo = [(source, condition) for condition in conditions for source in sources]
         todo.sort(key=lambda pair: -len(pair[0].netlist))  # the longest first
@@ -75,7 +75,10 @@ class Timing(Step[TimingParameters]):
         failed = [f"{' '.join(n)}: {f['what']}: {f['why']}" for n, one in measured.items() for f in one["failed"]]
         if failed:
             raise StepError(f"timing: {len(failed)} measurements failed, first {failed[0]}")
-        cells, areas = [cell_of(source, models) for source in sources], json.loads(inputs["areas"].read_text())
+        cells, areas = (
+            [cell_of(source, models) for source in sources],
+            json.loads(inputs["areas"].read_text(encoding="utf-8")),
+        )
         constants = {}
         for cell in read(inputs["functions"]).all("cell"):
             if not cell.all("pin", direction="input"):
@@ -84,7 +87,9 @@ class Timing(Step[TimingParameters]):
         for condition in conditions:
             corner, pairs = condition.corner.name, zip(cells, sources, strict=True)
             entries = [build.Entry(cell, measured[source.name, corner], source.area) for cell, source in pairs]
-            outputs[corner].write_text(text(build.library(f"{p.pdk}__{corner}", condition, entries, models, constants)))
+            outputs[corner].write_text(
+                text(build.library(f"{p.pdk}__{corner}", condition, entries, models, constants)), encoding="utf-8"
+            )
         return metrics | {"simulations": sum(one["simulations"] for one in made), "shipped": False}
 
 
@@ -103,7 +108,7 @@ def sources_of(inputs: Files, tech: ExtractionPlatform) -> "list[Source]":
     from talbot.cells.characterize.job import Source
     from talbot.cells.extract.subcircuit import extract
 
-    areas = json.loads(inputs["areas"].read_text())
+    areas = json.loads(inputs["areas"].read_text(encoding="utf-8"))
     cells = read(inputs["functions"]).all("cell")
     names = [cell.name for cell in cells if cell.all("pin", direction="input")]
     return [Source(name, extract(inputs["gds"], name, tech), areas[name]) for name in names]

@@ -64,7 +64,7 @@ def run(options: Namespace) -> int:
     points = run_jobs(jobs(options), options.out / "jobs", options.what, options.workers)
     figure = (pareto_plot if options.what == "pareto" else effort_plot)(points)
     with staged(options.out) as part:
-        (part / f"{options.what}.json").write_text(json.dumps(points, indent=1) + "\n")
+        (part / f"{options.what}.json").write_text(json.dumps(points, indent=1) + "\n", encoding="utf-8")
         save(figure, part / f"{options.what}.png")
     print(options.out / f"{options.what}.png")
     return 0

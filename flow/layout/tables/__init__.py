@@ -45,7 +45,7 @@ def _read(line: str) -> object:
 def shipped(pdk: str, wanted: str, folder: Path = SHIPPED) -> tuple[dict[str, str], int] | None:
     """Liberty text by corner and the simulations behind it, if those of ``pdk`` have the key ``wanted``; else None."""
     file = folder / INDEX.replace("*", pdk)
-    if not file.is_file() or (about := json.loads(file.read_text()))["key"] != wanted:
+    if not file.is_file() or (about := json.loads(file.read_text(encoding="utf-8")))["key"] != wanted:
         return None
     texts = {c: lzma.decompress((folder / f"{pdk}.{c}.lib.xz").read_bytes()).decode() for c in about["corners"]}
     return texts, about["simulations"]
@@ -59,4 +59,4 @@ def write(folder: Path, pdk: str, made: str, libraries: Mapping[str, Path], simu
             (part / f"{pdk}.{corner}.lib.xz").write_bytes(packed)
         tables = {corner: digest(path) for corner, path in libraries.items()}
         about = {"key": made, "simulations": simulations, "corners": tables}
-        (part / INDEX.replace("*", pdk)).write_text(json.dumps(about, indent=1) + "\n")
+        (part / INDEX.replace("*", pdk)).write_text(json.dumps(about, indent=1) + "\n", encoding="utf-8")

@@ -54,7 +54,7 @@ def setup_slacks(
 def _report(netlist: Netlist, nets: Mapping[str, tuple[float, float]], liberty: Path, sdc: Path, more: str) -> str:
     with tempfile.TemporaryDirectory(prefix="talbot-") as name:
         files = {kind: Path(name) / kind for kind in ("verilog", "spef")}
-        files["verilog"].write_text(netlist.verilog())
-        files["spef"].write_text(spef(netlist, nets))
+        files["verilog"].write_text(netlist.verilog(), encoding="utf-8")
+        files["spef"].write_text(spef(netlist, nets), encoding="utf-8")
         script = SCRIPT.format(liberty=liberty, top=netlist.name, sdc=sdc, more=more, **files)
         return opensta(Path(name) / "sta.log", script)

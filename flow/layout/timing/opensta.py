@@ -28,7 +28,7 @@ def opensta(path: Path, script: str) -> str:
     Raises ToolError when it fails; StepError where it reports an error, or a name of the SPEF that it does not
     know, whose parasitics would be missing from every figure.
     """
-    path.write_text(f"{script}\nexit\n")
+    path.write_text(f"{script}\nexit\n", encoding="utf-8")
     done = finish(["sta", "-no_splash", "-no_init", "-exit", path])
     output = (done.stdout + done.stderr).strip().splitlines()
     if wrong := next((line for line in output if "Error" in line), None):

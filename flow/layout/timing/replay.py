@@ -132,12 +132,14 @@ def replay(
     """
     nets = plain_names(netlist, "")
     names = {instance.name: f"x{k}" for k, instance in enumerate(netlist.instances)}
-    head = json.loads(trace.read_text())
-    (folder / "cells.log").write_text(specified(cells, delays, netlist) if delays else cells)
-    (folder / "netlist.log").write_text(_netlist(netlist, nets, names, delays, count))
-    (folder / "bench.log").write_text(_bench(netlist.name, head["ports"], timing, folder if delays else None))
+    head = json.loads(trace.read_text(encoding="utf-8"))
+    (folder / "cells.log").write_text(specified(cells, delays, netlist) if delays else cells, encoding="utf-8")
+    (folder / "netlist.log").write_text(_netlist(netlist, nets, names, delays, count), encoding="utf-8")
+    (folder / "bench.log").write_text(
+        _bench(netlist.name, head["ports"], timing, folder if delays else None), encoding="utf-8"
+    )
     if delays:
-        (folder / "delays.log").write_text(icarus(delays, netlist, names))
+        (folder / "delays.log").write_text(icarus(delays, netlist, names), encoding="utf-8")
     program = folder / "replay.log"
     sources = [folder / f"{name}.log" for name in ("bench", "netlist", "cells")]
     run(["iverilog", "-g2012", "-gspecify", "-s", "Replay", "-o", program, *sources])

@@ -52,7 +52,7 @@ def run(options: Namespace) -> int:
         made = learned(seeds, steps, seed, start)
     with staged(out) as part:
         made.save(part / f"{options.what}.npz")
-        (part / f"{options.what}.json").write_text(json.dumps(made.summary, indent=1) + "\n")
+        (part / f"{options.what}.json").write_text(json.dumps(made.summary, indent=1) + "\n", encoding="utf-8")
     print(f"{options.what}: {made.text}")
     print(f"look at {out / options.what}.json; talbot/models/reconstruct/{options.what}.npz is the one that is used")
     return 0

@@ -39,7 +39,7 @@ def program(verilog: str, top: str) -> Path:
 
     def make(folder: Path) -> None:
         source = folder / "divider.v"
-        source.write_text(verilog)
+        source.write_text(verilog, encoding="utf-8")
         model = verilate(folder / "model", top, [source], FAST, "VQuadDivider")
         compile_program(folder / "bench", [*model, MAIN], ["-O2", *runtime()])
         shutil.rmtree(folder / "model")

@@ -21,7 +21,7 @@ def tables(tmp_path_factory):
 def test_every_sweep_writes_its_table_and_plot(tables):
     out, rows = tables
     for name in SWEEPS:
-        with open(out / f"{name}.csv", newline="") as file:
+        with open(out / f"{name}.csv", encoding="utf-8", newline="") as file:
             read = list(csv.DictReader(file))
         assert len(read) == len(rows[name]) and set(read[0]) == set(rows[name][0])
         assert (out / f"{name}.png").read_bytes().startswith(b"\x89PNG")

@@ -51,7 +51,7 @@ def manifest() -> dict[str, Any]:
     dict
         Of dicts.
     """
-    return json.loads((FOLDER / MANIFEST).read_text())
+    return json.loads((FOLDER / MANIFEST).read_text(encoding="utf-8"))
 
 
 def rendered(name: str, sampling: Sampling) -> Scene:

@@ -28,7 +28,7 @@ class DieConnectivity(Step[PdkParameters]):
     tools = ("python klayout",)
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
-        plan, pdk = json.loads(inputs["plan"].read_text()), self.parameters.pdk
+        plan, pdk = json.loads(inputs["plan"].read_text(encoding="utf-8")), self.parameters.pdk
         cells = {block["cell"]: name for name, block in plan["blocks"].items()} | {CELL: ""}
         frame = Frame(**plan["frame"])
         at = [
@@ -40,5 +40,5 @@ class DieConnectivity(Step[PdkParameters]):
         tech, plate = coriolis_platform(pdk), pad_process(pdk).capacitor.plate
         found = connectivity.nets(inputs["gds"], cells, ring, tech, top_metal(pdk), plate)
         opens, shorts = connectivity.compare(found, plan["nets"])
-        outputs["report"].write_text(json.dumps({"open": opens, "short": shorts}, indent=1) + "\n")
+        outputs["report"].write_text(json.dumps({"open": opens, "short": shorts}, indent=1) + "\n", encoding="utf-8")
         return {"open_nets": len(opens), "shorts": len(shorts), "lvs_match": not opens and not shorts}

@@ -50,7 +50,7 @@ class DieGds(Step[DieGdsParameters]):
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         import klayout.db as db
 
-        plan, layout = json.loads(inputs["plan"].read_text()), db.Layout()
+        plan, layout = json.loads(inputs["plan"].read_text(encoding="utf-8")), db.Layout()
         tech = coriolis_platform(self.parameters.pdk)
         layout.dbu = 0.001
         top = layout.create_cell(TOP)
@@ -73,7 +73,7 @@ class DieGds(Step[DieGdsParameters]):
                 for datatype in (tech.pin_datatype, tech.label_datatype):
                     top.shapes(layout.layer(layer, datatype)).insert(db.Text(net, middle))
         top.shapes(layout.layer(*tech.outline)).insert(db.Box(0, 0, *plan["die"]))
-        rules = RoutingRules.of(tech, json.loads(inputs["rules"].read_text()))
+        rules = RoutingRules.of(tech, json.loads(inputs["rules"].read_text(encoding="utf-8")))
         decoupling.draw(layout, plan, rules, pad_process(self.parameters.pdk).capacitor)
         write_gds(layout, outputs["gds"])
         for name in self.parameters.drawn:

@@ -36,12 +36,12 @@ class DieIrDrop(Step[DieIrDropParameters]):
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         p, array = self.parameters, ArrayParameters()
-        plan, tech = json.loads(inputs["plan"].read_text()), coriolis_platform(p.pdk)
+        plan, tech = json.loads(inputs["plan"].read_text(encoding="utf-8")), coriolis_platform(p.pdk)
         made = mesh(plan, array, tech, top_metal(p.pdk))
         rows = (0, array.rows // 2, array.rows - 1)
         east, both = (1e3 * drops(made, array, rows, p.sink_a, sides) for sides in (False, True))
         mv = {row: np.round(own, 4).tolist() for row, own in zip(rows, east, strict=True)}
-        outputs["rows"].write_text(json.dumps(mv) + "\n")
+        outputs["rows"].write_text(json.dumps(mv) + "\n", encoding="utf-8")
         return {
             "pixel_drop_mv": round(float(east.max()), 3),
             "pixel_spread_mv": round(float(np.ptp(east, axis=1).max()), 3),

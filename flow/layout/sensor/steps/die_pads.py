@@ -30,12 +30,12 @@ class DiePads(Step[PdkParameters]):
         library, gates = pads.library(process)
         layout = pads.layout(library, process, pixel)
         found = {name: pads.pins(layout.cell(name), pixel) for name in process.cells}
-        outputs["pins"].write_text(json.dumps(found, indent=1) + "\n")
+        outputs["pins"].write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
         pads.row(layout, process)
         write_gds(layout, outputs["gds"])
         devices = importlib.import_module(process.package).prims_spiceparams
         cells = [cell for cell in (*library.cells, *gates.cells) if cell.name != "Gallery"]
-        outputs["spice"].write_text(pads.joined(export_spice(cells, devices), process))
+        outputs["spice"].write_text(pads.joined(export_spice(cells, devices), process), encoding="utf-8")
         return {"pad_cells": len(found)}
 
 
@@ -50,8 +50,8 @@ class DiePadsDrc(Step[PdkParameters]):
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         tech, process = coriolis_platform(self.parameters.pdk), pad_process(self.parameters.pdk)
-        flat = *hole_rules(tech), process.masks.read_text()
-        deck = with_taps(inputs["deck"].read_text(), tech.active, process.tap)
+        flat = *hole_rules(tech), process.masks.read_text(encoding="utf-8")
+        deck = with_taps(inputs["deck"].read_text(encoding="utf-8"), tech.active, process.tap)
         found = check_rules(deck, via_rules(tech), flat, inputs["gds"], outputs)
         return {"pad_drc_violations": sum(found.values())}
 
@@ -69,7 +69,9 @@ class DiePadsLvs(Step[PdkParameters]):
         process = pad_process(self.parameters.pdk)
         outputs["reports"].mkdir()
         active = coriolis_platform(self.parameters.pdk).active
-        outputs["deck"].write_text(with_taps(inputs["deck"].read_text(), active, process.tap))
+        outputs["deck"].write_text(
+            with_taps(inputs["deck"].read_text(encoding="utf-8"), active, process.tap), encoding="utf-8"
+        )
         found = {}
         for cell in (*process.signals.values(), *process.supplies.values()):
             report = outputs["reports"] / f"{cell}.lvsdb"
@@ -79,5 +81,5 @@ class DiePadsLvs(Step[PdkParameters]):
             if ("LVS OK" in output) == ("LVS Failed" in output):
                 raise StepError(f"{self.name}: KLayout gave no verdict on {cell}: {output.strip().splitlines()[-1:]}")
             found[cell] = "LVS OK" in output
-        outputs["verdicts"].write_text(json.dumps(found, indent=1) + "\n")
+        outputs["verdicts"].write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
         return {"pads_unmatched": sum(not match for match in found.values())}

@@ -46,7 +46,7 @@ class DieParasitics(Step[DieParasiticsParameters]):
     tools = ("python klayout",)
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
-        p, plan = self.parameters, json.loads(inputs["plan"].read_text())
+        p, plan = self.parameters, json.loads(inputs["plan"].read_text(encoding="utf-8"))
         tech = coriolis_platform(p.pdk)
         femtofarads = coupling.femtofarads(plan, tech, extraction_platform(p.pdk))
         nets: dict[str, dict[str, Any]] = {}
@@ -57,8 +57,10 @@ class DieParasitics(Step[DieParasiticsParameters]):
             load_pf = round(femto / 1000 + len(found) * p.pin_pf, 6)
             delays = {".".join(end): round(ns, 6) for end, ns in found.items()}
             nets[net] = {"driver": block, "wire_ff": round(femto, 3), "load_pf": load_pf, "delay_ns": delays}
-        outputs["nets"].write_text(json.dumps(nets, indent=1) + "\n")
-        outputs["sdc"].write_text(inputs["sdc"].read_text() + "\n".join(self.constraints(nets)) + "\n")
+        outputs["nets"].write_text(json.dumps(nets, indent=1) + "\n", encoding="utf-8")
+        outputs["sdc"].write_text(
+            inputs["sdc"].read_text(encoding="utf-8") + "\n".join(self.constraints(nets)) + "\n", encoding="utf-8"
+        )
         driven = {net: found["load_pf"] for net, found in nets.items() if found["driver"] == CORE}
         slow = {net: max(found["delay_ns"].values()) for net, found in nets.items()}
         load, delay = max(driven, key=driven.__getitem__), max(slow, key=slow.__getitem__)

@@ -50,11 +50,11 @@ class DiePlan(Step[DiePlanParameters]):
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         p, tech = self.parameters, coriolis_platform(self.parameters.pdk)
-        rules = RoutingRules.of(tech, json.loads(inputs["rules"].read_text()))
+        rules = RoutingRules.of(tech, json.loads(inputs["rules"].read_text(encoding="utf-8")))
         layers = [tech.metals[level].lef for level in (routing.STUB, routing.BRANCH)]
-        blocks = {name: Block.read(name, inputs[f"{name}.lef"].read_text()) for name in (*BLOCKS, CORE)}
+        blocks = {name: Block.read(name, inputs[f"{name}.lef"].read_text(encoding="utf-8")) for name in (*BLOCKS, CORE)}
         tracks = routing.Tracks.of(rules, p.die)
-        pads = self.pads(json.loads(inputs["pads"].read_text()), {})
+        pads = self.pads(json.loads(inputs["pads"].read_text(encoding="utf-8")), {})
         extra = dict.fromkeys(
             pin for block in BLOCKS for pin in check(inputs[f"{block}.lef"], inputs[f"{block}.black_box"])
         )
@@ -81,8 +81,8 @@ class DiePlan(Step[DiePlanParameters]):
         levels = [*tech.metals, top_metal(p.pdk).metal]
         metal += [drawn(levels[level], net, box) for net, level, box in ring.bridges(pads, gaps)]
         plan = as_json(made, metal, places, pads, p.die, tracks, levels[-1]) | {"decoupling": field._asdict()}
-        outputs["plan"].write_text(json.dumps(plan) + "\n")
-        outputs["verilog"].write_text(verilog.top(TOP, made.blocks, made.nets, places))
+        outputs["plan"].write_text(json.dumps(plan) + "\n", encoding="utf-8")
+        outputs["verilog"].write_text(verilog.top(TOP, made.blocks, made.nets, places), encoding="utf-8")
         area = p.die.width_um * p.die.height_um
         covered = sum(block.width * block.height for block in made.blocks.values()) / 1e6
         return {

@@ -20,7 +20,7 @@ class DieSta(Sta):
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         found = super().run(inputs, outputs)
-        slews = over(outputs["report"].read_text())
+        slews = over(outputs["report"].read_text(encoding="utf-8"))
         return found | {"slews_over": len(slews), "worst_slew_ns": max(slews, default=None)}
 
 
