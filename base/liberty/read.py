@@ -9,7 +9,7 @@ from talbot.base.liberty.group import Group, Scalar, Table
 from talbot.models.parameters import ParameterError
 
 _TOKEN = re.compile(r'/\*.*?\*/|//[^\n]*|\\\r?\n|"((?:[^"\\]|\\.)*)"|([{}();:,])|([^\s{}();:,"]+)', re.S)
-_END = re.compile(r"\}\s*(?:/\*[^*]*\*/\s*|//[^\n]*\s*)*\Z")
+_END = re.compile(r"\}\s*;?\s*(?:/\*[^*]*\*/\s*|//[^\n]*\s*)*\Z")
 _LIBRARY = re.compile(r"(?:\s|/\*.*?\*/|//[^\n]*\n)*library\s*\(", re.S)
 Token = tuple[str, bool]  # text, and whether it is quoted
 _CELL = re.compile(r'^[ \t]*cell\s*\(\s*"?([\w.$]+)"?\s*\)\s*\{', re.M)
@@ -17,7 +17,22 @@ _CELL = re.compile(r'^[ \t]*cell\s*\(\s*"?([\w.$]+)"?\s*\)\s*\{', re.M)
 
 def read(path: str | Path) -> Group:
     """The outermost group of a Liberty file. Raises ParameterError naming what is wrong."""
-    return parse(Path(path).read_text(encoding="utf-8"), str(path))
+    return parse(text_of(path), str(path))
+
+
+def text_of(path: str | Path) -> str:
+    """The text of a Liberty file: UTF-8, with a byte order mark or without, else Latin-1; lines end with a newline."""
+    data = Path(path).read_bytes().replace(b"\r\n", b"\n")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return data.decode("latin-1")
+
+
+def plain(text: str) -> str:
+    """``text`` as every tool reads it: ASCII, no semicolon after a group's brace."""
+    text = re.sub(r"\}[ \t]*;", "}", text)
+    return text.encode("ascii", "replace").decode()
 
 
 def parse(text: str, origin: str = "liberty") -> Group:
@@ -34,14 +49,19 @@ def parse(text: str, origin: str = "liberty") -> Group:
         raise ParameterError(f"liberty = {origin}: ends within a group") from None
 
 
+def names(text: str) -> set[str]:
+    """The names of the cells in the text of a Liberty file, which is not read further."""
+    return {match[1] for match in _CELL.finditer(text)}
+
+
 def is_library(path: Path) -> bool:
     """Whether a file begins as a Liberty file does, after comments: library (...)."""
-    return bool(_LIBRARY.match(path.read_text(encoding="utf-8", errors="replace")[:10_000]))
+    return bool(_LIBRARY.match(text_of(path)[:10_000]))
 
 
 def is_whole(path: Path) -> bool:
     """Whether a file ends as a Liberty file does, before comments: with a brace."""
-    return bool(_END.search(path.read_text(encoding="utf-8", errors="replace")[-1_000:]))
+    return bool(_END.search(text_of(path)[-1_000:]))
 
 
 def areas(path: Path) -> dict[str, float]:
@@ -113,6 +133,8 @@ class _Reader:
             raise ParameterError(f"liberty = {self.origin}: {kind!r} must be a group")
         group = Group(kind, tuple(text for text, _ in arguments))
         while not self.mark("}"):
+            if self.mark(";"):  # after a group: foundries have it
+                continue
             if self.tokens[self.at + 1] == (":", False):
                 name, _ = self.next()
                 self.at += 1

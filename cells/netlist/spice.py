@@ -94,7 +94,7 @@ def subcircuit(text: str, name: str) -> str:
 
 def source(path: str | Path) -> str:
     """The text of a SPICE file; bytes that are no text become marks, which the parser refuses."""
-    return Path(path).read_text(encoding="utf-8", errors="replace")
+    return Path(path).read_text(encoding="utf-8-sig", errors="replace")
 
 
 def _subcircuits(text: str, origin: str) -> dict[str, Netlist]:

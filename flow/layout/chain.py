@@ -3,6 +3,8 @@
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
+from talbot.base.files import write
+from talbot.base.liberty.read import plain, text_of
 from talbot.base.steps import Step
 from talbot.platforms.coriolis import coriolis_platform
 from talbot.platforms.wires import wire_corner
@@ -67,9 +69,16 @@ def input_files(design: Design, options: Options, folder: Path) -> dict[str, Pat
     return {
         "rtl": folder / "rtl" / f"{design.top}.sv",
         "sdc": constraints,
-        **{f"timing.{path.stem}": path for path in options.liberty},
+        **{f"timing.{path.stem}": _plain(path, folder / "rtl") for path in options.liberty},
         **{f"foundry.{name}": path for name, path in options.decks},
     }
+
+
+def _plain(path: Path, folder: Path) -> Path:
+    """A copy of a Liberty file in ``folder`` that all tools read."""
+    copy = folder / f"{path.stem}.lib"
+    write(copy, plain(text_of(path)))
+    return copy
 
 
 def synthesis_steps(design: Design, options: Options) -> list[Step]:

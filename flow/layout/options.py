@@ -3,9 +3,11 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from talbot.base.liberty.read import is_library, is_whole
+from talbot.base.liberty.read import is_library, is_whole, names, text_of
 from talbot.models.parameters import ParameterError, check_int, check_real
 from talbot.platforms.coriolis import coriolis_platform
+
+from . import tables
 
 LEAST_UTILIZATION = 0.20  # of the search's last attempt
 
@@ -42,6 +44,14 @@ class Options:
                 raise ParameterError(f"liberty = {path}: must be a Liberty file: it does not begin with library (...)")
             if not is_whole(path):
                 raise ParameterError(f"liberty = {path}: must be a whole Liberty file: it does not end with a brace")
+            lacking = sorted(tables.cells(self.pdk) - (cells := names(text_of(path))))
+            if lacking:
+                have = f"has {', '.join(sorted(cells)[:3])}, " if cells else ""
+                also = f" and {len(lacking) - 3} others" if len(lacking) > 3 else ""
+                raise ParameterError(
+                    f"liberty = {path}: must have the cells that a layout on {self.pdk} is made of: "
+                    f"{have}lacks {', '.join(lacking[:3])}{also} (make layout-timing characterizes these)"
+                )
         if len({path.stem for path in self.liberty}) != len(self.liberty):
             raise ParameterError(f"liberty = {', '.join(map(str, self.liberty))}: must be of different corners")
         check_real("utilization", self.utilization, LEAST_UTILIZATION, 0.95)

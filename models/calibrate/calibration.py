@@ -160,7 +160,7 @@ def read_calibration(path: str | Path) -> Calibration:
     try:
         if Path(path).exists() and not Path(path).is_file():
             raise ValueError("no file")
-        table = json.loads(Path(path).read_text(encoding="utf-8"))
+        table = json.loads(Path(path).read_text(encoding="utf-8-sig"))
         if not isinstance(table, dict):
             raise ParameterError("calibration = a list: must be a table")
         return Calibration.of(table)

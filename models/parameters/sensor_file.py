@@ -47,7 +47,7 @@ def read_sensor(path: str | Path) -> SensorParameters:
     if path.stat().st_size > BYTES_MAX:
         raise ParameterError(f"sensor = {str(path)!r}: must have at most {BYTES_MAX} bytes")
     try:
-        table = tomllib.loads(path.read_bytes().decode())
+        table = tomllib.loads(path.read_bytes().decode("utf-8-sig"))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
         raise ParameterError(f"sensor = {str(path)!r}: must be a TOML file ({error})") from None
     try:

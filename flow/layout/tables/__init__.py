@@ -8,11 +8,13 @@ import json
 import lzma
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
+from functools import cache
 from pathlib import Path
 from types import ModuleType
 
 from talbot.base.cache import digest
 from talbot.base.files import staged
+from talbot.base.liberty.read import names
 from talbot.cells.characterize.conditions import Conditions
 from talbot.cells.characterize.job import Source
 from talbot.cells.netlist.spice import parse
@@ -49,6 +51,13 @@ def shipped(pdk: str, wanted: str, folder: Path = SHIPPED) -> tuple[dict[str, st
         return None
     texts = {c: lzma.decompress((folder / f"{pdk}.{c}.lib.xz").read_bytes()).decode() for c in about["corners"]}
     return texts, about["simulations"]
+
+
+@cache
+def cells(pdk: str, folder: Path = SHIPPED) -> frozenset[str]:
+    """Names of the cells in the tables of ``pdk``; none where no tables are shipped."""
+    file = next(iter(sorted(folder.glob(f"{pdk}.*.lib.xz"))), None)
+    return frozenset(names(lzma.decompress(file.read_bytes()).decode()) if file else ())
 
 
 def write(folder: Path, pdk: str, made: str, libraries: Mapping[str, Path], simulations: int) -> None:

@@ -1,5 +1,6 @@
 """Bad input is reported in one line, with exit status 2, and leaves nothing under a final name."""
 
+import lzma
 import shutil
 import subprocess
 from dataclasses import replace
@@ -7,8 +8,9 @@ from dataclasses import replace
 import pytest
 
 from talbot.base.command import main, one_line
+from talbot.base.liberty.read import read
 from talbot.base.steps import StepError, versions
-from talbot.flow.layout import command, search
+from talbot.flow.layout import chain, command, search, tables
 from talbot.flow.layout.netlist.netlist import Instance
 from talbot.flow.layout.netlist.test import shift_register as small
 from talbot.flow.layout.options import Options
@@ -48,8 +50,21 @@ def test_a_file_that_is_no_liberty(tmp_path):
     (tmp_path / "x.lib").write_text("module x; endmodule\n")
     with pytest.raises(ParameterError, match="x.lib: must be a Liberty file"):
         Options(liberty=(tmp_path / "x.lib",))
-    (tmp_path / "x.lib").write_text("/* made */\n" + small.liberty())
-    assert Options(liberty=(tmp_path / "x.lib",)).corners == ("x",)
+    (tmp_path / "x.lib").write_text("/* made */\n" + small.liberty(), encoding="utf-8")
+    with pytest.raises(ParameterError, match=r"must have the cells .* on sky130 .*: has buf_x\d.*lacks .*others"):
+        Options(liberty=(tmp_path / "x.lib",))
+
+
+def test_a_liberty_of_its_cells_as_others_write_them(tmp_path):
+    """A byte order mark, Latin-1, lines of Windows, a semicolon after a group; a name with a space."""
+    text = lzma.decompress((tables.SHIPPED / "sky130.tt_025C_1v80.lib.xz").read_bytes()).decode()
+    path = tmp_path / "my cells (2).lib"
+    for data in (f"\ufeff{text}".encode(), text.replace("{\n", "{ /* \u00b5m */\n", 1).encode("latin-1")):
+        path.write_bytes(data.replace(b"  }\n", b"  };\r\n"))
+        assert Options(liberty=(path,)).corners == ("my cells (2)",)
+        copy = chain._plain(path, tmp_path / "out").read_bytes()
+        assert copy.isascii() and b"};" not in copy and b"\r" not in copy
+    assert len(read(path).all("cell")) == len(read(tmp_path / "out" / path.name).all("cell")) > 20
 
 
 @pytest.mark.needs("layout")
