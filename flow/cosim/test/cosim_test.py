@@ -25,7 +25,7 @@ from talbot.pixels.circuits.netlist import Circuit, Resistor
 from talbot.pixels.circuits.specification import LaneSpec
 from talbot.platforms.sky130 import analog
 
-library = pytest.mark.needs("libngspice")
+library = pytest.mark.needs("libngspice", "layout")
 COARSE = Accuracy(reltol=1e-3, chgtol=1e-15)  # a quarter of the default's time
 SMALL = RowRequest(mode="image", cols=6, lanes=1, types=1, accuracy=COARSE)  # its pixels, too
 
