@@ -109,7 +109,7 @@ def _disparity(
     if scene.specular is None or scene.disparity is None or not result.decoded.read.all() or not scene.specular.any():
         return None, None
     note("disparity")
-    got = estimate(result)
+    got = estimate(result, "mixture")
     assert got.disparity is not None and got.spread is not None and bright is not None
     # A full pixel tells no disparity, and is filled where it is tagged alone
     spread = np.where(over, np.inf, got.spread)
