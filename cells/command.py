@@ -35,4 +35,7 @@ def run(options: Namespace) -> int:
         summary = characterize_library(o.lib, conditions, names, o.netlist, o.out, o.reference, o.workers)
         print(json.dumps({name: value for name, value in summary.items() if name not in long}, indent=1))
         wrong |= bool(summary["failed"] or summary["problems"])
+    folder = o.out / sources.title(o.lib)
+    every = sorted(path.name for path in folder.glob("*.*") if path.suffix in (".lib", ".lef", ".v", ".json"))
+    print(f"{folder}: {', '.join(every)}")
     return int(wrong)

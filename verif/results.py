@@ -182,8 +182,9 @@ class BlockResults:
 
 
 def write_step(step: str, by_block: dict[str, BlockResults], out: Path = OUT) -> None:
-    """Write <step>.json into folder ``out``."""
+    """Write <step>.json into folder ``out``, and print its path."""
     with staged(out) as part:
         (part / f"{step}.json").write_text(
             json.dumps(by_block, indent=1, allow_nan=False, default=asdict) + "\n", encoding="utf-8"
         )
+    print(out / f"{step}.json")

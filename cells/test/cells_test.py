@@ -234,3 +234,17 @@ def _sta(path, folder):
 def _silent(command):
     result = subprocess.run(command, capture_output=True, text=True, timeout=400, check=False)
     assert (result.returncode, result.stdout.strip(), result.stderr.strip()) == (0, "", "")
+
+
+def test_the_command_ends_with_its_files(tmp_path, monkeypatch, capsys):
+    def written(library, conditions, names, netlist, out, reference, workers):
+        folder = out / command.sources.title(library)
+        folder.mkdir()
+        for name in (f"{conditions.corner.name}.lib", "a.lef", "summary.json"):
+            (folder / name).write_text("")
+        return {"failed": [], "problems": []}
+
+    monkeypatch.setattr(command, "characterize_library", written)
+    assert main(command, ["--out", str(tmp_path)]) == 0
+    folder = tmp_path / command.sources.title("sky130_hd")
+    assert capsys.readouterr().out.endswith(f"\n{folder}: a.lef, summary.json, tt_025C_1v80.lib\n")

@@ -10,6 +10,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
+from talbot.base.progress import each
 from talbot.flow.frame.request import FrameRequest
 from talbot.models.afe import FrontEnd, trim_gain
 from talbot.models.calibrate import Sweep, block_means
@@ -49,7 +50,10 @@ class Bench:
         lamp = DIM * PEAK / max(float(self._frame(self._lit(np.zeros(2)) * DIM, 0).max()), 1.0)
         note(f"{len(holes)} places of the hole")
         offset = block_means(dark, tile)
-        means = [block_means(self._frame(lamp * self._lit(hole), 1 + i), tile) - offset for i, hole in enumerate(holes)]
+        means = [
+            block_means(self._frame(lamp * self._lit(hole), 1 + i), tile) - offset
+            for i, hole in enumerate(each(holes, "hole", total=len(holes)))
+        ]
         return Sweep(holes, np.stack(means), block_means(places, tile), measured_gains(white - dark, tile))
 
     def _places(self) -> Values:

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from talbot.base.progress import each
 from talbot.flow.frame import hardware
 from talbot.flow.frame.job import Clock, expose, read_golden, read_out, see
 from talbot.flow.frame.reading import about
@@ -91,12 +92,13 @@ def capture(
     if by_code is not None:
         asked += [by_code, *_raw(*by_code)]
     if golden:
-        with clock.step("decode"):
-            read = [read_golden(*each) for each in asked]
+        with clock.step("frames"):
+            read = [read_golden(*frame) for frame in each(asked, "frame")]
     else:
         with clock.step("build"):
             program = hardware.program(request.sensor, note=note)
-        read = [read_out(each, part, program, clock) for each, part in asked]
+        with clock.step("frames"):
+            read = [read_out(*frame, program) for frame in each(asked, "frame")]
     still = None if straight is None else np.moveaxis(straight, 2, 0)
     return DepthFrames(read[0], read[1], tuple(read[2:count]), tuple(read[count:]), still)
 

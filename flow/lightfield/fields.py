@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from talbot.base.progress import each
 from talbot.flow.frame.light_field import SURE, estimator_of, pair_of, reached, sent_pair, unsure
 from talbot.flow.frame.reading import about, rms
 from talbot.flow.frame.result import GoldenResult
@@ -49,8 +50,7 @@ def read_back(result: GoldenResult, prior: FieldPrior, note: Callable[[str], Non
     operator, corners = CaptureOperator(result.sensor), reached(result)
     seen = truth * corners
     free, found, figured = baselines(result.image, seen), {}, {}
-    for name in applicable(operator):
-        note(name)
+    for name in each(applicable(operator), "method", str):
         got, seconds = measure(name, estimator, operator, sent)
         got = unsure(got, bad, estimator)
         float_got = measure(name, estimator, operator, ideal)[0]

@@ -13,6 +13,7 @@ from pathlib import Path
 from talbot.base import tools
 from talbot.base.command import failures
 from talbot.base.files import insert, marked
+from talbot.base.progress import each
 from talbot.flow.layout.design import design
 from talbot.platforms.sky130 import cells as sky130_hd
 from talbot.platforms.sky130 import functions
@@ -96,7 +97,7 @@ def run(options: Namespace) -> int:
     if options.document:
         marked(options.document, "fit")
     fits = []
-    for name in PROJECTS:
+    for name in each(PROJECTS, "project", str):
         with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
             fits.append(fit(name, Path(folder))[0])
     if options.document:

@@ -9,6 +9,7 @@ from pathlib import Path
 from talbot.base.command import Parser
 from talbot.base.files import insert, marked, staged
 from talbot.base.paths import RESULTS
+from talbot.base.progress import each
 from talbot.rtl import export
 from talbot.rtl.verilog import export_verilog
 
@@ -36,7 +37,8 @@ def run(options: Namespace) -> int:
     export.add_arguments(asked)
     export.sensor_of(asked.parse_args([*(f"--top={top}" for top in options.tops), *sensor]))  # bad input: said here
     with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
-        sizes = [measure(path, path.stem) for path in export_verilog(Path(folder), options.tops, sensor)]
+        tops = export_verilog(Path(folder), options.tops, sensor)
+        sizes = [measure(path, path.stem) for path in each(tops, "top", lambda path: path.stem)]
     with staged(options.out) as part:
         (part / "sizes.json").write_text(
             json.dumps([asdict(size) for size in sizes], indent=1) + "\n", encoding="utf-8"
@@ -45,4 +47,5 @@ def run(options: Namespace) -> int:
     if options.document:
         insert(options.document, "sizes", readme_table(sizes))
     print(markdown(sizes), end="")
+    print(f"{options.out}: sizes.json, sizes.md")
     return 0
