@@ -1,8 +1,11 @@
 """Tools as child processes: none outlives an interrupted parent, and errors name the tool that is missing or failed."""
 
+import atexit
 import contextlib
 import fcntl
 import os
+import re
+import secrets
 import shutil
 import signal
 import subprocess
@@ -17,6 +20,8 @@ from platformdirs import user_cache_path
 
 from .check import work_begins
 from .environment import of_tools
+
+PLAIN = re.compile(r"[A-Za-z0-9_./+,@%=:-]*")
 
 
 class ToolError(RuntimeError):
@@ -51,6 +56,29 @@ def _compile_wheel(wheel: str) -> None:
     with (Path(tempfile.gettempdir()) / f"talbot-yowasp-{os.getuid()}.lock").open("w", encoding="utf-8") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         subprocess.run([wheel, "-V"], capture_output=True, check=False)
+
+
+def plain(path: Path) -> Path:
+    """Return ``path`` as scripts of tools can say it: where it has a space, a quote, a `$`, by way of a link.
+
+    Yosys, ABC and Tcl split such a path, each by other rules. The link, to the file or folder, lasts as long as this
+    process. Letters that are not ASCII count, too.
+    """
+    path = Path(path)
+    if PLAIN.fullmatch(str(path)):
+        return path
+    link = _links() / secrets.token_hex(4)
+    link.symlink_to(path.absolute())
+    return link
+
+
+@cache
+def _links() -> Path:
+    """The folder of this process's links, which goes with it."""
+    folder = tempfile.gettempdir() if PLAIN.fullmatch(tempfile.gettempdir()) else "/tmp"
+    links = Path(tempfile.mkdtemp(prefix="talbot-links-", dir=folder))
+    atexit.register(shutil.rmtree, links, ignore_errors=True)
+    return links
 
 
 def finish(

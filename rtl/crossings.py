@@ -8,7 +8,7 @@ import tempfile
 from pathlib import Path
 from typing import NamedTuple
 
-from talbot.base.tools import run
+from talbot.base.tools import plain, run
 from talbot.models.parameters import ASYNCHRONOUS
 
 # Gates by a raw pin, as documented in asp_chip/README.md: the pin -> the net that they drive
@@ -33,7 +33,7 @@ class Netlist:
         """Read the module ``top`` of the Verilog file ``path``; prepare: commands of Yosys. Raises ToolError."""
         with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
             out = Path(folder) / "netlist.json"
-            run(["yosys", "-q", "-p", SCRIPT.format(path=path, top=top, prepare=prepare, out=out)])
+            run(["yosys", "-q", "-p", SCRIPT.format(path=plain(path), top=top, prepare=prepare, out=out)])
             module = json.loads(out.read_text(encoding="utf-8"))["modules"][top]
         self.readers: dict[int, list[Reader]] = {}
         self.nets: dict[str, list[int]] = {name: net["bits"] for name, net in module["netnames"].items()}

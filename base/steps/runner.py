@@ -20,6 +20,7 @@ from talbot.base.cache import cached, digest
 from talbot.base.paths import ROOT
 from talbot.base.progress import ended
 from talbot.base.sources import code, modules
+from talbot.base.tools import plain
 
 from .alone import alone
 from .step import Step, StepError
@@ -46,8 +47,8 @@ class Runner:
         shared: Path | str | None = None,
         root: Path = ROOT,
     ) -> None:
-        self.folder, self.shared, self.note, self.root = Path(folder), Path(shared or folder), note, root
-        self.paths = {name: Path(path) for name, path in files.items()}
+        self.folder, self.shared, self.note, self.root = plain(Path(folder)), plain(Path(shared or folder)), note, root
+        self.paths = {name: plain(Path(path)) for name, path in files.items()}
         self.records: dict[str, Record] = {}
         self._running: defaultdict[str, Lock] = defaultdict(Lock)  # by the step's name
 

@@ -1,6 +1,7 @@
 """A user's own settings of Python, Matplotlib and the tools, which change nothing of what our programs do."""
 
 import json
+import lzma
 import os
 import subprocess
 import sys
@@ -8,8 +9,11 @@ import sys
 import pytest
 
 from talbot.base import environment
-from talbot.base.paths import ROOT
-from talbot.base.tools import run
+from talbot.base.liberty.verilog import write_models
+from talbot.base.paths import PACKAGE, ROOT
+from talbot.base.tools import plain, run
+
+TABLES = PACKAGE / "flow" / "layout" / "tables"
 
 KEPT = {
     "PATH": "/bin",
@@ -107,3 +111,29 @@ def test_tools_that_make_tools_unpacks_come_after_the_systems(tmp_path):
     assert found["PATH"] == os.pathsep.join(("/usr/bin", "/bin", str(folder / "bin")))
     assert found["CPATH"] == str(folder / "include") and found["LIBRARY_PATH"] == str(folder / "lib")
     assert environment.clean(user | found)["PATH"] == found["PATH"]  # once
+
+
+@pytest.mark.parametrize("name", ["a b", "ü", "$x", "a'b", 'a"b', "a;b#c", "{a", "[a]"])
+@pytest.mark.needs("yosys", "sta")
+def test_a_path_that_scripts_split_reaches_yosys_abc_and_opensta(tmp_path, name):
+    folder = tmp_path / name
+    folder.mkdir()
+    liberty = folder / f"{name}.lib"
+    liberty.write_text(lzma.decompress((TABLES / "sky130.tt_025C_1v80.lib.xz").read_bytes()).decode(), encoding="utf-8")
+    write_models(liberty, folder / "cells.v")
+    assert "module inv_x1" in (folder / "cells.v").read_text(encoding="utf-8")
+    (folder / "t.v").write_text("module t(input a, b, output c); assign c = a ^ b; endmodule\n", encoding="utf-8")
+    script = "read_verilog {0}; synth -top t; abc -liberty {1}; write_verilog -noattr {2}"
+    paths = plain(folder / "t.v"), plain(liberty), plain(folder) / "mapped.v"
+    run(["yosys", "-q", "-p", script.format(*paths)])
+    tcl = f"read_liberty {plain(liberty)}\nread_verilog {paths[2]}\nlink_design t\n"
+    (folder / "s.tcl").write_text(tcl, encoding="utf-8")
+    assert "Error" not in run(["sta", "-no_splash", "-no_init", "-exit", folder / "s.tcl"])
+
+
+def test_a_plain_path_stays(tmp_path):
+    assert plain(tmp_path / "a.lib") == tmp_path / "a.lib"
+    (tmp_path / "a b").mkdir()
+    link = plain(tmp_path / "a b")
+    (link / "file").touch()
+    assert [path.name for path in (tmp_path / "a b").iterdir()] == ["file"] and " " not in str(link)

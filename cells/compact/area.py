@@ -33,9 +33,10 @@ def mapped(verilog: str, top: str, liberty: str) -> Mapped:
     """Map module ``top`` of the file ``verilog`` to the cells of ``liberty``. Raises ToolError."""
     with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
         report = Path(folder) / "stat.json"
+        path, cells_path = tools.plain(Path(verilog)), tools.plain(Path(liberty))
         script = (
-            f"read_verilog -sv {verilog}; synth -flatten -top {top}; dfflibmap -liberty {liberty}; "
-            f"abc -liberty {liberty}; opt_clean -purge; tee -q -o {report} stat -json"
+            f"read_verilog -sv {path}; synth -flatten -top {top}; dfflibmap -liberty {cells_path}; "
+            f"abc -liberty {cells_path}; opt_clean -purge; tee -q -o {report} stat -json"
         )
         tools.run(["yosys", "-q", "-p", script])
         cells = json.loads(report.read_text(encoding="utf-8"))["design"]["num_cells_by_type"]

@@ -4,7 +4,7 @@ import shutil
 import tempfile
 from pathlib import Path
 
-from talbot.base.tools import finish
+from talbot.base.tools import finish, plain
 
 SILENT, MISSING = "without a warning", "not installed"
 GOOD = (SILENT, MISSING)
@@ -12,7 +12,7 @@ GOOD = (SILENT, MISSING)
 
 def readers(path: str | Path) -> dict[str, str]:
     """What Yosys and OpenSTA print when they read the Liberty file ``path``: SILENT, MISSING, or their output."""
-    path = Path(path).absolute()
+    path = plain(Path(path).absolute())
     with tempfile.TemporaryDirectory() as folder:
         script = Path(folder) / "read.tcl"
         script.write_text(f"read_liberty {{{path}}}\nexit\n", encoding="utf-8")

@@ -1,5 +1,8 @@
 """Validated values from text of the command line. Every error names the field, the value and the range."""
 
+import os
+from pathlib import Path
+
 from talbot.models.parameters import ALL_TYPES, ParameterError, Window
 
 BETAS = {"low": 0x0000FF, "mid": 0x00FF00, "high": 0xFF0000}
@@ -62,3 +65,8 @@ def integer(field: str, text: str, low: int, high: int, base: int = 10, also: st
     if value is None or not low <= value <= high:
         raise ParameterError(f"{field} = {text!r}: must be an integer in {low}..{high}{also}")
     return value
+
+
+def named(scene: str) -> str:
+    """The name of a scene: of its file or folder, also where that is given as ., x/.. or /."""
+    return (Path(scene).stem.strip(".") and Path(scene).stem) or Path(os.path.abspath(scene)).name or "root"

@@ -24,6 +24,7 @@ from talbot.models.parameters import (
 )
 
 from . import arguments as text
+from .arguments import named
 from .sensor import add_pixel, asked_sensor
 
 if TYPE_CHECKING:
@@ -151,7 +152,7 @@ def typed_of(options: Namespace, add_arguments: Callable[[ArgumentParser], None]
 
 def name_of(typed: dict[str, Any]) -> str:
     """A folder's name: coins-raw, motorcycle-types=low,high-window=10_40,8_50; a long one ends in a digest."""
-    parts = [Path(typed["scene"]).stem]
+    parts = [named(typed["scene"])]
     for name, value in list(typed.items())[1:]:
         value = Path(value).stem if name in ("depth", "sensor", "calibration") else value
         parts.append(value if name == "mode" else name if value is True else f"{name}={value}")

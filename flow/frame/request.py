@@ -24,6 +24,8 @@ from talbot.models.parameters import (
 from talbot.models.plan.exposure import exposed_for, fitting
 from talbot.models.scene import LightField
 
+from .arguments import named
+
 CONVERTERS = {
     "typical": TYPICAL_CONVERTER,
     "ideal": parameters.ConverterParameters(),
@@ -85,7 +87,7 @@ class FrameRequest:
     @property
     def name(self) -> str:
         """Name of the scene without folder and suffix."""
-        return self.scene.name if isinstance(self.scene, LightField) else Path(self.scene).stem
+        return self.scene.name if isinstance(self.scene, LightField) else named(self.scene)
 
     @property
     def folder(self) -> Path:

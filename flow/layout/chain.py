@@ -11,7 +11,7 @@ from talbot.platforms.wires import wire_corner
 from talbot.rtl.verilog import export_verilog
 
 from .design import DESIGNS, Design, macro_modules
-from .options import LEAST_UTILIZATION, Options
+from .options import LEAST_UTILIZATION, Options, corner_of
 from .steps.antenna import Antenna
 from .steps.arrange import Arrange, ArrangeParameters
 from .steps.assemble import Assemble, AssembleParameters
@@ -69,14 +69,14 @@ def input_files(design: Design, options: Options, folder: Path) -> dict[str, Pat
     return {
         "rtl": folder / "rtl" / f"{design.top}.sv",
         "sdc": constraints,
-        **{f"timing.{path.stem}": _plain(path, folder / "rtl") for path in options.liberty},
+        **{f"timing.{corner_of(path)}": _plain(path, folder / "rtl") for path in options.liberty},
         **{f"foundry.{name}": path for name, path in options.decks},
     }
 
 
 def _plain(path: Path, folder: Path) -> Path:
     """A copy of a Liberty file in ``folder`` that all tools read."""
-    copy = folder / f"{path.stem}.lib"
+    copy = folder / f"{corner_of(path)}.lib"
     write(copy, plain(text_of(path)))
     return copy
 

@@ -1,5 +1,6 @@
 """What a user chooses for a layout: process, utilization, cells' timing, effort, the foundry's decks."""
 
+import re
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,6 +11,11 @@ from talbot.platforms.coriolis import coriolis_platform
 from . import tables
 
 LEAST_UTILIZATION = 0.20  # of the search's last attempt
+
+
+def corner_of(path: Path) -> str:
+    """The name of the corner of a Liberty file: that of the file, in characters that all tools take."""
+    return re.sub(r"[^A-Za-z0-9_.-]", "_", path.stem)
 
 
 @dataclass(frozen=True)
@@ -33,7 +39,7 @@ class Options:
         """Names of the corners, that of synthesis first."""
         if self.untimed:
             return ()
-        return tuple(path.stem for path in self.liberty) or coriolis_platform(self.pdk).corners
+        return tuple(map(corner_of, self.liberty)) or coriolis_platform(self.pdk).corners
 
     def __post_init__(self) -> None:
         for path in self.liberty:
@@ -52,7 +58,7 @@ class Options:
                     f"liberty = {path}: must have the cells that a layout on {self.pdk} is made of: "
                     f"{have}lacks {', '.join(lacking[:3])}{also} (make layout-timing characterizes these)"
                 )
-        if len({path.stem for path in self.liberty}) != len(self.liberty):
+        if len({corner_of(path) for path in self.liberty}) != len(self.liberty):
             raise ParameterError(f"liberty = {', '.join(map(str, self.liberty))}: must be of different corners")
         check_real("utilization", self.utilization, LEAST_UTILIZATION, 0.95)
         check_int("effort", self.effort, 1, 9)

@@ -57,7 +57,7 @@ class Fit:
 
 def fit(name: str, folder: Path) -> tuple[Fit, Path]:
     """The Fit and the netlist's path of the project of design ``name``; files go to ``folder``. Raises ToolError."""
-    chosen = design(name)
+    chosen, folder = design(name), tools.plain(folder)
     rtl(chosen, folder)
     (folder / "cells.lib").write_text(functions.small_liberty(), encoding="utf-8")
     netlist, stat, script = folder / "netlist.v", folder / "stat.txt", folder / "fit.ys"

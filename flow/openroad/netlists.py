@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from talbot.base.steps import StepError
-from talbot.base.tools import run
+from talbot.base.tools import plain, run
 from talbot.flow.layout.netlist.netlist import Buffer, Instance, Netlist, Port, named_bits, register_names
 from talbot.platforms.openroad import OpenRoadPlatform
 
@@ -22,7 +22,7 @@ def routed_netlist(verilog: Path, top: str) -> Netlist:
     """Read the module ``top`` of cells in the file ``verilog``. Raises StepError for a constant pin or joined ports."""
     with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
         path = Path(folder) / "netlist.json"
-        run(["yosys", "-q", "-p", f"read_verilog {verilog}; write_json {path}"])
+        run(["yosys", "-q", "-p", f"read_verilog {plain(verilog)}; write_json {path}"])
         module = json.loads(path.read_text(encoding="utf-8"))["modules"][top]
     names: dict[Any, str] = {}
     ports = tuple(Port(name, port["direction"], len(port["bits"])) for name, port in module["ports"].items())

@@ -10,7 +10,7 @@ from functools import cache
 from pathlib import Path
 
 from talbot.base.paths import PACKAGE
-from talbot.base.tools import ToolError, finish
+from talbot.base.tools import ToolError, finish, plain
 
 LIBRARY = PACKAGE / "cells" / "gates.lib"
 TIES = "hilomap -hicell TIE1 Y -locell TIE0 Y -singleton"
@@ -53,7 +53,7 @@ def synthesize(path: Path, top: str) -> Counter[str]:
         raise ToolError(YOSYS_MISSING)
     with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
         report = Path(folder) / "stat.json"
-        script = f"read_verilog -sv {path}; synth -flatten -top {top}; {MAP}; tee -q -o {report} stat -json"
+        script = f"read_verilog -sv {plain(path)}; synth -flatten -top {top}; {MAP}; tee -q -o {report} stat -json"
         result = finish(["yosys", "-q", "-p", script])
         if result.returncode:
             tail = "\n".join((result.stdout + result.stderr).strip().splitlines()[-5:])

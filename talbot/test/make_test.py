@@ -135,7 +135,16 @@ def test_refused_by_make_before_anything_runs(words):
 def test_arguments_are_checked_before_packages_are_installed_for_them(words, said):
     """The lock is new, so the packages of layouts would be installed."""
     own = {name: v for name, v in os.environ.items() if not name.startswith(("MAKE", "MFLAGS", "TALBOT"))}
-    command = ["make", "-W", "requirements/layout.lock", "-o", ".venv/.tests-ready", *words.split()]
+    command = [
+        "make",
+        "-W",
+        "requirements/layout.lock",
+        "-o",
+        ".venv/.ready",
+        "-o",
+        ".venv/.tests-ready",
+        *words.split(),
+    ]
     result = subprocess.run(command, cwd=ROOT, env=own, capture_output=True, text=True)
     first, *rest = result.stderr.splitlines()
     assert result.returncode == 2 and not result.stdout and said in first
@@ -209,6 +218,18 @@ def test_variables_become_arguments(name, fixed, flags, expected):
     parser = Parser()
     add_command(parser, command(name))
     assert arguments(parser, name, fixed, {"MAKEFLAGS": flags, "MAKELEVEL": "1"}) == expected
+
+
+def test_a_home_folder_is_meant_by_a_tilde(monkeypatch, capsys):
+    monkeypatch.setenv("HOME", "/home/me")
+    parser = Parser()
+    add_command(parser, command("layout"))
+    flags = {"MAKEFLAGS": " -- OUT=~/res LIBERTY=~/a.lib\\ b~.lib", "MAKELEVEL": "1"}
+    expected = ["--liberty=/home/me/a.lib", "--liberty=b~.lib", "--out=/home/me/res"]
+    assert arguments(parser, "layout", [], flags) == expected
+    with pytest.raises(SystemExit):
+        arguments(parser, "layout", [], {"MAKEFLAGS": " -- OUT=~nobody-here/x", "MAKELEVEL": "1"})
+    assert "OUT = '~nobody-here/x': must begin with a user's home folder" in capsys.readouterr().err
 
 
 def test_quoting_of_makeflags():

@@ -2,7 +2,7 @@ from argparse import ArgumentParser
 
 import pytest
 
-from talbot.flow.frame.arguments import pixel_types, span, window
+from talbot.flow.frame.arguments import named, pixel_types, span, window
 from talbot.flow.frame.command import add_arguments, request_of, typed_of
 from talbot.models.parameters import (
     ALL_TYPES,
@@ -86,3 +86,15 @@ def test_afe_is_refused_by_name():
         request_of(parsed("--afe", "spice"))
     with pytest.raises(ParameterError, match="converter = 'ideal': must be left out with afe = circuit"):
         request_of(parsed("--afe", "circuit", "--converter", "ideal"))
+
+
+@pytest.mark.parametrize("scene, name", [("photos/a.b.png", "a.b"), ("coins", "coins"), ("moving:40", "moving:40")])
+def test_the_name_of_a_scene(scene, name):
+    assert named(scene) == name
+
+
+@pytest.mark.parametrize("scene", [".", "x/..", "./", "x/."])
+def test_a_folder_has_its_own_name_however_it_is_given(scene, tmp_path, monkeypatch):
+    (tmp_path / "views" / "x").mkdir(parents=True)
+    monkeypatch.chdir(tmp_path / "views")
+    assert named(scene) in ("views", "x") and named("/") == "root"

@@ -61,10 +61,10 @@ def test_a_liberty_of_its_cells_as_others_write_them(tmp_path):
     path = tmp_path / "my cells (2).lib"
     for data in (f"\ufeff{text}".encode(), text.replace("{\n", "{ /* \u00b5m */\n", 1).encode("latin-1")):
         path.write_bytes(data.replace(b"  }\n", b"  };\r\n"))
-        assert Options(liberty=(path,)).corners == ("my cells (2)",)
-        copy = chain._plain(path, tmp_path / "out").read_bytes()
+        assert Options(liberty=(path,)).corners == ("my_cells__2_",)
+        copy = chain._plain(path, tmp_path / "a b").read_bytes()
         assert copy.isascii() and b"};" not in copy and b"\r" not in copy
-    assert len(read(path).all("cell")) == len(read(tmp_path / "out" / path.name).all("cell")) > 20
+    assert len(read(path).all("cell")) == len(read(tmp_path / "a b" / "my_cells__2_.lib").all("cell")) > 20
 
 
 @pytest.mark.needs("layout")
