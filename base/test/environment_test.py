@@ -19,6 +19,7 @@ KEPT = {
     "PATH": "/bin",
     "LD_LIBRARY_PATH": "/opt/lib",
     "PDK_ROOT": "/pdk",
+    "XDG_CACHE_HOME": "/nowhere",  # no unpacked tools
     "PYTHON": "python3",
     "https_proxy": "http://p",
 }
