@@ -4,7 +4,7 @@ Light fields are arrays l[v, u, y, x] everywhere in this project: view row, view
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
 from itertools import product
 from typing import Any
@@ -23,6 +23,10 @@ View = Callable[[float, float], tuple[npt.NDArray[np.floating], npt.NDArray[np.f
 
 SPEED_MAX = 1e7  # px/s
 RADIANCE_MAX = 16.0  # 1 = diffuse white; highlights and the saturated target go above it
+
+
+class Kept:
+    """The ``render`` of a scene that was copied or read again: its light field alone is there."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +59,7 @@ class Scene:
         Disparity of what every view of the light field shows; None: as the centre view's.
     echo : Echo or None
         Where the light of time of flight has been; None: straight to the surface and back.
-    render : callable or None
+    render : callable, Kept or None
         From the wanted pixels, bool (rows, cols), to a `View` of these, those of the light field and all between; None:
         there are no others.
     static : bool
@@ -84,7 +88,7 @@ class Scene:
     behind: npt.NDArray[np.floating] | None = None
     surfaces: npt.NDArray[np.floating] | None = None
     echo: Echo | None = None
-    render: Callable[[Bools], View] | None = None
+    render: Callable[[Bools], View] | Kept | None = None
     static: bool = True
     moved: Callable[[float], "Scene"] | None = None
     speed: float = 0.0
@@ -94,7 +98,7 @@ class Scene:
         check_int("views", self.views, 1, 31)
         if self.field is not None:
             self._check_field(self.field)
-        elif self.render is None:
+        elif not callable(self.render):
             raise ParameterError("light_field = None: must be an array, or there must be a function that renders it")
         check_choice("image dtype", str(self.image.dtype), DTYPES)
         for name, low, high, shape in (
@@ -129,6 +133,13 @@ class Scene:
                 f"(1, 1, rows, cols) with views = {self.views}"
             )
         check_values("light_field", field, 0, RADIANCE_MAX)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What is copied: the light field in place of the functions that render it."""
+        state = {item.name: getattr(self, item.name) for item in fields(self)}
+        if self.render is not None:
+            state |= {"field": self.light_field, "render": Kept(), "moved": None}
+        return state
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -172,7 +183,7 @@ class Scene:
         View
             A view of the light field itself where the scene has no others.
         """
-        if self.render is not None:
+        if callable(self.render):
             return self.render(wanted)
         middle = (len(self.light_field) - 1) / 2
         disparity = np.zeros(self.shape) if self.disparity is None else self.disparity

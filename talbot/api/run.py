@@ -2,7 +2,8 @@
 
 from dataclasses import replace
 from functools import cached_property
-from typing import Any
+from pathlib import Path
+from typing import Any, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -18,6 +19,7 @@ from talbot.models.scene import RADIANCE_MAX
 from .image import Image, embedded, png, table
 from .light_field import LightField
 from .measured import DISPARITIES, FAR, NEAR, DepthResult, PolarizationResult, depth_of, polarization_of
+from .run_file import read_run, write_run
 
 WHAT = {"edge": ("image", "edges"), "image": ("image",), "raw": ("image", "edges", "light_field", "disparity")} | {
     "tof": ("image", "depth")
@@ -35,6 +37,46 @@ class Run:
 
     def __init__(self, result: GoldenResult) -> None:
         self.result = result
+
+    @classmethod
+    def load(cls, path: str | Path) -> Self:
+        """The run in a file or folder that `save` wrote; equal to that one. Raises ParameterError.
+
+        It has the samples and all that is computed of them; a scene that was rendered has its light field alone.
+        """
+        result, summary = read_run(Path(path))
+        run = cls(result)
+        run.summary = summary
+        return run
+
+    def save(self, path: str | Path) -> None:
+        """Write it for `load`: a file, x.run, or, where the name has no suffix, a folder.
+
+        The folder has stream.bin, decoded.npz, sensor.toml and summary.json of `make sim`, too. Runs can also be
+        pickled and copied. Raises ParameterError where a pixel type has a function for a response, OSError.
+        """
+        write_run(Path(path), replace(self.result), self.summary)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What is copied: the result without what can be computed again, and the figures if they are there."""
+        kept = {"summary": self.summary} if "summary" in vars(self) else {}
+        return {"result": replace(self.result)} | kept
+
+    def __eq__(self, other: object) -> bool:
+        """Whether both are the same frame: chip or golden model, settings, scene, samples and bytes."""
+        if not isinstance(other, Run):
+            return NotImplemented
+        mine, its = self.result, other.result
+        return (
+            type(mine) is type(its)
+            and replace(mine.request, scene=mine.request.name) == replace(its.request, scene=its.request.name)
+            and mine.stream == its.stream
+            and np.array_equal(mine.exposed.samples, its.exposed.samples)
+            and np.array_equal(mine.exposed.scene.image, its.exposed.scene.image)
+        )
+
+    def __hash__(self) -> int:
+        return hash(self.stream)
 
     @property
     def samples(self) -> npt.NDArray[np.int16]:

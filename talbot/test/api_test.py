@@ -1,6 +1,9 @@
 """The public API as a stranger uses it: README's example, and a sensor, a response and a light field of one's own."""
 
+import copy
+import gzip
 import json
+import pickle
 import re
 import subprocess
 import sys
@@ -10,6 +13,7 @@ import numpy as np
 import pytest
 
 import talbot
+from talbot.api.run_file import BESIDE, FILE
 from talbot.base.paths import ROOT
 from talbot.commands import main
 from talbot.flow.frame import light_field as frame_light_field
@@ -39,6 +43,9 @@ def test_own_light_field_tile_and_response(tmp_path):
     image, found = run.reconstruct("image"), run.reconstruct("light_field")
     assert np.corrcoef(image.ravel(), views[2, 2].ravel())[0, 1] > 0.99
     assert found.values.shape == views.shape
+    with pytest.raises(talbot.ParameterError, match="response"):
+        golden.save(tmp_path / "run")
+    assert not (tmp_path / "run").exists()
     for shown in (run, lf, found, image, frame):
         assert shown._repr_png_().startswith(b"\x89PNG")
 
@@ -55,6 +62,9 @@ def test_the_same_bytes_as_the_command_line(tmp_path):
     for name in ("lf.npz", "lf"):
         run = talbot.Sensor.load(tmp_path / "sensor.toml").simulate(tmp_path / name, threshold=3)
         assert (tmp_path / "out" / "stream.bin").read_bytes() == run.stream
+    run.save(tmp_path / "x.run")
+    again = talbot.Run.load(tmp_path / "x.run")
+    assert again == run and again.summary == run.summary and again.summary["stream_mismatches"] == 0
     (frame,) = talbot.decode(tmp_path / "out" / "stream.bin")
     assert frame.complete and (frame.samples == run.samples).all()
 
@@ -127,6 +137,46 @@ def test_an_estimate_is_saved_loaded_refocused_and_seen_again(tmp_path, capsys):
     for wrong in (lambda: own.refocus(101), lambda: own.disparity(near=-3), lambda: own.all_in_focus(np.ones(3))):
         with pytest.raises(talbot.ParameterError, match="disparity = (101|array)|near = -3"):
             wrong()
+
+
+@pytest.mark.parametrize(
+    "scene, settings, what",
+    [
+        ("tilted", {"mode": "raw", "window": (0, 2, 1, 4)}, "light_field"),
+        ("tilted", {"mode": "raw", "types": [0, 1, 2]}, "light_field"),
+        ("moving", {"mode": "edge"}, "image"),
+        ("cornell", {"mode": "tof", "phase": True}, "depth"),
+    ],
+)
+def test_a_run_is_equal_after_a_file_a_pickle_and_a_copy(tmp_path, scene, settings, what):
+    run = talbot.Sensor(rows=20, cols=30).golden(scene, **settings)
+    for path in (tmp_path / "x.run", tmp_path / "folder"):
+        run.save(path)
+    assert {path.name for path in (tmp_path / "folder").iterdir()} == {FILE, *BESIDE}
+    copies = [talbot.Run.load(tmp_path / "x.run"), talbot.Run.load(tmp_path / "folder")]
+    for found in (*copies, pickle.loads(pickle.dumps(run)), copy.deepcopy(run)):
+        assert found == run and hash(found) == hash(run) and found.summary == run.summary
+        mine, its = (getattr(one, "values", one) for one in (run.reconstruct(what), found.reconstruct(what)))
+        np.testing.assert_array_equal(its, mine)
+    assert run != talbot.Sensor(rows=20, cols=30).golden(scene, **settings, seed=2)
+    with pytest.raises(talbot.ParameterError, match="what = 'edges'|method = 'linear'"):
+        run.reconstruct("edges" if settings["mode"] == "tof" else "image", method="linear")
+
+
+def test_files_that_hold_no_run(tmp_path):
+    with gzip.open(tmp_path / "program.run", "wb") as file:
+        pickle.dump(subprocess.run, file)
+    (tmp_path / "text.run").write_text("no run")
+    with gzip.open(tmp_path / "other.run", "wb") as file:
+        pickle.dump((1, 2, 3), file)
+    for name, said in (
+        ("program", "holds subprocess.run"),
+        ("text", "gzip"),
+        ("other", "holds 1"),
+        ("none", "no such"),
+    ):
+        with pytest.raises(talbot.ParameterError, match=f"path = .*{name}.run': .*{said}"):
+            talbot.Run.load(tmp_path / f"{name}.run")
 
 
 def test_sensors():
