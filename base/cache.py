@@ -55,6 +55,7 @@ def cached(folder: Path | str, make: Callable[[Path], object]) -> Path:
         if folder.exists() and not _sound(folder):
             with part_folder(folder.parent) as damaged, contextlib.suppress(FileNotFoundError):
                 folder.rename(damaged / folder.name)
+        part.chmod(folder.parent.stat().st_mode & 0o777)  # for whoever may read what is beside it
         try:
             part.rename(folder)
         except OSError:  # another process was faster

@@ -1,21 +1,75 @@
 """Where the package, the repository and what is built from it are."""
 
+import os
+import sys
+import tempfile
 from pathlib import Path
 
 from platformdirs import user_cache_path
 
+from .supervise import RUN
+
 PACKAGE = Path(__file__).parents[1]  # the folder talbot, as Python found it: in a checkout its parts are links
 ROOT = PACKAGE.parent  # the repository, or the folder of an installation's packages
+CHOSEN = "TALBOT_BUILD"  # the environment's name of the folder that a process above this one has chosen
 
 
 def build(root: Path) -> Path:
-    """Folder of what is built and kept: the repository's own, or the user's cache where ``root`` is an installation."""
-    return root / "build" if (root / "pyproject.toml").is_file() else user_cache_path("talbot", appauthor=False)
+    """Folder of what is built and kept: the repository's own, or the user's cache where ``root`` is an installation.
+
+    Where this user may not write it, or one of its folders (root has built there), the cache, with one line; without a
+    cache, as of a user that the system does not know, a folder among the temporary ones.
+    """
+    if chosen := os.environ.get(CHOSEN):
+        return Path(chosen)
+    cache = user_cache_path("talbot", appauthor=False)
+    if not (root / "pyproject.toml").is_file():
+        return cache if not unwritable(cache) else _temporary()
+    own = root / "build"
+    if not (first := unwritable(own)):
+        return own
+    folder = cache if not unwritable(cache) else _temporary()
+    os.environ[CHOSEN] = str(folder)  # of processes below this one, which say nothing more
+    print(f"talbot: {first} is not yours to write: {folder} is used in its place", file=sys.stderr)
+    return folder
+
+
+def unwritable(folder: Path) -> Path | None:
+    """The first of ``folder``, or what is above it, and its folders in which this user may not write."""
+    there = next(path for path in (folder, *folder.absolute().parents) if os.path.lexists(path))
+    if not os.access(there, os.W_OK | os.X_OK):
+        return there
+    if there != folder:
+        return None
+    return next((path for path in folder.iterdir() if path.is_dir() and not os.access(path, os.W_OK)), None)
+
+
+def _temporary() -> Path:
+    """A folder of this user's among the temporary ones; of another user's, who waits for what is kept there, none."""
+    run = os.environ.get(RUN)  # which has a folder for its temporary files, that goes with it
+    folder = (Path(run).parent if run else Path(tempfile.gettempdir())) / f"talbot-{os.getuid()}"
+    folder.mkdir(mode=0o700, exist_ok=True)
+    return folder if folder.stat().st_uid == os.getuid() else Path(tempfile.mkdtemp(prefix="talbot-"))
 
 
 def results(root: Path) -> Path:
     """Folder of results by default: the repository's own, or one in the working directory."""
-    return root / "build" if (root / "pyproject.toml").is_file() else Path("build")
+    return build(root) if (root / "pyproject.toml").is_file() else Path("build")
+
+
+def results_of(command: str) -> Path:
+    """Folder of a command's results by default: build/<command> here, or where that cannot be written, in BUILD."""
+    here = Path("build")
+    return (BUILD if unwritable(here) else here) / command
+
+
+def caches() -> None:
+    """Give Numba and Matplotlib a folder of BUILD where they could write none of theirs."""
+    home = Path(os.path.expanduser("~"))
+    if unwritable(home / ".config" / "matplotlib") or unwritable(home / ".cache" / "matplotlib"):
+        os.environ.setdefault("MPLCONFIGDIR", str(BUILD / "matplotlib"))
+    if not os.access(PACKAGE / "models", os.W_OK):
+        os.environ.setdefault("NUMBA_CACHE_DIR", str(BUILD / "numba"))
 
 
 BUILD, RESULTS = build(ROOT), results(ROOT)

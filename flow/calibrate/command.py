@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from talbot.base.files import check_folder, staged
+from talbot.base.paths import results_of
 from talbot.base.progress import Steps
 from talbot.flow.frame import arguments as text
 from talbot.flow.frame.command import add_frame_arguments, name_of, request_of, typed_of
@@ -34,7 +35,7 @@ def run(options: Namespace) -> int:
     holes = text.integer("holes", options.holes, 5, 31)
     typed = typed_of(options, add_arguments)
     standard = list(typed.items()) == [("scene", SCENE)]
-    options.out = options.out or Path("build/calibrate") / ("" if standard else name_of(typed))
+    options.out = options.out or results_of("calibrate") / ("" if standard else name_of(typed))
     asked = request_of(options)
     check_folder("out", asked.folder)
     with Steps(STEPS, lines=True) as progress:

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from talbot.base.cache import digest
+from talbot.base.paths import results_of
 from talbot.base.progress import Steps
 from talbot.flow.simulate.frame import WAVES
 from talbot.models.parameters import (
@@ -125,7 +126,7 @@ def run(options: Namespace) -> int:
         print("\n".join(sorted(scenes)))
         return 0
     typed = typed_of(options, add_arguments)
-    options.out = options.out or Path("build/sim") / name_of(typed)
+    options.out = options.out or results_of("sim") / name_of(typed)
     asked = request_of(options)
     from .job import STEPS, run  # Matplotlib and more: not before the arguments are right
 

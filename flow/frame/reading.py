@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from talbot.base.files import check_folder, staged
 from talbot.base.page import Tile
+from talbot.base.paths import results_of
 from talbot.base.progress import Steps
 from talbot.flow.simulate.frame import WAVES
 from talbot.models.parameters import CameraParameters, SensorParameters
@@ -71,7 +72,7 @@ def asked(
     A rendered scene has its own size where no other is given.
     """
     typed = typed_of(options, add_arguments)
-    options.out = options.out or Path("build") / command / name_of(typed)
+    options.out = options.out or results_of(command) / name_of(typed)
     own = isinstance(options.rows, Own) and isinstance(options.cols, Own) and options.sensor is None
     if options.scene in RENDERED and own:
         size = RENDERED[options.scene].size

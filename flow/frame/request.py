@@ -6,6 +6,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from talbot.base.paths import results_of
 from talbot.flow.simulate.frame import WAVES
 from talbot.models import parameters
 from talbot.models.calibrate import Calibration
@@ -92,7 +93,7 @@ class FrameRequest:
     @property
     def folder(self) -> Path:
         """Folder for the results."""
-        return Path(self.out) if self.out else Path("build/sim") / self.name
+        return Path(self.out) if self.out else results_of("sim") / self.name
 
 
 def request(

@@ -4,6 +4,7 @@ from argparse import ArgumentParser, Namespace
 from pathlib import Path
 from typing import Any
 
+from talbot.base.paths import results_of
 from talbot.flow.frame.command import add_frame_arguments, arguments_of, name_of, request_of, tell_replaced, typed_of
 from talbot.flow.simulate.frame import WAVES
 
@@ -27,7 +28,7 @@ def run(options: Namespace) -> int:
     from talbot.models.scene import Sampling, open_clip
 
     typed = typed_of(options, _with_scene)
-    options.out = options.out or Path("build/sequence") / name_of(typed)
+    options.out = options.out or results_of("sequence") / name_of(typed)
     asked = request_of(options)
     clip, before = open_clip(options.scene, Sampling.of(asked.sensor)), arguments_of(asked.folder)
     from .outputs import run  # Matplotlib and more: not before the arguments are right
