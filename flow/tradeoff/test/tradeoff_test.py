@@ -11,40 +11,62 @@ from talbot.flow.tradeoff.sweeps import SWEEPS, measured, run_sweeps
 from talbot.models.parameters import ParameterError
 from talbot.models.pixel.weights import view_weights
 
+QUICK = "threshold", "views"
+
+
+@pytest.fixture(scope="module")
+def few(tmp_path_factory):
+    """Folder, and rows of the sweeps that take a few seconds each."""
+    out = tmp_path_factory.mktemp("tradeoff")
+    return out, run_sweeps(out, QUICK, quick=True, store=tmp_path_factory.mktemp("kept"))
+
 
 @pytest.fixture(scope="module")
 def tables(tmp_path_factory):
+    """Folder and rows of all sweeps, quick: 90 s of processor time."""
     out = tmp_path_factory.mktemp("tradeoff")
     return out, run_sweeps(out, quick=True, store=tmp_path_factory.mktemp("kept"))
 
 
+def test_a_sweep_writes_its_table_and_plot(few):
+    check_files(*few, QUICK)
+
+
+@pytest.mark.slow
 def test_every_sweep_writes_its_table_and_plot(tables):
-    out, rows = tables
-    for name in SWEEPS:
+    check_files(*tables, SWEEPS)
+
+
+def check_files(out, rows, names):
+    for name in names:
         with open(out / f"{name}.csv", encoding="utf-8", newline="") as file:
             read = list(csv.DictReader(file))
         assert len(read) == len(rows[name]) and set(read[0]) == set(rows[name][0])
         assert (out / f"{name}.png").read_bytes().startswith(b"\x89PNG")
-    assert {p.name for p in out.iterdir()} == {"tradeoff.html", *(f"{n}.{e}" for n in SWEEPS for e in ("csv", "png"))}
+    assert {p.name for p in out.iterdir()} == {"tradeoff.html", *(f"{n}.{e}" for n in names for e in ("csv", "png"))}
 
 
+@pytest.mark.slow
 def test_the_verilog_agreed_everywhere(tables):
     for name in ("divider", "threshold", "exposure", "light", "lens", "noise"):
         assert all(row["mismatches"] == 0 for row in tables[1][name])
 
 
+@pytest.mark.slow
 def test_wider_dividers_err_less_and_take_longer(tables):
     for variant in ("radix2", "cordic"):
         narrow, wide = (row for row in tables[1]["divider"] if row["variant"] == variant)
         assert wide["worst_lsb"] < narrow["worst_lsb"] and wide["latency"] > narrow["latency"]
 
 
-def test_higher_thresholds_send_less_and_err_more(tables):
-    rows = tables[1]["threshold"]
+def test_higher_thresholds_send_less_and_err_more(few):
+    rows = few[1]["threshold"]
+    assert not any(row["mismatches"] for row in rows)
     assert [r["bytes"] for r in rows] == sorted((r["bytes"] for r in rows), reverse=True)
     assert rows[0]["psnr_edges_db"] > rows[-1]["psnr_edges_db"]
 
 
+@pytest.mark.slow
 def test_a_longer_lead_lights_more_and_takes_longer(tables):
     """From next to no light past a full well, and all rows integrate as long."""
     rows = tables[1]["exposure"]
@@ -54,6 +76,7 @@ def test_a_longer_lead_lights_more_and_takes_longer(tables):
     assert not any(row["deviating_rows"] for row in rows)
 
 
+@pytest.mark.slow
 def test_less_light_takes_longer(tables):
     """The pointer leads by as many rows as the light asks for: white is as bright, until its lead ends."""
     rows = tables[1]["light"]
@@ -63,6 +86,7 @@ def test_less_light_takes_longer(tables):
     assert rows[0]["white_of_full_well"] <= 0.81
 
 
+@pytest.mark.slow
 def test_a_slower_lens_takes_longer_and_fewer_views(tables):
     rows = tables[1]["lens"]
     lenses = [r for r in rows if r["focus_m"] == rows[0]["focus_m"]]
@@ -72,11 +96,12 @@ def test_a_slower_lens_takes_longer_and_fewer_views(tables):
     assert len({r["focus_m"] for r in rows}) == 2 and all(r["capture_error_codes"] < 0.5 for r in rows)
 
 
-def test_more_nodes_err_less_for_uniform_light(tables):
-    coarse, fine = (r["worst"] for r in tables[1]["views"] if r["light"] == "uniform" and r["views"] == 5)
+def test_more_nodes_err_less_for_uniform_light(few):
+    coarse, fine = (r["worst"] for r in few[1]["views"] if r["light"] == "uniform" and r["views"] == 5)
     assert fine < coarse / 10
 
 
+@pytest.mark.slow
 def test_denser_patches_and_more_atoms_err_less(tables):
     found = [r for r in tables[1]["light_field"] if r["noise"] == "physical"]
     rows = {(r["method"], r["setting"]): r["psnr_db"] for r in found}
@@ -86,6 +111,7 @@ def test_denser_patches_and_more_atoms_err_less(tables):
     assert rows["direct", ""] + 2 < rows["sparse", ""] < rows["linear", ""]
 
 
+@pytest.mark.slow
 def test_noise_is_what_its_label_says(tables):
     """Of white, in the samples; the sum image, of two of them, loses by it, and an estimate still gains on that."""
     result = golden_result(request(rows=48, cols=48, mode="raw"))
@@ -108,6 +134,7 @@ def test_a_sweep_goes_on_from_what_is_kept(tmp_path, monkeypatch):
         measured("views", store=tmp_path / "empty")
 
 
+@pytest.mark.slow
 def test_fewer_bits_and_gated_differences_cost_light_field(tables):
     rows = {(r["what"], r["value"]): r for r in tables[1]["light_field_sensor"]}
     assert rows["bits", 3]["mixture_psnr_db"] + 1 < rows["bits", 8]["mixture_psnr_db"]
