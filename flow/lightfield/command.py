@@ -1,4 +1,4 @@
-"""The light field and the depth of a scene from a raw frame of the chip, every method beside the free baselines."""
+"""The light field and the depth of a scene from a raw frame of the chip, beside the free baselines."""
 
 from argparse import ArgumentParser, Namespace
 from collections.abc import Callable
@@ -18,6 +18,8 @@ def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot lightfield`: texts, checked by `run`."""
     reading.add_arguments(parser, "lightfield", "motorcycle", {"mode": "raw"})
     add_prior_arguments(parser)
+    words = "further methods, with commas, or all (flow/lightfield/README.md); direct, linear and mixture always run"
+    parser.add_argument("--method", default="", help=words)
 
 
 def add_prior_arguments(parser: ArgumentParser) -> None:
@@ -40,19 +42,19 @@ def prior_asked(options: Namespace) -> "Callable[[GoldenResult], FieldPrior]":
 
 def run(options: Namespace) -> int:
     """Read one frame back and print the figures; 1 where the chip and the golden model differ."""
-    from talbot.models.reconstruct.methods import METHODS
+    from .fields import Fields, methods_of, read_back
 
+    methods = methods_of(options.method)
     from . import page  # Matplotlib: not before it is needed
-    from .fields import Fields, read_back
 
     asked, typed = reading.asked(options, "lightfield", add_arguments)
     prior = prior_asked(options)
 
     def found(note: reading.Note) -> Fields:
         result = reading.frame_of(asked, note, options.golden)
-        return read_back(result, prior(result), note)
+        return read_back(result, prior(result), note, methods)
 
-    steps = "setup", "capture", "build", "rtl", "decode", *METHODS, "report"
+    steps = "setup", "capture", "build", "rtl", "decode", *methods, "report"
     return reading.run(asked, typed, steps, found, page, _print)
 
 

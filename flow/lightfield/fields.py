@@ -1,6 +1,6 @@
 """What a raw frame gives by every method, with its figures, beside what costs nothing."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -12,10 +12,10 @@ from talbot.flow.frame.light_field import SURE, estimator_of, pair_of, reached, 
 from talbot.flow.frame.reading import about, rms
 from talbot.flow.frame.result import GoldenResult
 from talbot.models.capture import CaptureOperator
-from talbot.models.parameters import ParameterError
+from talbot.models.parameters import ParameterError, check_choice
 from talbot.models.reconstruct import psnr_db
 from talbot.models.reconstruct.bayes import Estimate, FieldPrior
-from talbot.models.reconstruct.methods import Found, applicable, measure
+from talbot.models.reconstruct.methods import METHODS, Found, applicable, check_method, measure
 from talbot.models.scene import Sampling
 from talbot.models.scene.camera import depth as depth_of_disparity
 
@@ -23,6 +23,8 @@ from .figures import figures
 
 Values = npt.NDArray[np.floating]
 BEST = "mixture"  # the method whose pictures and disparity are shown
+STANDARD = ("direct", "linear", BEST)  # what is always run: the others take more time and have no higher PSNR
+ALL = "all"
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,10 +38,24 @@ class Fields:
     summary: dict[str, Any]
 
 
-def read_back(result: GoldenResult, prior: FieldPrior, note: Callable[[str], None] = lambda text: None) -> Fields:
-    """Every method on the samples of a raw frame, and on the same samples without noise and converter.
+def methods_of(text: str) -> list[str]:
+    """The methods that ``text`` names, with commas, or all, and those of STANDARD. Raises ParameterError."""
+    words = [word for word in text.replace(",", " ").split() if word != ALL]
+    for word in words:
+        check_choice("method", word, (ALL, *METHODS))
+    return [name for name in METHODS if name in (*STANDARD, *words) or ALL in text.replace(",", " ").split()]
 
-    Raises ParameterError for a frame that does not read all of the array.
+
+def read_back(
+    result: GoldenResult,
+    prior: FieldPrior,
+    note: Callable[[str], None] = lambda text: None,
+    methods: Sequence[str] = STANDARD,
+) -> Fields:
+    """Light fields of the samples of a raw frame, and of the same samples without noise and converter.
+
+    methods: names of METHODS, STANDARD among them; all of METHODS are those that are `applicable`. Raises
+    ParameterError for a frame that does not read all of the array, and for a method that does not fit it.
     """
     if not result.decoded.read.all():
         raise ParameterError("window, types, decimation = a part of the array: must be all, for every method")
@@ -49,8 +65,11 @@ def read_back(result: GoldenResult, prior: FieldPrior, note: Callable[[str], Non
     ideal = pair_of(result, result.exposed.ideal)
     operator, corners = CaptureOperator(result.sensor), reached(result)
     seen = truth * corners
+    methods = applicable(operator) if set(methods) == {*METHODS} else methods
+    for name in methods:
+        check_method(name, operator)
     free, found, figured = baselines(result.image, seen), {}, {}
-    for name in each(applicable(operator), "method", str):
+    for name in each(methods, "method", str):
         got, seconds = measure(name, estimator, operator, sent)
         got = unsure(got, bad, estimator)
         float_got = measure(name, estimator, operator, ideal)[0]
@@ -61,18 +80,20 @@ def read_back(result: GoldenResult, prior: FieldPrior, note: Callable[[str], Non
     summary = about(result) | {"methods": figured, "best": BEST, "baselines": free}
     if result.request.calibration:
         note("with the true optics")
-        summary["true_optics"] = _by_truth(result, prior, truth * corners, sent)
+        summary["true_optics"] = _by_truth(result, prior, truth * corners, sent, methods)
     field, disparity, spread, plain = found[BEST]
     assert disparity is not None and spread is not None
     best = Estimate(field, disparity, spread, plain)
     return Fields(result, truth, found, best, summary | depth_figures(result, best))
 
 
-def _by_truth(result: GoldenResult, prior: FieldPrior, seen: Values, sent: Values) -> dict[str, float | None]:
-    """PSNR in dB of every method that knows the sensor's true optics in place of a calibration."""
+def _by_truth(
+    result: GoldenResult, prior: FieldPrior, seen: Values, sent: Values, methods: Sequence[str]
+) -> dict[str, float | None]:
+    """PSNR in dB of the methods that know the sensor's true optics in place of a calibration."""
     true = replace(result, request=replace(result.request, calibration=None))
     estimator, operator, corners = estimator_of(true, prior), CaptureOperator(true.sensor), reached(true)
-    found = {name: measure(name, estimator, operator, sent)[0].light_field for name in applicable(operator)}
+    found = {name: measure(name, estimator, operator, sent)[0].light_field for name in methods}
     return {name: psnr_db(field * corners, seen) for name, field in found.items()}
 
 

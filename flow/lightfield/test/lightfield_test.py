@@ -14,11 +14,13 @@ from talbot.flow.frame.job import golden_result
 from talbot.flow.frame.light_field import estimate, method_of, pair_of, prior_of, reached
 from talbot.flow.frame.request import request
 from talbot.flow.lightfield import page
-from talbot.flow.lightfield.fields import read_back
+from talbot.flow.lightfield.fields import methods_of, read_back
 from talbot.flow.lightfield.figures import figures, parallax
+from talbot.models.capture import CaptureOperator
 from talbot.models.parameters import ParameterError, Window
 from talbot.models.reconstruct import diode_noise
 from talbot.models.reconstruct.bayes import FieldPrior
+from talbot.models.reconstruct.methods import METHODS, applicable
 
 
 @pytest.fixture(scope="module")
@@ -56,6 +58,21 @@ def test_files(done):
     assert labels and [float(word) for word in labels[1].split("|")] == sorted(map(float, labels[1].split("|")))
     assert len(labels[1].split("|")) == page.FOCUSED**2 and 'aria-label="disparity in focus"' in text
     assert f"{s['methods']['mixture']['psnr_db']:.1f} dB" in text and "direct: no better than the sum image" in text
+
+
+def test_methods_are_the_fast_ones_and_those_that_are_named(done):
+    assert methods_of("") == list(done[1]["methods"]) == ["direct", "linear", "mixture"]
+    assert methods_of("network") == methods_of("linear, network") == ["direct", "linear", "mixture", "network"]
+    assert methods_of("all") == list(METHODS)
+
+
+@pytest.mark.slow
+def test_all_are_those_that_fit_the_frame():
+    result = golden_result(request(scene="tilted", rows=8, cols=12, mode="raw"))  # smaller than a patch of sparse
+    prior = FieldPrior(disparities=3)
+    assert list(read_back(result, prior, methods=methods_of("all")).found) == applicable(CaptureOperator(result.sensor))
+    with pytest.raises(ParameterError, match="method = 'sparse': must be one of direct, linear.* of 8 x 12"):
+        read_back(result, prior, methods=methods_of("sparse"))
 
 
 def test_a_scene_without_parallax_has_no_slope():
@@ -96,6 +113,7 @@ def test_parallax_of_the_truth_is_one():
         ("--far=3", "near = '2.5': must be a number in \\[3.0, 20\\]"),
         ("--disparities=0", "disparities = '0': must be an integer in 1..500"),
         ("--scene=nothing", "scene = 'nothing'"),
+        ("--method=linear,best", "method = 'best': must be one of all, direct, linear"),
     ],
 )
 def test_bad_arguments(word, message, capsys, tmp_path):
@@ -148,6 +166,6 @@ def test_a_decimated_frame_has_the_direct_estimate_alone():
 def test_an_estimate_alone_is_that_of_the_page(monkeypatch):
     monkeypatch.setattr(light_field, "prior_of", partial(prior_of, disparities=11))
     result = golden_result(request(scene="tilted", rows=24, cols=24, mode="raw"))
-    page = read_back(result, light_field.prior_of(result))
+    page = read_back(result, light_field.prior_of(result), methods=METHODS)
     for name, found in page.found.items():
         np.testing.assert_array_equal(estimate(result, name).light_field, found.light_field)
