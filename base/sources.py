@@ -16,6 +16,7 @@ from dataclasses import astuple, dataclass
 from functools import cache, cached_property
 from itertools import accumulate
 from pathlib import Path
+from threading import Lock
 
 from .cache import digest
 from .files import write
@@ -28,6 +29,7 @@ SKIPPED = frozenset(("build", "__pycache__", ".venv", ".git", "node_modules"))
 ENDINGS = "|".join(suffix[1:] for suffix in sorted(DATA))
 DATA_NAME = re.compile(rf"[\w*./-]*[\w*-]\.(?:{ENDINGS})")
 PARSED = BUILD / "sources.json"  # what was read of texts, by their digest
+_READING = Lock()  # of trees: a thread at a time
 TEXTS = 5000  # that are kept there at most
 
 
@@ -314,10 +316,11 @@ def modules(root: Path = ROOT) -> Mapping[str, Path]:
 
 @cache
 def _code(root: Path, starts: tuple[str | Path, ...], chosen: tuple[tuple[str, str], ...]) -> str:
-    tree, before = _tree(root), len(_parsed())
-    found = tree.digest(tree.closure(starts, dict(chosen)))
-    _keep(before)
-    return found
+    with _READING:
+        tree, before = _tree(root), len(_parsed())
+        found = tree.digest(tree.closure(starts, dict(chosen)))
+        _keep(before)
+        return found
 
 
 def code(*starts: str | Path, chosen: Mapping[str, str] | None = None, root: Path = ROOT) -> str:

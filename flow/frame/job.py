@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -155,9 +156,7 @@ def simulate_frame(request: FrameRequest, note: Callable[[str], None] = lambda t
     note: as in `run`. Raises ParameterError, ToolError.
     """
     clock = Clock(note=note)
-    exposed = _exposed(request, clock)
-    with clock.step("build"):
-        program = hardware.program(request.sensor, note=note)
+    exposed, program = _prepared(request, clock)
     return read_out(request, exposed, program, clock)
 
 
@@ -182,6 +181,18 @@ def _exposed(request: FrameRequest, clock: Clock) -> Exposed:
         return expose(request, scene, todo)
 
 
+def _prepared(request: FrameRequest, clock: Clock, waves: str = "") -> tuple[Exposed, Path]:
+    """The exposure and the simulator, which is built while the scene is captured. waves: as of Build."""
+    with clock.step("setup"):
+        scene, todo = see(request)
+    with ThreadPoolExecutor(1) as pool:
+        program = pool.submit(hardware.program, request.sensor, waves, clock.note)
+        with clock.step("capture"):
+            exposed = expose(request, scene, todo)
+        with clock.step("build"):
+            return exposed, program.result()
+
+
 def run(
     request: FrameRequest,
     note: Callable[[str], None] = lambda text: None,
@@ -196,10 +207,7 @@ def run(
 
     check_folder("out", request.folder)
     clock = Clock(note=note)
-    exposed = _exposed(request, clock)
-    with clock.step("build"):
-        kind = request.waves_format if request.waves else ""
-        program = hardware.program(request.sensor, kind, note)
+    exposed, program = _prepared(request, clock, request.waves_format if request.waves else "")
     with staged(request.folder, outputs.NAMES) as folder:
         waves = Waves(folder / f"waves.{request.waves_format}", *request.waves) if request.waves else None
         result = read_out(request, exposed, program, clock, waves)

@@ -1,6 +1,7 @@
 """The frame bench as a program: Verilog in, executable out, cached by the content of all that went in."""
 
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from talbot.base.cache import cached, digest
@@ -64,12 +65,15 @@ def program_of(
             raise ToolError(
                 f"waves_format = 'fst': needs {' and '.join(PACKED)} (Debian: zlib1g-dev, liblz4-dev); or vcd"
             )
-        note("exporting the chip's Verilog")
-        chip = build.chip_verilog(work)
-        note("translating it with Verilator")
-        model = verilate(work / "obj", top, [chip, *sources], [*VERILATOR_FLAGS, *options])
-        note("compiling the simulator")
-        compile_program(work / "program", [*model, READ, main], [*CXX_FLAGS, *cxx, *runtime(), *_tracing(build.waves)])
+        with ThreadPoolExecutor(1) as pool:
+            objects = pool.submit(runtime)  # a compiler runs while Python exports
+            note("exporting the chip's Verilog")
+            chip = build.chip_verilog(work)
+            note("translating it with Verilator")
+            model = verilate(work / "obj", top, [chip, *sources], [*VERILATOR_FLAGS, *options])
+            note("compiling the simulator")
+            linked = [*objects.result(), *_tracing(build.waves)]
+            compile_program(work / "program", [*model, READ, main], [*CXX_FLAGS, *cxx, *linked])
 
     return cached(BUILD / "simulator" / key, make) / "program"
 
