@@ -180,4 +180,5 @@ def render(template: Path, title: str, *, picture: Image | None = None, listed: 
     environment.globals["parts"] = environment.get_template("parts.html").module
     values = {"tiles": ()} | values
     shown = card(title, values["tiles"], picture) if listed else ""
-    return environment.get_template(template.name).render(title=title, card=shown, **values)
+    text = environment.get_template(template.name).render(title=title, card=shown, **values)
+    return text.encode("utf-8", "surrogateescape").decode("utf-8", "replace")  # a name of a file may be no UTF-8

@@ -155,3 +155,7 @@ def test_what_is_broad_has_more_than_a_column():
     figures = [Figure((width, 3)) for width in (4.6, 12)]
     text = page(sections=[Section(pictures=[PICTURE, wide], charts=[svg(figure) for figure in figures])])
     assert text.count('<figure class="broad">') == text.count('class="broad" role="img"') == 1
+
+
+def test_a_name_of_a_file_in_latin_1_is_written_as_a_mark():
+    assert "sch\ufffdn.png" in page(about=os.fsdecode(b"sch\xf6n.png")).encode().decode()
