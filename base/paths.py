@@ -52,13 +52,17 @@ def _temporary() -> Path:
     return folder if folder.stat().st_uid == os.getuid() else Path(tempfile.mkdtemp(prefix="talbot-"))
 
 
-def results(root: Path) -> Path:
-    """Folder of results by default: the repository's own, or one in the working directory."""
-    return build(root) if (root / "pyproject.toml").is_file() else Path("build")
+def results() -> Path:
+    """Folder of all results by default: build in the working directory, for `make` the checkout's.
+
+    Where that cannot be written, BUILD.
+    """
+    here = Path.cwd() / "build"
+    return BUILD if unwritable(here) else here
 
 
 def results_of(command: str) -> Path:
-    """Folder of a command's results by default: build/<command> here, or where that cannot be written, in BUILD."""
+    """Folder of a command's results in `results`, by a relative path where that is build/ here."""
     here = Path("build")
     return (BUILD if unwritable(here) else here) / command
 
@@ -72,4 +76,5 @@ def caches() -> None:
         os.environ.setdefault("NUMBA_CACHE_DIR", str(BUILD / "numba"))
 
 
-BUILD, RESULTS = build(ROOT), results(ROOT)
+BUILD = build(ROOT)
+RESULTS = results()

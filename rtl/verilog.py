@@ -13,5 +13,6 @@ def export_verilog(folder: Path, tops: Sequence[str] = (), options: Sequence[obj
 
     options: of the sensor, see `rtl.export`. Raises ToolError.
     """
-    words = [sys.executable, "-m", "talbot.rtl.export", "--out", folder, *(f"--top={top}" for top in tops), *options]
+    words = [sys.executable, "-m", "talbot.rtl.export", "--out", folder.absolute(), *(f"--top={top}" for top in tops)]
+    words += options
     return [Path(line) for line in run(words, cwd=ROOT).splitlines()]

@@ -4,17 +4,24 @@ import shutil
 import pytest
 
 from talbot.base import paths
-from talbot.base.paths import BUILD, RESULTS, ROOT, build, results
+from talbot.base.paths import BUILD, ROOT, build, results
 
 
 def test_a_checkout_keeps_what_it_builds():
-    assert BUILD == RESULTS == ROOT / "build"
+    assert BUILD == ROOT / "build"
 
 
-def test_an_installation_uses_the_users_cache_and_the_working_directory(tmp_path, monkeypatch):
+def test_an_installation_keeps_it_in_the_users_cache(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     assert build(tmp_path / "site-packages") == tmp_path / "cache" / "talbot"
-    assert not results(tmp_path / "site-packages").is_absolute()
+
+
+def test_results_are_in_the_working_directory_or_where_others_are_kept(checkout, monkeypatch):
+    root, denied = checkout
+    monkeypatch.chdir(root)
+    assert results() == root / "build"
+    denied.add(str(root / "build"))
+    assert results() == BUILD
 
 
 @pytest.fixture
@@ -38,7 +45,7 @@ def test_what_another_user_has_built_is_left_and_the_cache_used_with_one_line(ch
     names.add(str(root / denied))
     if not denied:
         shutil.rmtree(root / "build")  # a checkout that is read-only
-    assert build(root) == results(root) == build(root) == tmp_path / "cache" / "talbot"
+    assert build(root) == tmp_path / "cache" / "talbot"
     assert capsys.readouterr().err.splitlines() == [
         f"talbot: {(root / denied)} is not yours to write: {tmp_path}/cache/talbot is used in its place"
     ]

@@ -93,7 +93,12 @@ def test_an_installation_works_from_any_folder(built, tmp_path):
     (tmp_path / "away").mkdir()
     there = {"cwd": tmp_path / "away", "PYTHONPATH": str(tmp_path / "site"), "XDG_CACHE_HOME": str(tmp_path / "cache")}
     found = run("-c", INSTALLED, **there).split()
-    assert found == [f"{tmp_path}/site/talbot/__init__.py", f"{tmp_path}/cache/talbot", "build", "talbot"]
+    assert found == [
+        f"{tmp_path}/site/talbot/__init__.py",
+        f"{tmp_path}/cache/talbot",
+        f"{tmp_path}/away/build",
+        "talbot",
+    ]
     assert run("-m", "talbot", "--version", **there) == f"talbot {version('talbot')}\n"
     run("-m", "talbot", "verilog", "--top", "EdgeAdc", "--out", "verilog", **there)
     (verilog,) = (tmp_path / "away" / "verilog").iterdir()
