@@ -16,6 +16,7 @@ from pathlib import Path
 from .supervise import RUN
 
 INTERNAL = 3  # exit status: neither a check that fails (1) nor bad input (2)
+ROOM = 64 << 20  # bytes
 FULL = {errno.ENOSPC: "no space left", errno.EDQUOT: "your quota is used up"}
 REPORT = "please report it with that file (CONTRIBUTING.md says where)"
 
@@ -83,7 +84,8 @@ def full(error: BaseException, name: str | None, *folders: Path) -> str:
     name = name or os.fsdecode(getattr(error, "filename", None) or "")
     if not name:
         least = min((path.absolute() for path in (*folders, Path(tempfile.gettempdir()))), key=_free)
-        name = f"{least} ({_free(least) >> 20} MiB free)"
+        # With room in each it is none of these, but where standard output goes
+        name = f"{least} ({_free(least) >> 20} MiB free)" if _free(least) < ROOM else "output"
     why = FULL.get(getattr(error, "errno", None) or errno.ENOSPC, FULL[errno.ENOSPC])
     return f"file = {name}: {why}; free some on that disk (make clean removes build/, with results and caches)"
 

@@ -87,6 +87,11 @@ def test_a_full_disk_behind_standard_output(status, monkeypatch):
     assert found == 2 and "file = output: no space left" in line
 
 
+def test_a_disk_with_room_is_not_called_full(status, monkeypatch):
+    monkeypatch.setattr(failure, "_free", lambda path: 1 << 30)
+    assert "file = output: no space left" in status(OSError(errno.ENOSPC, "No space left on device"))[1][0]
+
+
 def test_a_package_that_is_missing_is_no_internal_error(status, capsys):
     def call():
         raise ModuleNotFoundError("No module named 'klayout'", name="klayout.db")
