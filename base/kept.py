@@ -14,6 +14,7 @@ import pickle
 import sys
 import types
 from collections.abc import Callable, Iterator
+from contextvars import ContextVar
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -27,6 +28,7 @@ from .sources import code
 T = TypeVar("T")
 STORE = BUILD / "kept"
 MOST = 256 << 20  # bytes of a store
+_AFRESH = ContextVar("afresh", default=False)
 HEAD = hashlib.sha256().digest_size
 PLAIN = (type(None), bool, int, float, complex, str, bytes, slice, range, np.generic, np.dtype)
 
@@ -41,6 +43,8 @@ def kept(store: str, compute: Callable[..., T], *arguments: object, most: int = 
     store: name of the folder of such values. compute: a function of a module, whose value can be pickled. most: size of
     the store in bytes.
     """
+    if _AFRESH.get():
+        return compute(*arguments)
     try:
         file = STORE / store / _key(compute, arguments)
     except (Unnamed, ValueError):  # ValueError: an empty cell of a closure
@@ -57,6 +61,16 @@ def kept(store: str, compute: Callable[..., T], *arguments: object, most: int = 
         write(file, hashlib.sha256(data).digest() + data)
         _bound(file.parent, most)
     return value
+
+
+@contextlib.contextmanager
+def afresh() -> Iterator[None]:
+    """Compute all values in this context, whatever is kept: where the time that they take is measured."""
+    before = _AFRESH.set(True)
+    try:
+        yield
+    finally:
+        _AFRESH.reset(before)
 
 
 def content(value: object) -> tuple[str, set[str]]:

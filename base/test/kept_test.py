@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from talbot.base import kept as module
-from talbot.base.kept import Unnamed, content, kept
+from talbot.base.kept import Unnamed, afresh, content, kept
 
 CALLS = []
 
@@ -45,6 +45,13 @@ def test_a_value_is_computed_once_for_the_same_content(tmp_path):
     file.write_text("b")
     kept("sums", total, Lens(2.0, np.arange(3)), file)
     assert len(CALLS) == 4
+
+
+def test_a_value_whose_time_is_measured_is_computed_each_time():
+    for _ in range(2):
+        with afresh():
+            kept("sums", total, Lens(2.0, np.arange(3)))
+    assert len(CALLS) == 2
 
 
 @pytest.mark.parametrize(

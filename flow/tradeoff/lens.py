@@ -9,6 +9,7 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from talbot.base.charts import curves
+from talbot.base.kept import afresh
 from talbot.flow.frame import hardware, job
 from talbot.flow.frame.figures import summarize
 from talbot.flow.frame.request import request
@@ -32,8 +33,9 @@ def measure(point: tuple[float, float, int]) -> dict[str, Any]:
     f_number, focus, size = point
     asked = request(rows=size, cols=size, camera=CameraParameters(f_number=f_number, focus=focus))
     start = perf_counter()
-    scene, todo = job.see(asked)
-    exposed = job.expose(asked, scene, todo)
+    with afresh():
+        scene, todo = job.see(asked)
+        exposed = job.expose(asked, scene, todo)
     seconds = perf_counter() - start
     result = job.read_out(asked, exposed, hardware.program(asked.sensor))
     summary = summarize(result)
