@@ -70,15 +70,24 @@ class BitstructFinder:
             return None
         sys.meta_path.remove(self)
         spec = importlib.util.find_spec(name)
-        execute = spec.loader.exec_module
-
-        def exec_module(module):
-            execute(module)
-            process = module._process_class
-            module._process_class = lambda cls, *words, **options: process(annotated(cls), *words, **options)
-
-        spec.loader.exec_module = exec_module
+        spec.loader = BitstructLoader(spec.loader)
         return spec
+
+
+class BitstructLoader:
+    """Loads that module by ``loader``, which may load others, too (pytest's does)."""
+
+    def __init__(self, loader):
+        self._loader = loader
+
+    def __getattr__(self, name):
+        return getattr(self._loader, name)
+
+    def exec_module(self, module):
+        """Execute the module and give it the classes that `annotated` returns."""
+        self._loader.exec_module(module)
+        process = module._process_class
+        module._process_class = lambda cls, *words, **options: process(annotated(cls), *words, **options)
 
 
 if sys.version_info >= (3, 14):
