@@ -38,7 +38,7 @@ talbot = $(PY) -m talbot --make '$@ $(KNOWN)'
 .PHONY: help
 help:  ## this list
 	@echo "Talbot: from the optics of an angle-sensitive pixel to a layout. Targets:"
-	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## */  make \1\t/' | expand -t 20
+	@awk -F ':.*## *' '/^[a-z-]+:.*##/ { printf "  make %-18s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 	@echo "A command's options are variables: make sim SCENE=photo.png THRESHOLD=12 PHASE=0 (see make sim-help)"
 
 $(READY): requirements/run.lock pyproject.toml requirements/venv.sh

@@ -11,6 +11,7 @@ import fcntl
 import os
 import shutil
 import signal
+import subprocess
 import sys
 import tempfile
 import time
@@ -36,7 +37,8 @@ def supervised(program: Callable[[], int]) -> int:
     ends = {number for number in ENDS if signal.getsignal(number) != signal.SIG_IGN}
     signal.pthread_sigmask(signal.SIG_BLOCK, {*ends, signal.SIGCHLD})
     folder = Path(tempfile.mkdtemp(prefix="talbot-"))
-    ctypes.CDLL(None).prctl(SET_CHILD_SUBREAPER, 1)
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(SET_CHILD_SUBREAPER, 1)
     parent = os.getpid()
     child = os.fork()
     if not child:
@@ -164,16 +166,31 @@ def _kill_all(patience: float) -> None:
 
 
 def _below(top: int) -> list[int]:
-    """Every process below ``top``, from /proc."""
+    """Every process below ``top``. Elsewhere than on Linux, not those whose parent has ended."""
     children: dict[int, list[int]] = {}
-    for path in Path("/proc").glob("[0-9]*/stat"):
-        with contextlib.suppress(OSError):  # it has ended
-            parent = int(path.read_text(encoding="utf-8", errors="replace").rpartition(")")[2].split()[1])
-            children.setdefault(parent, []).append(int(path.parent.name))
+    for process, parent in _parents():
+        children.setdefault(parent, []).append(process)
     found = [top]
     for process in found:
         found += children.get(process, [])
     return found[1:]
+
+
+def _parents() -> Iterator[tuple[int, int]]:
+    """Every process and its parent: from /proc, or by ps where there is none (macOS), without that itself."""
+    if sys.platform == "linux":
+        for path in Path("/proc").glob("[0-9]*/stat"):
+            with contextlib.suppress(OSError):  # it has ended
+                yield (
+                    int(path.parent.name),
+                    int(path.read_text(encoding="utf-8", errors="replace").rpartition(")")[2].split()[1]),
+                )
+        return
+    with subprocess.Popen(["ps", "-axo", "pid=,ppid="], stdout=subprocess.PIPE, encoding="utf-8") as ps:
+        lines, _ = ps.communicate()
+    for process, parent in (map(int, line.split()) for line in lines.splitlines()):
+        if process != ps.pid:
+            yield process, parent
 
 
 def _remove_written(run: Path) -> None:

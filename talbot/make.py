@@ -18,8 +18,12 @@ YES, NO = ("1", "yes", "true", "on"), ("0", "no", "false", "off")
 
 
 def variables(flags: str) -> dict[str, str]:
-    """Name to value of the variables in ``flags``, the text of MAKEFLAGS: after ' -- ', with make's quoting."""
-    text = f" {flags}".partition(" -- ")[2]
+    """Name to value of the variables in ``flags``, the text of MAKEFLAGS: after ' -- ', with make's quoting.
+
+    Make 3.81 (macOS) leaves ' -- ' out where there are no options.
+    """
+    before, dashes, after = f" {flags}".partition(" -- ")
+    text = after if dashes or "=" not in before.split(" -")[0] else before
     found = {}
     for word in re.findall(r"(?:\\.|[^ \t\\])+", text, re.DOTALL):
         name, _, value = re.sub(r"\\(.)", r"\1", word, flags=re.DOTALL).partition("=")

@@ -67,15 +67,29 @@ def _start(child: BaseProcess) -> None:
 def _measured(sender: Connection, nice: int, call: Callable[..., Any], arguments: tuple[Any, ...]) -> None:
     os.nice(nice)
     signal.signal(signal.SIGTERM, _end)
-    if sys.platform == "linux":
-        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
+    _end_with_parent()
     try:
         result = call(*arguments)
     except Exception as error:
         result = error
     _end_workers()
-    kib = max(resource.getrusage(who).ru_maxrss for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
-    sender.send((result, round(kib / 1024)))
+    peak = max(resource.getrusage(who).ru_maxrss for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+    sender.send((result, round(peak / (1 << 20 if sys.platform == "darwin" else 1 << 10))))  # bytes there, else KiB
+
+
+def _end_with_parent() -> None:
+    """Let SIGTERM come to this process when its parent ends: by the kernel, or by a thread that looks (macOS)."""
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
+        return
+    parent = multiprocessing.parent_process()
+
+    def wait() -> None:
+        if parent:
+            parent.join()
+            os.kill(os.getpid(), signal.SIGTERM)
+
+    threading.Thread(target=wait, daemon=True).start()
 
 
 def _end_workers() -> None:

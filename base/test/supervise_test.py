@@ -49,7 +49,17 @@ def works():
 def leaves():
     subprocess.Popen(["sleep", "20"], start_new_session=True)
     return 7
+sys.platform = os.environ.get("TEST_PLATFORM", sys.platform)
 sys.exit(supervised(globals()[sys.argv[2]]))
+"""
+# What macOS's ps says, which Debian does not always have
+PS = """#!/usr/bin/env python3
+from pathlib import Path
+for path in Path("/proc").glob("[0-9]*/stat"):
+    try:
+        print(path.parent.name, path.read_text().rpartition(")")[2].split()[1])
+    except OSError:
+        pass
 """
 
 
@@ -101,6 +111,22 @@ def test_nothing_is_left(tmp_path, name, sent, whole_group):
     (os.killpg if whole_group else os.kill)(process.pid, sent)
     _, err = process.communicate(timeout=200)
     assert process.returncode == 128 + sent and err.count("\n") == 1 and "nothing was left half-written" in err
+    assert not running(mark) and not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("name", ["tools", "writes"])
+def test_nothing_is_left_where_there_is_no_proc(tmp_path, tmp_path_factory, monkeypatch, name):
+    """The way of macOS: ps says which processes there are, and those that nobody waits for are not looked for."""
+    programs = tmp_path_factory.mktemp("bin")
+    (programs / "ps").write_text(PS, encoding="utf-8")
+    (programs / "ps").chmod(0o755)
+    monkeypatch.setenv("PATH", f"{programs}:{os.environ['PATH']}")
+    monkeypatch.setenv("TEST_PLATFORM", "darwin")
+    process, mark = program(tmp_path, name)
+    process.stdout.readline()
+    process.terminate()
+    _, err = process.communicate(timeout=200)
+    assert process.returncode == 143 and err.count("\n") == 1 and "nothing was left half-written" in err
     assert not running(mark) and not list(tmp_path.iterdir())
 
 

@@ -109,7 +109,8 @@ def running(
         ours = {name: ends[name][name in INPUTS] for name in ends}
         for file in ours.values():
             stack.callback(os.close, file)
-        with contextlib.suppress(OSError):  # more than a user may have: then it waits for the simulator more often
+        # More than a user may have, or a system that has no such call (macOS): it waits for the simulator more often
+        with contextlib.suppress(OSError, AttributeError):
             fcntl.fcntl(ours["samples"], fcntl.F_SETPIPE_SZ, CHUNK)
         inputs, outputs = ({name: ours[name] for name in names} for names in (INPUTS, OUTPUTS))
         bench = Running(inputs, outputs)

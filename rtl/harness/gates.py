@@ -19,7 +19,7 @@ from talbot.base.cache import cached, digest
 from talbot.base.paths import BUILD
 from talbot.base.sources import code
 from talbot.base.tools import located, run
-from talbot.base.verilator import CXX
+from talbot.base.verilator import CXX, accepted
 
 from .ports import ports_of, split
 from .translate import translate_component
@@ -33,8 +33,8 @@ opt_expr; opt_clean; techmap; opt_expr; opt_clean; flatten; dffunmap; abc -g AND
 write_aiger -ascii -symbols gates.aag"""
 SHIFTX = Path(__file__).parent / "shiftx.v"
 
-# Two passes of GCC whose time grows much faster than the function
-OPTIONS = ["-O1", "-march=native", "-fdisable-rtl-combine", "-fira-algorithm=priority"]
+# The last two: passes of GCC whose time grows much faster than the function
+OPTIONS = "-O1", "-march=native", "-fdisable-rtl-combine", "-fira-algorithm=priority"
 ONE, PART = 2000, 64  # lines that make one function, which is fastest; lines of each function otherwise
 
 HEAD = """#include <cstdint>
@@ -54,7 +54,7 @@ class Gates:
         top = type(component).__name__
         verilog = translate_component(component, top)
         inputs, outputs = split(ports_of(component))
-        machine = run([*CXX, "-march=native", "-E", "-dM", "-x", "c++", "/dev/null"])
+        machine = run([*CXX, *accepted("-march=native"), "-E", "-dM", "-x", "c++", "/dev/null"])
         key = digest(code(__name__), verilog, machine)
         folder = cached(BUILD / "gates" / key, lambda folder: _compile(folder, verilog, top))
         rows = json.loads((folder / "rows.json").read_text(encoding="utf-8"))
@@ -128,7 +128,7 @@ def _compile(folder: Path, verilog: str, top: str) -> None:
         body = [f"part{i}(in, state, out, n, at);" for i in starts]
     text += [f'extern "C" void cycle({ARGUMENTS}) {{', "for (long at = 0; at < n; ++at) {", *body, "}", "}"]
     (folder / "gates.cpp").write_text("\n".join(text), encoding="utf-8")
-    run([*CXX, *OPTIONS, "-shared", "-fPIC", folder / "gates.cpp", "-o", folder / "gates.so"])
+    run([*CXX, *accepted(*OPTIONS), "-shared", "-fPIC", folder / "gates.cpp", "-o", folder / "gates.so"])
     symbols = [match.groups() for line in lines if (match := re.match(r"([io])(\d+) (\S+)$", line))]
     rows = {kind: {name: int(row) for found, row, name in symbols if found == kind} for kind in "io"}
     (folder / "rows.json").write_text(json.dumps(rows | {"state": n_state}), encoding="utf-8")

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from talbot.base.cache import cached, digest
 from talbot.base.paths import BUILD
-from talbot.base.verilator import CXX, FAST, compile_program, runtime, verilate, verilator_version
+from talbot.base.verilator import CXX, FAST, accepted, compile_program, runtime, verilate, verilator_version
 
 from .icarus import instance
 from .ports import Port, split, total_width
@@ -19,7 +19,7 @@ from .ports import Port, split, total_width
 FOLDER, LIBRARY = BUILD / "verilated", "library.so"
 # Warnings are errors, but those that PyMTL's Verilog gives everywhere
 OPTIONS = *(word for word in FAST if word != "-Wno-lint"), "-Wno-UNOPTFLAT", "-Wno-UNSIGNED", "-Wno-WIDTH"
-COMPILED = "-O0", "-fPIC", "-fno-gnu-unique", "-shared"  # compiling takes longer than what the tests simulate
+COMPILED = "-O0", "-fPIC", "-shared"  # compiling takes longer than what the tests simulate
 
 BENCH = """module VerilatedBench(input clk, input [{high_in}:0] in, output [{high_got}:0] got);
 {instance}endmodule
@@ -78,7 +78,7 @@ def _compile(library: Path, text: str) -> None:
         source.write_text(text, encoding="utf-8")
         made = verilate(Path(work), "VerilatedBench", [source], OPTIONS)
         wrapper.write_text(WRAPPER, encoding="utf-8")
-        compile_program(library, [*made, wrapper], [*COMPILED, *runtime()])
+        compile_program(library, [*made, wrapper], [*COMPILED, *accepted("-fno-gnu-unique"), *runtime()])
 
 
 def in_verilator(name: str, top: str, ports: Sequence[Port], text: str) -> Verilated:

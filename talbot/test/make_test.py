@@ -235,3 +235,19 @@ def test_a_home_folder_is_meant_by_a_tilde(monkeypatch, capsys):
 def test_quoting_of_makeflags():
     assert variables("n -- A=1\\\\2\\ 3\nx B:=$$(y) C=") == {"A": "1\\2 3\nx", "B": "$(y)", "C": ""}
     assert variables("-n") == variables("") == {}
+
+
+@pytest.mark.parametrize(
+    "flags, expected",
+    [
+        (" -- SCENE=coins", {"SCENE": "coins"}),
+        ("s -- SCENE=a\\ b M=1", {"SCENE": "a b", "M": "1"}),
+        ("SCENE=coins M=1", {"SCENE": "coins", "M": "1"}),
+        ("s --jobserver-fds=3,4 -j", {}),
+        (" --jobserver-fds=3,4 -j", {}),
+        ("", {}),
+    ],
+)
+def test_variables_of_every_make(flags, expected):
+    """The third is as make 3.81, macOS's, passes them without an option."""
+    assert variables(flags) == expected

@@ -9,7 +9,7 @@ from talbot.base.cache import cached, digest
 from talbot.base.paths import BUILD
 from talbot.base.sources import code
 from talbot.base.tools import run
-from talbot.base.verilator import CXX, compile_runtime, verilator_folder
+from talbot.base.verilator import CXX, compile_runtime, verilator_folder, verilator_program
 from talbot.rtl.harness.ports import Port, places, split, total_width, validity
 
 CACHE = BUILD / "replay"
@@ -121,7 +121,7 @@ def compile_program(
 
     registers, mutant: see `header`. coverage: the program counts points (Verilator's --coverage).
     """
-    verilator = verilator_folder() / "bin" / "verilator_bin"
+    verilator = verilator_program()
     flags = (*VERILATE, *(COVERAGE if coverage else ("-O3",)))
     lines = header(top, ports, registers, mutant)
     version = tool([verilator, "--version"])
