@@ -62,14 +62,19 @@ def plain(path: Path) -> Path:
     """Return ``path`` as scripts of tools can say it: where it has a space, a quote, a `$`, by way of a link.
 
     Yosys, ABC and Tcl split such a path, each by other rules. The link, to the file or folder, lasts as long as this
-    process. Letters that are not ASCII count, too.
+    process; a folder that is not there yet is made. Letters that are not ASCII count, too.
     """
     path = Path(path)
     if PLAIN.fullmatch(str(path)):
         return path
+    there = next(p for p in (path, *path.absolute().parents) if p.exists())
+    rest = path.absolute().relative_to(there.absolute())
+    if not PLAIN.fullmatch(str(rest)):
+        path.mkdir(parents=True, exist_ok=True)
+        there, rest = path, Path()
     link = _links() / secrets.token_hex(4)
-    link.symlink_to(path.absolute())
-    return link
+    link.symlink_to(there.absolute())
+    return link / rest
 
 
 @cache

@@ -2,6 +2,7 @@
 
 import multiprocessing
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -54,10 +55,29 @@ class Crash(Repeat):
         os._exit(3)
 
 
+class Plain(Repeat):
+    """Tells the paths that it gets."""
+
+    name = "plain"
+
+    def run(self, inputs, outputs):
+        outputs["text"].write_text(f"{inputs['text']} {outputs['text']}")
+        return {"length": 0}
+
+
 @pytest.fixture
 def text(tmp_path):
     (tmp_path / "text").write_text("ab")
     return tmp_path / "text"
+
+
+def test_a_step_has_plain_paths_where_those_of_the_user_are_not(tmp_path):
+    (tmp_path / "a b;$c").mkdir()
+    (tmp_path / "a b;$c" / "te xt").write_text("x")
+    runner = Runner(tmp_path / "a b;$c" / "steps", {"text": tmp_path / "a b;$c" / "te xt"})
+    runner.run(Plain())
+    assert re.fullmatch(r"[\w./-]+ [\w./-]+", runner.paths["plain.text"].read_text())
+    assert len(list((tmp_path / "a b;$c" / "steps").glob("plain.*/out.txt"))) == 1
 
 
 def test_a_chain_runs_once_and_again_when_its_input_changed(tmp_path, text):
