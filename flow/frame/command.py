@@ -56,7 +56,7 @@ def add_arguments(parser: ArgumentParser) -> None:
         "--scene",
         default="motorcycle",
         help="name of a scene (--scene list shows them), an image, or a light field: "
-        "a folder, .npy, .npz, or tiles.png:9 of 9 x 9 views (models/scene/README.md)",
+        "a folder, .npy, .npz, x_eslf.png, or tiles.png:9 of 9 x 9 views (models/scene/README.md)",
     )
     add("--depth", help="depth file for --scene: .npy/.npz in m, or an image (see models/scene/README.md)")
     add_frame_arguments(parser)
@@ -91,8 +91,8 @@ def add_frame_arguments(
     )
     add("--mode", default="edge", help="one of " + ", ".join(MODES))
     add("--threshold", default="10", help="edge mode: |code| below this is left out, 0..127")
-    add("--rows", default=Own("384"), help="pixels, 1..1024")
-    add("--cols", default=Own("384"), help="pixels, 1..1536")
+    add("--rows", default=Own("384"), help="pixels, 1..1024 (default: 384, or of a light field's views)")
+    add("--cols", default=Own("384"), help="pixels, 1..1536 (default: 384, or of a light field's views)")
     add("--types", default="all", help="pixel types: 0x<mask>, numbers 0..23, or groups " + ", ".join(text.TYPE_GROUPS))
     add("--window", default="full", help="tiles to read, inclusive: row0:row1,col0:col1")
     add("--decimation", default="0", help="log2 of the tile step, 0..3")
@@ -176,26 +176,32 @@ def arguments_of(folder: Path) -> dict[str, Any] | None:
         return None
 
 
-def request_of(a: Namespace, sensor: SensorParameters | None = None) -> "FrameRequest":
+def request_of(a: Namespace, sensor: SensorParameters | None = None, sequence: bool = False) -> "FrameRequest":
     """The FrameRequest of `add_frame_arguments`, scene, depth, waves and out. Raises ParameterError.
 
-    sensor: in place of that of the options, their camera included.
+    The sensor has the size of a light field's views where neither rows, cols nor a sensor file are typed.
+    sensor: in place of that of the options, their camera included. sequence: the scene is one, no light field.
     """
     from talbot.models.calibrate import read_calibration
 
-    from .request import request
+    from .request import light_field_of, request
 
-    sensor = sensor or asked_sensor(a)
+    own, sensor = a.sensor is None, sensor or asked_sensor(a)
     typed = {name: value for name, value in vars(a).items() if not isinstance(value, Own)}
     numbers: dict[str, Any] = {
         name: text.integer(name, typed[name], *ends) for name, ends in INTEGERS.items() if name in typed
     }
+    field = None if sequence else light_field_of(a.scene)
+    if field is not None and own and not {"rows", "cols"} & typed.keys():
+        numbers["rows"], numbers["cols"] = field.own_size()
     rows = numbers.get("rows", sensor.array.rows)
     views = None if a.views == "auto" else text.integer("views", a.views, 1, 31, also=" or auto")
     known = read_calibration(typed["calibration"]) if typed.get("calibration") else None
     waves = (0, min(3, rows - 1)) if a.waves == "1" else text.span("waves", a.waves, 0, rows - 1) if a.waves else None
     names = ("scene", "depth", "mode", "phase", "out", "waves_format", "converter")
     plain = {name: typed[name] for name in names if name in typed}
+    if field is not None:
+        plain["scene"] = field
     check_choice("afe", a.afe, ("ideal", "circuit"))
     if a.afe == "circuit":
         if "converter" in typed:

@@ -21,6 +21,7 @@ from .request import FrameRequest
 Values = npt.NDArray[np.floating]
 PUPIL = 7  # points across the pupil at which the estimators take a scene that can be seen from anywhere
 SURE = 0.5  # px per view step: a disparity of a larger standard deviation is none
+SHIFT = 12.5  # px by which disparity moves a point across the pupil, at most: 2.5 a step of 5 views
 HEADROOM = 5.0  # LSB below a full code, for noise and bow of the converters: what is above counts as full
 MOST_VIEWS = 17  # along the pupil, for which the filters of `linear` have 2 GB; they grow with the square
 
@@ -120,9 +121,14 @@ def whole_tiles(result: Readout) -> Part:
     return part
 
 
-def prior_of(result: Readout, **rest: Any) -> FieldPrior:
-    """The prior of a frame: the noise of its sensor in its mean light, its contrast. rest: other of its fields."""
+def prior_of(result: Readout, near: float | None = None, far: float | None = None, **rest: Any) -> FieldPrior:
+    """The prior of a frame: the noise of its sensor in its mean light, its contrast. rest: other of its fields.
+
+    near, far: by default a disparity of `SHIFT` between the views at the pupil's ends, however many are between.
+    """
     asked = result.request
+    reach = SHIFT / result.exposed.scene.views
+    rest |= {"near": reach if near is None else near, "far": -reach if far is None else far}
     timing, read = asked.frame.exposing, result.decoded.read
     light = result.decoded.samples[read].mean() / white_sum(asked.lit, timing)
     noise = float(diode_noise(light, asked.lit, timing, asked.noise))

@@ -1,8 +1,9 @@
 """The parameters of one run, validated before anything is computed."""
 
+import sys
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields, replace
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +24,7 @@ from talbot.models.parameters import (
     Window,
 )
 from talbot.models.plan.exposure import exposed_for, fitting
-from talbot.models.scene import LightField
+from talbot.models.scene import LightField, light_field_file, scenes
 
 from .arguments import named
 
@@ -133,7 +134,37 @@ def request(
     phases = dict(timing or {})
     frame = FrameParameters(window=window(full) if window else full, mask=mask, timing=AmpTiming(**phases), **rest)
     asked = FrameRequest(sensor=sensor, frame=frame, room=RoomParameters(illuminance=lux), **own)
+    if isinstance(asked.scene, LightField):
+        _tell_changes(asked.scene, sensor.array.rows, sensor.array.cols)
     return replace(asked, frame=replace(frame, timing=_timing(asked, exposure, "t_int" in phases)))
+
+
+def light_field_of(scene: str | LightField) -> LightField | None:
+    """The light field that a scene is, read where it is a file's or folder's name; None for another scene.
+
+    Raises ParameterError.
+    """
+    if isinstance(scene, LightField):
+        return scene
+    read = None if scene in scenes else light_field_file.named(scene)
+    return read() if read else None
+
+
+def _tell_changes(field: LightField, rows: int, cols: int) -> None:
+    """Print what of a light field the sensor does not see as it is."""
+    (height, width), told = field.shape, f"talbot: light field {field.name}: "
+    if (height, width) != (rows, cols):
+        step = min(height / rows, width / cols)
+        how = f"enlarged {1 / step:.3g} times" if step < 1 else f"reduced {step:.3g} times" if step > 1 else "cut"
+        _tell(f"{told}{height} x {width} px {how} to the sensor's {rows} x {cols}")
+    if field.grid != (field.views, field.views):
+        _tell(f"{told}of {field.grid[0]} x {field.grid[1]} views the middle {field.views} x {field.views} are taken")
+
+
+@cache
+def _tell(text: str) -> None:
+    """Print a line, once."""
+    print(text, file=sys.stderr, flush=True)
 
 
 def _timing(asked: FrameRequest, exposure: int | None, typed: bool) -> AmpTiming:

@@ -25,8 +25,9 @@ def add_arguments(parser: ArgumentParser) -> None:
 def add_prior_arguments(parser: ArgumentParser) -> None:
     """Options of the disparities that are tried."""
     add = parser.add_argument
-    add("--far", default="-2.5", help="farthest disparity that is tried, -20..20 px per view step")
-    add("--near", default="2.5", help="nearest disparity that is tried, far..20 px per view step")
+    words = "disparity that is tried, {}..20 px per step of the scene's views (default: {}12.5 over their number)"
+    add("--far", help="farthest " + words.format(-20, "-"))
+    add("--near", help="nearest " + words.format("far", ""))
     add("--disparities", default="21", help="how many are tried, 1..500; by mixture those between, too")
 
 
@@ -34,8 +35,8 @@ def prior_asked(options: Namespace) -> "Callable[[GoldenResult], FieldPrior]":
     """From a frame to its prior with the disparities of `add_prior_arguments`. Raises ParameterError."""
     from talbot.flow.frame.light_field import prior_of
 
-    far = text.real("far", options.far, -20, 20)
-    near = text.real("near", options.near, far, 20)
+    far = None if options.far is None else text.real("far", options.far, -20, 20)
+    near = None if options.near is None else text.real("near", options.near, -20 if far is None else far, 20)
     disparities = text.integer("disparities", options.disparities, 1, 500)
     return partial(prior_of, far=far, near=near, disparities=disparities)
 

@@ -29,7 +29,7 @@ def run(options: Namespace) -> int:
 
     typed = typed_of(options, _with_scene)
     options.out = options.out or results_of("sequence") / name_of(typed)
-    asked = request_of(options)
+    asked = request_of(options, sequence=True)
     clip, before = open_clip(options.scene, Sampling.of(asked.sensor)), arguments_of(asked.folder)
     from .outputs import run  # Matplotlib and more: not before the arguments are right
 

@@ -102,4 +102,6 @@ def _read(path: Path) -> tuple[npt.NDArray[np.generic], str]:
         raise ParameterError(f"depth = {str(path)!r}: must be a NumPy array file ({type(error).__name__})") from None
     if values.dtype.kind not in "iuf":
         raise ParameterError(f"depth type = {values.dtype}: must be real numbers")
+    if kind == "depth" and values.dtype.kind != "f":
+        raise ParameterError(f"depth type = {values.dtype}: must be floating point, in m; of integers the unit is open")
     return values, kind

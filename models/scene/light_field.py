@@ -1,10 +1,10 @@
 """A light field as data: an array [v, u, y, x] or [v, u, y, x, rgb] of one's own, seen by the sensor as a scene.
 
 View (v, u) is the scene from the pupil's row v, from above, and column u, from the left: the sensor has as many views
-as the light field.
+as the light field; of a grid that is no square, the middle square.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -20,7 +20,24 @@ from .scene import RADIANCE_MAX, Scene, check_values
 
 CODES = ("uint8", "uint16")
 FLOATS = ("float16", "float32", "float64")
+SIZE_MAX = 1024, 1536  # rows and columns of a sensor
 REC709 = np.array([0.2126, 0.7152, 0.0722])
+
+
+def native(values: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    """Change an array to this machine's byte order.
+
+    Parameters
+    ----------
+    values : array
+        Of either order.
+
+    Returns
+    -------
+    array
+        ``values`` itself where it has it.
+    """
+    return values if values.dtype.isnative else values.astype(values.dtype.newbyteorder("="))
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,9 +46,9 @@ class LightField:
 
     Attributes
     ----------
-    values : array (views, views, height, width) or (views, views, height, width, 3)
-        l[v, u, y, x], gray or RGB, 1..31 views each way. uint8 and uint16 are sRGB codes; float16 to float64 is linear
-        radiance, -16..16, 1 = diffuse white: an estimate may be below 0, a sensor sees 0 there.
+    values : array (rows of views, views a row, height, width) or (rows of views, views a row, height, width, 3)
+        l[v, u, y, x], gray or RGB, 1..31 views each way, of either byte order. uint8 and uint16 are sRGB codes; float16
+        to float64 is linear radiance, -16..16, 1 = diffuse white: an estimate may be below 0, a sensor sees 0 there.
     disparity : array (height, width) or (views, views, height, width), or None
         Of the middle view, or of what every view shows, in pixels per view step, -1e4..1e4, positive towards the
         camera: view (v, u) shows at (y, x) what the middle one shows at (y + dv d, x + du d). Without it no image is
@@ -68,18 +85,20 @@ class LightField:
         if np.ma.is_masked(self.values):
             raise ParameterError("light field = a masked array: must have a value everywhere")
         try:
-            values = np.asarray(self.values)
+            values = native(np.asarray(self.values))
         except ValueError as error:  # a list of lists of other lengths
             raise ParameterError(f"light field = no array: must be (views, views, height, width) ({error})") from None
         object.__setattr__(self, "values", values)
         shape = values.shape
-        if len(shape) not in (4, 5) or 0 in shape or shape[0] != shape[1] or shape[4:] not in ((), (3,)):
+        if len(shape) not in (4, 5) or 0 in shape or shape[4:] not in ((), (3,)):
             raise ParameterError(
                 f"light field = array of shape {shape}: must be (views, views, height, width), or with 3 colours behind"
             )
-        check_int("views", len(values), 1, 31)
+        for count in shape[:2]:
+            check_int("views", count, 1, 31)
         if values.dtype.name not in CODES + FLOATS:
-            raise ParameterError(f"light field = {values.dtype} array: must be of {', '.join(CODES + FLOATS)}")
+            codes = "; integers are codes, .astype('uint8') where white is 255" if values.dtype.kind in "iu" else ""
+            raise ParameterError(f"light field = {values.dtype} array: must be of {', '.join(CODES + FLOATS)}{codes}")
         if values.dtype.name in FLOATS:
             check_values("light field", values, -RADIANCE_MAX, RADIANCE_MAX)
         one, every = shape[2:4], shape[:4]
@@ -91,7 +110,7 @@ class LightField:
             ("stokes", -RADIANCE_MAX, RADIANCE_MAX, ((2, *every), (2, *one))),
         ):
             if getattr(self, name) is not None:
-                own = np.asarray(getattr(self, name))
+                own = native(np.asarray(getattr(self, name)))
                 object.__setattr__(self, name, own)
                 if own.shape not in shapes or own.dtype.kind not in "biuf":
                     must = " or ".join(map(str, shapes))
@@ -101,9 +120,14 @@ class LightField:
             raise ParameterError(f"echo = shares of shape {self.echo.share.shape}: must be {every}")
 
     @property
+    def grid(self) -> tuple[int, int]:
+        """Rows of views, and views in a row."""
+        return self.values.shape[0], self.values.shape[1]
+
+    @property
     def views(self) -> int:
-        """Views along each axis."""
-        return len(self.values)
+        """Views along each axis; of a grid that is no square, of its middle square."""
+        return min(self.grid)
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -142,6 +166,8 @@ class LightField:
         Scene
             Of the array's size: the largest centred part with its proportions. Light below 0 is 0, which a note says.
         """
+        if self.grid != (self.views, self.views):
+            return self.squared().scene(sampling)
         size, middle = sampling.shape, self.views // 2
         box = resample.centre_box(*self.shape, *size)
         same = self.shape == size
@@ -186,6 +212,40 @@ class LightField:
             return ()
         share = float((self.values < 0).mean())
         return (f"{self.name}: {100 * share:.2g} % of the light field is below 0, to {least:.3g}: clipped to 0",)
+
+    def squared(self) -> "LightField":
+        """The middle square of the views.
+
+        Returns
+        -------
+        LightField
+            Of `views` x `views`; its middle view is the grid's.
+        """
+        top, left = (count // 2 - self.views // 2 for count in self.grid)
+        part = np.s_[..., top : top + self.views, left : left + self.views, :, :]
+        stokes, disparity = self.stokes, self.disparity
+        return LightField(
+            self.values[top : top + self.views, left : left + self.views],
+            disparity if disparity is None or disparity.ndim == 2 else disparity[part],
+            self.name,
+            stokes if stokes is None or stokes.ndim == 3 else stokes[part],
+            self.depth,
+            self.specular,
+            self.behind,
+            None if self.echo is None else replace(self.echo, share=self.echo.share[part]),
+        )
+
+    def own_size(self) -> tuple[int, int]:
+        """Rows and columns of a sensor that sees it pixel for pixel.
+
+        Returns
+        -------
+        (int, int)
+            Those of a view; reduced to `SIZE_MAX` with its proportions where it is larger.
+        """
+        factor = max(1.0, *(own / most for own, most in zip(self.shape, SIZE_MAX, strict=True)))
+        rows, cols = (max(1, int(own / factor)) for own in self.shape)
+        return rows, cols
 
     def cropped(self, rows: int, cols: int) -> "LightField":
         """The middle of the picture.

@@ -5,9 +5,11 @@ x.npz               `light_field` (or the only array), and perhaps `disparity`, 
                     `behind`, and `direct` with `late` and `bins` (an `Echo`'s)
 folder              input_Cam000.png ... row by row, as HCI's 4D data set [Honauer2016], and gt_disp_lowres.pfm if it is
                     there; or out_RR_CC_*.png, as the Stanford archive [Vaish2008]
-image, with views   one picture of views x views tiles of one size
+image, with views   one picture of views x views (or rows x columns of) tiles of one size
+*_eslf.png          a lenslet image of a Lytro camera: 14 x 14 views interleaved, pixel by pixel [Raj2016]
 
-Pictures are 8-bit or 16-bit sRGB codes, or floating-point TIFF (linear). Folders are written as HCI's.
+Pictures are 8-bit or 16-bit sRGB codes, or floating-point TIFF (linear). Folders are written as HCI's, those of a
+grid that is no square with Stanford's names.
 """
 
 import math
@@ -37,7 +39,9 @@ MAPS = "disparity", "depth", "specular", "behind"  # in an .npz, of the middle v
 STOKES = "s1", "s2"
 ECHO = "direct", "late", "bins"  # shares, histograms, middle of the first bin and distance of the bins
 BYTES_MAX = 1 << 32  # of a light field in memory
-TILED = re.compile(rf"(.+\.(?:{PICTURES})):(.*)", re.I | re.S)  # on the command line: tiles.png:9
+TILED = re.compile(rf"(.+\.(?:{PICTURES})):(.*)", re.I | re.S)  # on the command line: tiles.png:9, tiles.png:3x5
+LENSLETS = re.compile(rf".*_eslf\.(?:{PICTURES})", re.I)  # names of lenslet images
+LENSLET = 14  # their views along each axis
 
 
 def named(scene: str) -> Callable[[], LightField] | None:
@@ -46,7 +50,7 @@ def named(scene: str) -> Callable[[], LightField] | None:
     Parameters
     ----------
     scene : str
-        A folder, a .npy or .npz file, or image:views.
+        A folder, a .npy or .npz file, a lenslet image, image:views, or image:rows x columns of views.
 
     Returns
     -------
@@ -55,9 +59,11 @@ def named(scene: str) -> Callable[[], LightField] | None:
     """
     tiled = TILED.fullmatch(scene)
     if tiled and not Path(scene).exists():
-        views = int(tiled[2]) if tiled[2].isdecimal() and len(tiled[2]) < 9 else tiled[2]
-        return lambda: read_light_field(tiled[1], views)
-    return (lambda: read_light_field(scene)) if Path(scene).is_dir() or scene.lower().endswith(SUFFIXES) else None
+        counts = [int(count) if count.isdecimal() and len(count) < 9 else count for count in tiled[2].split("x")]
+        return lambda: read_light_field(tiled[1], tuple(counts) if len(counts) == 2 else tiled[2] and counts[0])
+    lenslets = LENSLETS.fullmatch(scene) and Path(scene).is_file()
+    whole = lenslets or Path(scene).is_dir() or scene.lower().endswith(SUFFIXES)
+    return (lambda: read_light_field(scene)) if whole else None
 
 
 def read_light_field(path: str | Path, views: Any = None) -> LightField:
@@ -67,8 +73,9 @@ def read_light_field(path: str | Path, views: Any = None) -> LightField:
     ----------
     path : path
         As the head of this file lists.
-    views : int, optional
-        Views along each axis, 1..31; of one tiled image alone, which must have it.
+    views : int or (int, int), optional
+        Views along each axis, or rows of views and views in a row, 1..31; of one image alone: tiles must have it,
+        lenslet images have 14.
 
     Returns
     -------
@@ -88,13 +95,22 @@ def read_light_field(path: str | Path, views: Any = None) -> LightField:
         return _folder(path)
     if numpy:
         return _numpy(path)
+    lenslets = LENSLETS.fullmatch(path.name)
+    views = LENSLET if lenslets and views is None else views
     picture = read_picture(path)
-    check_int("views", views, 1, 31)
-    views = int(views or 1)
-    height, width = picture.shape[:2]
-    if height % views or width % views:
-        raise ParameterError(f"views = {views}: must divide the image's height and width, {height} x {width}")
-    tiles = picture.reshape(views, height // views, views, width // views, *picture.shape[2:])
+    grid = tuple(views) if isinstance(views, tuple | list) else (views, views)
+    for count in grid:
+        check_int("views", count, 1, 31)
+    if len(grid) != 2:
+        raise ParameterError(f"views = {views!r}: must be an integer, or rows and columns of views")
+    (down, across), (height, width), rest = map(int, grid), picture.shape[:2], picture.shape[2:]
+    if height % down or width % across:
+        said = str(down) if down == across else f"{down} x {across}"
+        raise ParameterError(f"views = {said}: must divide the image's height and width, {height} x {width}")
+    if lenslets:
+        values = picture.reshape(height // down, down, width // across, across, *rest)
+        return LightField(values.transpose(1, 3, 0, 2, *range(4, values.ndim)), name=path.stem)
+    tiles = picture.reshape(down, height // down, across, width // across, *rest)
     return LightField(tiles.swapaxes(1, 2), name=path.stem)
 
 
@@ -155,8 +171,10 @@ def write_light_field(light_field: LightField, path: str | Path, white: float = 
     else:
         codes = _codes(values, white)
         path.mkdir(exist_ok=True)
-        for i, view in enumerate(codes.reshape(-1, *codes.shape[2:])):
-            Image.fromarray(view).save(path / f"input_Cam{i:03d}.png")
+        for i, place in enumerate(np.ndindex(light_field.grid)):
+            square = len(set(light_field.grid)) == 1
+            name = f"input_Cam{i:03d}.png" if square else "out_{:02d}_{:02d}.png".format(*place)
+            Image.fromarray(codes[place]).save(path / name)
         if light_field.disparity is not None:
             Image.fromarray(light_field.disparity.astype(np.float32)).save(path / DISPARITY)
         return _clipped(values, white)
@@ -195,21 +213,25 @@ def _folder(path: Path) -> LightField:
             f"scene = {str(path)!r}: must be an image file, not a folder without input_Cam000.png ... "
             "or out_00_00*.png ...; talbot sequence takes a folder of frames"
         )
-    side = math.isqrt(count)
-    check_int("views", side, 1, 31)
-    files = {divmod(i, side): entry for i, entry in hci.items()} if hci else stanford
-    gaps = [place for place in np.ndindex(side, side) if place not in files]
-    if gaps or count != side * side:
+    if hci:
+        side = math.isqrt(count)
+        grid, files = (side, side), {divmod(i, side): entry for i, entry in hci.items()}
+    else:
+        grid, files = (max(v for v, _ in stanford) + 1, max(u for _, u in stanford) + 1), stanford
+    for side in grid:
+        check_int("views", side, 1, 31)
+    gaps = [place for place in np.ndindex(grid) if place not in files]
+    if gaps or count != grid[0] * grid[1]:
         missing = f"row {gaps[0][0]}, column {gaps[0][1]}" if gaps else "another row"
         raise ParameterError(
-            f"scene = {str(path)!r}: has {count} views: must be a square of them; "
-            f"of {side} x {side} is missing {missing}"
+            f"scene = {str(path)!r}: has {count} views: must be a {'square' if hci else 'rectangle'} of them; "
+            f"of {grid[0]} x {grid[1]} is missing {missing}"
         )
     first = read_picture(files[0, 0])
     if first.nbytes * count > BYTES_MAX:
         raise ParameterError(f"scene = {str(path)!r}: {first.nbytes * count} bytes: must be at most {BYTES_MAX}")
-    values = np.empty((side, side, *first.shape), first.dtype)
-    for place in np.ndindex(side, side):
+    values = np.empty((*grid, *first.shape), first.dtype)
+    for place in np.ndindex(grid):
         view = first if place == (0, 0) else read_picture(files[place])
         if view.shape != first.shape or view.dtype != first.dtype:
             raise ParameterError(
@@ -248,7 +270,9 @@ def _numpy(path: Path) -> LightField:
     except (OSError, ValueError, EOFError, KeyError, zipfile.BadZipFile, SyntaxError) as error:
         if isinstance(error, ParameterError):
             raise
-        raise ParameterError(f"scene = {str(path)!r}: must be a NumPy array file ({type(error).__name__})") from None
+        objects = "Object arrays" in str(error) or "Python objects" in str(error)
+        why = "has objects: must have numbers" if objects else f"must be a NumPy array file ({type(error).__name__})"
+        raise ParameterError(f"scene = {str(path)!r}: {why}") from None
     return LightField(values, name=path.stem, **more)
 
 

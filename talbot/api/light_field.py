@@ -74,13 +74,13 @@ class LightField:
         return field
 
     @classmethod
-    def load(cls, path: str | Path, views: int | None = None) -> Self:
+    def load(cls, path: str | Path, views: int | tuple[int, int] | None = None) -> Self:
         """The light field in a file or folder.
 
         path: x.npy; x.npz with the array `light_field` (or one alone) and perhaps `disparity`, as lightfield.npz of
         `make lightfield`; a folder with input_Cam000.png ... (HCI 4D; gt_disp_lowres.pfm is its disparity) or
-        out_RR_CC_*.png (Stanford); or one image of tiles. views: along each axis, 1..31, of such an image alone.
-        Raises ParameterError.
+        out_RR_CC_*.png (Stanford); or one image of tiles, or of lenslets (x_eslf.png). views: along each axis, or
+        rows and columns of them, 1..31, of an image alone. Raises ParameterError.
         """
         return cls.of(scene.read_light_field(path, views))
 

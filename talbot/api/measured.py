@@ -18,7 +18,7 @@ from talbot.models.scene import RADIANCE_MAX
 from .image import Image, embedded, png, table
 from .light_field import LightField
 
-NEAR, FAR, DISPARITIES = 2.5, -2.5, 21  # px per view step: as `make depth` tries them
+DISPARITIES = 21  # as `make depth` tries them
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,11 +88,13 @@ def polarization_of(result: GoldenResult, highlight: float) -> PolarizationResul
     return PolarizationResult(frame.summary, psi, degree, light, confidence, frame.tags)
 
 
-def depth_of(result: GoldenResult, near: float, far: float, disparities: int) -> DepthResult:
+def depth_of(result: GoldenResult, near: float | None, far: float | None, disparities: int) -> DepthResult:
     """Depth of the scene of a frame in tof mode, from six read-outs of its four exposures. Raises ParameterError."""
     _check_mode(result, "tof", "depth")
-    check_real("far", far, -20, 20)
-    check_real("near", near, far, 20)
+    if far is not None:
+        check_real("far", far, -20, 20)
+    if near is not None:
+        check_real("near", near, -20 if far is None else far, 20)
     check_int("disparities", disparities, 1, 500)
     request = result.request
     frames = capture(request, golden=not isinstance(result, FrameResult))

@@ -18,7 +18,7 @@ from talbot.models.scene import RADIANCE_MAX
 
 from .image import Image, embedded, png, table
 from .light_field import LightField
-from .measured import DISPARITIES, FAR, NEAR, DepthResult, PolarizationResult, depth_of, polarization_of
+from .measured import DISPARITIES, DepthResult, PolarizationResult, depth_of, polarization_of
 from .run_file import read_run, write_run
 
 WHAT = {"edge": ("image", "edges"), "image": ("image",), "raw": ("image", "edges", "light_field", "disparity")} | {
@@ -157,7 +157,7 @@ class Run:
         """
         return polarization_of(self.result, highlight)
 
-    def depth(self, near: float = NEAR, far: float = FAR, disparities: int = DISPARITIES) -> DepthResult:
+    def depth(self, near: float | None = None, far: float | None = None, disparities: int = DISPARITIES) -> DepthResult:
         """Depth in m at every pixel of a frame in tof mode, its whole turns found by the light field; as `make depth`.
 
         The exposure of the frame is read out six times, by the chip's Verilog where the run was: seconds to minutes.

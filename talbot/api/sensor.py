@@ -2,7 +2,7 @@
 
 import inspect
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any, Self, TypedDict, Unpack
 
@@ -12,7 +12,7 @@ from talbot.base.files import check_file, write
 from talbot.base.progress import Steps, line
 from talbot.flow.frame import job
 from talbot.flow.frame.chip_picture import chip_svg
-from talbot.flow.frame.request import CONVERTERS, FrameRequest, request
+from talbot.flow.frame.request import CONVERTERS, FrameRequest, light_field_of, request
 from talbot.flow.sequence.job import results as sequence_results
 from talbot.models.parameters import (
     STANDARD,
@@ -95,6 +95,7 @@ class Sensor:
     """
 
     parameters: SensorParameters
+    sized: bool = field(default=True, compare=False)  # rows or cols are given: not a light field's
 
     def __init__(
         self,
@@ -105,6 +106,7 @@ class Sensor:
         **parameters: Any,
     ) -> None:
         object.__setattr__(self, "parameters", _changed(STANDARD, tile, converter, pixel, parameters))
+        object.__setattr__(self, "sized", bool({"rows", "cols"} & parameters.keys()))
 
     @classmethod
     def of(cls, parameters: SensorParameters) -> Self:
@@ -137,14 +139,17 @@ class Sensor:
         **parameters: Any,
     ) -> "Sensor":
         """This sensor with other values of some parameters. Raises ParameterError."""
-        return Sensor.of(_changed(self.parameters, tile, converter, pixel, parameters))
+        sensor = Sensor.of(_changed(self.parameters, tile, converter, pixel, parameters))
+        object.__setattr__(sensor, "sized", self.sized or bool({"rows", "cols"} & parameters.keys()))
+        return sensor
 
     def simulate(self, scene: Seen = "motorcycle", mode: str = "edge", **settings: Unpack[Settings]) -> Run:
         """One frame through the chip's Verilog, as `make sim` does it, and through the golden model beside it.
 
         The simulator is compiled for each size of array and tile, then kept.
 
-        scene: one of `talbot.scenes`, an image, a light field's file or folder, or a light field or its array.
+        scene: one of `talbot.scenes`, an image, a light field's file or folder, or a light field or its array, whose
+        size a sensor without rows and cols of its own takes.
         mode: edge (differences), image (sums), raw (both diodes) or tof (four taps). settings:
 
         seed: of every random draw, 0..2**32-1 (1). noise: times the physical noise, 0..100 (1).
@@ -189,7 +194,7 @@ class Sensor:
         """
         if (depth := settings.get("depth")) is not None:
             raise ParameterError(f"depth = {str(depth)!r}: must be left out, a sequence has no depth file")
-        asked = self._request("sequence", mode, settings)
+        asked = self._request("flat", mode, settings)
         clip = open_clip(frames, Sampling.of(self.parameters))
         asked = replace(asked, scene=clip.name)
         return (Run(shown.result) for shown in sequence_results(asked, clip, job.Clock()))
@@ -211,9 +216,11 @@ class Sensor:
             cut = Window(*window)
             given["window"] = lambda full: cut
         if isinstance(scene, str | Path):
-            seen = str(scene)
+            seen = light_field_of(str(scene)) or str(scene)
         else:
             seen = (scene if isinstance(scene, LightField) else LightField(scene)).data
+        if not isinstance(seen, str) and not self.sized:
+            given["rows"], given["cols"] = seen.own_size()
         return request(sensor=self.parameters, scene=seen, mode=mode, **given)
 
     def __repr__(self) -> str:

@@ -129,7 +129,7 @@ def test_views_that_are_equal_are_one():
 @pytest.mark.parametrize(
     "values, more, said",
     [
-        (np.zeros((3, 4, 5, 6)), {}, r"array of shape \(3, 4, 5, 6\): must be \(views, views, height, width\)"),
+        (np.zeros((3, 4, 5, 6, 3, 1)), {}, r"array of shape .*: must be \(views, views, height, width\)"),
         (np.zeros((3, 3, 5)), {}, "array of shape"),
         (np.zeros((3, 3, 5, 6, 4)), {}, "array of shape"),
         (np.zeros((0, 0, 5, 6)), {}, "array of shape"),
