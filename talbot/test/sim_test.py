@@ -148,6 +148,9 @@ def test_a_decoded_file(edges, tmp_path, capsys):
     assert "bad rows: " in capsys.readouterr().out
 
 
+FILE = "<file>"  # for this one, whose path may have a space
+
+
 @pytest.mark.parametrize(
     "words, said",
     [
@@ -178,35 +181,35 @@ def test_a_decoded_file(edges, tmp_path, capsys):
         ("sim --scene nowhere.png", "scene = 'nowhere.png': no such file"),
         ("sim --scene nothing", "scene = 'nothing': must be an image file or one of motorcycle"),
         ("sim --scene edge:x", "scene edge degrees = 'x': must be a number in [-360, 360]"),
-        (f"sim --scene {__file__}", "must be an image file of a form that is read"),
+        (f"sim --scene {FILE}", "must be an image file of a form that is read"),
         ("sim --depth d.npy", "depth = 'd.npy': must be left out"),
-        (f"sim --out {__file__}", "must be a folder"),
+        (f"sim --out {FILE}", "must be a folder"),
         ("cells --workers 0", "--workers: '0': must be 1 or more, or -1"),
-        (f"formats --codes {__file__}", "must be an npz file with codes and ideal"),
+        (f"formats --codes {FILE}", "must be an npz file with codes and ideal"),
         ("sensor --out /proc/sensor.toml", "out = '/proc': must be a folder that you may write"),
-        *((f"{name} --out {__file__}", "must be a folder") for name in ("layout", "cells", "formats", "coverage")),
-        (f"stability --out {__file__}", "must be a folder"),
+        *((f"{name} --out {FILE}", "must be a folder") for name in ("layout", "cells", "formats", "coverage")),
+        (f"stability --out {FILE}", "must be a folder"),
         ("stability --json /tmp", "json = '/tmp': must be a file, not a folder"),
         ("sim --nothing", "unrecognized arguments: --nothing"),
         ("sim --scnee coins", "unrecognized arguments: --scnee coins; did you mean --scene?"),
         ("simm", "invalid choice: 'simm'; did you mean sim?"),
         ("sim --sce coins", "unrecognized arguments: --sce coins"),
         ("sim --scene /tmp", "scene = '/tmp': must be an image file, not a folder"),
-        (f"sim --scene {__file__}", "of a form that is read, PNG, JPEG, TIFF, "),
+        (f"sim --scene {FILE}", "of a form that is read, PNG, JPEG, TIFF, "),
         ("sim --window -1:3,0:2", "window rows = '-1': must be an integer in 0..95"),
         ("sim --focus -1e9", "focus = '-1e9': must be a number in [0, inf]"),
-        (f"sim --scene {'x' * 5000}", "x...: File name too long"),
+        (f"sim --scene {'x' * 5000}", "x...: File name too long" if sys.version_info < (3, 14) else "x...': must be "),
         (f"sim --rows={'7,' * 2500}", "...': must be an integer in 1..1024"),
         (f"sim --{'x' * 5000}", "..."),
         ("draw", "invalid choice: 'draw'"),
         *(
-            (f"{name} --document {__file__}", "must have the comments")
+            (f"{name} --document {FILE}", "must have the comments")
             for name in ("sizes", "formats", "openroad-fit", "openroad-compare", "cells-compact-area")
         ),
         ("stuck-at --sample=-1", "sample = -1: must be an integer in 0..1000000000"),
         ("decode nowhere.bin", "file = nowhere.bin: No such file"),
-        ("decode /dev/zero", "file = /dev/zero: must be a file, not a device"),
-        (f"decode {__file__}", "a frame starts with b'TLBT'"),
+        ("decode /dev/zero --out build/zero.npz", "file = /dev/zero: must be a file, not a device"),
+        (f"decode {FILE}", "a frame starts with b'TLBT'"),
         ("tradeoff --only speed", "only = 'speed': must be one of divider"),
         ("sim --rows 9 --cols 9 --window 3:3,0:0", "window rows = '3': must be an integer in 0..2"),
     ],
@@ -214,7 +217,7 @@ def test_a_decoded_file(edges, tmp_path, capsys):
 def test_refused_in_one_line(words, said, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     try:
-        status = main(words.split())
+        status = main([word.replace(FILE, __file__) for word in words.split()])
     except SystemExit as stop:
         status = stop.code
     out, err = capsys.readouterr()
