@@ -5,6 +5,7 @@ of `STANDARD`; of a tile without types it is the first of the thesis's.
 """
 
 import difflib
+import inspect
 import math
 import re
 import tomllib
@@ -153,8 +154,9 @@ def nearest(key: str, known: Iterable[str], cutoff: float = 0.7) -> str:
 def _meanings(kind: type[Any]) -> dict[str, str]:
     """Field to its text in the class's docstring, in one line."""
     texts: dict[str, str] = {}
-    section = re.split(r"\n *Attributes\n *-+\n|\n\n *\w+\n *-+\n", kind.__doc__ or "")[1:2]
-    for names, text in re.findall(r"^ {4}(\w[\w, ]*) : .*\n((?: {8}.*\n?)+)", section[0] if section else "", re.M):
+    text = inspect.cleandoc(kind.__doc__ or "")  # Python 3.13 does so itself
+    section = re.split(r"\nAttributes\n-+\n|\n\n\w+\n-+\n", text)[1:2]
+    for names, text in re.findall(r"^(\w[\w, ]*) : .*\n((?: {4}.*\n?)+)", section[0] if section else "", re.M):
         texts |= dict.fromkeys(names.split(", "), " ".join(text.split()).removesuffix("."))
     return {item.name: texts.get(item.name, "") for item in fields(kind)}
 
