@@ -17,7 +17,7 @@ from talbot.base.kept import kept
 from talbot.base.progress import say
 from talbot.flow.simulate.frame import Waves
 from talbot.models.afe import FrontEnd, trim_codes, trim_gain
-from talbot.models.capture import Exposure, Region, Views, captured, exposed, integrate, moving_currents
+from talbot.models.capture import Exposure, Region, Views, captured, exposed, instants, integrate, moving_currents
 from talbot.models.capture import expose as expose_pair
 from talbot.models.chip import front_end_of, golden_frame
 from talbot.models.digital.stream import decode_stream
@@ -59,7 +59,9 @@ def see(request: FrameRequest) -> tuple[Scene, Plan]:
     scene = load(request.scene, Sampling.of(request.sensor), request.depth)
     for note in scene.notes:
         say(note)
-    return scene, plan(scene, request.sensor, request.frame)
+    todo = plan(scene, request.sensor, request.frame)
+    instants(scene, request.sensor, todo, request.frame.exposing)  # too fast, or moving in time of flight: refused here
+    return scene, todo
 
 
 def expose(

@@ -2,7 +2,7 @@
 
 from .expose import Exposure, expose
 from .frame import capture, currents, exposed
-from .moving import moving_currents
+from .moving import instants, moving_currents
 from .operator import CaptureOperator
 from .pupil import Region, cells, integrate
 from .ratio import capture_ratio
@@ -21,6 +21,7 @@ __all__ = [
     "currents",
     "expose",
     "exposed",
+    "instants",
     "integrate",
     "moving_currents",
 ]

@@ -18,6 +18,42 @@ STEP = 0.5  # px that the scene moves at most between two instants
 INSTANTS_MAX = 2000
 
 
+def instants(scene: Scene, sensor: SensorParameters, plan: Plan, timing: AmpTiming) -> int:
+    """Count the instants of a frame between which a scene moves half a pixel at most.
+
+    Parameters
+    ----------
+    scene : Scene
+        Of the sensor's size.
+    sensor : SensorParameters
+        The sensor.
+    plan : Plan
+        Plan of the same scene and sensor.
+    timing : AmpTiming
+        Of the frame as it exposes.
+
+    Returns
+    -------
+    int
+        1 to INSTANTS_MAX; 1 for a scene that does not move.
+
+    Raises
+    ------
+    ParameterError
+        For time of flight of a scene that moves, and for one that moves too far in a frame.
+    """
+    if scene.moved is None or not scene.speed:
+        return 1
+    if plan.taps != 1:
+        raise ParameterError("scene = moving: must not move in time of flight")
+    starts, span = windows(timing, int(plan.read.any(1).sum()))
+    travel = scene.speed * (starts[-1] + span) / sensor.chip.f_clk
+    count = int(np.ceil(max(travel / STEP, 1)))
+    if count > INSTANTS_MAX:
+        raise ParameterError(f"scene travel = {travel:.0f} px a frame: must be at most {INSTANTS_MAX * STEP:.0f}")
+    return count
+
+
 def moving_currents(
     scene: Scene,
     sensor: SensorParameters,
@@ -54,19 +90,14 @@ def moving_currents(
     Raises
     ------
     ParameterError
-        As `currents`; for time of flight of a scene that moves, and for one that moves too far in a frame.
+        As `currents` and `instants`.
     """
     if scene.moved is None or not scene.speed:
         return currents(scene, sensor, plan, dtype, regions)
-    if plan.taps != 1:
-        raise ParameterError("scene = moving: must not move in time of flight")
+    count = instants(scene, sensor, plan, timing)
     read = np.flatnonzero(plan.read.any(1))
     starts, span = windows(timing, read.size)
     begin, total = np.array(starts), starts[-1] + span
-    count = int(np.ceil(max(scene.speed * total / sensor.chip.f_clk / STEP, 1)))
-    if count > INSTANTS_MAX:
-        travel = scene.speed * total / sensor.chip.f_clk
-        raise ParameterError(f"scene travel = {travel:.0f} px a frame: must be at most {INSTANTS_MAX * STEP:.0f}")
     out = np.zeros((1, 2, *scene.shape), dtype)
     ends = np.linspace(0, total, count + 1)
     for first, last in zip(ends[:-1], ends[1:]):
