@@ -161,7 +161,7 @@ class LightField:
     def all_in_focus(self, disparity: npt.ArrayLike | None = None) -> Image:
         """The picture with every pixel refocused at its own disparity, Image (height, width): all of it is sharp.
 
-        disparity: (height, width), px per view step; by default `disparity()`. Less noise than the middle view has.
+        disparity: (height, width), px per view step; by default `disparity()`.
         Raises ParameterError.
         """
         chosen = np.asarray(self.disparity() if disparity is None else disparity, float)
