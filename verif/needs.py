@@ -108,7 +108,7 @@ def librelane() -> bool:
 
 NEEDS = {
     "iverilog": Need(programs("iverilog", "vvp"), TOOLS),
-    "yosys": Need(lambda: bool(shutil.which("yosys")), TOOLS),  # a native one: the wheel's sees no file in /tmp
+    "yosys": Need(lambda: bool(shutil.which("yosys")), TOOLS),  # the system's: newer ones name cells otherwise
     "yosys-smtbmc": Need(programs("yosys-smtbmc"), "make setup"),
     "boolector": Need(programs("boolector"), "make setup"),
     "yosys-abc": Need(programs("yosys-abc"), TOOLS),

