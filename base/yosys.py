@@ -22,7 +22,7 @@ def main() -> int:
     if options.q:  # before the library opens its log
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
     # Of an extra
-    from pyosys import libyosys  # pyright: ignore[reportMissingImports]
+    from pyosys import libyosys  # pyright: ignore[reportMissingImports, reportAttributeAccessIssue]
 
     if options.V:
         print(libyosys.yosys_maybe_version())
