@@ -44,6 +44,7 @@ def each(
     Within a step of `Steps` they move its bar. Items that take no time share a line. total: how many, where ``items``
     does not tell.
     """
+    work_begins()
     total = len(items) if isinstance(items, Sized) else total
     began, of, within = monotonic(), total or "-", Steps.current
     with tqdm(total=total, desc=title, file=sys.stderr, disable=True if within else None, **terminal()) as bar:
@@ -73,6 +74,7 @@ class Steps:
     current: "Steps | None" = None  # whose body runs
 
     def __init__(self, names: Iterable[str], lines: bool = False) -> None:
+        work_begins()
         self.names, self.lines = list(names), lines
         self.number, self.text, self.end = 0, "", Event()
         self.bar = tqdm(total=len(self.names), file=sys.stderr, leave=False, disable=None, **terminal())

@@ -55,7 +55,7 @@ def run(options: Namespace) -> int:
     camera = camera_of(options, sensor.optics.camera)
     sensor = replace(sensor, optics=replace(sensor.optics, camera=camera), electrical=replace(e, **given))
     asked, typed = reading.asked(options, "depth", add_arguments, sensor)
-    prior, code = prior_asked(options), _code(options, asked.sensor.electrical)
+    prior, code = prior_asked(options, asked), _code(options, asked.sensor.electrical)
 
     def found(note: reading.Note) -> Depth:
         frames = capture(asked, note, options.golden, code, options.direct)

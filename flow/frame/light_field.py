@@ -121,14 +121,21 @@ def whole_tiles(result: Readout) -> Part:
     return part
 
 
+def tried(views: int, near: float | None, far: float | None) -> dict[str, float]:
+    """Ends of the disparities that are tried in a scene of ``views``, near and far. Raises ParameterError."""
+    reach = SHIFT / views
+    near, far = reach if near is None else near, -reach if far is None else far
+    FieldPrior(near=near, far=far)
+    return {"near": near, "far": far}
+
+
 def prior_of(result: Readout, near: float | None = None, far: float | None = None, **rest: Any) -> FieldPrior:
     """The prior of a frame: the noise of its sensor in its mean light, its contrast. rest: other of its fields.
 
     near, far: by default a disparity of `SHIFT` between the views at the pupil's ends, however many are between.
     """
     asked = result.request
-    reach = SHIFT / result.exposed.scene.views
-    rest |= {"near": reach if near is None else near, "far": -reach if far is None else far}
+    rest |= tried(result.exposed.scene.views, near, far)
     timing, read = asked.frame.exposing, result.decoded.read
     light = result.decoded.samples[read].mean() / white_sum(asked.lit, timing)
     noise = float(diode_noise(light, asked.lit, timing, asked.noise))

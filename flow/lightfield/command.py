@@ -10,6 +10,7 @@ from talbot.flow.frame import arguments as text
 from talbot.flow.frame import reading
 
 if TYPE_CHECKING:
+    from talbot.flow.frame.request import FrameRequest
     from talbot.flow.frame.result import GoldenResult
     from talbot.models.reconstruct.bayes import FieldPrior
 
@@ -31,13 +32,16 @@ def add_prior_arguments(parser: ArgumentParser) -> None:
     add("--disparities", default="21", help="how many are tried, 1..500; by mixture those between, too")
 
 
-def prior_asked(options: Namespace) -> "Callable[[GoldenResult], FieldPrior]":
-    """From a frame to its prior with the disparities of `add_prior_arguments`. Raises ParameterError."""
-    from talbot.flow.frame.light_field import prior_of
+def prior_asked(options: Namespace, request: "FrameRequest") -> "Callable[[GoldenResult], FieldPrior]":
+    """From the frame of ``request`` to its prior, of the disparities that the options name. Raises ParameterError."""
+    from talbot.flow.frame.light_field import prior_of, tried
+    from talbot.models.scene import Sampling, load
 
     far = None if options.far is None else text.real("far", options.far, -20, 20)
     near = None if options.near is None else text.real("near", options.near, -20 if far is None else far, 20)
     disparities = text.integer("disparities", options.disparities, 1, 500)
+    if (near is None) != (far is None):  # the other is the scene's
+        tried(load(request.scene, Sampling.of(request.sensor), request.depth).views, near, far)
     return partial(prior_of, far=far, near=near, disparities=disparities)
 
 
@@ -49,7 +53,7 @@ def run(options: Namespace) -> int:
     from . import page  # Matplotlib: not before it is needed
 
     asked, typed = reading.asked(options, "lightfield", add_arguments)
-    prior = prior_asked(options)
+    prior = prior_asked(options, asked)
 
     def found(note: reading.Note) -> Fields:
         result = reading.frame_of(asked, note, options.golden)

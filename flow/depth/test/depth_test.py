@@ -88,7 +88,7 @@ def test_a_depth_beyond_the_disparities_that_are_tried_is_not_sure(tmp_path):
         ("--f-mod=1", "f_mod = '1': must be a number in \\[100000.0, 1000000000.0\\]"),
         ("--contrast=2", "contrast = '2'"),
         ("--ambient=-1", "ambient = '-1'"),
-        ("--far=3", "near = '2.5'"),
+        ("--far=13", "near = 2.5: must be in \\[13, 20\\]"),
     ],
 )
 def test_bad_arguments(word, message, capsys, tmp_path):

@@ -110,7 +110,7 @@ def test_parallax_of_the_truth_is_one():
 @pytest.mark.parametrize(
     "word, message",
     [
-        ("--far=3", "near = '2.5': must be a number in \\[3.0, 20\\]"),
+        ("--far=3", "near = 2.5: must be in \\[3, 20\\], far and more"),
         ("--disparities=0", "disparities = '0': must be an integer in 1..500"),
         ("--scene=nothing", "scene = 'nothing'"),
         ("--method=linear,best", "method = 'best': must be one of all, direct, linear"),
