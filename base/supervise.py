@@ -150,8 +150,12 @@ def _wait_for_files(folder: Path) -> None:
 
 
 def _kill_all(patience: float) -> None:
-    """Kill all processes below this one, those that do not end by themselves in ``patience`` s."""
-    end = time.monotonic() + patience
+    """Kill all processes below this one, those that do not end by themselves in ``patience`` s.
+
+    All are stopped first: who runs on while the others are listed may start one more, which is lost where its parent
+    ends (`_below`).
+    """
+    end, stopped = time.monotonic() + patience, set[int]()
     while True:
         while _reaped():
             pass
@@ -159,9 +163,11 @@ def _kill_all(patience: float) -> None:
         if not below:
             return
         if time.monotonic() >= end:
-            for process in below:
+            running = set(below) - stopped
+            for process in running or below:
                 with contextlib.suppress(ProcessLookupError):
-                    os.kill(process, signal.SIGKILL)
+                    os.kill(process, signal.SIGSTOP if running else signal.SIGKILL)
+            stopped |= running
         time.sleep(0.002)
 
 

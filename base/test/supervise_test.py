@@ -125,9 +125,10 @@ def test_nothing_is_left_where_there_is_no_proc(tmp_path, tmp_path_factory, monk
     process, mark = program(tmp_path, name)
     process.stdout.readline()
     process.terminate()
-    _, err = process.communicate(timeout=200)
-    assert process.returncode == 143 and err.count("\n") == 1 and "nothing was left half-written" in err
+    process.wait(timeout=200)
     assert not running(mark) and not list(tmp_path.iterdir())
+    _, err = process.communicate(timeout=200)  # which would wait for tools that are left
+    assert process.returncode == 143 and err.count("\n") == 1 and "nothing was left half-written" in err
 
 
 def test_files_that_appear_together_do(tmp_path):
