@@ -39,7 +39,7 @@ BOUND = 2.0  # times the brightest light of the scene, of every ray
 
 def inverse_cases() -> list[Case]:
     """Run all cases of the inverse side."""
-    return [*_fields(), *_polarizations(), *_depths(), *_calibrations()]
+    return [case for group in GROUPS.values() for case in group()]
 
 
 def _scene(slope: float = 1.0) -> Floats:
@@ -217,3 +217,7 @@ def _calibrations() -> list[Case]:
         said = str(error)
     out.append(Case("calibration without light", "an error that names the field", said, said.startswith("diodes = ")))
     return out
+
+
+# By what they are of: functions that run their cases
+GROUPS = {"light fields": _fields, "polarization": _polarizations, "depths": _depths, "calibrations": _calibrations}
