@@ -34,7 +34,7 @@ def writes():
         time.sleep(20)
 def publishes():
     with staged(out / "out") as part:
-        for i in range(20000):
+        for i in range(8000):
             (part / str(i)).touch()
         print("begun", flush=True)
     time.sleep(20)
@@ -139,9 +139,9 @@ def test_files_that_appear_together_do(tmp_path):
     seen = len(os.listdir(tmp_path / "out"))
     process.terminate()
     process.communicate(timeout=200)
-    assert process.returncode == 143 and seen < 20000
+    assert process.returncode == 143 and seen < 8000
     names = os.listdir(tmp_path / "out")
-    assert len(names) == 20000 and not any(name.startswith(PART) for name in names) and not running(mark)
+    assert len(names) == 8000 and not any(name.startswith(PART) for name in names) and not running(mark)
 
 
 def test_a_program_that_crashes_is_cleared_away_too(tmp_path):

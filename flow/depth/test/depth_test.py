@@ -64,7 +64,7 @@ def test_behind_leaves_the_rim_of_a_ball_has_no_depth(tmp_path):
 
 
 def test_a_wall_behind_a_fence(tmp_path):
-    s = measured(tmp_path, "--scene=fence", "--rows=72", "--cols=72", "--f-mod=25e6", "--golden")
+    s = measured(tmp_path, "--scene=fence", "--rows=48", "--cols=48", "--f-mod=25e6", "--golden")
     past = s["behind"]
     assert past["occluded"] == pytest.approx(0.5, abs=0.05) and past["seen"] > 0.9
     assert past["rms_m"] < 0.03 * past["range_m"] < past["rms_constant_m"] < past["rms_all_rays_m"]

@@ -27,7 +27,7 @@ from talbot.models.reconstruct.methods import METHODS, applicable
 def done(tmp_path_factory):
     """Folder and summary of a small frame through the Verilog."""
     folder = tmp_path_factory.mktemp("lightfield")
-    words = ["lightfield", "--scene=tilted", "--rows=40", "--cols=48", "--disparities=9", f"--out={folder}"]
+    words = ["lightfield", "--scene=tilted", "--rows=40", "--cols=48", "--disparities=7", f"--out={folder}"]
     assert main(words) == 0
     return folder, json.loads((folder / "summary.json").read_text())
 

@@ -14,13 +14,14 @@ from talbot.flow.pixel.search import Plan, bandwidth, search
 from talbot.flow.pixel.types import AZIMUTHS, DEGREES, RAY_DEGREES, measured, name_of, solve_around, solve_one, stacked
 from talbot.models.parameters import PixelType, TileParameters
 from talbot.pixels.designs import DESIGNS
-from talbot.pixels.optics.design import REACHED, measure
+from talbot.pixels.optics.design import REACHED, WAVELENGTHS_UM, measure
 from talbot.pixels.tabled import rows
 from talbot.platforms.optics import optical_stack
 
 
-def test_a_search_finds_what_reaches_a_beta(tmp_path):
-    """Of two metals of SKY130, with coarse solutions kept: the second search solves nothing."""
+def test_a_search_finds_what_reaches_a_beta(tmp_path, monkeypatch):
+    """Of two metals of SKY130 and few wavelengths, with coarse solutions kept: the second search solves nothing."""
+    monkeypatch.setattr("talbot.flow.pixel.search.WAVELENGTHS_UM", WAVELENGTHS_UM[::2])
     stack = optical_stack("sky130")
     two = replace(stack, metals=tuple(m for m in stack.metals if m.name in ("met2", "met3")))
     said = []

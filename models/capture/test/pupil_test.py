@@ -173,8 +173,8 @@ def test_the_error_is_that_of_all_pixels_read(tmp_path, window):
 @pytest.mark.parametrize(
     "name, size",
     [
-        ("motorcycle", (192, 288)),
         ("rocket", (384, 576)),
+        pytest.param("motorcycle", (192, 288), marks=pytest.mark.slow),
         pytest.param("motorcycle", (384, 576), marks=pytest.mark.slow),
     ],
 )
