@@ -133,6 +133,7 @@ def contained(html: str) -> Markup:
     heading = ""
 
     def box(match: re.Match[str]) -> str:
+        """Return the matched element in its box; note the heading."""
         nonlocal heading
         if match["heading"] is not None:
             heading = Markup(match["heading"]).striptags()

@@ -195,7 +195,7 @@ def _heights(name: str, designs: dict[float, Design], measured: dict[float, Meas
 
 
 def pareto(found: Found) -> Figure:
-    """m against quantum efficiency: designs by bandwidth, those chosen of each kind, and the front of these two."""
+    """Modulation m against quantum efficiency: designs by bandwidth, the chosen ones of each kind, and their front."""
     ends: dict[str, list[tuple[float, float, str]]] = {}
     for low, high, name in (
         (0, NARROW_NM, f"below {NARROW_NM} nm"),
