@@ -100,7 +100,7 @@ def test_an_ideal_converter_is_all_zero():
 @pytest.fixture(scope="module")
 def echo():
     """A small frame in time of flight."""
-    return simulate_frame(request(24, 36, mode="tof"))
+    return simulate_frame(request(13, 50, lanes=4, mode="tof"))
 
 
 def test_the_chart_of_energy_has_every_part_of_the_total_once(echo):
@@ -123,7 +123,7 @@ def test_every_assumption_has_one_name_and_a_unit(echo):
 def test_light_of_time_of_flight_stands_beside_the_limit_for_an_eye(echo):
     s = summarize(echo)
     source, lens = s["light_source"], echo.request.sensor.optics.camera
-    field = (10e-6 / lens.magnification) ** 2 * 24 * 36  # m^2
+    field = (10e-6 / lens.magnification) ** 2 * 13 * 50  # m^2
     assert source["power_w"] * 0.3 / field == pytest.approx(source["irradiance"])
     assert s["energy_uj"]["light"] == pytest.approx(1e6 * source["power_w"] * source["lit_s"])
     assert source["mean_irradiance"] <= source["irradiance"]

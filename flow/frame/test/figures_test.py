@@ -48,7 +48,7 @@ def test_the_bench_measures_the_chip_that_takes_the_frame():
 
 def test_an_image_is_judged_where_it_is_read():
     """What lies outside of a window changes no figure of quality"""
-    asked = request(24, 36, mode="image", window=lambda full: Window(1, 3, 1, 4), noise=0.0)
+    asked = request(40, 48, mode="image", window=lambda full: Window(1, 3, 1, 4), noise=0.0)
     result = simulate_frame(asked)
     figures = image_quality(result)
     scene = result.exposed.scene
@@ -63,7 +63,7 @@ def test_depth_of_a_scene_before_the_lens(phase):
     errors = {}
     for scale, focus in ((1.0, 3.0), (14.5, 0.207)):
         asked = request(
-            48, 48, scene="tilted", mode="tof", phase=phase, camera=CameraParameters(scale=scale, focus=focus)
+            40, 48, scene="tilted", mode="tof", phase=phase, camera=CameraParameters(scale=scale, focus=focus)
         )
         errors[scale] = depth_quality(simulate_frame(asked))
     near, far = errors[14.5], errors[1.0]
@@ -134,7 +134,7 @@ def test_codecs_keep_to_their_bytes_and_gain_with_them(codec):
 
 def test_a_codec_that_is_not_installed_is_said(monkeypatch):
     monkeypatch.setitem(sys.modules, "imagecodecs", None)
-    figures = image_quality(simulate_frame(request(48, 48, mode="image")))
+    figures = image_quality(simulate_frame(request(40, 48, mode="image")))
     assert figures["image_psnr_jpeg_db"] is not None and figures["image_psnr_jpegxl_db"] is None
     assert figures["image_ssim_jpegxl"] is None and "'talbot[codecs]'" in figures["image_jpegxl_absent"]
     assert f"of JPEG XL not compared ({figures['image_jpegxl_absent']})" in against(figures)

@@ -1,5 +1,7 @@
 """Whole frames: the chip's Verilog against the golden chip, byte for byte, in every mode, at odd sizes."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -45,16 +47,17 @@ def asked_of(size, **options):
 MODE_CASES = [*((mode, False) for mode in MODES), ("tof", True)]
 
 
-@pytest.fixture(scope="module")
-def programs():
-    return {name: hardware.program(asked_of(name).sensor) for name in SIZES}
+@cache
+def program_of(size):
+    """The compiled bench of a size, when a test wants it: workers that share the tests compile at the same time."""
+    return hardware.program(asked_of(size).sensor)
 
 
 @pytest.mark.parametrize("mode, phase", MODE_CASES)
 @pytest.mark.parametrize("size", SIZES)
-def test_every_mode_at_odd_sizes(programs, size, mode, phase):
+def test_every_mode_at_odd_sizes(size, mode, phase):
     asked = asked_of(size, mode=mode, phase=phase)
-    check(programs[size], asked, front_end_of(asked.sensor, [7] * 24), exposure(asked.sensor, 1))
+    check(program_of(size), asked, front_end_of(asked.sensor, [7] * 24), exposure(asked.sensor, 1))
 
 
 @settings(max_examples=30, deadline=None)
@@ -69,9 +72,7 @@ def test_every_mode_at_odd_sizes(programs, size, mode, phase):
     stall=st.integers(0, 240),
     seed=st.integers(0, 99),
 )
-def test_windows_masks_and_back_pressure(
-    programs, data, mode, threshold, decimation, types, overlap, lead, stall, seed
-):
+def test_windows_masks_and_back_pressure(data, mode, threshold, decimation, types, overlap, lead, stall, seed):
     row0, row1 = sorted(data.draw(st.tuples(st.integers(0, 2), st.integers(0, 2))))
     col0, col1 = sorted(data.draw(st.tuples(st.integers(0, 7), st.integers(0, 7))))
     asked = asked_of(
@@ -86,7 +87,7 @@ def test_windows_masks_and_back_pressure(
         exposure=lead,
     )
     front_end = front_end_of(asked.sensor, np.random.default_rng(seed).integers(-512, 512, 24))
-    check(programs["odd"], asked, front_end, exposure(asked.sensor, seed), stall)
+    check(program_of("odd"), asked, front_end, exposure(asked.sensor, seed), stall)
 
 
 ROUGH = ConverterParameters(inl=2, dnl=0.5, offset=3, noise=1.5, ktc=1, unit_mismatch=0.05, seed=5)
@@ -94,20 +95,20 @@ ROUGH = ConverterParameters(inl=2, dnl=0.5, offset=3, noise=1.5, ktc=1, unit_mis
 
 @pytest.mark.parametrize("converter", [ROUGH, circuit_converter()], ids=["rough", "circuit"])
 @pytest.mark.parametrize("mode", MODES)
-def test_imperfect_converters(programs, mode, converter):
+def test_imperfect_converters(mode, converter):
     asked = asked_of("odd", mode=mode, threshold=9)
     sensor = SensorParameters(array=asked.sensor.array, chip=asked.sensor.chip, converter=converter)
     front_end = front_end_of(sensor, [0] * 24)
     assert front_end.converter is not None
     samples = exposure(sensor, 3)
     golden = golden_frame(samples, sensor, asked.frame, front_end)
-    assert hardware.simulate(programs["odd"], sensor, asked.frame, samples, front_end).stream == golden.stream
+    assert hardware.simulate(program_of("odd"), sensor, asked.frame, samples, front_end).stream == golden.stream
 
 
 @pytest.mark.needs("iverilog")
-def test_icarus_sends_the_same_bytes(programs, tmp_path):
+def test_icarus_sends_the_same_bytes(tmp_path):
     asked = asked_of("odd", threshold=9, exposure=5)
     front_end, samples = front_end_of(asked.sensor, [7] * 24), exposure(asked.sensor, 2)
     program = icarus_program(Build.of(asked.sensor), tmp_path)
     chip = check(program, asked, front_end, samples)
-    assert chip.status["cycles"] == check(programs["odd"], asked, front_end, samples).status["cycles"]
+    assert chip.status["cycles"] == check(program_of("odd"), asked, front_end, samples).status["cycles"]
