@@ -131,7 +131,8 @@ def test_a_bad_folder_is_one_line(tmp_path, capsys):
     assert capsys.readouterr().err.count("\n") == 1
 
 
-def test_the_gallery_moves(tmp_path):
+def test_the_gallery_moves(tmp_path, monkeypatch):
+    monkeypatch.setattr(gallery, "FRAMES", 4)
     gallery.clip(tmp_path / "clip.webp")
     shutil.copyfile(tmp_path / "clip.webp", tmp_path / "edges.webp")
     still = "data:image/webp;base64,AAAA"
