@@ -33,17 +33,16 @@ class ToolTimeout(ToolError):
 def located(name: str) -> str | None:
     """Return the path of a tool: on PATH, or a Python package's beside this Python; None where neither is.
 
-    Packages: pyosys for yosys (`base.yosys`) and yosys-abc, YoWASP's for the others.
+    Packages: pyosys for yosys (`base.yosys`), YoWASP's for the others.
     """
     if program := shutil.which(name):
         return program
     folder = Path(sys.executable).parent
     wheel = folder / f"yowasp-{name}"
-    if name in ("yosys", "yosys-abc"):
-        package = find_spec("pyosys")
-        if not package or not package.origin:
+    if name == "yosys":
+        if not find_spec("pyosys"):
             return None
-        wheel = folder / "talbot-yosys" if name == "yosys" else Path(package.origin).with_name(name)
+        wheel = folder / "talbot-yosys"
     return str(wheel) if wheel.exists() else None
 
 

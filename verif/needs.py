@@ -123,6 +123,7 @@ NEEDS = {
     "tclsh": Need(programs("tclsh"), TOOLS),
     "layout": Need(packages(*PACKAGES["layout"]), LAYOUT, imported=True),
     "coriolis": Need(packages(*PACKAGES["coriolis"]), LAYOUT, offered=sys.version_info < (3, 13), imported=True),
+    "python-coriolis": Need(lambda: sys.version_info < (3, 13), "make PYTHON=python3.12", offered=False),
     "librelane": Need(librelane, "make librelane"),
     "torch": Need(packages("torch"), "pip install 'talbot[nn]'", offered=False, imported=True),
     "mitsuba": Need(packages("mitsuba", "mitransient"), "make render", offered=False, imported=True),
