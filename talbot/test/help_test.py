@@ -1,11 +1,13 @@
 """The help of every command, as a stranger reads it."""
 
+import re
 from argparse import _SubParsersAction
 
 import pytest
 
 from talbot.base.paths import ROOT
-from talbot.commands import COMMANDS, parser
+from talbot.commands import parser
+from talbot.front import COMMANDS, GROUPS, WIDTH
 
 
 def help_of(name, monkeypatch):
@@ -13,6 +15,13 @@ def help_of(name, monkeypatch):
     monkeypatch.setenv("COLUMNS", "100000")
     (commands,) = (action for action in parser(name)._actions if isinstance(action, _SubParsersAction))
     return commands.choices[name].format_help()
+
+
+def test_every_command_has_a_line_in_its_group():
+    text = parser().format_help().partition("\noptions:")[0]
+    shown = dict(re.findall(r"(?m)^  ([a-z-]+) +(.*)$", text))
+    assert shown == {name: command.summary for name, command in COMMANDS.items()}
+    assert re.findall(r"(?m)^(\w.*):$", text) == [*GROUPS] and max(map(len, text.splitlines())) <= WIDTH
 
 
 @pytest.mark.parametrize("name", COMMANDS)

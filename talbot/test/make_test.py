@@ -3,6 +3,7 @@
 import os
 import re
 import subprocess
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,6 +12,7 @@ import pytest
 from talbot.base.command import Parser, add_command
 from talbot.base.paths import ROOT
 from talbot.commands import command, main
+from talbot.front import COMMANDS, WIDTH
 from talbot.make import arguments, variables
 
 READY = [
@@ -91,7 +93,7 @@ def asked(monkeypatch, capsys, tmp_path):
         pytest.param("layout DESIGN=none UNTIMED=1", "DESIGN = 'none': must be one of ", marks=CORIOLIS),
         pytest.param("layout DESIGN=amp_ctrl UTILISATION=0.8", "did you mean UTILIZATION?", marks=CORIOLIS),
         ("layout BACKEND=openroad UNTIMED=1", "UNTIMED = '1': must be a variable of make layout: "),
-        pytest.param("layout-pareto LIBERTY=a.lib", "liberty = a.lib: no such file", marks=CORIOLIS),
+        pytest.param("layout-sweep WHAT=pareto LIBERTY=a.lib", "liberty = a.lib: no such file", marks=CORIOLIS),
         ("handoff DESING=amp_ctrl", "did you mean DESIGN?"),
         ("handoff DESIGN=none", "'none': must be one of "),
         ("verilog TOP=Nothing", "invalid choice: 'Nothing'"),
@@ -201,13 +203,31 @@ def test_a_users_own_settings_do_not_reach_the_program(tmp_path):
     assert first.startswith("talbot: error: rows = 'x'")
 
 
+def targets():
+    """The targets of the Makefile and their recipes, by make's own reading of it."""
+    known = {name for name in make("-pRrq", "help").stdout.split() if re.fullmatch("[a-z-]+:", name)}
+    (phony,) = re.findall(r"(?m)^\.PHONY: (.*)$", make("-pRrq", "help").stdout)
+    return {name for name in phony.split() if f"{name}:" in known} - {"have-tools", "have-coriolis", "help"}
+
+
+def test_the_help_lists_every_target_and_every_command():
+    text = make("help", PYTHON=sys.executable).stdout
+    assert text == make(PYTHON=sys.executable).stdout and max(map(len, text.splitlines())) <= WIDTH
+    shown = re.findall(r"(?m)^  ([a-z-]+) ", text)
+    assert sorted(shown) == sorted(targets())
+    assert {*COMMANDS} - {*shown} == {name for name, command in COMMANDS.items() if not command.target}
+
+
 def test_every_target_passes_its_variables_or_knows_that_it_has_none():
-    text = (ROOT / "Makefile").read_text()
-    (plain,) = re.findall(r"^PLAIN := (.*)$", text, re.M)
-    rules = re.findall(r"^([a-z-]+):.*##.*\n((?:\t.*\n)*)", text, re.M)
-    with_command = {name for name, recipe in rules if "$(talbot) " in recipe}
-    assert {name for name, _ in rules} == with_command | ({*plain.split()} - {"have-tools"})
-    assert not with_command & {*plain.split()}
+    (plain,) = re.findall(r"^PLAIN := (.*)$", (ROOT / "Makefile").read_text(), re.M)
+    with_command = {name for name in targets() if f"{name} PYTHON" in make("-n", name).stdout}
+    assert with_command == {name for name, command in COMMANDS.items() if command.target}
+    assert targets() == with_command | {*plain.split()} - {"help", "%-help", "have-tools"}
+
+
+def test_the_options_of_a_command():
+    shown = make("sim-help")
+    assert shown.returncode == 0 and "--scene SCENE" in shown.stdout
 
 
 @pytest.mark.parametrize(

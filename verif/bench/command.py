@@ -99,7 +99,7 @@ def crosses(seed: int, store: Path, workers: int) -> BlockResults:
 
 
 def add_arguments(parser: ArgumentParser) -> None:
-    """Options of `talbot bench`."""
+    """Options of `talbot cocotb`."""
     parser.add_argument("--block", action="append", choices=DESIGNS, help="may be repeated; default: all")
     parser.add_argument("--simulator", action="append", choices=SIMULATORS, help="default: both")
     parser.add_argument("--seed", type=int, default=SEED, help="of the tests' random numbers")
@@ -126,5 +126,5 @@ def run(options: Namespace) -> int:
         print(f"{block}: {here.tests.passed} passed, {here.tests.failed} failed, seed {options.seed}")
         for point in here.open_points:
             print(point, file=sys.stderr)
-            print(f"again: talbot bench --block {block} --seed {options.seed}", file=sys.stderr)
+            print(f"again: talbot cocotb --block {block} --seed {options.seed}", file=sys.stderr)
     return int(any(here.open_points for here in by_block.values()))

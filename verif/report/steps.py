@@ -27,7 +27,7 @@ class Step:
 STEPS = (
     Step("formal", "formal", "proofs and their broken twins"),
     Step("suite", "suite", "tests of every block at every level", True),
-    Step("bench", "bench", "cocotb benches in Icarus and Verilator", True),
+    Step("bench", "cocotb", "cocotb benches in Icarus and Verilator", True),
     Step("coverage", "coverage", "coverage and test plans"),
     Step("mutation", "mutate", "mutants"),
     Step("stuck_at", "stuck-at", "stuck-at faults by a test at the pins"),

@@ -70,7 +70,7 @@ def test_a_lost_stall_fails_and_is_named(monkeypatch, tmp_path, capsys):
         assert main(command, arguments) == 1
         found = capsys.readouterr().err
         assert "PhasePath in icarus: any_taps_at_any_pace: " in found
-        assert "again: talbot bench --block PhasePath --seed 3" in found
+        assert "again: talbot cocotb --block PhasePath --seed 3" in found
     assert not list((tmp_path / "bench").iterdir())
 
 
