@@ -82,7 +82,9 @@ GROUPS: dict[str, dict[str, Command]] = {
         "bench": Command("benchmarks of speed and memory"),
         "locks": Command("renew requirements/*.lock from pyproject.toml"),
         "librelane": Command("LibreLane itself on our designs"),
-        "learn": Command("learn the light field's dictionary or network again", "flow.lightfield.learn.command"),
+        "learn": Command(
+            "learn the dictionary or the two-branch network of light fields", "flow.lightfield.learn.command"
+        ),
         "formats": Command("stream formats and general coders compared", "flow.formats.command"),
         "layout-sweep": Command("layouts of divider variants or placer efforts, plotted", "flow.layout.sweep.command"),
         "layout-compare": Command("finished layouts in one table", "flow.layout.report.compare"),

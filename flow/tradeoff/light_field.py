@@ -47,7 +47,6 @@ SETTINGS: Sequence[tuple[str, Mapping[str, Any]]] = (
     ("mixture", {}),
     ("mixture", {"disparities": 11}),
     ("mixture", {"plain": 0.0}),
-    ("network", {}),
     ("autoencoder", {}),
     ("convolutions", {}),
     ("two_branch", {}),

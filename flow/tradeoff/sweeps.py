@@ -14,7 +14,7 @@ from talbot.base.page import TABLES, Section, render
 from talbot.base.paths import BUILD
 from talbot.base.table import read_csv, write_csv
 from talbot.models.parameters import check_choice
-from talbot.models.reconstruct import branches, network, sparse
+from talbot.models.reconstruct import branches, sparse
 
 from . import (
     depth,
@@ -72,7 +72,7 @@ SWEEPS: dict[str, Sweep] = {
 
 def measured(name: str, quick: bool = False, workers: int = 1, store: Path = STORE) -> list[dict[str, Any]]:
     """The rows of a sweep, each kept in ``store``: a run that was killed goes on from there."""
-    call, learned = SWEEPS[name].measure, (branches.WEIGHTS, network.WEIGHTS, sparse.DICTIONARY)
+    call, learned = SWEEPS[name].measure, (branches.WEIGHTS, sparse.DICTIONARY)
     points = enumerate(SWEEPS[name].points(quick))
     return run([Job(f"{name}_{n}", call, (p,), (repr(p), *learned)) for n, p in points], store, name, workers)
 

@@ -18,10 +18,11 @@ from numpy.lib.stride_tricks import sliding_window_view
 from talbot.models.parameters import ParameterError, SensorParameters
 from talbot.models.pixel.weights import view_weights
 
-from .network import NOISE, STRIP, VIEWS
-
 Floats = npt.NDArray[np.floating]
 WEIGHTS = Path(__file__).with_name("branches.npz")
+VIEWS = 5  # of the light fields that it was trained with
+NOISE = 0.006, 0.2  # of white: range of the training; the input for the noise is 0 at the lower end
+STRIP = 16  # rows of a matrix product: the copy of the pixels' neighbours stays in the cache
 PATCH = 9  # px, as the thesis's
 DENSE = (2 * PATCH**2 + 1, 200, 100, 200, 100, 200, PATCH**2 * VIEWS**2)  # widths; the thesis has 4050 and 2025
 AFTER = (1, 8, 1)  # channels of the convolutions behind
@@ -57,7 +58,7 @@ class Seen:
     sensor : SensorParameters
         Tile and optics.
     noise : float
-        Standard deviation of a sample, 1 = white; outside of `network.NOISE` its nearer end.
+        Standard deviation of a sample, 1 = white; outside of `NOISE` its nearer end.
 
     Attributes
     ----------

@@ -4,7 +4,6 @@ direct      Sigma^-1 Phi' i [Jayasuriya2017, Sec. 3.3.2]
 linear      `bayes`: one filter for windows of like disparities; the default
 sparse      `sparse`
 mixture     `bayes`: each pixel by its own disparity
-network     `network`
 two_branch  `branches`; autoencoder and convolutions are its branches, each alone [Jayasuriya2017, Sec. 3.7]
 """
 
@@ -22,7 +21,6 @@ from talbot.models.parameters import ParameterError, SensorParameters
 from .bayes import FieldEstimator
 from .branches import KINDS, Branches
 from .light_field import light_field_estimate
-from .network import VIEWS, Network
 from .sparse import Coding, Dictionary, SparseEstimator
 
 Values = npt.NDArray[np.floating]
@@ -63,12 +61,6 @@ def _mixture(estimator: FieldEstimator, operator: CaptureOperator, pair: Values)
     return Found(*estimator.mixture(pair))
 
 
-def _network(estimator: FieldEstimator, operator: CaptureOperator, pair: Values) -> Found:
-    mixture = estimator.mixture(pair)
-    field = Network.shipped().correct(estimator.linear(pair), mixture, estimator.prior.noise)
-    return Found(*mixture._replace(light_field=field))
-
-
 def _branches(kind: str, estimator: FieldEstimator, operator: CaptureOperator, pair: Values) -> Found:
     return Found(Branches.shipped().estimate(pair, operator.sensor, estimator.prior.noise, kind))
 
@@ -95,13 +87,11 @@ METHODS: Mapping[str, Method] = {
     "sparse": _sparse,
     **{name: partial(_branches, kind) for name, kind in BRANCHES.items()},
     "mixture": _mixture,
-    "network": _network,
 }
 PREPARE: Mapping[str, Callable[[FieldEstimator, CaptureOperator], object]] = {
     "linear": lambda estimator, operator: estimator.prepare(),
     "sparse": _coder,
     "mixture": lambda estimator, operator: estimator.prepare(mixture=True),
-    "network": lambda estimator, operator: (estimator.prepare(mixture=True), Network.shipped()),
     **dict.fromkeys(BRANCHES, lambda estimator, operator: Branches.shipped()),
 }
 ANY_TYPES = "direct", "linear", "mixture"  # know what to do where some pixel types are not read
@@ -122,7 +112,7 @@ def applicable(operator: CaptureOperator) -> list[str]:
     """
     views, _, *shape = operator.shape
     _, own, _, *patch = Dictionary.shipped().atoms.shape
-    fits = {"network": views == VIEWS, "sparse": views == own and min(np.subtract(shape, patch)) >= 0}
+    fits = {"sparse": views == own and min(np.subtract(shape, patch)) >= 0}
     fits |= dict.fromkeys(BRANCHES, Branches.shipped().knows(operator.sensor))
     return [name for name in METHODS if fits.get(name, True)]
 

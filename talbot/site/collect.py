@@ -18,13 +18,13 @@ LINK = re.compile(r"(?ms)^```.*?^```|^ {4}.*?$|(?<!!)\[((?:[^\[\]]|\[[^\]]*\])*)
 PARTS = {
     "Tutorial": ("docs/tutorial",),
     "Reference": ("api", "docs/chip", "architecture", "docs/registers", "docs/stream", "docs/host", "docs/figures"),
-    "Results": ("gallery",),
+    "Results": ("gallery", "docs/results"),
     "Models": ("models",),
     "The chip, block by block": ("rtl",),
     "Analog and cells": ("pixels", "cells", "platforms"),
     "Flows": ("flow", "base"),
     "Verification": ("verif",),
-    "Project": ("CONTRIBUTING", "CHANGELOG", "docs/bibliography"),
+    "Project": ("CONTRIBUTING", "CHANGELOG", "docs/bibliography", "docs/decisions"),
 }
 
 

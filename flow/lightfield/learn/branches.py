@@ -1,6 +1,9 @@
 """Training of the two-branch network of `models.reconstruct.branches` by PyTorch: each branch alone, then together."""
 
+import importlib
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
 from time import perf_counter
 from typing import Any
 
@@ -9,13 +12,11 @@ import numpy.typing as npt
 from numpy.lib.stride_tricks import sliding_window_view
 
 from talbot.base.progress import each
+from talbot.base.tools import ToolError
 from talbot.models.pixel.weights import view_weights
-from talbot.models.reconstruct.branches import AFTER, CHANNELS, DENSE, KINDS, PATCH, Seen, shapes
-from talbot.models.reconstruct.network import NOISE, VIEWS
+from talbot.models.reconstruct.branches import AFTER, CHANNELS, DENSE, KINDS, NOISE, PATCH, VIEWS, Seen, shapes
 
-from . import training
 from .samples import Shot, noisy, sensor, shots
-from .training import torch
 
 PATCHES = 6  # of a crop, along each side
 RATE = 2e-3  # of Adam, falling to 0 as a cosine
@@ -24,6 +25,14 @@ SHARES = {"dense": 0.9, "autoencoder": 0.03, "convolutions": 0.05, "both": 0.02}
 BATCH = {"dense": 16, "autoencoder": 4, "convolutions": 4, "both": 4}
 LAST = 0.1  # scale of the last layers at the start: the sum image as it is
 Weights = Mapping[str, Any]
+
+
+def torch() -> Any:
+    """Return the module of PyTorch, which only this training needs. Raises ToolError where it is not installed."""
+    try:
+        return importlib.import_module("torch")
+    except ImportError as error:
+        raise ToolError("torch is not installed (needed for training): pip install 'talbot[nn]'") from error
 
 
 def dense(weights: Weights, patches: Any) -> Any:
@@ -106,8 +115,12 @@ def crop(shot: Shot, kind: str, rng: np.random.Generator) -> tuple[npt.NDArray[n
     return patches, seen.back.astype(np.float32), wanted
 
 
-class Learned(training.Learned):
+@dataclass(frozen=True, eq=False)
+class Learned:
     """Weights of the network and of each branch alone, and how they were learned."""
+
+    weights: dict[str, npt.NDArray[np.float16]]
+    summary: dict[str, Any]
 
     @property
     def text(self) -> str:
@@ -115,6 +128,10 @@ class Learned(training.Learned):
         s = self.summary
         errors = ", ".join(f"{kind} {s['error'][kind]:.3f}" for kind in KINDS)
         return f"{s['parameters']} weights in {s['seconds']:.0f} s; of the sum image's mean square error: {errors}"
+
+    def save(self, path: Path) -> None:
+        """Write the weights."""
+        np.savez_compressed(path, **self.weights)  # type: ignore[arg-type]
 
 
 def learned(seeds: Sequence[int], steps: int, seed: int) -> Learned:

@@ -1,4 +1,4 @@
-"""Scenes to learn from, dead leaves and planes of them, and what the Bayes estimators make of their samples."""
+"""Scenes to learn from: dead leaves and planes of them, and both diodes' samples of each."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
@@ -8,11 +8,9 @@ import numpy as np
 import numpy.typing as npt
 from scipy.ndimage import gaussian_filter, map_coordinates, spline_filter
 
-from talbot.base.progress import each
 from talbot.models.capture import CaptureOperator, cells
 from talbot.models.parameters import ArrayParameters, SensorParameters
-from talbot.models.reconstruct.bayes import FieldEstimator, FieldPrior
-from talbot.models.reconstruct.network import NOISE, VIEWS, features
+from talbot.models.reconstruct.branches import VIEWS
 from talbot.models.scene import Sampling, load
 
 Values = npt.NDArray[np.floating]
@@ -22,12 +20,6 @@ AROUND = 12  # px around a plane, that other views show
 BLUR, BLURS = 0.7, (0.5, 2.5)  # px: of leaves, and the range of a plane's
 DEEP, SLOPE = 1.6, 1.2  # px per view step: greatest disparity of a plane's middle, and of its ends less that
 PUPIL = 11  # points across the pupil at which a scene is captured
-ESTIMATED = 7  # at which the estimators take it, as `make lightfield` does
-NOISES = (
-    NOISE[0],
-    0.05,
-    NOISE[1],
-)  # of white: physical noise, to the most that the thesis tries [Jayasuriya2017, Sec. 3.7]
 
 
 class Shot(NamedTuple):
@@ -105,33 +97,3 @@ def _plane(seed: int, size: int) -> View:
 def noisy(pair: Values, noise: float, rng: np.random.Generator) -> Values:
     """The samples with Gaussian noise of this standard deviation."""
     return pair + noise * rng.standard_normal(pair.shape)
-
-
-class Lesson(NamedTuple):
-    """Inputs of the network and what it is to add, one scene at one noise.
-
-    Attributes
-    ----------
-    seen : float16 (54, rows, cols)
-        As of `models.reconstruct.network.features`.
-    wanted : float16 (25, rows, cols)
-        True light field less the mixture's.
-    """
-
-    seen: npt.NDArray[np.float16]
-    wanted: npt.NDArray[np.float16]
-
-
-def lessons(seeds: Sequence[int], seed: int, noises: Sequence[float] = NOISES, size: int = SIZE) -> list[Lesson]:
-    """Scenes of ``seeds`` at every noise, the noise from ``seed``."""
-    rng, out, taken = np.random.default_rng(seed), [], list(shots(seeds, size))
-    reached = cells(VIEWS)[..., None, None]
-    for noise in noises:
-        estimator = FieldEstimator(sensor(size), VIEWS, FieldPrior(noise=noise), ESTIMATED)
-        for shot in each(taken, f"samples, noise {noise:g}"):
-            pair = noisy(shot.pair, noise, rng)
-            mixture = estimator.mixture(pair)
-            seen = features(estimator.linear(pair), mixture, noise)
-            wanted = ((shot.truth - mixture.light_field) * reached).reshape(-1, size, size)
-            out.append(Lesson(seen.astype(np.float16), wanted.astype(np.float16)))
-    return out

@@ -62,7 +62,7 @@ def test_files(done):
 
 def test_methods_are_the_fast_ones_and_those_that_are_named(done):
     assert methods_of("") == list(done[1]["methods"]) == ["direct", "linear", "mixture"]
-    assert methods_of("network") == methods_of("linear, network") == ["direct", "linear", "mixture", "network"]
+    assert methods_of("sparse") == methods_of("linear, sparse") == ["direct", "linear", "sparse", "mixture"]
     assert methods_of("all") == list(METHODS)
 
 
