@@ -96,7 +96,7 @@ $(COMMANDS):
 	@$(talbot) $@ $(OPTIONS)
 verilog: OPTIONS := --out build/verilog --core --check
 formats: OPTIONS := --document docs/stream.md
-sizes: OPTIONS := --document README.md
+sizes: OPTIONS := --document docs/results/blocks.md
 handoff: OPTIONS := --design asp_chip
 
 # In small letters, as cameras write CLIP.MP4 too (models/scene/video_file.py)

@@ -14,7 +14,7 @@ from talbot.rtl import export
 from talbot.rtl.verilog import export_verilog
 
 from .measure import measure
-from .table import markdown, readme_table
+from .table import blocks_table, markdown
 
 SENSOR = "rows", "cols", "lanes", "divider", "n_frac", "iterations"
 
@@ -45,7 +45,7 @@ def run(options: Namespace) -> int:
         )
         (part / "sizes.md").write_text(markdown(sizes), encoding="utf-8")
     if options.document:
-        insert(options.document, "sizes", readme_table(sizes))
+        insert(options.document, "sizes", blocks_table(sizes))
     print(markdown(sizes), end="")
     print(f"{options.out}: sizes.json, sizes.md")
     return 0

@@ -23,8 +23,8 @@ def markdown(sizes: Sequence[Size]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def readme_table(sizes: Sequence[Size]) -> str:
-    """Table of the blocks for the README: what each is, its contract's figures, and its size."""
+def blocks_table(sizes: Sequence[Size]) -> str:
+    """Table of the blocks for docs/results/blocks.md: what each is, its contract's figures, and its size."""
     by_top = {s.top: s for s in sizes}
     lines = [
         "| block | what it does | latency | throughput | levels under one test bench | cells | flip-flops | gates |",
@@ -32,7 +32,7 @@ def readme_table(sizes: Sequence[Size]) -> str:
     ]
     for top, about in BLOCKS.items():
         s, folder = by_top[top], FOLDERS.get(top) or re.sub("(?!^)(?=[A-Z])", "_", top).lower()
-        cells = [f"[{top}](rtl/{folder}/README.md)", *about, LEVELS.get(top, "FL, CL, RTL, Verilog")]
+        cells = [f"[{top}](../../rtl/{folder}/README.md)", *about, LEVELS.get(top, "FL, CL, RTL, Verilog")]
         cells += [f"{s.cells:,}", f"{s.flip_flops:,}", f"{s.gates:,.0f}"]
         lines.append(f"| {' | '.join(cells)} |")
     lines += [

@@ -18,13 +18,13 @@ LINK = re.compile(r"(?ms)^```.*?^```|^ {4}.*?$|(?<!!)\[((?:[^\[\]]|\[[^\]]*\])*)
 PARTS = {
     "Tutorial": ("docs/tutorial",),
     "Reference": ("api", "docs/chip", "architecture", "docs/registers", "docs/stream", "docs/host", "docs/figures"),
-    "Results": ("gallery", "docs/results"),
+    "Results": ("gallery", "docs/gallery", "docs/results"),
     "Models": ("models",),
     "The chip, block by block": ("rtl",),
     "Analog and cells": ("pixels", "cells", "platforms"),
     "Flows": ("flow", "base"),
     "Verification": ("verif",),
-    "Project": ("CONTRIBUTING", "CHANGELOG", "docs/bibliography", "docs/decisions"),
+    "Project": ("docs/limits", "CONTRIBUTING", "CHANGELOG", "docs/bibliography", "docs/decisions", "docs/licences"),
 }
 
 
