@@ -63,9 +63,10 @@ $(TESTS_READY): $(READY) requirements/test.lock
 	@$(CHECK)
 	@bash requirements/venv.sh '$(PYTHON)' '$(VENV)' '$@' requirements/test.lock
 
-$(LAYOUT_READY): $(READY) requirements/layout.lock requirements/pdk.lock
+LAYOUT_LOCKS := requirements/layout.lock requirements/pdk.lock requirements/openroad.lock
+$(LAYOUT_READY): $(READY) $(LAYOUT_LOCKS)
 	@$(CHECK)
-	@bash requirements/venv.sh '$(PYTHON)' '$(VENV)' '$@' requirements/layout.lock requirements/pdk.lock
+	@bash requirements/venv.sh '$(PYTHON)' '$(VENV)' '$@' $(LAYOUT_LOCKS)
 
 $(LINT_READY): $(TESTS_READY) $(LAYOUT_READY) requirements/lint.lock
 	@bash requirements/venv.sh '$(PYTHON)' '$(VENV)' '$@' requirements/lint.lock

@@ -5,12 +5,51 @@
 # As root they are installed. As another user apt fetches and verifies them with folders of its own, and they are
 # unpacked in the user's cache: the system is not touched. base/environment.py adds them to PATH.
 # With --missing [COMMAND ...] only where one of the commands, by default those of cells and layouts, is missing; the
-# command line BEFORE, which checks what they are for, must succeed then.
+# command line BEFORE, which checks what they are for, must succeed then. With --libc FOLDER alone the C library and
+# loader of this system's next release, unpacked in FOLDER, for a program that asks for a newer one (venv.sh).
 set -euo pipefail
 packages=(iverilog verilator yosys z3 ngspice opensta klayout magic tcl zlib1g-dev liblz4-dev libngspice0-dev)
 folder=${XDG_CACHE_HOME:-${HOME:?}/.cache}/talbot/tools # talbot.base.paths.TOOLS
 
 fail() { echo "tools: $*" >&2; exit 2; }
+
+# Make apt fetch and verify with folders of its own, below FOLDER, and renew its lists; options on top for both
+private_apt() { # FOLDER [OPTION ...]
+    local folder=$1
+    apt_options=(-qq -o "Dir::State::Lists=$folder/lists" -o "Dir::Cache=$folder" -o "APT::Sandbox::User=$(id -un)"
+        -o Debug::NoLocking=1 "${@:2}")
+    mkdir -p "$folder/lists/partial" "$folder/archives/partial"
+    ! apt-get "${apt_options[@]}" update 2>"$folder/errors" || return 0
+    # A mirror that stands still: its lists are signed, but of a day that is past
+    grep -q 'is expired' "$folder/errors" || { cat "$folder/errors" >&2; exit 2; }
+    echo "tools: the mirror's lists are expired: their signatures alone are checked" >&2
+    apt_options+=(-o Acquire::Check-Valid-Until=false)
+    apt-get "${apt_options[@]}" update
+}
+
+if [ "${1:-}" = --libc ]; then
+    folder=$2
+    # shellcheck source=/dev/null
+    case $(. /etc/os-release && echo "${UBUNTU_CODENAME:-${VERSION_CODENAME:-}}") in
+        bookworm) next=trixie ;;
+        jammy) next=noble ;;
+        *) fail "libc6 = no newer release known: must be Debian 12 or Ubuntu 22.04" ;;
+    esac
+    mirror=$(apt-get indextargets --format "\$(REPO_URI)" | grep -E -m 1 '/(debian|ubuntu)/?$') \
+        || fail "mirror = none of Debian's or Ubuntu's among apt's sources"
+    rm -rf "$folder"
+    mkdir -p "$folder/apt"
+    folder=$(cd "$folder" && pwd)
+    echo "deb $mirror $next main" >"$folder/apt/sources.list"
+    echo "tools: fetching libc6 of $next, in $folder (3 MB)"
+    private_apt "$folder/apt" -o "Dir::Etc::SourceList=$folder/apt/sources.list" -o Dir::Etc::SourceParts=/dev/null \
+        -o Dir::State::status=/dev/null
+    (cd "$folder/apt/archives" && apt-get "${apt_options[@]}" download libc6)
+    dpkg-deb -x "$folder"/apt/archives/libc6_*.deb "$folder/apt/root"
+    mv "$folder"/apt/root/usr/lib/*-linux-gnu/*.so* "$folder"
+    rm -rf "$folder/apt"
+    exit
+fi
 
 missing=()
 if [ "${1:-}" = --missing ]; then
@@ -67,17 +106,8 @@ wrap() { # NAME PROGRAM [VARIABLE=VALUE ...] [-- ARGUMENT ...]
 mkdir -p "$folder"
 exec 9>"$folder/lock"
 flock 9 # two first runs at once
-apt_options=(-qq -o "Dir::State::Lists=$folder/apt/lists" -o "Dir::Cache=$folder/apt" -o "APT::Sandbox::User=$(id -un)"
-    -o Debug::NoLocking=1)
-mkdir -p "$folder/apt/lists/partial" "$folder/apt/archives/partial"
 echo "tools: fetching ${packages[*]} for $(id -un), in $folder (about 200 MB, 800 MB unpacked)"
-if ! apt-get "${apt_options[@]}" update 2>"$folder/apt/errors"; then
-    # A mirror that stands still: its lists are signed, but of a day that is past
-    grep -q 'is expired' "$folder/apt/errors" || { cat "$folder/apt/errors" >&2; exit 2; }
-    echo "tools: the mirror's lists are expired: their signatures alone are checked" >&2
-    apt_options+=(-o Acquire::Check-Valid-Until=false)
-    apt-get "${apt_options[@]}" update
-fi
+private_apt "$folder/apt"
 known_packages
 apt-get "${apt_options[@]}" -y --no-install-recommends --download-only install "${packages[@]}" >/dev/null
 new=$folder/new root=$folder/root

@@ -65,14 +65,37 @@ if ! "$folder/bin/python" -m pip --version >/dev/null 2>&1; then
         || fail "venv = unavailable in '$python': install python3-venv (Debian: apt-get install python3-venv) or virtualenv"
 fi
 
-requirements=()
+# OpenROAD's wheel is for x86-64 with glibc 2.38 and later. A system with an older one gets the wheel and the C library of
+# its next release in a folder of the environment, from which base/openroad.py runs it
+openroad_fits() { [ "$(printf '%s\n' 2.38 "$1" | sort -V | sed -n 1p)" = 2.38 ]; }
+requirements=() unpacked=
 for lock in "$@"; do
-    requirements+=(-r "$lock")
+    case $lock in
+        *openroad.lock)
+            libc=$(getconf GNU_LIBC_VERSION 2>/dev/null || true)
+            if [ "$(uname -sm)" != "Linux x86_64" ] || [ -z "$libc" ]; then
+                echo "setup: openroad = no package for $(uname -sm): left out" >&2
+            elif openroad_fits "${libc#glibc }"; then
+                requirements+=(-r "$lock")
+            elif ! command -v apt-get >/dev/null; then
+                echo "setup: openroad = no package for $libc, must be 2.38 or later, or a system with apt: left out" >&2
+            else
+                unpacked=$lock
+            fi ;;
+        *) requirements+=(-r "$lock") ;;
+    esac
 done
 echo "setup: installing the packages of $*"
 # A lock names all that its packages depend on. pip compiles 8,000 modules with one core, compileall with all
 "$folder/bin/python" -m pip install --quiet --no-deps --no-compile --require-hashes "${requirements[@]}"
 "$folder/bin/python" -m compileall -q -j 0 "$folder"/lib/python*/site-packages >/dev/null 2>&1 || true # of templates, too
 "$folder/bin/python" -m pip install --quiet --no-deps --no-build-isolation --editable .
+if [ "$unpacked" ]; then
+    rm -rf "$folder/openroad" "$folder/openroad.new"
+    "$folder/bin/python" -m pip install --quiet --no-deps --require-hashes --only-binary=:all: \
+        --platform manylinux_2_38_x86_64 --target "$folder/openroad.new/package" -r "$unpacked"
+    bash "$here/tools.sh" --libc "$folder/openroad.new/libc"
+    mv "$folder/openroad.new" "$folder/openroad"
+fi
 touch "$ready"
 echo "setup: ready, $(found "$folder/bin/python")"

@@ -14,6 +14,7 @@ trace depends.
 import ast
 import ctypes.util
 import os
+import platform
 import re
 import shutil
 import sys
@@ -96,7 +97,9 @@ def projects() -> bool:
 
 def openroad() -> bool:
     """Whether OpenROAD is installed, the program or the wheel."""
-    return bool(shutil.which("openroad") or find_spec("openroad"))
+    from talbot.base.openroad import program
+
+    return bool(program())
 
 
 def librelane() -> bool:
@@ -127,8 +130,7 @@ NEEDS = {
     "librelane": Need(librelane, "make librelane"),
     "torch": Need(packages("torch"), "pip install 'talbot[nn]'", offered=False, imported=True),
     "mitsuba": Need(packages("mitsuba", "mitransient"), "make render", offered=False, imported=True),
-    "openroad": Need(openroad, "pip install 'talbot[openroad]'", offered=False),
-    "openroad-wheel": Need(packages("openroad"), "pip install 'talbot[openroad]'", offered=False),
+    "openroad": Need(openroad, LAYOUT, offered=(sys.platform, platform.machine()) == ("linux", "x86_64")),
     "PDK_ROOT": Need(paths("PDK_ROOT"), "PDK_ROOT=<an installed PDK>", offered=False),
     "TT_TOOLS": Need(paths("TT_TOOLS"), "TT_TOOLS=<tt-support-tools>", offered=False),
     "tt-layouts": Need(projects, "make layout DESIGN=<each of the Tiny Tapeout projects>", offered=False),

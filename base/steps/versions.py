@@ -5,6 +5,7 @@ import re
 import shutil
 from functools import cache
 
+from talbot.base.openroad import program
 from talbot.base.tools import ToolError, finish
 
 # Command that prints the version, and the pattern of it in the output; 'python NAME' is the Python package NAME
@@ -13,22 +14,18 @@ COMMANDS = {
     "yosys-abc": (["yosys", "-V"], r"Yosys (\S+)"),
     "klayout": (["klayout", "-v"], r"KLayout (\S+)"),
     "sta": (["sta", "-version"], r"(\S+)"),
-    "openroad": (["openroad", "-version"], r"(\S+)"),
     "ngspice": (["ngspice", "--version"], r"ngspice-(\S+)"),
     "magic": (["magic", "--version"], r"(\S+)"),
     "iverilog": (["iverilog", "-V"], r"version (\S+)"),
 }
-WHEELS = ("openroad",)  # programs whose Python package is called where there is no program
 
 
 @cache
 def version(tool: str) -> str:
     """Version of a program or a Python package. Raises ToolError when it is not installed."""
-    if tool in COMMANDS:
-        command, pattern = COMMANDS[tool]
+    if tool in COMMANDS or tool == "openroad":
+        command, pattern = COMMANDS.get(tool) or ([*(program() or [tool]), "-version"], r"(\S+)")
         if not shutil.which(command[0]):
-            if tool in WHEELS:
-                return version(f"python {tool}")
             raise ToolError(f"{command[0]}: not found; install it with: make tools")
         done = finish(command)
         match = re.search(pattern, done.stdout + done.stderr)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from talbot.base.command import failures
 from talbot.base.files import check_folder, staged
+from talbot.base.openroad import INSTALL
 from talbot.base.paths import RESULTS
 from talbot.base.progress import Steps
 from talbot.base.tools import ToolError
@@ -14,7 +15,6 @@ from talbot.flow.layout.design import DESIGNS, flat_design
 from talbot.platforms.openroad import openroad_platform
 
 from .merge import merge
-from .program import INSTALL
 from .results import broken, summarize
 from .signoff import check, checks
 from .stages import missing_tools, pdk_root, stages, wire_corners
@@ -45,7 +45,7 @@ def run(options: Namespace) -> int:
         print(written)
         return 0
     if missing_tools():
-        raise ToolError(f"{', '.join(missing_tools())}: not found; get it from {INSTALL}; written: {written}")
+        raise ToolError(f"{', '.join(missing_tools())}: not found; {INSTALL}; written: {written}")
     root = pdk_root(tech)
     names = [stage.label for stage in stages(tech, wire_corners(tech, root))]
     with Steps([*names, "gds", "library", *(step.name for step in checks(chosen, tech))], lines=True) as bar:

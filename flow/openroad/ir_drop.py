@@ -8,12 +8,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from talbot.base import openroad
 from talbot.base.steps import Files, StepError
 from talbot.base.tools import finish
 from talbot.flow.layout.netlist.netlist import OUTPUT_PINS, Netlist
 from talbot.flow.layout.steps.corner import CornerStep
-
-from .program import openroad
 
 SCRIPT = """
 read_liberty {liberty}
@@ -58,7 +57,7 @@ class IrDrop(CornerStep[IrDropParameters]):
         files = {name: inputs[name].resolve() for name in ("liberty", "database", "sdc", "spef")}
         files |= {"activity": activity, "supply_csv": outputs["supply"], "ground_csv": outputs["ground"]}
         script.write_text(SCRIPT.format(volts=p.volts, supply=p.supply, ground=p.ground, **files), encoding="utf-8")
-        done = finish([*openroad(), "-no_init", "-no_splash", "-exit", script])
+        done = finish(openroad.command(script))
         (folder / "openroad.log").write_text(done.stdout + done.stderr, encoding="utf-8")
         if done.returncode or not all(path.is_file() for path in outputs.values()):
             raise StepError(f"{self.name}: openroad: {(done.stdout + done.stderr).strip().splitlines()[-3:]}")

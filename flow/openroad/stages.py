@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from talbot.base import openroad
 from talbot.base.cache import digest
 from talbot.base.files import staged
 from talbot.base.jobs import kept
@@ -20,12 +21,10 @@ from talbot.models.parameters import ParameterError
 from talbot.platforms.openroad import WIRES, OpenRoadPlatform
 
 from .netlists import write_synthesized
-from .program import openroad
 
 SCRIPTS = Path(__file__).parent / "tcl"
 # Threads that wait give their core away: beside other jobs, placement of the divider took 15 times its CPU time
 ENVIRONMENT = {"OMP_WAIT_POLICY": "passive"}
-OPTIONS = "-no_init", "-no_splash", "-threads", "max", "-exit"
 
 
 @dataclass(frozen=True)
@@ -43,8 +42,8 @@ class Stage:
 
     def command(self) -> list[str]:
         """Its program and arguments."""
-        program = ["yosys", "-q", "-c"] if self.name == "synth" else [*openroad(), *OPTIONS]
-        return [*program, f"{self.name}.tcl"]
+        script = f"{self.name}.tcl"
+        return ["yosys", "-q", "-c", script] if self.name == "synth" else openroad.command(script, "max")
 
 
 def stages(tech: OpenRoadPlatform, wires: Sequence[str] = WIRES) -> list[Stage]:
@@ -76,7 +75,7 @@ def pdk_root(tech: OpenRoadPlatform, environment: Mapping[str, str] = os.environ
 
 def missing_tools() -> list[str]:
     """Of the programs that the stages call, those that are not installed."""
-    return [*(["yosys"] if not shutil.which("yosys") else []), *(["openroad"] if not openroad() else [])]
+    return [*(["yosys"] if not shutil.which("yosys") else []), *(["openroad"] if not openroad.program() else [])]
 
 
 def run(folder: Path, top: str, tech: OpenRoadPlatform, root: Path, note: Callable[[str], None]) -> dict[str, float]:

@@ -17,7 +17,8 @@ case "$*" in
     *fcntl*) exec "$REAL" "$@" ;;
     "-m venv "*) mkdir -p "$3/bin" && cp "$0" "$3/bin/python" ;;
     "-m pip --version") exit 0 ;;
-    "-m pip install "*) env | grep -E '^(PIP_|PYTHON)' | sort >>"$LOG"; echo "umask $(umask)" >>"$LOG"; sleep 0.3 ;;
+    "-m pip install "*) env | grep -E '^(PIP_|PYTHON)' | sort >>"$LOG"; echo "umask $(umask)" >>"$LOG"
+        echo "$*" >>"$LOG.pip"; sleep 0.3 ;;
     *version_info*) exit "${UNFIT:-0}" ;;
     *) echo "Python 3.12.1 at fake" ;;
 esac
@@ -96,6 +97,45 @@ def test_coriolis_is_refused_in_one_line_where_it_has_no_packages(checkout, unfi
     assert (done.returncode, err.count("\n")) == (2 * unfit, unfit) and ("must be Python 3.11 or 3.12" in err) == bool(
         unfit
     )
+
+
+# The program that prints the C library's version, that of its kind, and apt-get
+SYSTEM = {"getconf": "echo glibc {libc}", "uname": "echo {machine}", "apt-get": "exit 0"}
+
+
+def system(checkout, libc="2.41", machine="Linux x86_64"):
+    """Put the programs of a system in front of this one's, and a tools.sh that unpacks a loader."""
+    folder = Path(checkout[1]["PATH"].split(":")[0])
+    for name, line in SYSTEM.items():
+        (folder / name).write_text(f"#!/bin/sh\n{line.format(libc=libc, machine=machine)}\n", encoding="utf-8")
+        (folder / name).chmod(0o755)
+    (checkout[0] / "requirements" / "openroad.lock").touch()
+    (checkout[0] / "requirements" / "tools.sh").write_text(
+        'mkdir -p "$2" && echo "$1" >"$2/loader"\n', encoding="utf-8"
+    )
+    done = start(checkout, "python3", ".venv", ".venv/.ready", "a.lock", "requirements/openroad.lock")
+    _, err = done.communicate()
+    calls = Path(checkout[1]["LOG"] + ".pip").read_text(encoding="utf-8").splitlines()
+    return done.returncode, err, [call for call in calls if "openroad.lock" in call]
+
+
+def test_openroad_is_a_package_of_the_environment_from_glibc_2_38_on(checkout):
+    status, err, calls = system(checkout, "2.38")
+    assert (status, err, len(calls)) == (0, "", 1) and "-r a.lock -r requirements/openroad.lock" in calls[0]
+    assert not (checkout[0] / ".venv" / "openroad").exists()
+
+
+def test_openroad_is_unpacked_next_to_a_newer_glibc_on_an_older_system(checkout):
+    status, err, calls = system(checkout, "2.9")
+    assert (status, err, len(calls)) == (0, "", 1) and "--platform manylinux_2_38_x86_64" in calls[0]
+    assert "--require-hashes" in calls[0] and "a.lock" not in calls[0]
+    assert (checkout[0] / ".venv" / "openroad" / "libc" / "loader").read_text(encoding="utf-8") == "--libc\n"
+
+
+@pytest.mark.parametrize("machine", ["Linux aarch64", "Darwin arm64"])
+def test_openroad_is_left_out_in_one_line_where_it_has_no_package(machine, checkout):
+    status, err, calls = system(checkout, machine=machine)
+    assert (status, calls) == (0, []) and err == f"setup: openroad = no package for {machine}: left out\n"
 
 
 @pytest.mark.parametrize("python, found", [("/bin/false", "nothing"), ("/nowhere/python", "nothing")])

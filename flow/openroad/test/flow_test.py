@@ -313,7 +313,7 @@ def test_without_openroad_it_says_where_to_get_it_and_what_was_written(tmp_path,
     monkeypatch.setattr(command, "missing_tools", lambda: ["openroad"])
     assert main(command, ["amp_ctrl", "--out", str(tmp_path)]) == 2
     error = capsys.readouterr().err
-    assert error.count("\n") == 1 and "openroad: not found; get it from https://" in error and "floorplan.tcl" in error
+    assert error.count("\n") == 1 and "openroad: not found; make setup-layout" in error and "floorplan.tcl" in error
     assert (tmp_path / "amp_ctrl-openroad" / "floorplan.tcl").is_file()
 
 

@@ -1,6 +1,7 @@
 """The program `openroad` from the Python package of the same name (`pip install openroad`), which brings none.
 
-Run as a file, in any Python that has the package: python wheel.py [-threads N] [other options] SCRIPT. Options are
+Run as a file, in any Python that has the package, or in an environment where requirements/venv.sh has unpacked it:
+python openroad_wheel.py [-threads N] [other options] SCRIPT. Options are
 those of the program; those without a meaning here are ignored.
 """
 
@@ -26,6 +27,7 @@ exit 0
 
 def main(arguments: list[str]) -> None:
     """Print the version, or run the Tcl file; ends the process: 1 where a command of the file fails."""
+    sys.path.append(str(Path(sys.prefix, "openroad", "package")))  # as base/openroad.py calls it
     package = distribution("openroad")
     if arguments == ["-version"]:
         print(package.version)
