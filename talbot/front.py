@@ -76,7 +76,7 @@ GROUPS: dict[str, dict[str, Command]] = {
     },
     "Developers": {
         "tools": Command("install Icarus, Verilator, Yosys, z3, ngspice, OpenSTA, KLayout"),
-        "setup-layout": Command("install PDKs, KLayout and Coriolis into .venv"),
+        "setup-layout": Command("install PDKs, KLayout, OpenROAD and Coriolis into .venv"),
         "lint": Command("ruff, import layers, types, docstrings"),
         "format": Command("format the code and apply ruff's fixes"),
         "bench": Command("benchmarks of speed and memory"),
