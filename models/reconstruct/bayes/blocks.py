@@ -164,6 +164,25 @@ class Blocks:
             rows = slice(lines.start + i, lines.stop + i, lines.step)
             out[:, :, rows, columns.start + j : columns.stop + j : columns.step] = part[i, j]
 
+    def taken(self, values: Floats, down: Group, across: Group) -> Floats:
+        """Take the blocks of a group out of pictures: what `place` puts back.
+
+        Parameters
+        ----------
+        values : array (n, rows, cols)
+            The pictures.
+        down, across : Group
+            The group.
+
+        Returns
+        -------
+        array (n, pixels, windows)
+            Of the blocks.
+        """
+        lines, columns = even(self.y.blocks[down.blocks]), even(self.x.blocks[across.blocks])
+        windows = sliding_window_view(values, (self.y.block, self.x.block), (1, 2))[:, lines, columns]
+        return windows.transpose(0, 3, 4, 1, 2).reshape(len(values), self.y.block * self.x.block, -1)
+
     @cached_property
     def beside(self) -> Floats:
         """Every pixel from the middle of its block's window, float32 (2, rows, cols): down and across, px."""

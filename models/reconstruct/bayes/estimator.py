@@ -7,7 +7,7 @@ evidence for it; the mixture is the mean of the estimates, each as probable as i
 
 import math
 from dataclasses import replace
-from functools import cached_property, lru_cache
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -19,13 +19,13 @@ from threadpoolctl import threadpool_limits
 from talbot.models.parameters import ParameterError, SensorParameters
 from talbot.models.pixel.weights import view_weights
 
-from .blocks import Blocks, Pair, kind
+from .blocks import Blocks, Kind, Pair, kind
 from .covariance import Covariances, Tables
 from .evidence import REACH, Residuals, badness, pooled, probability, whitener
-from .hypotheses import Covariance, Hypotheses
+from .hypotheses import Hypotheses
 from .planes import Plane, Window, texture_points
 from .prior import FieldPrior
-from .scene import Ways, shares_of
+from .scene import Factor, Solver, Ways, factor, raised, shares_of
 from .slants import Slant, slants_of
 from .windows import Axis, Group, Windows
 
@@ -153,28 +153,45 @@ class FieldEstimator:
 
     @cached_property
     def _ways(self) -> list[Ways]:
-        """What every group is at each disparity, made once a sensor."""
+        """What every group is at each disparity of the grid, made once a sensor."""
+        return self._ways_at(self.prior.grid)
+
+    def _ways_at(self, disparities: Floats) -> list[Ways]:
+        """What every group is at each of the disparities, one or more."""
         kinds = {kind(*group): group for group in self.blocks.groups}
-        made: dict[tuple[int, ...], list[tuple[Floats, Floats, Residuals]]] = {kind: [] for kind in kinds}
-        for d in self.prior.grid:
+        count = len(disparities)
+        stacks: dict[tuple[int, int], Floats] = {}
+        means: dict[tuple[int, int], Floats] = {}
+        fields: dict[Kind, Floats] = {}
+        residuals: dict[Kind, list[Residuals]] = {key: [] for key in kinds}
+        for number, d in enumerate(disparities):
             tables = self.covariances.of(float(d))
             # Of windows that begin at the same place in a tile
-            known: dict[tuple[int, ...], tuple[Floats, Floats]] = {}
-            for own, group in kinds.items():
-                if own[:2] not in known:
+            known: dict[tuple[int, int], Floats] = {}
+            for key, group in kinds.items():
+                phase = key[:2]
+                if phase not in known:
                     shared = self._shared(tables, *group)
-                    known[own[:2]] = shared.astype(np.float32), whitener(shared)
-                shared, inverse = known[own[:2]]
-                field = self._field(tables, *group).astype(np.float32)
-                made[own].append((shared, field, Residuals.of(inverse, *self.blocks.own(*group))))
-        stacks: dict[tuple[int, ...], Floats] = {}
-        ways = {}
-        for own, group in kinds.items():
-            shared, field, residuals = zip(*made.pop(own), strict=True)
-            stack = stacks.setdefault(own[:2], np.stack(shared))
-            ways[own] = Ways(stack, np.stack(field), list(residuals), max(len(self.blocks.own(*group)[1]), 1))
+                    known[phase] = whitener(shared)
+                    if not number:
+                        stacks[phase] = np.empty((count, *shared.shape), np.float32)
+                        means[phase] = np.zeros_like(shared)
+                    stacks[phase][number] = shared
+                    means[phase] += shared / count
+                field = self._field(tables, *group)
+                if not number:
+                    fields[key] = np.empty((count, *field.shape), np.float32)
+                fields[key][number] = field
+                residuals[key].append(Residuals.of(known[phase], *self.blocks.own(*group)))
+        ways = {
+            key: Ways(
+                stacks[key[:2]], means[key[:2]], fields[key], residuals[key], max(len(self.blocks.own(*group)[1]), 1)
+            )
+            for key, group in kinds.items()
+        }
         return [ways[kind(*group)] for group in self.blocks.groups]
 
+    @threadpool_limits.wrap(limits=1, user_api="blas")
     def prepare(self, mixture: bool = False) -> None:
         """Make what `linear` needs once a sensor, or `mixture`; they do so themselves where it has not been done.
 
@@ -189,28 +206,56 @@ class FieldEstimator:
 
     @cached_property
     def _facing(self) -> Hypotheses:
-        """Planes that face the camera."""
-        last = lru_cache(maxsize=1)(self.covariances.of)  # all groups are asked for one disparity, then for the next
+        """Planes that face the camera: those of the grid are as `linear` has them."""
+        fine, step = self.prior.fine, self.prior.between + 1
+        between = np.arange(len(fine)) % step > 0
+        ways = [self._ways] * len(fine)
+        if between.any():
+            more = self._ways_at(fine[between])
+            ways = [more if other else self._ways for other in between]
+        place = np.where(between, np.cumsum(between) - 1, np.arange(len(fine)) // step)
+        residuals = [[way.residuals[i] for way in groups] for groups, i in zip(ways, place, strict=True)]
+        index = {kind(*group): i for i, group in enumerate(self.blocks.groups)}
+        factors: dict[tuple[int, int, int], Factor] = {}
 
-        def make(number: int, group: Pair, views: bool) -> Covariance:
-            tables = last(float(self.prior.fine[number]))
-            field = self._field(tables, *group).astype(np.float32) if views else None
-            return Covariance(self._shared(tables, *group), field)
+        def solver(number: int, group: Pair) -> Solver:
+            key = kind(*group)
+            way = ways[number][index[key]]
+            same = number, *key[:2]
+            if same not in factors:
+                factors[same] = factor(way.shared[place[number]].copy())
+            return Solver(factors[same], way.field[place[number]])
 
-        return Hypotheses((0.0, 0.0), self.blocks, self.prior, self._read, make)
+        return Hypotheses((0.0, 0.0), self.blocks, self.prior, self._read, residuals, solver)
 
     def _slanted(self, slant: Slant) -> Hypotheses:
         """Planes of a slant."""
 
-        def make(number: int, group: Pair, views: bool) -> Covariance:
+        def covariances(number: int, group: Pair, views: bool) -> tuple[npt.NDArray[np.float64], Floats | None]:
             (down, across), high, wide = group, self.blocks.y, self.blocks.x
             y, x, diode = self.blocks.diodes(*group)
             block = down.offset, across.offset, high.block, wide.block
             window = Window((high.window, wide.window), y, x, self.covariances.weights[diode], block, self.views)
             shared, field = window.covariances(Plane(float(self.prior.fine[number]), slant), self.prior, views)
-            return Covariance(self._noisy(shared), field)
+            return self._noisy(shared), field
 
-        return Hypotheses(slant, self.blocks, self.prior, self._read, make)
+        def residuals(number: int) -> list[Residuals]:
+            known: dict[tuple[int, int], Floats] = {}  # of windows that begin at the same place in a tile
+            made = {}
+            for group in self.blocks.groups:
+                key = kind(*group)
+                if key[:2] not in known:
+                    known[key[:2]] = whitener(covariances(number, group, False)[0])
+                made[key] = Residuals.of(known[key[:2]], *self.blocks.own(*group))
+            return [made[kind(*group)] for group in self.blocks.groups]
+
+        def solver(number: int, group: Pair) -> Solver:
+            shared, field = covariances(number, group, True)
+            assert field is not None
+            return Solver(factor(shared.astype(np.float32)), field)
+
+        every = [residuals(number) for number in range(len(self.prior.fine))]
+        return Hypotheses(slant, self.blocks, self.prior, self._read, every, solver)
 
     def _slants_of(self, disparity: Floats, spread: Floats) -> list[Slant]:
         """Those of `slants_of` whose planes need no more than TEXTURE, none where noise hides them."""
@@ -223,8 +268,9 @@ class FieldEstimator:
     @cached_property
     def _any(self) -> tuple[list[Residuals], Floats]:
         """Of any disparity: residuals of every group, and their `certain` around each pixel."""
-        tables = self.covariances.mean()
-        residuals = [Residuals.of(whitener(self._shared(tables, *g)), *self.blocks.own(*g)) for g in self.blocks.groups]
+        means = {kind(*group)[:2]: ways.mean for group, ways in zip(self.blocks.groups, self._ways, strict=True)}
+        known = {phase: whitener(mean) for phase, mean in means.items()}
+        residuals = [Residuals.of(known[kind(*g)[:2]], *self.blocks.own(*g)) for g in self.blocks.groups]
         return residuals, pooled(self.blocks.map(r.certain for r in residuals), self.prior.width) / self._read
 
     @cached_property
@@ -305,14 +351,9 @@ class FieldEstimator:
         chance = probability(every, UNLIKELY)
         parts = np.split(chance[:-1] * (1 - blank), len(sets))
         # What shows no disparity, or more than one, takes the linear estimate
-        rest = np.ones(self.shape, np.float32)
-        out = np.zeros((self.views, self.views, *self.shape), np.float32)
-        for planes, part in zip(sets, parts, strict=True):
-            for number, weight in enumerate(planes.at_blocks(part)):
-                if weight.any():
-                    rest -= weight
-                    out += self._estimate(planes, number, groups, weight > 0) * weight
-        out += self._linear(groups, told) * rest
+        weights = [planes.at_blocks(part) for planes, part in zip(sets, parts, strict=True)]
+        out = self._linear(groups, told) * (1 - sum(weight.sum(0) for weight in weights))
+        out += self._weighted(sets, weights, groups)
         return Estimate(out, *self._disparity(every, blank), float(plain.mean()))
 
     def _disparity(self, scores: Floats, blank: Floats) -> tuple[Floats, Floats]:
@@ -350,18 +391,19 @@ class FieldEstimator:
         squares = pooled(self.blocks.map(np.square(e) for e in errors), pool) / self._read
         return np.asarray(self.prior.trust * badness(squares, certain, 4 * np.pi * pool**2), np.float32)
 
-    def _estimate(self, planes: Hypotheses, number: int, groups: Windows, wanted: npt.NDArray[np.bool_]) -> Floats:
-        """The light field by a disparity of ``planes`` in the blocks that have a wanted pixel; 0 in the others."""
-        blocks = np.asarray(sliding_window_view(wanted, (self.blocks.y.block, self.blocks.x.block)).any((2, 3)))
+    def _weighted(self, sets: list[Hypotheses], weights: list[Floats], groups: Windows) -> Floats:
+        """Sum of the light fields by all disparities of the ``sets``, by their weights at the pixels."""
         out = np.zeros((self.views, self.views, *self.shape), np.float32)
         for down, across, samples in groups:
-            first, count = self.blocks.y.blocks[down.blocks], self.blocks.x.blocks[across.blocks]
-            some = np.flatnonzero(blocks[np.ix_(first, count)])
-            if len(some):
-                matrix = planes.filters(number, (down, across), MIXTURE, self.views)
-                found = np.zeros((len(matrix), samples.shape[1]), np.float32)
-                found[:, some] = matrix @ samples[:, some]
-                self.blocks.place(out, found, down, across)
+            total = np.zeros((self.blocks.y.block * self.blocks.x.block, self.views**2, samples.shape[1]), np.float32)
+            for planes, weight in zip(sets, weights, strict=True):
+                at = self.blocks.taken(weight, down, across)
+                for number in np.flatnonzero(at.any((1, 2))):
+                    some = np.flatnonzero(at[number].any(0))
+                    field = planes.solver(int(number), (down, across))(samples[:, some])
+                    total[..., some] += field.reshape(*total.shape[:2], -1) * at[number][:, None, some]
+            field = raised(total.reshape(-1, samples.shape[1]), MIXTURE, self.views)
+            self.blocks.place(out, field, down, across)
         return out
 
     def _turned(self, pair: Floats) -> Floats:

@@ -1,38 +1,22 @@
-"""All disparities of one slant as hypotheses: how probable the samples make each, and its filters."""
+"""All disparities of one slant as hypotheses: how probable the samples make each, and its solvers."""
 
 from collections.abc import Callable
-from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from .blocks import Blocks, Kind, Pair, kind
-from .evidence import Residuals, badness, pooled, whitener
+from .evidence import Residuals, badness, pooled
 from .prior import FieldPrior
-from .scene import Solver, raised
+from .scene import Solver
 from .slants import Slant, along, moved
 from .windows import Windows
 
 Floats = npt.NDArray[np.floating]
 
 
-class Covariance(NamedTuple):
-    """Of one disparity in a group's windows.
-
-    Attributes
-    ----------
-    shared : float64 (samples, samples)
-        Of samples with samples, with noise.
-    field : float32 (pixels * views**2, samples), or None
-        Of the views of a block with samples.
-    """
-
-    shared: Floats
-    field: Floats | None
-
-
-# Of the disparity's number, in a group's windows, with its views or without
-Make = Callable[[int, Pair, bool], Covariance]
+# Of the disparity's number, in a group's windows
+Make = Callable[[int, Pair], Solver]
 
 
 class Hypotheses:
@@ -48,27 +32,26 @@ class Hypotheses:
         What is known before.
     read : array (rows, cols)
         Share of the pixels around each that are read.
+    residuals : list of list of Residuals
+        Of every disparity, in every group.
     make : callable
-        Gives a disparity's covariances.
+        Gives a disparity's solver.
     """
 
-    def __init__(self, slant: Slant, blocks: Blocks, prior: FieldPrior, read: Floats, make: Make) -> None:
+    def __init__(
+        self,
+        slant: Slant,
+        blocks: Blocks,
+        prior: FieldPrior,
+        read: Floats,
+        residuals: list[list[Residuals]],
+        make: Make,
+    ) -> None:
         self.slant, self.blocks, self.prior, self.read, self.make = slant, blocks, prior, read, make
-        self.kinds = {kind(*group): group for group in blocks.groups}
-        count = len(prior.fine)
-        self._residuals = [self._evidence(number) for number in range(count)]
-        certain = np.stack([blocks.map(r.certain for r in residuals) for residuals in self._residuals])
+        self._residuals = residuals
+        certain = np.stack([blocks.map(r.certain for r in groups) for groups in residuals])
         self._certain = self._around(certain)
-        self._filters: dict[tuple[int, Kind], Floats] = {}
-
-    def _evidence(self, number: int) -> list[Residuals]:
-        known: dict[tuple[int, int], Floats] = {}  # of windows that begin at the same place in a tile
-        made = {}
-        for key, group in self.kinds.items():
-            if key[:2] not in known:
-                known[key[:2]] = whitener(self.make(number, group, False).shared)
-            made[key] = Residuals.of(known[key[:2]], *self.blocks.own(*group))
-        return [made[kind(*group)] for group in self.blocks.groups]
+        self._solvers: dict[tuple[int, Kind], Solver] = {}
 
     def scores(self, groups: Windows) -> Floats:
         """What trust leaves of -2 log p of every disparity.
@@ -95,8 +78,8 @@ class Hypotheses:
         found = badness(self._around(found), self._certain, 4 * np.pi * self.prior.width**2)
         return np.asarray(self.prior.trust * found, np.float32)
 
-    def filters(self, number: int, group: Pair, parallax: float, views: int) -> Floats:
-        """From the samples of a group's windows to the views of their blocks, made where they are wanted, once.
+    def solver(self, number: int, group: Pair) -> Solver:
+        """From the samples of a group's windows to the views of their blocks, made where it is wanted, once.
 
         Parameters
         ----------
@@ -104,20 +87,16 @@ class Hypotheses:
             Of the disparity.
         group : tuple of Group
             Down and across.
-        parallax, views
-            As of `scene.Ways.estimate`.
 
         Returns
         -------
-        float32 (pixels * views**2, samples)
-            The filters.
+        Solver
+            The estimator, of views as they are, not `scene.raised`.
         """
         key = number, kind(*group)
-        if key not in self._filters:
-            shared, field = self.make(number, group, True)
-            assert field is not None
-            self._filters[key] = Solver.of(shared.astype(np.float32), raised(field, parallax, views)).filters
-        return self._filters[key]
+        if key not in self._solvers:
+            self._solvers[key] = self.make(number, group)
+        return self._solvers[key]
 
     def at_blocks(self, values: Floats) -> Floats:
         """Values by the disparity at the window's middle, of those by the pixel's.

@@ -17,6 +17,7 @@ from .evidence import Residuals
 
 Floats = npt.NDArray[np.floating]
 Ints = npt.NDArray[np.int64]
+Factor = tuple[Floats, bool]  # of Cholesky, and whether it is the lower one
 ANY = 0.01  # of a window: counts as being at any of the disparities
 AROUND = 0.7  # standard deviation of the weights of the windows around, in windows
 CLASSES = 20  # of windows with like shares, where a group is most of the frame
@@ -31,6 +32,8 @@ class Ways(NamedTuple):
     ----------
     shared : float32 (disparities, samples, samples)
         Covariance of the samples.
+    mean : float64 (samples, samples)
+        Mean of these over the disparities.
     field : float32 (disparities, pixels * views**2, samples)
         Covariance of the block's views with them.
     residuals : list of Residuals
@@ -40,6 +43,7 @@ class Ways(NamedTuple):
     """
 
     shared: Floats
+    mean: Floats
     field: Floats
     residuals: list[Residuals]
     read: int
@@ -93,7 +97,7 @@ class Ways(NamedTuple):
             (weights @ part.reshape(len(part), -1)).reshape(-1, *part.shape[1:]) for part in (self.shared, self.field)
         )
         for one, other in zip(shared, raised(field, parallax, views), strict=True):
-            yield Solver.of(one, other)
+            yield Solver(factor(one), other)
 
 
 class Solver(NamedTuple):
@@ -102,38 +106,13 @@ class Solver(NamedTuple):
     Attributes
     ----------
     factor : tuple
-        Of the samples' covariance, as of `scipy.linalg.cho_factor`.
+        `factor` of the samples' covariance.
     field : float32 (pixels * views**2, samples)
         Covariance of the block's views with them.
     """
 
-    factor: tuple[Floats, bool]
+    factor: Factor
     field: Floats
-
-    @classmethod
-    def of(cls, shared: Floats, field: Floats) -> "Solver":
-        """Make it from the covariances.
-
-        Parameters
-        ----------
-        shared : float32 (samples, samples)
-            Of the samples; written over.
-        field : float32 (pixels * views**2, samples)
-            Of the views with them.
-
-        Returns
-        -------
-        Solver
-            The estimator.
-        """
-        diagonal = np.arange(len(shared))
-        shared[diagonal, diagonal] *= 1 + ROUNDING
-        return cls(cho_factor(shared, overwrite_a=True, check_finite=False), field)
-
-    @property
-    def filters(self) -> Floats:
-        """From samples to the views of a block, float32 (pixels * views**2, samples)."""
-        return np.ascontiguousarray(cho_solve(self.factor, self.field.T).T)
 
     def __call__(self, samples: Floats) -> Floats:
         """Estimate the blocks.
@@ -149,6 +128,24 @@ class Solver(NamedTuple):
             Their views.
         """
         return self.field @ cho_solve(self.factor, samples, check_finite=False)
+
+
+def factor(shared: Floats) -> Factor:
+    """Factor a covariance of samples.
+
+    Parameters
+    ----------
+    shared : float32 (samples, samples)
+        The covariance; written over.
+
+    Returns
+    -------
+    tuple
+        As of `scipy.linalg.cho_factor`.
+    """
+    diagonal = np.arange(len(shared))
+    shared[diagonal, diagonal] *= 1 + ROUNDING
+    return cho_factor(shared, overwrite_a=True, check_finite=False)
 
 
 def raised(field: Floats, parallax: float, views: int) -> Floats:

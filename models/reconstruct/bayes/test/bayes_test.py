@@ -85,6 +85,27 @@ def test_every_pixel_is_in_a_block_inside_its_window(length, period, margin):
     np.testing.assert_allclose(axis.spread().sum(1), 1)
 
 
+def test_blocks_that_are_taken_go_back_to_their_places(estimator):
+    blocks, values = estimator.blocks, np.random.default_rng(3).random((1, ROWS, COLS), np.float32)
+    out = np.zeros((1, 1, ROWS, COLS), np.float32)
+    for group in blocks.groups:
+        blocks.place(out, blocks.taken(values, *group)[0], *group)
+    assert (out[0] == values).all()
+
+
+def test_the_grid_is_the_same_for_both_estimates(estimator):
+    """The mixture's planes at the grid's disparities, and those between, are as their own covariances make them."""
+    single = FieldEstimator(_sensor(), 5, replace(PRIOR, far=1.75, near=1.75, disparities=1))
+    for group in estimator.blocks.groups:
+        between, whole = (estimator._facing.solver(number, group) for number in (15, 14))
+        own = single._facing.solver(0, group)
+        assert estimator.prior.fine[15] == 1.75
+        np.testing.assert_allclose(between.field, own.field, atol=1e-6)
+        assert not np.allclose(whole.field, own.field, atol=1e-3)
+        samples = np.random.default_rng(1).random((len(own.factor[0]), 2), np.float32)
+        np.testing.assert_allclose(between(samples), own(samples), rtol=1e-2, atol=1e-2)
+
+
 def test_a_uniform_scene_comes_back_uniform(estimator):
     pair = _seen(np.full((5, 5, ROWS, COLS), 0.4), noise=0)
     np.testing.assert_allclose(estimator.linear(pair), 0.4, atol=2e-3)
