@@ -78,13 +78,13 @@ setup: $(TESTS_READY)
 setup-layout: $(LAYOUT_READY)
 
 # The program's commands, by what is installed before they run. Coriolis needs a certain Python: that is checked first.
-RUN := sim sensor lightfield polar depth calibrate tradeoff decode learn index verilog sizes divider
-TESTS := formal coverage mutate fuzz cocotb suite stuck-at formats document site pixel pixel-layout cosim layout-sweep \
+RUN := sim sensor lightfield polar depth calibrate tradeoff stability decode learn index verilog sizes divider
+TESTS := formal coverage mutate fuzz cocotb suite stuck-at document site pixel pixel-layout cosim layout-sweep \
   layout-energy
-LAYOUT := pixel pixel-layout cosim pixel-circuit analog analog-layout stability footprints handoff cells cells-report \
+LAYOUT := pixel pixel-layout cosim pixel-circuit analog analog-layout footprints handoff cells cells-report \
   cells-compact cells-compact-area cells-compact-search layout-sweep layout-energy layout-timing layout-compare openroad \
   openroad-compare openroad-fit
-TOOLS := pixel-circuit analog analog-layout stability cells cells-report cells-compact cells-compact-search layout-sweep \
+TOOLS := pixel-circuit analog analog-layout cells cells-report cells-compact cells-compact-search layout-sweep \
   layout-energy layout-timing
 COMMANDS := $(sort $(RUN) $(TESTS) $(LAYOUT) $(TOOLS))
 .PHONY: $(COMMANDS)
@@ -93,10 +93,12 @@ $(COMMANDS): $(READY)
 $(TESTS): $(TESTS_READY)
 $(LAYOUT): $(LAYOUT_READY)
 $(TOOLS): have-tools
+ifneq ($(if $(ONLY),$(filter cells,$(ONLY)),cells),)  # of stability, cells alone need layout packages and ngspice
+stability: $(LAYOUT_READY) have-tools
+endif
 $(COMMANDS):
 	@$(talbot) $@ $(OPTIONS)
 verilog: OPTIONS := --out build/verilog --core --check
-formats: OPTIONS := --document docs/stream.md
 sizes: OPTIONS := --document docs/results/blocks.md
 handoff: OPTIONS := --design asp_chip
 

@@ -19,15 +19,15 @@ from talbot.models.parameters import (
 )
 from talbot.rtl.harness.translate import translate_component
 from talbot.rtl.lint import lint
-from talbot.rtl.tops import PACKERS, PARTS, TOPS, WRAPPERS, build_top
+from talbot.rtl.tops import PARTS, TOPS, WRAPPERS, build_top
 
 WRAPPER = Path(__file__).parent / "tinytapeout"
 BUS = "tt_bytes"
-BY_NAME = *PARTS, *PACKERS, *WRAPPERS
+BY_NAME = *PARTS, *WRAPPERS
 
 
 def translate(name: str, sensor: SensorParameters) -> str:
-    """The Verilog of top, part, packer or wrapper ``name`` for ``sensor``, as text. Raises ParameterError."""
+    """The Verilog of top, part or wrapper ``name`` for ``sensor``, as text. Raises ParameterError."""
     if name in WRAPPERS:
         own = (WRAPPER / f"{name}.v").read_text(encoding="utf-8")
         bus = [(WRAPPER / f"{BUS}.v").read_text(encoding="utf-8")] if BUS in own else []

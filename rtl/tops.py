@@ -132,16 +132,9 @@ WRAPPERS = {
     "tt_um_talbot_chip": "AspChip",
 }
 
-# Of rtl.run_length.candidates: exported by name only, to measure their sizes
-PACKERS = "BytePairPacker", "NibblePacker", "FixedRicePacker", "AdaptiveRicePacker", "PayloadPacker"
-
 
 def build_top(name: str, sensor: SensorParameters) -> "Component":
-    """The unelaborated component of top, part or packer ``name`` for ``sensor``. Raises ParameterError."""
-    if name in PACKERS:
-        from talbot.rtl.run_length import candidates
-
-        return getattr(candidates, name)()
+    """The unelaborated component of top or part ``name`` for ``sensor``. Raises ParameterError."""
     if name not in TOPS | PARTS:
         raise ParameterError(f"top = {name!r}: must be one of {', '.join(TOPS)}")
     return (TOPS | PARTS)[name](sensor)

@@ -34,7 +34,7 @@ GROUPS: dict[str, dict[str, Command]] = {
         "sequence": Command("a clip or a folder of pictures, frame after frame", "flow.sequence.command"),
         "calibrate": Command("pixel types, offsets and lens estimated from bench frames", "flow.calibrate.command"),
         "tradeoff": Command("error against run time: tables and plots", "flow.tradeoff.command"),
-        "stability": Command("stiff and extreme cases: each bound and what was measured", "flow.stability"),
+        "stability": Command("stiff and extreme cases of all subjects: bounds and measured figures", "flow.stability"),
         "decode": Command("the chip's byte stream to samples, as .npz", "flow.decode"),
         "render": Command("render the shipped scenes again with Mitsuba 3", "flow.render.command"),
     },
@@ -85,7 +85,6 @@ GROUPS: dict[str, dict[str, Command]] = {
         "learn": Command(
             "learn the dictionary or the two-branch network of light fields", "flow.lightfield.learn.command"
         ),
-        "formats": Command("stream formats and general coders compared", "flow.formats.command"),
         "layout-sweep": Command("layouts of divider variants or placer efforts, plotted", "flow.layout.sweep.command"),
         "layout-compare": Command("finished layouts in one table", "flow.layout.report.compare"),
         "openroad-compare": Command("layouts of both engines in one table", "flow.openroad.compare"),

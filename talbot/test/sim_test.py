@@ -185,9 +185,8 @@ FILE = "<file>"  # for this one, whose path may have a space
         ("sim --depth d.npy", "depth = 'd.npy': must be left out"),
         (f"sim --out {FILE}", "must be a folder"),
         ("cells --workers 0", "--workers: '0': must be 1 or more, or -1"),
-        (f"formats --codes {FILE}", "must be an npz file with codes and ideal"),
         ("sensor --out /proc/sensor.toml", "out = '/proc': must be a folder that you may write"),
-        *((f"{name} --out {FILE}", "must be a folder") for name in ("layout", "cells", "formats", "coverage")),
+        *((f"{name} --out {FILE}", "must be a folder") for name in ("layout", "cells", "coverage")),
         (f"stability --out {FILE}", "must be a folder"),
         ("stability --json /tmp", "json = '/tmp': must be a file, not a folder"),
         ("sim --nothing", "unrecognized arguments: --nothing"),
@@ -204,7 +203,7 @@ FILE = "<file>"  # for this one, whose path may have a space
         ("draw", "invalid choice: 'draw'"),
         *(
             (f"{name} --document {FILE}", "must have the comments")
-            for name in ("sizes", "formats", "openroad-fit", "openroad-compare", "cells-compact-area")
+            for name in ("sizes", "openroad-fit", "openroad-compare", "cells-compact-area")
         ),
         ("stuck-at --sample=-1", "sample = -1: must be an integer in 0..1000000000"),
         ("decode nowhere.bin", "file = nowhere.bin: No such file"),
