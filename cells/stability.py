@@ -1,18 +1,13 @@
 """Stiff and extreme cases of the characterizer, bound against measured."""
 
 import time
-from argparse import ArgumentParser, Namespace
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 from functools import partial
 from itertools import product
-from pathlib import Path
 
 import numpy as np
 
-from talbot.base.cases import write_page
-from talbot.base.paths import RESULTS
-from talbot.base.progress import each
 from talbot.cells import sources
 from talbot.cells.characterize import delay, tristate
 from talbot.cells.characterize.bench import Bench
@@ -22,27 +17,22 @@ from talbot.cells.characterize.job import cell_of
 from talbot.cells.characterize.scenario import Scenarios
 from talbot.cells.corner import PROCESSES, Corner
 from talbot.cells.netlist.function import Cell
-from talbot.models.stability import Case, table
+from talbot.models.stability import Case
 
 PROCESS = sources.process("sky130_hd")
 TYPICAL = Conditions(Corner("tt", 25, 1.8), "fitted")
 FOUNDRY = (Corner("ss", 100, 1.6), Corner("ff", -40, 1.95))  # corners that SkyWater publishes tables for
 
 
-def cases() -> list[Case]:
-    """All cases; shows a progress bar."""
-    todo: list[Callable[[], Iterable[Case]]] = [loads_and_slews, hundred_times_the_load, metastable, let_go]
-    todo += [partial(fit_at_corner, corner) for corner in FOUNDRY]
-    corners = product(PROCESSES, (1.2, 1.95), (-40, 150))
-    todo += [partial(corner_case, Corner(process, celsius, supply)) for process, supply, celsius in corners]
-    return [case for call in each(todo, "cases", _title) for case in call()]
-
-
-def _title(call: Callable[[], Iterable[Case]]) -> str:
-    """The name of a group of cases, and its corner."""
-    if isinstance(call, partial):
-        return f"{_title(call.func)} {call.args[0].name}"
-    return getattr(call, "__name__", "").replace("_", " ")
+def groups() -> Mapping[str, Callable[[], Iterable[Case]]]:
+    """Return functions that measure the cases, by title."""
+    corners = [Corner(*corner) for corner in product(PROCESSES, (-40, 150), (1.2, 1.95))]
+    return (
+        {"loads and slews": loads_and_slews, "100 times the load": hundred_times_the_load}
+        | {"metastable flip-flop": metastable, "tri-state output": let_go}
+        | {f"fit at {corner.name}": partial(fit_at_corner, corner) for corner in FOUNDRY}
+        | {f"corner {corner.name}": partial(corner_case, corner) for corner in corners}
+    )
 
 
 def cell(name: str) -> Cell:
@@ -142,15 +132,3 @@ def corner_case(corner: Corner) -> Iterator[Case]:
 
 def _case(name: str, bound: str, seconds: float, ok: bool | np.bool_) -> Case:
     return Case(name, bound, f"{seconds * 1e12:.1f} ps", bool(ok))
-
-
-def add_arguments(parser: ArgumentParser) -> None:
-    """Options of `talbot cells-stability`."""
-    parser.add_argument("--out", type=Path, default=RESULTS / "cells" / "stability", help="folder of the page")
-
-
-def run(options: Namespace) -> int:
-    """Print the table of all cases and write it as a page; 1 where a bound is missed."""
-    print(table(found := cases()))
-    write_page(options.out, "Stiff and extreme cases of the characterizer", "make cells-stability", found)
-    return 0 if all(case.ok for case in found) else 1

@@ -1,12 +1,14 @@
-"""Stiff and extreme cases, optical and digital: the bound of each, and what was measured.
+"""Stiff and extreme cases of optics, reconstruction, chip and cells: the bound of each, and what was measured.
 
-Every case runs with NumPy's warnings raised as errors; the digital ones go through the chip's Verilog.
+Cases of models and chip run with NumPy's warnings raised as errors; frames go through the chip's Verilog, cells through
+ngspice.
 """
 
 import json
 import warnings
 from argparse import ArgumentParser, Namespace
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +25,8 @@ from talbot.models.digital.divider import phase_error, quad_divide
 from talbot.models.stability import Case, optical_cases, table
 from talbot.models.stability_inverse import inverse_cases
 
+Groups = Mapping[str, Callable[[], Iterable[Case]]]  # functions that measure cases, by title
+STRICT: Mapping[str, Any] = {"all": "raise", "under": "ignore"}
 SINGLE_TYPE = 1 << 13
 # (name, arguments of `request`); few sizes, since each compiles a simulator
 FRAMES = (
@@ -45,6 +49,7 @@ FRAMES = (
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot stability`."""
+    parser.add_argument("--only", nargs="+", choices=SUBJECTS, help="subjects; default: all")
     parser.add_argument("--out", type=Path, default=RESULTS / "stability", help="folder of the page")
     parser.add_argument("--json", type=Path, help="also write the table to this file")
 
@@ -53,9 +58,9 @@ def run(options: Namespace) -> int:
     """Print the table of all cases and write it as a page; 1 where a bound is missed."""
     if options.json:
         check_file("json", options.json)
-    cases = all_cases()
+    cases = measured(options.only or [*SUBJECTS])
     print(table(cases))
-    write_page(options.out, "Stiff and extreme cases", "of the optics and of the chip; make stability", cases)
+    write_page(options.out, "Stiff and extreme cases", "make stability", cases)
     if options.json:
         with staged(options.json.parent) as part:
             (part / options.json.name).write_text(
@@ -64,25 +69,15 @@ def run(options: Namespace) -> int:
     return 0 if all(case.ok for case in cases) else 1
 
 
-def all_cases() -> list[Case]:
-    """Measure all cases: minutes when the simulators are not cached; shows progress."""
-    with warnings.catch_warnings(), np.errstate(all="raise", under="ignore"):
-        warnings.simplefilter("error")
-        groups: list[tuple[str, Callable[[], list[Case]]]] = [("optics", optical_cases), ("inverse", inverse_cases)]
-        groups.append(("divider", divider_cases))
-        groups += [(name, lambda name=name, asked=asked: [frame_case(name, asked)]) for name, asked in FRAMES]
-        return [case for _, measure in each(groups, "cases", lambda group: group[0]) for case in measure()]
-
-
-def frame_case(name: str, arguments: dict[str, Any]) -> Case:
-    """A frame through the Verilog: no byte may differ from the golden model, and every figure is finite."""
+def frame_cases(name: str, arguments: dict[str, Any]) -> list[Case]:
+    """Simulate a frame in Verilog: no byte may differ from the golden model, and every figure is finite."""
     asked = request(**arguments)
     result = job.simulate_frame(asked)
     exposed, summary = result.exposed, summarize(result)
     wrong = summary["stream_mismatches"] + summary["decoded_mismatches"]
     finite = bool(np.isfinite(exposed.samples).all() and np.isfinite(exposed.ideal).all())
-    measured = f"{wrong} differ, {len(result.chip.stream)} bytes"
-    return Case(name, "0 bytes or samples differ", measured, wrong == 0 and finite)
+    figures = f"{wrong} differ, {len(result.chip.stream)} bytes"
+    return [Case(name, "0 bytes or samples differ", figures, wrong == 0 and finite)]
 
 
 def divider_cases() -> list[Case]:
@@ -104,5 +99,32 @@ def divider_cases() -> list[Case]:
         out.append(Case(f"divider: {name}", "phase within 0.75 LSB of atan2", f"{worst:.3f} LSB", worst <= 0.75))
     zero = quad_divide(np.array([0]), np.array([0]))
     right = bool(zero.zero[0]) and not (zero.ratio[0] or zero.octant[0] or zero.phase[0] or zero.amp_valid[0])
-    measured = "they are" if right else "they are not"
-    return [*out, Case("divider: x = y = 0", "zero flag, every other output 0", measured, right)]
+    outputs = "they are" if right else "they are not"
+    return [*out, Case("divider: x = y = 0", "zero flag, every other output 0", outputs, right)]
+
+
+def _cells() -> Groups:
+    from talbot.cells import stability  # needs the PDK's packages
+
+    return stability.groups()
+
+
+SUBJECTS: Mapping[str, Callable[[], Groups]] = {
+    "optics": lambda: {"optics": optical_cases},
+    "inverse": lambda: {"inverse": inverse_cases},
+    "divider": lambda: {"divider": divider_cases},
+    "frames": lambda: {name: partial(frame_cases, name, arguments) for name, arguments in FRAMES},
+    "cells": _cells,
+}
+
+
+def measured(subjects: Iterable[str]) -> list[Case]:
+    """Measure the cases of ``subjects``: minutes when the simulators are not cached; shows progress."""
+    groups = [(subject, *group) for subject in subjects for group in SUBJECTS[subject]().items()]
+    cases = []
+    for subject, _, measure in each(groups, "cases", lambda group: group[1]):
+        with warnings.catch_warnings(), np.errstate(**({} if subject == "cells" else STRICT)):
+            if subject != "cells":
+                warnings.simplefilter("error")
+            cases += measure()
+    return cases

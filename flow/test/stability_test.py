@@ -1,6 +1,7 @@
 import numpy as np
+import pytest
 
-from talbot.flow.stability import FRAMES, divider_cases, frame_case
+from talbot.flow.stability import FRAMES, SUBJECTS, divider_cases, frame_cases, measured
 from talbot.models.digital.divider import phase_error, quad_divide
 from talbot.models.stability import Case, table
 
@@ -18,7 +19,26 @@ def test_phase_error_goes_the_short_way_round():
 def test_a_single_row_through_the_verilog():
     """Of a size that has its simulator in flow/frame/test/frame_test.py, too."""
     name, arguments = FRAMES[1]
-    assert frame_case(name, arguments).ok
+    (case,) = frame_cases(name, arguments)
+    assert case.ok
+
+
+def test_a_subject_is_measured_with_warnings_as_errors(monkeypatch):
+    def warn():
+        np.log(np.zeros(1))
+        return [Case("a", "", "", True)]
+
+    monkeypatch.setattr("talbot.flow.stability.SUBJECTS", {"optics": lambda: {"x": warn}, "cells": lambda: {"y": warn}})
+    with pytest.raises(FloatingPointError):
+        measured(["optics"])
+    with pytest.warns(RuntimeWarning):
+        assert [case.name for case in measured(["cells"])] == ["a"]
+
+
+@pytest.mark.needs("layout")
+def test_the_cells_are_a_subject():
+    titles = [*SUBJECTS["cells"]()]
+    assert len(titles) == 26 and titles[0] == "loads and slews" and titles[-1].startswith("corner ")
 
 
 def test_table_marks_what_failed():
