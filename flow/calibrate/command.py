@@ -8,13 +8,14 @@ from typing import Any
 from talbot.base.files import check_folder, staged
 from talbot.base.paths import results_of
 from talbot.base.progress import Steps
-from talbot.flow.frame import arguments as text
+from talbot.flow.frame.arguments import Number
 from talbot.flow.frame.command import add_frame_arguments, name_of, request_of, typed_of
 from talbot.flow.frame.reading import WHOLE
 
 SCENE = "motorcycle"
 SIDE = "96"  # pixels: 16 x 24 of each type
 STEPS = ("bench", "fit", "picture", "report")
+HOLES = Number("holes", "positions of the hole along the pupil's diameter", 5, 31, "13")
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -24,7 +25,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     add_frame_arguments(parser, WHOLE | {"mode": "raw", "calibration": None})
     parser.set_defaults(rows=SIDE, cols=SIDE)
     parser.add_argument("--out", help="folder for the results (default: build/calibrate)")
-    parser.add_argument("--holes", default="13", help="places of the hole along the pupil's diameter, 5..31")
+    HOLES.add(parser)
 
 
 def run(options: Namespace) -> int:
@@ -32,7 +33,7 @@ def run(options: Namespace) -> int:
     from . import page  # Matplotlib: not before it is needed
     from .measure import calibrate
 
-    holes = text.integer("holes", options.holes, 5, 31)
+    holes = HOLES.value(options)
     typed = typed_of(options, add_arguments)
     standard = list(typed.items()) == [("scene", SCENE)]
     options.out = options.out or results_of("calibrate") / ("" if standard else name_of(typed))

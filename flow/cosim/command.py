@@ -7,22 +7,28 @@ from pathlib import Path
 from typing import Any
 
 from talbot.base.progress import Steps
+from talbot.flow.frame.arguments import Number
 from talbot.models.parameters import ParameterError, check_choice
 
 AMPLIFIERS = "all", "lanes", "none"
+
+TYPES = Number("types", "pixel types of the row that are read, at most 2 in time of flight", 1, 6, "6")
+RELTOL = Number("reltol", "ngspice's relative tolerance", 1e-8, 0.1, "1e-4", kind=float)
+SHARED = (
+    Number("cols", "columns of the array", 6, 48, "12"),
+    Number("lanes", "converters, 1, 2 or 4", 1, 4, "2"),
+    Number("threshold", "of edge mode", 0, 127, "10"),
+    Number("seed", "of the pixels' values", 0, 2**32 - 1, "1"),
+    Number("t_int", "cycles of integration; 20000 are 2 ms", 1, 65535, "20000"),
+)
 
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot cosim`: texts, checked by `run`."""
     add = parser.add_argument
     add("--modes", default="edge,image,tof", help="modes whose row is read")
-    add("--cols", default="12", help="columns of the array, 6..48")
-    add("--lanes", default="2", help="converters, 1, 2 or 4")
-    add("--types", default="6", help="pixel types of the row that are read, 1..6 (in time of flight 2 at most)")
-    add("--threshold", default="10", help="of edge mode, 0..127")
-    add("--seed", default="1", help="of the pixels' values")
-    add("--t-int", default="20000", help="cycles of integration, 1..65535 (20000 are 2 ms)")
-    add("--reltol", default="1e-4", help="ngspice's relative tolerance, 1e-8..0.1")
+    for number in (TYPES, RELTOL, *SHARED):
+        number.add(parser)
     add("--method", default="trap", help="ngspice's integration, trap or gear")
     add(
         "--amplifiers",
@@ -39,7 +45,6 @@ def run(options: Namespace) -> int:
     """Read the rows, write the page and print the figures; 1 where a code is beyond its limit, a fault not found."""
     from talbot.base.files import check_folder, staged
     from talbot.base.paths import RESULTS
-    from talbot.flow.frame import arguments as text
 
     from . import page, study
     from .accuracy import Accuracy
@@ -51,16 +56,8 @@ def run(options: Namespace) -> int:
         raise ParameterError(f"modes = {options.modes!r}: must be some of {','.join(MODES)}")
     check_choice("amplifiers", options.amplifiers, AMPLIFIERS)
     columns = options.amplifiers == "all"
-    types = text.integer("types", options.types, 1, 6)
-    accuracy = Accuracy(reltol=text.real("reltol", options.reltol, 1e-8, 0.1), method=options.method)
-    shared: dict[str, Any] = {
-        "cols": text.integer("cols", options.cols, 6, 48),
-        "lanes": text.integer("lanes", options.lanes, 1, 4),
-        "t_int": text.integer("t_int", options.t_int, 1, 65535),
-        "threshold": text.integer("threshold", options.threshold, 0, 127),
-        "seed": text.integer("seed", options.seed, 0, 2**32 - 1),
-        "accuracy": accuracy,
-    }
+    types, accuracy = TYPES.value(options), Accuracy(reltol=RELTOL.value(options), method=options.method)
+    shared: dict[str, Any] = {number.field: number.value(options) for number in SHARED} | {"accuracy": accuracy}
     asked = [
         RowRequest(
             mode=mode,

@@ -5,8 +5,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from talbot.flow.frame import arguments as text
 from talbot.flow.frame import reading
+from talbot.flow.frame.arguments import Number
 from talbot.flow.frame.command import camera_of
 from talbot.flow.frame.sensor import asked_sensor
 from talbot.flow.lightfield.command import add_prior_arguments, prior_asked
@@ -16,22 +16,30 @@ from talbot.models.pixel.time_of_flight import SPEED_OF_LIGHT
 FIXED = {"mode": "tof", "views": "auto"}  # of the capture: as many as `capture` takes
 STEPS = ("setup", "capture", "build", "frames", "field", "unwrap", "report")
 F_MOD, CONTRAST, AMBIENT = 100e6, 0.7, 0.2
+FILE = "or of the sensor file"
+F_MOD_HZ = Number("f_mod", "modulation frequency in Hz", 1e5, 1e9, note=f"{F_MOD:g}, {FILE}", kind=float)
+CONTRASTS = Number("contrast", "demodulation contrast", 0.01, 1, note=f"{CONTRAST:g}, {FILE}", kind=float)
+AMBIENTS = Number("ambient", "ambient light, of white", 0, 10, note=f"{AMBIENT:g}, {FILE}", kind=float)
+CODE = Number("code", "chips of a code that modulates a second exposure, 2**n - 1 (0: none)", 0, 4095, "0")
+CHIP_RATE = Number("chip_rate", "of the code, chips a second", 1e6, 1e9, "250e6", kind=float)
+GATE = Number(
+    "gate",
+    "depth of the code's first tap in m; nearer than a chip before it nothing is seen",
+    0,
+    100,
+    "2.0",
+    kind=float,
+)
 
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot depth`: texts, checked by `run`."""
     reading.add_arguments(parser, "depth", "cornell", FIXED, LIFE_SIZE)
-    add = parser.add_argument
-    add("--f-mod", help=f"modulation frequency, 1e5..1e9 Hz (default: {F_MOD:g}, or of the sensor file)")
-    add("--contrast", help=f"demodulation contrast, 0.01..1 (default: {CONTRAST:g}, or of the sensor file)")
-    add(
-        "--ambient",
-        help=f"light of white that is not modulated, of its own, 0..10 (default: {AMBIENT:g}, or of the file)",
+    for number in (F_MOD_HZ, CONTRASTS, AMBIENTS, CODE, CHIP_RATE, GATE):
+        number.add(parser)
+    parser.add_argument(
+        "--direct", action="store_true", help="light straight from the surfaces alone, of a scene that has other"
     )
-    add("--direct", action="store_true", help="light straight from the surfaces alone, of a scene that has other")
-    add("--code", default="0", help="chips of a code by whose light the scene is seen again, 7, 15 .. 4095 (0: none)")
-    add("--chip-rate", default="250e6", help="of the code, 1e6..1e9 chips a second")
-    add("--gate", default="2.0", help="depth of the code's first tap in m, 0..100: what is a chip before is not seen")
     add_prior_arguments(parser)
 
 
@@ -47,11 +55,11 @@ def run(options: Namespace) -> int:
     sensor = asked_sensor(options, default)
     e, given = sensor.electrical, {}
     if options.f_mod is not None:
-        given["f_mod"] = text.real("f_mod", options.f_mod, 1e5, 1e9)
+        given["f_mod"] = F_MOD_HZ.value(options)
     if options.contrast is not None:
-        given["contrast"] = text.real("contrast", options.contrast, 0.01, 1)
+        given["contrast"] = CONTRASTS.value(options)
     if options.ambient is not None:
-        given["ambient_current"] = text.real("ambient", options.ambient, 0, 10) * e.white_current
+        given["ambient_current"] = AMBIENTS.value(options) * e.white_current
     camera = camera_of(options, sensor.optics.camera)
     sensor = replace(sensor, optics=replace(sensor.optics, camera=camera), electrical=replace(e, **given))
     asked, typed = reading.asked(options, "depth", add_arguments, sensor)
@@ -66,8 +74,7 @@ def run(options: Namespace) -> int:
 
 def _code(options: Namespace, own: ElectricalParameters) -> ElectricalParameters | None:
     """What modulates the light of the coded frames, None without any. Raises ParameterError."""
-    chips = text.integer("code", options.code, 0, 4095)
-    rate, gate = text.real("chip_rate", options.chip_rate, 1e6, 1e9), text.real("gate", options.gate, 0, 100)
+    chips, rate, gate = (number.value(options) for number in (CODE, CHIP_RATE, GATE))
     coded = replace(own, code=chips, chip_rate=rate, code_delay=2 * gate / SPEED_OF_LIGHT)
     return coded if chips else None
 

@@ -1,12 +1,49 @@
 """Validated values from text of the command line. Every error names the field, the value and the range."""
 
 import os
+from argparse import ArgumentParser, Namespace
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from talbot.models.parameters import ALL_TYPES, ParameterError, Window
 
 BETAS = {"low": 0x0000FF, "mid": 0x00FF00, "high": 0xFF0000}
 TYPE_GROUPS = {"all": ALL_TYPES, **BETAS, "cosine": 0x555555, "sine": 0xAAAAAA}
+
+
+@dataclass(frozen=True)
+class Number:
+    """A numeric option: its help and its check come from this one declaration.
+
+    field: name in the options and in errors. about: what it is, for the help. low, high: range, both included.
+    default: as it is typed; '' where the option may be left out. word: accepted instead of a number, for None.
+    note: what the help says of the default, where that is not ``default``. kind: int or float.
+    """
+
+    field: str
+    about: str
+    low: float
+    high: float
+    default: str = ""
+    word: str = ""
+    note: str = ""
+    kind: type[int] | type[float] = int
+
+    def add(self, parser: ArgumentParser) -> None:
+        """Add the option to ``parser``; its text is checked by `value`."""
+        note = f" (default: {self.note})" if self.note else ""
+        words = f"{self.about}, {self.low:.10g}..{self.high:.10g}{note}"
+        parser.add_argument(f"--{self.field.replace('_', '-')}", default=self.default or None, help=words)
+
+    def value(self, options: Namespace) -> Any:
+        """Return the number in ``options``, None for ``word`` or nothing. Raises ParameterError."""
+        text = getattr(options, self.field)
+        if text is None or text == self.word:
+            return None
+        if self.kind is int:
+            return integer(self.field, text, int(self.low), int(self.high), also=self.word and f" or {self.word}")
+        return real(self.field, text, self.low, self.high)
 
 
 def pixel_types(text: str) -> int:

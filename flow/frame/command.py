@@ -14,9 +14,11 @@ from talbot.base.paths import results_of
 from talbot.base.progress import Steps
 from talbot.flow.simulate.frame import WAVES
 from talbot.models.parameters import (
+    COLS_MAX,
     EXPOSURE_MAX,
     LANES,
     MODES,
+    ROWS_MAX,
     CameraParameters,
     ParameterError,
     SensorParameters,
@@ -25,20 +27,29 @@ from talbot.models.parameters import (
 )
 
 from . import arguments as text
-from .arguments import named
+from .arguments import Number, named
 from .sensor import add_pixel, asked_sensor
 
 if TYPE_CHECKING:
     from .request import FrameRequest
 
 
-class Own(str):
-    """Default of an option that a sensor file has, too: the file's counts where none is typed."""
-
-
 NAME_MAX = 120  # characters of a folder's name
-INTEGERS = {"rows": (1, 1024), "cols": (1, 1536), "lanes": (min(LANES), max(LANES)), "threshold": (0, 127)}
-INTEGERS |= {"decimation": (0, 3), "seed": (0, 2**32 - 1)}
+# Options that a sensor file has, too, and their texts without one
+OF_SENSOR = {"rows": "384", "cols": "384", "lanes": "8", "converter": "typical"}
+VIEWS = "384, or of a light field's views"
+NUMBERS = (
+    Number("views", "of the capture along the pupil's diameter", 1, 31, "auto", "auto", "as many as it needs"),
+    Number("threshold", "edge mode: |code| below this is left out", 0, 127, "10"),
+    Number("rows", "pixels", 1, ROWS_MAX, note=VIEWS),
+    Number("cols", "pixels", 1, COLS_MAX, note=VIEWS),
+    Number("decimation", "log2 of the tile step", 0, 3, "0"),
+    Number("lux", "illuminance of white, except in time of flight", 1e-3, 1e6, "500", kind=float),
+    Number("exposure", "rows by which the reset pointer leads", 0, EXPOSURE_MAX, "auto", "auto", "as the light asks"),
+    Number("lanes", "converters, a power of two", min(LANES), max(LANES), note=OF_SENSOR["lanes"]),
+    Number("noise", "times the physical noise", 0, 100, "1.0", kind=float),
+    Number("seed", "of every random draw", 0, 2**32 - 1, "1"),
+)
 
 CAMERA = {
     "f-number": "focal length over the lens's diameter, 0.5..32 (default: {default.f_number:g})",
@@ -80,36 +91,29 @@ def add_frame_arguments(
         if option[2:].replace("-", "_") not in fixed:
             parser.add_argument(option, **rest)
 
+    def add_numbers(*fields: str) -> None:
+        for number in NUMBERS:
+            if number.field in fields and number.field not in fixed:
+                number.add(parser)
+
     add("--sensor", help="sensor file; talbot sensor prints one to start from. What is given here replaces what it has")
     add_pixel(parser)
     add("--calibration", help="calibration.json of talbot calibrate, known in place of the sensor's true optics")
     add_camera_arguments(parser, camera)
-    add(
-        "--views",
-        default="auto",
-        help="of the capture along the pupil's diameter, 1..31 (default: as many as it needs)",
-    )
+    add_numbers("views")
     add("--mode", default="edge", help="one of " + ", ".join(MODES))
-    add("--threshold", default="10", help="edge mode: |code| below this is left out, 0..127")
-    add("--rows", default=Own("384"), help="pixels, 1..1024 (default: 384, or of a light field's views)")
-    add("--cols", default=Own("384"), help="pixels, 1..1536 (default: 384, or of a light field's views)")
+    add_numbers("threshold", "rows", "cols")
     add("--types", default="all", help="pixel types: 0x<mask>, numbers 0..23, or groups " + ", ".join(text.TYPE_GROUPS))
     add("--window", default="full", help="tiles to read, inclusive: row0:row1,col0:col1")
-    add("--decimation", default="0", help="log2 of the tile step, 0..3")
-    add("--lux", default="500", help="illuminance of white, 0.001..1000000; time of flight brings its own light")
-    add(
-        "--exposure", default="auto", help="rows by which the reset pointer leads, 0..1023 (default: as the light asks)"
-    )
-    add("--lanes", default=Own("8"), help="converters, one of " + ", ".join(map(str, LANES)))
+    add_numbers("decimation", "lux", "exposure", "lanes")
     add("--phase", action="store_true", help="tof mode: phase and amplitude from the chip's divider")
-    add("--converter", default=Own("typical"), help="typical (INL, DNL, offset, noise), ideal, or circuit")
+    add("--converter", help="typical (INL, DNL, offset, noise), ideal, or circuit (default: typical)")
     add(
         "--afe",
         default="ideal",
         help="ideal: arithmetic, and --converter; circuit: converters and pixels as ngspice has them",
     )
-    add("--noise", default="1.0", help="times the physical noise, 0..100")
-    add("--seed", default="1", help="of every random draw, 0..4294967295")
+    add_numbers("noise", "seed")
 
 
 def add_camera_arguments(parser: ArgumentParser, default: CameraParameters) -> None:
@@ -139,16 +143,17 @@ def run(options: Namespace) -> int:
 
 
 def typed_of(options: Namespace, add_arguments: Callable[[ArgumentParser], None]) -> dict[str, Any]:
-    """The scene, then every argument that is not its default; not the folder."""
+    """Return the scene, then every argument that is not its default; not the folder."""
     parser = ArgumentParser()
     add_arguments(parser)
-    standard, own = vars(parser.parse_args([])), vars(options)
+    defaults, chosen = vars(parser.parse_args([])), vars(options)
+    without_file = {} if chosen["sensor"] else OF_SENSOR
 
-    def told(name: str) -> bool:
-        replaces = own["sensor"] and isinstance(standard[name], Own) and not isinstance(own[name], Own)
-        return bool(replaces) or own[name] != standard[name]
+    def is_told(name: str) -> bool:
+        default = without_file.get(name) if defaults[name] is None else defaults[name]
+        return name == "scene" or name != "out" and chosen[name] not in (None, default)
 
-    return {name: own[name] for name in standard if name == "scene" or name != "out" and told(name)}
+    return {name: chosen[name] for name in defaults if is_told(name)}
 
 
 def name_of(typed: dict[str, Any]) -> str:
@@ -186,16 +191,13 @@ def request_of(a: Namespace, sensor: SensorParameters | None = None, sequence: b
 
     from .request import light_field_of, request
 
-    own, sensor = a.sensor is None, sensor or asked_sensor(a)
-    typed = {name: value for name, value in vars(a).items() if not isinstance(value, Own)}
-    numbers: dict[str, Any] = {
-        name: text.integer(name, typed[name], *ends) for name, ends in INTEGERS.items() if name in typed
-    }
+    no_file, sensor = a.sensor is None, sensor or asked_sensor(a)
+    typed = {name: value for name, value in vars(a).items() if value is not None}
+    numbers: dict[str, Any] = {number.field: number.value(a) for number in NUMBERS if number.field in typed}
     field = None if sequence else light_field_of(a.scene)
-    if field is not None and own and not {"rows", "cols"} & typed.keys():
+    if field is not None and no_file and not {"rows", "cols"} & typed.keys():
         numbers["rows"], numbers["cols"] = field.own_size()
     rows = numbers.get("rows", sensor.array.rows)
-    views = None if a.views == "auto" else text.integer("views", a.views, 1, 31, also=" or auto")
     known = read_calibration(typed["calibration"]) if typed.get("calibration") else None
     waves = (0, min(3, rows - 1)) if a.waves == "1" else text.span("waves", a.waves, 0, rows - 1) if a.waves else None
     names = ("scene", "depth", "mode", "phase", "out", "waves_format", "converter")
@@ -208,9 +210,7 @@ def request_of(a: Namespace, sensor: SensorParameters | None = None, sequence: b
             raise ParameterError(f"converter = {a.converter!r}: must be left out with afe = circuit, which has its own")
         plain["converter"] = "circuit"
         sensor = replace(sensor, electrical=drawn_electrical(sensor.electrical))
-    exposure = None if a.exposure == "auto" else text.integer("exposure", a.exposure, 0, EXPOSURE_MAX, also=" or auto")
-    lux = text.real("lux", a.lux, 1e-3, 1e6)
-    mask, noise = text.pixel_types(a.types), text.real("noise", a.noise, 0, 100)
+    mask = text.pixel_types(a.types)
     window = partial(text.window, a.window)
     return request(
         **plain,
@@ -219,11 +219,7 @@ def request_of(a: Namespace, sensor: SensorParameters | None = None, sequence: b
         window=window,
         mask=mask,
         camera=camera_of(a, sensor.optics.camera),
-        views=views,
-        noise=noise,
         waves=waves,
-        lux=lux,
-        exposure=exposure,
         calibration=known,
     )
 

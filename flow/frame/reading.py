@@ -20,7 +20,7 @@ from talbot.models.parameters import CameraParameters, SensorParameters
 from talbot.models.scene.rendered import RENDERED
 
 from . import report
-from .command import Own, add_frame_arguments, arguments_of, name_of, request_of, tell_replaced, typed_of
+from .command import add_frame_arguments, arguments_of, name_of, request_of, tell_replaced, typed_of
 from .figures import mismatches
 from .job import golden_result, simulate_frame
 from .request import FrameRequest
@@ -73,8 +73,8 @@ def asked(
     """
     typed = typed_of(options, add_arguments)
     options.out = options.out or results_of(command) / name_of(typed)
-    own = isinstance(options.rows, Own) and isinstance(options.cols, Own) and options.sensor is None
-    if options.scene in RENDERED and own:
+    no_size = options.rows is None and options.cols is None and options.sensor is None
+    if options.scene in RENDERED and no_size:
         size = RENDERED[options.scene].size
         sensor = sensor or asked_sensor(options)
         sensor = replace(sensor, array=replace(sensor.array, rows=size, cols=size))

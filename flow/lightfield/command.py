@@ -8,11 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 from talbot.flow.frame import arguments as text
 from talbot.flow.frame import reading
+from talbot.flow.frame.arguments import Number
 
 if TYPE_CHECKING:
     from talbot.flow.frame.request import FrameRequest
     from talbot.flow.frame.result import GoldenResult
     from talbot.models.reconstruct.bayes import FieldPrior
+
+DISPARITIES = Number("disparities", "how many are tried; mixture tries those between, too", 1, 500, "21")
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -29,7 +32,7 @@ def add_prior_arguments(parser: ArgumentParser) -> None:
     words = "disparity that is tried, {}..20 px per step of the scene's views (default: {}12.5 over their number)"
     add("--far", help="farthest " + words.format(-20, "-"))
     add("--near", help="nearest " + words.format("far", ""))
-    add("--disparities", default="21", help="how many are tried, 1..500; by mixture those between, too")
+    DISPARITIES.add(parser)
 
 
 def prior_asked(options: Namespace, request: "FrameRequest") -> "Callable[[GoldenResult], FieldPrior]":
@@ -39,7 +42,7 @@ def prior_asked(options: Namespace, request: "FrameRequest") -> "Callable[[Golde
 
     far = None if options.far is None else text.real("far", options.far, -20, 20)
     near = None if options.near is None else text.real("near", options.near, -20 if far is None else far, 20)
-    disparities = text.integer("disparities", options.disparities, 1, 500)
+    disparities = DISPARITIES.value(options)
     if (near is None) != (far is None):  # the other is the scene's
         tried(load(request.scene, Sampling.of(request.sensor), request.depth).views, near, far)
     return partial(prior_of, far=far, near=near, disparities=disparities)

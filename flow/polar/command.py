@@ -4,18 +4,20 @@ from argparse import ArgumentParser, Namespace
 from pathlib import Path
 from typing import Any
 
-from talbot.flow.frame import arguments as text
 from talbot.flow.frame import reading
+from talbot.flow.frame.arguments import Number
 from talbot.flow.frame.reading import number
 
 STEPS = ("setup", "capture", "build", "rtl", "decode", "polarization", "disparity", "report")
+HIGHLIGHT = Number(
+    "highlight", "polarized light above which a pixel is a highlight, of white", 0, 16, "0.1", kind=float
+)
 
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot polar`: texts, checked by `run`."""
     reading.add_arguments(parser, "polar", "specular", {"mode": "raw"})
-    words = "polarized light of a highlight, of white: what has more is one, 0..16"
-    parser.add_argument("--highlight", default="0.1", help=words)
+    HIGHLIGHT.add(parser)
 
 
 def run(options: Namespace) -> int:
@@ -23,7 +25,7 @@ def run(options: Namespace) -> int:
     from . import page  # Matplotlib: not before it is needed
     from .measure import PolarFrame, read_polarization
 
-    highlight = text.real("highlight", options.highlight, 0, 16)
+    highlight = HIGHLIGHT.value(options)
     asked, typed = reading.asked(options, "polar", add_arguments)
 
     def found(note: reading.Note) -> PolarFrame:

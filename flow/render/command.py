@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from talbot.flow.frame import arguments as text
+from talbot.flow.frame.arguments import Number
 from talbot.models.parameters import check_choice
 from talbot.models.scene.rendered import MANIFEST, RENDERED
 
@@ -18,16 +18,19 @@ MANTISSA = 3  # bits that are left out of a float16's: what is left is finer tha
 EXACT = "disparity", "depth", "behind", "bins"  # which are not noisy
 WHOLE = "depth", "behind", "bins"  # which float16 is too short for
 
+VIEWS = Number("views", "along the pupil's diameter", 1, 31, "5")
+SIZE = Number("size", "rows and columns in px", 24, 1024, note="each scene's own, 96 or 128")
+SAMPLES = Number("samples", "a pixel and view; four times as many for transients", 1, 10**6, "256")
+SEED = Number("seed", "of the first view; each view has another", 0, 10**6, "1")
+THREADS = Number("threads", "of Mitsuba", 1, 256, "1")
+
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot render`: texts, checked by `run`."""
     add = parser.add_argument
     add("--scene", default="all", help=f"names with commas between, of {', '.join(RENDERED)} (default: all)")
-    add("--views", default="5", help="along the pupil's diameter, 1..31")
-    add("--size", default="", help="rows and columns, 24..1024 px (default: each scene's own, 96 or 128)")
-    add("--samples", default="256", help="a pixel and view, 1..1000000; of the transients four times as many")
-    add("--seed", default="1", help="of the first view, 0..1000000; each view has its own")
-    add("--threads", default="1", help="of Mitsuba, 1..256")
+    for number in (VIEWS, SIZE, SAMPLES, SEED, THREADS):
+        number.add(parser)
     add("--out", default="build/render", help=f"folder for <scene>.npz and {MANIFEST}, which has their checksums")
 
 
@@ -42,10 +45,7 @@ def run(options: Namespace) -> int:
     names = list(RENDERED) if options.scene == "all" else options.scene.split(",")
     for name in names:
         check_choice("scene", name, list(RENDERED))
-    views = text.integer("views", options.views, 1, 31)
-    size = text.integer("size", options.size, 24, 1024) if options.size else None
-    samples = text.integer("samples", options.samples, 1, 10**6)
-    seed, threads = text.integer("seed", options.seed, 0, 10**6), text.integer("threads", options.threads, 1, 256)
+    views, size, samples, seed, threads = (n.value(options) for n in (VIEWS, SIZE, SAMPLES, SEED, THREADS))
     out = Path(options.out)
     check_folder("out", out)
     from .trace import Tracer

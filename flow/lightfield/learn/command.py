@@ -4,10 +4,16 @@ import json
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
-from talbot.flow.frame import arguments as text
+from talbot.flow.frame.arguments import Number
 
 STEPS = {"dictionary": 60, "branches": 5000}
 FIRST = 1000  # seed of the first scene; those of the tests and figures are below
+
+SEED = Number("seed", "of everything random", 0, 10**6, "1")
+SCENES = Number("scenes", "to learn from", 1, 10**4, "24")
+NOTE = ", ".join(f"{steps} for {what}" for what, steps in STEPS.items())
+STEPS_TRAINED = Number("steps", "of the training", 1, 10**6, note=NOTE)
+ATOMS = Number("atoms", "of the dictionary", 2, 4096, "512")
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -15,11 +21,8 @@ def add_arguments(parser: ArgumentParser) -> None:
     add = parser.add_argument
     what = "dictionary (NumPy alone) or branches (PyTorch: pip install 'talbot[nn]')"
     add("what", choices=STEPS, help=what)
-    add("--seed", default="1", help="of everything random, 0..1000000")
-    add("--scenes", default="24", help="to learn from, 1..10000")
-    default = ", ".join(f"{steps} of the {what}" for what, steps in STEPS.items())
-    add("--steps", default="", help=f"of the learning, 1..1000000 (default: {default})")
-    add("--atoms", default="512", help="of the dictionary, 2..4096")
+    for number in (SEED, SCENES, STEPS_TRAINED, ATOMS):
+        number.add(parser)
     add("--out", default="build/learn", help="folder for <what>.npz, which models/reconstruct ships, and <what>.json")
 
 
@@ -27,10 +30,8 @@ def run(options: Namespace) -> int:
     """Learn, and print how well; the files are there when all is done."""
     from talbot.base.files import check_folder, staged
 
-    seed = text.integer("seed", options.seed, 0, 10**6)
-    scenes = text.integer("scenes", options.scenes, 1, 10**4)
-    steps = text.integer("steps", options.steps or str(STEPS[options.what]), 1, 10**6)
-    atoms = text.integer("atoms", options.atoms, 2, 4096)
+    seed, scenes, atoms = (number.value(options) for number in (SEED, SCENES, ATOMS))
+    steps = STEPS_TRAINED.value(options) or STEPS[options.what]
     out = Path(options.out)
     check_folder("out", out)
     seeds = range(FIRST, FIRST + scenes)
