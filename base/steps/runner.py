@@ -14,8 +14,6 @@ from pathlib import Path
 from threading import Event, Lock, Semaphore, Thread
 from typing import Any
 
-import joblib
-
 from talbot.base.cache import cached, digest
 from talbot.base.paths import ROOT
 from talbot.base.progress import ended
@@ -139,6 +137,8 @@ class Runner:
         A step begins when its inputs are complete: at once if others wait for it, else when a core is free. Raises
         StepError, also for steps that need each other in a cycle.
         """
+        import joblib  # not in the process of each step, which imports this file
+
         made_by = {f"{step.name}.{name}": step.name for step in steps for name in step.outputs}
         needs = {step.name: {made_by[source] for source in step.inputs.values() if source in made_by} for step in steps}
         try:

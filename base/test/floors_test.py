@@ -24,24 +24,50 @@ def test_every_import_keeps_the_floor_plan():
     assert done.returncode == 0, done.stdout[-3000:]
 
 
-@pytest.mark.parametrize(
-    "file, line, contract",
-    [
-        ("base/gds.py", "import talbot.platforms.foundry", "Floors"),
-        ("models/pixel/response.py", "from talbot.base.files import write", "Floors"),
-        ("cells/corner.py", "from talbot.flow.frame import request", "Floors"),
-        ("pixels/footprints.py", "import talbot.cells.corner", "Floors"),
-        ("flow/layout/geometry/boxes.py", "import talbot.flow.layout.chain", "cycles"),
-        ("verif/results.py", "import talbot.api.run", "Floors"),
-        ("base/gds.py", "import talbot", "Floors"),
-        ("rtl/tops.py", "from models.parameters import ArrayParameters", "one name"),
-    ],
-)
-def test_an_import_against_it_is_found(tmp_path, file, line, contract):
+# A file, an import added to it, the contract that forbids it, and what the report says
+FORBIDDEN = [
+    ("base/gds.py", "import talbot.platforms.foundry", "Floors:", "talbot.base.gds -> talbot.platforms.foundry"),
+    (
+        "models/pixel/response.py",
+        "from talbot.base.files import write",
+        "Floors:",
+        "talbot.models.pixel.response -> talbot.base.files",
+    ),
+    ("cells/corner.py", "from talbot.flow.frame import request", "Floors:", "talbot.cells.corner -> talbot.flow.frame"),
+    (
+        "pixels/footprints.py",
+        "import talbot.cells.corner",
+        "Floors:",
+        "talbot.pixels.footprints -> talbot.cells.corner",
+    ),
+    ("flow/layout/geometry/boxes.py", "import talbot.flow.layout.chain", "No cycles", ".geometry -> .chain (1 import)"),
+    ("verif/results.py", "import talbot.api.run", "Floors:", "talbot.verif.results -> talbot.api.run"),
+    ("base/drawn.py", "import talbot", "Floors:", "talbot.base.drawn -> talbot (l."),
+    (
+        "rtl/tops.py",
+        "from models.parameters import ArrayParameters",
+        "A part has one name",
+        "talbot.rtl.tops -> models",
+    ),
+]
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory):
+    """The report of import-linter about a copy with all imports of FORBIDDEN."""
+    copy = tmp_path_factory.mktemp("copy")
     for folder in FOLDERS:
-        shutil.copytree(ROOT / folder, tmp_path / folder, True, shutil.ignore_patterns("__pycache__"))
-    shutil.copy(ROOT / "pyproject.toml", tmp_path)
-    path = tmp_path / file
-    path.write_text(f"{path.read_text()}\n\n{line}\n")
-    done = lint(tmp_path)
-    assert done.returncode == 1 and re.search(rf"{contract}.* BROKEN", done.stdout)
+        shutil.copytree(ROOT / folder, copy / folder, True, shutil.ignore_patterns("__pycache__"))
+    shutil.copy(ROOT / "pyproject.toml", copy)
+    for file, line, *_ in FORBIDDEN:
+        path = copy / file
+        path.write_text(f"{path.read_text()}\n\n{line}\n")
+    done = lint(copy)
+    assert done.returncode == 1
+    return done.stdout.partition("Broken contracts")[2]
+
+
+@pytest.mark.parametrize("file, line, contract, chain", FORBIDDEN)
+def test_a_forbidden_import_is_reported(report, file, line, contract, chain):
+    parts = re.split(r"\n(.+)\n-+\n", report)  # a title and its text by turns
+    assert [text for title, text in zip(parts[1::2], parts[2::2]) if title.startswith(contract) and chain in text]

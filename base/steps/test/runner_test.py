@@ -7,62 +7,34 @@ import signal
 import subprocess
 import sys
 import time
-from dataclasses import dataclass, field
 from pathlib import Path
 
 import joblib
 import pytest
 
-from talbot.base.steps import Runner, Step, StepError
+from talbot.base.steps import Runner, StepError
 from talbot.models.parameters import ParameterError
 
-
-@dataclass(frozen=True)
-class Times:
-    times: int = field(default=2, metadata={"unit": "1"})
-
-
-class Repeat(Step):
-    name = "repeat"
-    inputs = {"text": "text"}
-    outputs = {"text": "out.txt"}
-    Parameters = Times
-    metrics = {"length": "B"}
-
-    def run(self, inputs, outputs):
-        made = inputs["text"].read_text() * self.parameters.times
-        outputs["text"].write_text(made)
-        return {"length": len(made)}
-
-
-class Again(Repeat):
-    name = "again"
-    inputs = {"text": "repeat.text"}
-
-
-class Careless(Repeat):
-    name = "careless"
-
-    def run(self, inputs, outputs):
-        outputs["text"].with_name("more.txt").write_text("")
-        return {"length": 0}
-
-
-class Crash(Repeat):
-    name = "crash"
-
-    def run(self, inputs, outputs):
-        os._exit(3)
-
-
-class Plain(Repeat):
-    """Tells the paths that it gets."""
-
-    name = "plain"
-
-    def run(self, inputs, outputs):
-        outputs["text"].write_text(f"{inputs['text']} {outputs['text']}")
-        return {"length": 0}
+from .steps import (
+    Again,
+    Both,
+    Careless,
+    Circle,
+    Crash,
+    Greet,
+    Last,
+    Long,
+    Meet,
+    Order,
+    Patient,
+    Plain,
+    Priority,
+    Reader,
+    Repeat,
+    Times,
+    Turn,
+    waited,
+)
 
 
 @pytest.fixture
@@ -95,32 +67,6 @@ def test_a_chain_runs_once_and_again_when_its_input_changed(tmp_path, text):
     assert path.exists()
 
 
-class Meet(Repeat):
-    """Waits for the other of two to be there, too."""
-
-    name = "meet"
-
-    def run(self, inputs, outputs):
-        here = inputs["text"].parent / self.name
-        here.write_text("")
-        other = here.with_name({"meet": "greet", "greet": "meet"}[self.name])
-        outputs["text"].write_text(str(waited(other.exists)))
-        return {"length": 0}
-
-
-class Greet(Meet):
-    name = "greet"
-
-
-class Both(Repeat):
-    name = "both"
-    inputs = {"text": "meet.text", "more": "greet.text"}
-
-    def run(self, inputs, outputs):
-        outputs["text"].write_text(inputs["text"].read_text() + inputs["more"].read_text())
-        return {"length": 8}
-
-
 def test_steps_that_do_not_need_each_other_run_together(tmp_path, text):
     runner = Runner(tmp_path / "steps", {"text": text})
     records = runner.run_all([Meet(), Both(), Greet()])
@@ -140,14 +86,6 @@ def test_a_step_runs_beside_others(tmp_path, text):
         runner.run(Crash())
 
 
-class Priority(Again):
-    name = "priority"
-
-    def run(self, inputs, outputs):
-        outputs["text"].write_text(str(os.nice(0)))
-        return {"length": 0}
-
-
 def test_what_another_run_has_made_is_given_and_that_run_has_the_cores(tmp_path, text):
     runner, other = Runner(tmp_path / "steps", {}), Runner(tmp_path / "other", {"text": text})
     with runner.beside([Priority()], lambda: other.paths):
@@ -156,13 +94,6 @@ def test_what_another_run_has_made_is_given_and_that_run_has_the_cores(tmp_path,
     assert runner.paths == {}
     given, own = next((tmp_path / "steps").glob("priority.*/out.txt")), other.paths["priority.text"]
     assert int(given.read_text()) > int(own.read_text()) == os.nice(0)
-
-
-class Long(Repeat):
-    name = "long"
-
-    def run(self, inputs, outputs):
-        time.sleep(600)
 
 
 def children() -> list[str]:
@@ -196,49 +127,10 @@ def test_other_paths_are_other_inputs(tmp_path, text):
         assert waited(lambda: len(list((tmp_path / "steps").glob("repeat.*/out.txt"))) == 2)
 
 
-class Last(Both):
-    """Tells others, which have taken all cores, that the end of a chain was reached."""
-
-    name = "last"
-    inputs = {"text": "again.text"}
-
-    def run(self, inputs, outputs):
-        outputs["text"].write_text(inputs["text"].read_text())
-        (inputs["text"].parents[1] / "last").write_text("")
-        return {"length": 0}
-
-
-class Patient(Repeat):
-    """Ends when `Last` has run."""
-
-    def __init__(self, number):
-        super().__init__(Times())
-        self.name = f"patient{number}"
-
-    def run(self, inputs, outputs):
-        outputs["text"].write_text(str(waited((outputs["text"].parents[1] / "last").exists)))
-        return {"length": 0}
-
-
-class Reader(Repeat):
-    name = "reader"
-    inputs = {"text": "last.text"}
-
-
 def test_a_chain_goes_on_while_others_have_all_cores(tmp_path, text):
     runner, others = Runner(tmp_path / "steps", {"text": text}), [Patient(k) for k in range(joblib.cpu_count())]
     runner.run_all([*others, Repeat(), Again(), Last(), Reader()])
     assert [runner.paths[f"{step.name}.text"].read_text() for step in others] == ["True"] * len(others)
-
-
-class Circle(Repeat):
-    name = "circle"
-    inputs = {"text": "turn.text"}
-
-
-class Turn(Repeat):
-    name = "turn"
-    inputs = {"text": "circle.text"}
 
 
 def test_a_circle_is_told(tmp_path, text):
@@ -272,14 +164,6 @@ def test_parameters_of_another_step_are_refused():
         Repeat({"times": 2})
 
 
-class Order(Repeat):
-    name = "order"
-
-    def run(self, inputs, outputs):
-        outputs["text"].write_text(" ".join({str(n) for n in range(100)}))
-        return {"length": 0}
-
-
 def test_sets_have_the_same_order_in_every_run(tmp_path, text):
     for folder in "ab":
         Runner(tmp_path / folder, {"text": text}).run(Order())
@@ -287,22 +171,10 @@ def test_sets_have_the_same_order_in_every_run(tmp_path, text):
     assert first == second
 
 
-class Tool(Repeat):
-    """A tool that would run for a minute, its process's number told in the given file."""
-
-    name = "tool"
-
-    def run(self, inputs, outputs):
-        from talbot.base.tools import run
-
-        run(["sh", "-c", f"echo $$ > {inputs['text']}; exec sleep 60"])
-        return {"length": 0}
-
-
 # Ctrl-C counts also where the tests run behind a shell that ignores it
 RUN_TOOL = (
     "import signal; signal.signal(signal.SIGINT, signal.default_int_handler); "
-    "from talbot.base.steps.test.runner_test import *; from pathlib import Path; "
+    "from talbot.base.steps import Runner; from talbot.base.steps.test.steps import Tool; from pathlib import Path; "
     "Runner(Path({folder!r}), {{'text': Path({text!r})}}).{call}"
 )
 
@@ -322,11 +194,3 @@ def test_a_killed_run_leaves_no_tool(tmp_path, text, sent, call):
     run.send_signal(sent)
     run.wait(timeout=200)
     assert waited(lambda: not Path(f"/proc/{tool}").exists())
-
-
-def waited(condition):
-    """Whether ``condition`` came true within 200 s."""
-    end = time.monotonic() + 200
-    while not condition() and time.monotonic() < end:
-        time.sleep(0.05)
-    return condition()
