@@ -15,7 +15,6 @@ from talbot.base.paths import ROOT
 PROGRAM = """
 import os, signal, subprocess, sys, time
 from pathlib import Path
-from talbot.base.files import atomic, staged
 from talbot.base.supervise import supervised
 out = Path(sys.argv[1])
 def tools():
@@ -28,17 +27,20 @@ def orphans():
     print("begun", flush=True)
     time.sleep(20)
 def writes():
+    from talbot.base.files import atomic, staged  # NumPy, which the others need not load
     with staged(out / "new" / "out") as part, atomic(out / "other" / "file"):
         (part / "half").write_text("")
         print("begun", flush=True)
         time.sleep(20)
 def publishes():
+    from talbot.base.files import staged
     with staged(out / "out") as part:
         for i in range(8000):
             (part / str(i)).touch()
         print("begun", flush=True)
     time.sleep(20)
 def crashes():
+    from talbot.base.files import atomic
     with atomic(out / "file"):
         os.kill(os.getpid(), signal.SIGSEGV)
 def works():

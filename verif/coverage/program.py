@@ -9,7 +9,7 @@ from talbot.base.cache import cached, digest
 from talbot.base.paths import BUILD
 from talbot.base.sources import code
 from talbot.base.tools import run
-from talbot.base.verilator import CXX, compile_runtime, verilator_folder, verilator_program
+from talbot.base.verilator import CXX, compile_runtime, runtime, verilator_folder, verilator_program
 from talbot.rtl.harness.ports import Port, places, split, total_width, validity
 
 CACHE = BUILD / "replay"
@@ -17,7 +17,7 @@ MAIN = Path(__file__).parent / "main.cpp"
 VALUES = ("--x-assign", "fast", "--x-initial", "unique")  # of X
 VERILATE = ("--cc", "--prefix", "VDut", *VALUES, "--noassert", "--no-timing", "-Wno-lint", "-Wno-fatal")
 COVERAGE = ("--coverage-line", "--coverage-expr", "--coverage-toggle", "--coverage-max-width", "4096", "--flatten")
-RUNTIME = ("verilated", "verilated_threads", "verilated_cov")
+COUNTERS = "verilated_cov"
 SECONDS = 900  # limit of a tool
 
 # Of a state machine: (name below the top, as in 'control.state'; bits), the highest bits first
@@ -127,7 +127,7 @@ def compile_program(
     version = tool([verilator, "--version"])
 
     def make(folder: Path) -> None:
-        runtime = _runtime(version)
+        counters, objects = _counters(version), runtime()
         source, public, model = folder / "dut.v", folder / "public.vlt", folder / "model"
         source.write_text(verilog, encoding="utf-8")
         (folder / "ports.h").write_text(lines, encoding="utf-8")
@@ -139,10 +139,11 @@ def compile_program(
         unit = folder / "unit.cpp"
         unit.write_text("".join(f'#include "{p}"\n' for p in [*sorted(model.glob("*.cpp")), MAIN]), encoding="utf-8")
         include = verilator_folder() / "include"
-        includes = [option for path in (runtime, model, folder, include, include / "vltstd") for option in ("-I", path)]
-        objects = (runtime / f"{name}.o" for name in RUNTIME)
+        includes = [
+            option for path in (counters, model, folder, include, include / "vltstd") for option in ("-I", path)
+        ]
         options = ["-O0" if coverage else "-O1", f"-DVM_COVERAGE={int(coverage)}", *includes]
-        tool([*CXX, *options, unit, *objects, "-pthread", "-o", folder / "replay"])
+        tool([*CXX, *options, unit, counters / f"{COUNTERS}.o", *objects, "-pthread", "-o", folder / "replay"])
         shutil.rmtree(model)
         unit.unlink()
 
@@ -150,17 +151,17 @@ def compile_program(
     return Program(cached(CACHE / f"{top}-{content}", make))
 
 
-def _runtime(version: str) -> Path:
-    """Return the folder of the object files of Verilator's run time and of a corrected verilated_cov.h."""
+def _counters(version: str) -> Path:
+    """Return the folder of a corrected verilated_cov.h and of the object file of Verilator's counters with it."""
     include = verilator_folder() / "include"
 
     def make(folder: Path) -> None:
         # Verilator 5.48 also counts toggles of lower words for the higher ones in vectors of more than 64 bits
-        text = (include / "verilated_cov.h").read_text(encoding="utf-8")
-        (folder / "verilated_cov.h").write_text(
+        text = (include / f"{COUNTERS}.h").read_text(encoding="utf-8")
+        (folder / f"{COUNTERS}.h").write_text(
             text.replace("j < width - i * VL_EDATASIZE;", "j < VL_EDATASIZE && j < width - i * VL_EDATASIZE;"),
             encoding="utf-8",
         )
-        compile_runtime(folder, ["-O1", "-DVM_COVERAGE=1", "-I", folder], RUNTIME)
+        compile_runtime(folder, ["-O1", "-I", folder], [COUNTERS])
 
-    return cached(CACHE / f"runtime-{digest(code(__name__), version)}", make)
+    return cached(CACHE / f"counters-{digest(code(__name__), version)}", make)
