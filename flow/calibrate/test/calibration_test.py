@@ -14,9 +14,9 @@ from talbot.models.calibrate import read_calibration
 def done(tmp_path_factory):
     """Folder and summary of a small bench behind a lens that is not telecentric."""
     folder = tmp_path_factory.mktemp("calibrate")
-    words = "--rows=24", "--cols=24", "--holes=9", "--pupil=0.012"
+    words = "--rows=24", "--cols=24", "--holes=7", "--pupil=0.012"
     with pytest.MonkeyPatch.context() as patch:  # the picture by few disparities
-        patch.setattr(measure, "prior_of", partial(measure.prior_of, disparities=5))
+        patch.setattr(measure, "prior_of", partial(measure.prior_of, disparities=3))
         assert main(["calibrate", *words, f"--out={folder}"]) == 0
     return folder, json.loads((folder / "summary.json").read_text())
 

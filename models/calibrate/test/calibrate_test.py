@@ -65,7 +65,7 @@ def test_chief_ray_and_optical_centre():
 
 @pytest.mark.parametrize("m", [0.0, 1.0])
 def test_extremes_of_the_modulation(m):
-    fits = calibrated(swept(OpticsParameters(m=m)), PITCH)[2]
+    fits = calibrated(swept(OpticsParameters(m=m), size=24), PITCH)[2]
     found = np.array([fit.kind.m for fit in fits])
     np.testing.assert_allclose(found, m, atol=5e-3)
     assert all(fit.alpha_error == np.pi and fit.kind.beta == 0 for fit in fits) == (m == 0)
@@ -142,7 +142,7 @@ def test_responses_that_are_not_of_the_formula(tmp_path):
         rms, level = error(calibration)
         assert rms < formula / 4 and formula > 0.05
         np.testing.assert_allclose(level, levels, rtol=0.01)
-    assert all(kind.response is None for kind in calibrated(swept(), PITCH)[0].types)
+    assert all(kind.response is None for kind in calibrated(swept(size=24), PITCH)[0].types)
 
 
 def test_a_residual_that_is_all_noise_leaves_the_formula():

@@ -11,7 +11,7 @@ from talbot.models.capture import Region, integrate
 from talbot.models.parameters import ArrayParameters, CameraParameters, OpticsParameters, SensorParameters
 from talbot.models.scene import Sampling, load
 
-ROWS, COLS, PITCH = 36, 48, 10e-6
+ROWS, COLS, PITCH = 28, 36, 10e-6
 ACROSS, DOWN = 0.011, 0.007  # radiance a pixel
 PUPILS = {"telecentric": 1e9, "pupil at 30 mm": 0.03, "pupil at 9 mm": 0.009}
 

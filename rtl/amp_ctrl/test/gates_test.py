@@ -81,7 +81,7 @@ def test_any_start_any_configuration_and_any_reset(gates):
         values |= {name: random.integers(0, 2, WIDE) for name in SLOT}
         return values | {"start": chance[0], "hold_free": chance[1], "reset": chance[3] & (random.random(WIDE) < 0.02)}
 
-    follow(gates, inputs, 250)
+    follow(gates, inputs, 150)
 
 
 def test_every_set_of_zeros(gates):
