@@ -89,7 +89,9 @@ echo "setup: installing the packages of $*"
 # A lock names all that its packages depend on. pip compiles 8,000 modules with one core, compileall with all
 "$folder/bin/python" -m pip install --quiet --no-deps --no-compile --require-hashes "${requirements[@]}"
 "$folder/bin/python" -m compileall -q -j 0 "$folder"/lib/python*/site-packages >/dev/null 2>&1 || true # of templates, too
-"$folder/bin/python" -m pip install --quiet --no-deps --no-build-isolation --editable .
+case " $* " in # the project itself, with the packages that it cannot do without
+    *run.lock*) "$folder/bin/python" -m pip install --quiet --no-deps --no-build-isolation --editable . ;;
+esac
 if [ "$unpacked" ]; then
     rm -rf "$folder/openroad" "$folder/openroad.new"
     "$folder/bin/python" -m pip install --quiet --no-deps --require-hashes --only-binary=:all: \

@@ -255,7 +255,7 @@ def test_a_tradeoff_is_a_table_and_a_plot():
 
 
 def test_a_light_field_by_every_method(monkeypatch):
-    monkeypatch.setattr(frame_light_field, "prior_of", partial(frame_light_field.prior_of, disparities=9))
+    monkeypatch.setattr(frame_light_field, "prior_of", partial(frame_light_field.prior_of, disparities=7))
     run = talbot.Sensor(rows=24, cols=24).golden("tilted", mode="raw")
     truth = run.result.exposed.scene.full_light_field
     error = {name: np.std(run.reconstruct("light_field", method=name).values - truth) for name in METHODS}

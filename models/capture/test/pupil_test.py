@@ -101,7 +101,10 @@ def independent(name, scene, sensor, f_number, focus):
 
 
 @pytest.mark.parametrize("lens", LENSES)
-@pytest.mark.parametrize("name", ["motorcycle", "tilted", *PICTURES])
+@pytest.mark.parametrize(
+    "name",
+    ["motorcycle", "tilted", PICTURES[0], *(pytest.param(name, marks=pytest.mark.slow) for name in PICTURES[1:])],
+)
 def test_differences_are_those_of_an_independent_camera(name, lens):
     f_number, focus = LENSES[lens]
     sensor = sensor_behind(f_number=f_number, focus=focus)

@@ -35,6 +35,12 @@ def sizes():
     return found
 
 
+def named(size, slow):
+    """A parameter of a test: the size with its name, slow or not."""
+    name = "{}x{}_{}_{}_{}".format(*astuple(size))
+    return pytest.param(size, id=name, marks=pytest.mark.slow if slow else ())
+
+
 def quickly(pick, err_at=None, hurry=(0.5, 1, 1)):
     """Surroundings that take few cycles."""
     return randomly(pick.random(), err_at, longest=(1, 4), read=2, hurry=hurry)
@@ -113,7 +119,7 @@ def refused(size):
 class TestReadoutSeqSizes:
     verilog = None  # in PyMTL; not recorded: verif/coverage would compile every size
 
-    @pytest.mark.parametrize("size", sizes(), ids=lambda size: "{}x{}_{}_{}_{}".format(*astuple(size)))
+    @pytest.mark.parametrize("size", [named(size, i > 3 and i % 3) for i, size in enumerate(sizes())])
     def test_every_size(self, size):
         """Each frame is complete, whatever was before: a frame, a refused start, an aborted frame or a reset."""
         self.run(size, frames(size, random.Random(repr(size))))

@@ -301,7 +301,7 @@ class TestRunLengthFL:
         for resync, mode in product(range(4), ("edge", "raw")):
             rows = [
                 (row, [pick.choice((0, 0, 0, 9, -40)) & (0xFF if mode == "raw" else -1) for _ in range(size)])
-                for row, size in enumerate(pick.choice((0, 1, 5, 30, 63, 64, 65, 100)) for _ in range(24))
+                for row, size in enumerate(pick.choice((0, 1, 5, 30, 63, 64, 65, 100)) for _ in range(16))
             ]
             header = header_of(mode, threshold=1, resync=resync)
             marks = [first for first, _, _ in segments(header, rows)]

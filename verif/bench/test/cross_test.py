@@ -18,6 +18,7 @@ def test_every_cross_has_a_frame(seed):
     assert {one.mode for one in seen} == set(MODES)
 
 
+@pytest.mark.slow
 def test_a_wrong_frame_is_named(monkeypatch):
     planned = list(cross.frames(1, 1))[:3]
     assert cross.run(1, 100, planned) is None

@@ -66,6 +66,7 @@ def test_of_a_list_of_sizes_the_first_has_covers_and_twins():
     assert command.chosen(manifest.every(), options) == [first, others[0]]
 
 
+@pytest.mark.slow
 def test_the_byte_queue_is_proven_and_its_twins_fail(queue, tmp_path):
     assert main(command, ["--proof", queue.name, "--out", str(tmp_path), "--workers", "1"]) == 0
     proofs = json.loads((tmp_path / "formal.json").read_text())["RunLength"]["proofs"]

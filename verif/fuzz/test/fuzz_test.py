@@ -79,7 +79,9 @@ def test_host_and_registers(target):
 
 
 @pytest.mark.parametrize("name", resync.FRAMES)
-@pytest.mark.parametrize("around", resync.AROUND)
+@pytest.mark.parametrize(
+    "around", ["followed by bytes", *(pytest.param(name, marks=pytest.mark.slow) for name in resync.AROUND[:-1])]
+)
 def test_one_wrong_byte_anywhere_in_a_frame_of_every_mode(name, around):
     """Two values at every byte; `talbot fuzz` tries more, and larger frames."""
     found = resync.sweep(name, around, 2, SEED, (12, 20))

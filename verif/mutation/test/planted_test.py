@@ -1,12 +1,12 @@
 """Planted bugs: one that a test sees, one that none sees, and entries that do not fit the sources."""
 
-import sys
 from dataclasses import replace
+from functools import reduce
+from importlib import import_module
 
 import pytest
 
-from talbot.base.paths import ROOT
-from talbot.base.tools import ToolError, finish
+from talbot.base.tools import ToolError
 from talbot.models.parameters import ParameterError
 from talbot.verif.mutation.planted import Planted, is_caught, jobs, read
 
@@ -24,8 +24,7 @@ def test_every_bug_fits_the_sources():
 def test_the_tests_of_every_bug_exist():
     for file, *names in {tuple(name.split("::")) for bug in read() for name in bug.tests}:
         module = import_module(f"talbot.{file.removesuffix('.py').replace('/', '.')}")
-        test = reduce(getattr, names, module)
-        assert (names or [module.__name__.rpartition(".")[2]])[-1].lower().strip("_").find("test") >= 0 and test
+        assert file.endswith("_test.py") and callable(reduce(getattr, names, module)) == bool(names)
 
 
 @pytest.mark.slow
