@@ -20,7 +20,7 @@ for name in ${!PYTHON@} ${!PIP_@}; do
         *) unset "$name" ;;
     esac
 done
-export PIP_USER=0 PIP_DISABLE_PIP_VERSION_CHECK=1 # of pip.conf
+export PIP_USER=0 PIP_DISABLE_PIP_VERSION_CHECK=1
 
 [ -d "$here/../talbot/rtl/" ] || fail "talbot/rtl = not a link: the checkout must have symbolic links (Windows: use WSL and" \
     "its own file system, or git config core.symlinks true; then git checkout -- talbot)"
@@ -64,6 +64,21 @@ if ! "$folder/bin/python" -m pip --version >/dev/null 2>&1; then
     "$python" -m venv "$folder" 2>/dev/null || { rm -rf "$folder"; "$python" -m virtualenv -q "$folder"; } 2>/dev/null \
         || fail "venv = unavailable in '$python': install python3-venv (Debian: apt-get install python3-venv) or virtualenv"
 fi
+
+# The same of the files pip.conf, of which pip then reads none
+registry='import ast, os, sys
+keys = "index-url extra-index-url find-links no-index trusted-host cert client-cert proxy default-timeout timeout retries"
+keys, found = [*keys.split(), "cache-dir", "no-cache-dir", "keyring-provider"], {}
+for line in sys.stdin:
+    name, _, value = line.strip().partition("=")
+    section, _, key = name.partition(".")
+    if section in ("global", "install") and key in keys:  # in this order
+        found["PIP_" + key.upper().replace("-", "_")] = " ".join(ast.literal_eval(value).split())
+print(*(f"{name}={value}" for name, value in found.items() if name not in os.environ), sep="\n")'
+while IFS= read -r setting; do
+    [ -z "$setting" ] || export "${setting?}"
+done < <("$folder/bin/python" -m pip config list | "$folder/bin/python" -c "$registry")
+export PIP_CONFIG_FILE=/dev/null
 
 # OpenROAD's wheel is for x86-64 with glibc 2.38 and later. A system with an older one gets the wheel and the C library of
 # its next release in a folder of the environment, from which base/openroad.py runs it

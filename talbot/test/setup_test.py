@@ -14,7 +14,8 @@ SCRIPT = ROOT / "requirements" / "venv.sh"
 # A Python that makes environments without packages, and says what of the environment reached pip
 FAKE = """#!/usr/bin/env bash
 case "$*" in
-    *fcntl*) exec "$REAL" "$@" ;;
+    *fcntl* | *literal_eval*) exec "$REAL" "$@" ;;
+    "-m pip config list") echo "${CONF:-}" ;;
     "-m venv "*) mkdir -p "$3/bin" && cp "$0" "$3/bin/python" ;;
     "-m pip --version") exit 0 ;;
     "-m pip install "*) env | grep -E '^(PIP_|PYTHON)' | sort >>"$LOG"; echo "umask $(umask)" >>"$LOG"
@@ -54,7 +55,7 @@ def start(checkout, *words, **environment):
 def test_settings_of_a_user_do_not_reach_pip_and_those_of_a_registry_do(checkout):
     settings = {"PIP_TARGET": "/t", "PIP_PREFIX": "/p", "PIP_USER": "1", "PIP_REQUIRE_VIRTUALENV": "1"}
     settings |= {"PYTHONPATH": "/x", "PYTHONHOME": "/h", "PYTHONUSERBASE": "/u"}
-    registry = {"PIP_INDEX_URL": "https://mirror", "PIP_CERT": "/c.pem", "PIP_CONFIG_FILE": "/p.conf"}
+    registry = {"PIP_INDEX_URL": "https://mirror", "PIP_CERT": "/c.pem", "PIP_CONFIG_FILE": "/dev/null"}
     done = start(checkout, **settings, **registry)
     assert (done.communicate()[1], done.returncode) == ("", 0)
     log = Path(checkout[1]["LOG"]).read_text(encoding="utf-8").splitlines()
@@ -62,12 +63,46 @@ def test_settings_of_a_user_do_not_reach_pip_and_those_of_a_registry_do(checkout
     assert set(log) == expected | {"PIP_DISABLE_PIP_VERSION_CHECK=1", "umask 0022"}
 
 
+PIP_CONF = r"""
+:env:.cert='/own.pem'
+global.cert='/all.pem'
+global.extra-index-url='\nhttps://a\nhttps://b'
+global.index-url='https://global'
+global.target='/t'
+install.index-url='https://install'
+install.user='true'
+"""
+
+
+def test_of_a_pip_conf_only_the_registry_counts_and_the_environment_counts_more(checkout):
+    own = {"PIP_CERT": "/own.pem", "PIP_CONFIG_FILE": "/p.conf", "CONF": PIP_CONF}
+    done = start(checkout, **own)
+    assert (done.communicate()[1], done.returncode) == ("", 0)
+    log = Path(checkout[1]["LOG"]).read_text(encoding="utf-8").splitlines()
+    assert {line for line in log if line.startswith("PIP_")} == {
+        "PIP_CERT=/own.pem",
+        "PIP_CONFIG_FILE=/dev/null",
+        "PIP_DISABLE_PIP_VERSION_CHECK=1",
+        "PIP_EXTRA_INDEX_URL=https://a https://b",
+        "PIP_INDEX_URL=https://install",
+        "PIP_USER=0",
+    }
+
+
 def test_two_at_once_install_once(checkout):
     both = [start(checkout) for _ in range(2)]
     texts = [one.communicate() for one in both]
     assert [one.returncode for one in both] == [0, 0], texts
     assert sorted("waiting for another set-up" in out for out, _ in texts) == [False, True]
-    assert Path(checkout[1]["LOG"]).read_text(encoding="utf-8").count("umask") == 2  # the lock's packages, and Talbot
+    assert Path(checkout[1]["LOG"]).read_text(encoding="utf-8").count("umask") == 1
+
+
+def test_the_project_is_installed_with_the_packages_of_make_sim(checkout):
+    (checkout[0] / "run.lock").touch()
+    for lock in ("run.lock", "a.lock"):
+        assert start(checkout, "python3", ".venv", f".venv/.{lock}", lock).communicate()[1] == ""
+    calls = Path(checkout[1]["LOG"] + ".pip").read_text(encoding="utf-8").splitlines()
+    assert ["--editable ." in call for call in calls] == [False, True, False]
 
 
 def test_an_environment_without_pip_is_made_again(checkout):
