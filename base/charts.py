@@ -1,11 +1,10 @@
 """Charts (Matplotlib, no display): `bars` and `curves` make a figure, `svg` and `save` put it out."""
 
-import contextlib
 import io
 import os
 import re
 import textwrap
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
 from types import MappingProxyType
@@ -13,7 +12,7 @@ from typing import Any, BinaryIO
 
 import numpy as np
 from markupsafe import Markup, escape
-from matplotlib import rc_context, rcdefaults
+from matplotlib import rcdefaults
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_svg import FigureCanvasSVG
@@ -21,6 +20,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 from matplotlib.transforms import Bbox
 
+from .style import own_style
 from .supervise import RUN
 
 # Of a label beside its point: offset in points, alignment
@@ -35,14 +35,6 @@ COLOURS = ("#4878a8", "#e8a33d", "#7aa874", "#b8678f", "#8a8f99", "#c9574b")
 
 if os.environ.get(RUN):  # in a notebook or a program of the user's they stay as they are
     rcdefaults()  # a matplotlibrc in the working folder has been read already
-
-
-@contextlib.contextmanager
-def own_style() -> Iterator[None]:
-    """Draw with Matplotlib's defaults, whatever the user has set; what is set comes back."""
-    with rc_context():
-        rcdefaults()
-        yield
 
 
 @own_style()

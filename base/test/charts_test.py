@@ -7,7 +7,8 @@ import numpy as np
 from matplotlib import rc_context, rcParams
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-from talbot.base.charts import LINE, SCATTER, bars, curves, front, own_style, svg
+from talbot.base.charts import LINE, SCATTER, bars, curves, front, svg
+from talbot.base.style import own_style
 
 CROWDED = [(1 + 0.02 * i, 5 + 0.05 * i, f"T={i}") for i in range(60)]
 

@@ -11,6 +11,7 @@ from PIL.Image import Image
 
 from talbot.base.gds import db, read_gds
 from talbot.base.page import data_url
+from talbot.base.style import own_style
 from talbot.flow.layout.netlist.netlist import Netlist
 from talbot.flow.layout.netlist.placed import MIRRORED
 from talbot.platforms.coriolis import CoriolisPlatform
@@ -110,6 +111,7 @@ def _mask(view: Any, wanted: tuple[int, int], size: list[int], box: Any) -> Imag
     return pillow.fromarray(gray > 127)
 
 
+@own_style()
 def by_block(
     png: Path,
     netlist: Netlist,

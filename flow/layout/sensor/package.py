@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from talbot.base.steps import StepError
+from talbot.base.style import own_style
 from talbot.platforms.pads import PadProcess
 
 from .ring import OUTSIDE
@@ -172,6 +173,7 @@ def protection(spice: str, cells: Sequence[str]) -> dict[str, str]:
     return found
 
 
+@own_style()
 def draw(paths: Sequence[Path], total: int, found: Sequence[Lead]) -> None:
     """The package from above: leads, bond wires and the die, to scale."""
     from matplotlib.collections import LineCollection

@@ -4,12 +4,15 @@ from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from talbot.base.style import own_style
+
 from .package import signal
 from .plan import BLOCKS, CORE
 
 COLORS = dict(zip((*BLOCKS, CORE), ("#7fb3d5", "#f5b041", "#82c99a", "#c39bd3", "#e6837a"), strict=True))
 
 
+@own_style()
 def by_block(png: Path, plan: dict[str, Any], black_boxes: Collection[str]) -> None:
     """Draw the plan of the step `die_plan`, black boxes hatched."""
     from matplotlib.collections import LineCollection

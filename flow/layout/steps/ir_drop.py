@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from talbot.base.steps import Files
+from talbot.base.style import own_style
 from talbot.platforms.coriolis import CoriolisPlatform, coriolis_platform
 
 from ..netlist.netlist import Netlist
@@ -107,6 +108,7 @@ def breaks(macros: Sequence[Mapping[str, Any]]) -> list[Box]:
     ]
 
 
+@own_style()
 def picture(path: Path, at: Sequence[Point], drop: Values, straps: Rows, plan: Mapping[str, Any]) -> None:
     """Draw the cells, coloured by the sum of their drops, mV; straps as lines."""
     from matplotlib.figure import Figure

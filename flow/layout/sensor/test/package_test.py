@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import pytest
+from matplotlib import rc_context
 
 from talbot.base.steps import StepError
 from talbot.flow.layout.report.metrics import broken
@@ -91,3 +92,11 @@ def test_an_analog_signal_has_no_level_of_its_pad():
     _, found = package.leads(plan(south=["clk", "vref"]))
     clk, vref = found[0], replace(found[1], cell=process.signals["analog"])
     assert package.volts(clk, process, 3.3, 5.0) == 3.3 and package.volts(vref, process, 3.3, 5.0) is None
+
+
+def test_a_users_settings_of_matplotlib_change_no_picture(tmp_path):
+    lead = package.Lead(1, "clk", "pad", (100.0, 200.0), (-3.0, 2.0), (4.0, 4.0))
+    package.draw([tmp_path / "plain.png"], 24, [lead])
+    with rc_context({"figure.facecolor": "red", "font.size": 30, "savefig.bbox": "tight"}):
+        package.draw([tmp_path / "styled.png"], 24, [lead])
+    assert (tmp_path / "plain.png").read_bytes() == (tmp_path / "styled.png").read_bytes()
