@@ -12,6 +12,7 @@ import hashlib
 import os
 import pickle
 import sys
+import sysconfig
 import types
 from collections.abc import Callable, Iterator
 from contextvars import ContextVar
@@ -40,8 +41,8 @@ class Unnamed(TypeError):
 def kept(store: str, compute: Callable[..., T], *arguments: object, most: int = MOST) -> T:
     """Return ``compute(*arguments)``, now or earlier; computed where an argument's content cannot be told.
 
-    store: name of the folder of such values. compute: a function of a module, whose value can be pickled. most: size of
-    the store in bytes.
+    store: name of the folder of such values. compute: a function of a module; a value that cannot be pickled is
+    computed each time. most: size of the store in bytes.
     """
     if _AFRESH.get():
         return compute(*arguments)
@@ -56,7 +57,10 @@ def kept(store: str, compute: Callable[..., T], *arguments: object, most: int = 
                 os.utime(file)
             return pickle.loads(data[HEAD:])
     value = compute(*arguments)
-    data = pickle.dumps(value, pickle.HIGHEST_PROTOCOL)
+    try:
+        data = pickle.dumps(value, pickle.HIGHEST_PROTOCOL)
+    except (pickle.PicklingError, AttributeError, TypeError):  # holds a function within a function
+        return value
     with contextlib.suppress(OSError):  # a full disk, a folder of another user: then it is computed again
         write(file, hashlib.sha256(data).digest() + data)
         _bound(file.parent, most)
@@ -121,15 +125,30 @@ def _parts(value: Any, modules: set[str], above: tuple[int, ...]) -> Iterator[by
     elif dataclasses.is_dataclass(value):
         held = [(field.name, getattr(value, field.name)) for field in dataclasses.fields(value)]
     elif hasattr(value, "__dict__"):
-        held = vars(value).items()
+        computed = functools.cached_property  # of the other attributes
+        kind = type(value)
+        held = [(name, part) for name, part in vars(value).items() if not isinstance(getattr(kind, name, 0), computed)]
     else:
         raise Unnamed(type(value).__name__)
     named = value if isinstance(value, types.FunctionType | type) else type(value)
-    modules |= {named.__module__} if named.__module__.startswith("talbot.") else set()
+    if named.__module__.startswith("talbot."):
+        modules.add(named.__module__)
+    elif not _installed(named.__module__):
+        raise Unnamed(f"{named.__qualname__}: its code is of no package")
     yield f"{named.__module__}.{named.__qualname__} {len(held)}(".encode()
     for item in held:
         yield from _parts(item, modules, above)
     yield b")"
+
+
+@functools.cache
+def _installed(module: str) -> bool:
+    """Whether a module is Python's or of an installed package, whose code stays as it is."""
+    file = getattr(sys.modules.get(module), "__file__", None)
+    if file is None:
+        return module in sys.builtin_module_names
+    folders = {sysconfig.get_path(name) for name in ("stdlib", "platstdlib", "purelib", "platlib")}
+    return module != "__main__" and any(Path(file).is_relative_to(folder) for folder in folders)
 
 
 def _bound(folder: Path, most: int) -> None:

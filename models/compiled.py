@@ -1,22 +1,100 @@
-"""Numba's compiler with a cache that heals: half a file of it, which no program can read, counts as none.
+"""Numba's compiler: imported when the first of its functions is called, with a cache that heals.
 
-Files of a full disk or of a machine that lost power are such; Numba itself ends with what unpickling raises.
+A program whose results are kept (`base.kept`) then starts without Numba, a third of its time. Half a file of Numba's
+cache, which no program can read, counts as none: files of a full disk or of a machine that lost power are such, and
+Numba itself ends with what unpickling raises.
 """
 
-from numba import njit, vectorize
-from numba.core import caching
+from collections.abc import Callable
+from functools import cache, cached_property, update_wrapper
+from typing import Any
 
 __all__ = ["njit", "vectorize"]
 
 
-class _HealingFile(caching.IndexDataCacheFile):
-    def load(self, key: object) -> object:
-        """What is kept under ``key``; where that is damaged, None, and the index is written again."""
-        try:
-            return super().load(key)
-        except Exception:  # unpickling raises nearly anything
-            self.flush()
-            return None
+class Compiled:
+    """A function that Numba compiles when it is first called, or when one that calls it is compiled.
+
+    Parameters
+    ----------
+    function : callable
+        What is compiled.
+    decorator : str
+        Of Numba.
+    *arguments, **options
+        Of the decorator.
+    """
+
+    def __init__(self, function: Callable[..., Any], decorator: str, *arguments: Any, **options: Any) -> None:
+        self._decorated = function, decorator, arguments, options
+        update_wrapper(self, function)
+
+    @cached_property
+    def compiled(self) -> Any:
+        """Numba's dispatcher."""
+        function, decorator, arguments, options = self._decorated
+        return getattr(_numba(), decorator)(*arguments, **options)(function)
+
+    def __call__(self, *arguments: Any, **named: Any) -> Any:
+        """The function's value."""
+        return self.compiled(*arguments, **named)
+
+    def __reduce__(self) -> str:
+        return self.__qualname__  # type: ignore[attr-defined]  # of the function
+
+    @property
+    def _numba_type_(self) -> Any:
+        """What Numba takes this for in functions that call it."""
+        return self.compiled._numba_type_
 
 
-caching.IndexDataCacheFile = _HealingFile
+def njit(**options: Any) -> Callable[[Callable[..., Any]], Any]:
+    """Compile a function as `numba.njit` does.
+
+    Parameters
+    ----------
+    **options
+        Of `numba.njit`.
+
+    Returns
+    -------
+    callable
+        The decorator.
+    """
+    return lambda function: Compiled(function, "njit", **options)
+
+
+def vectorize(signatures: list[str], **options: Any) -> Callable[[Callable[..., Any]], Any]:
+    """Compile a function of numbers for arrays as `numba.vectorize` does.
+
+    Parameters
+    ----------
+    signatures : list of str
+        Types.
+    **options
+        Of `numba.vectorize`.
+
+    Returns
+    -------
+    callable
+        The decorator.
+    """
+    return lambda function: Compiled(function, "vectorize", signatures, **options)
+
+
+@cache
+def _numba() -> Any:
+    import numba
+    from numba.core import caching
+
+    class HealingFile(caching.IndexDataCacheFile):
+        def load(self, key: object) -> object:
+            """What is kept under ``key``; where that is damaged, None, and the index is written again."""
+            try:
+                return super().load(key)
+            except Exception:  # unpickling raises nearly anything
+                self.flush()
+                return None
+
+    caching.IndexDataCacheFile = HealingFile
+    return numba

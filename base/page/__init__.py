@@ -12,6 +12,7 @@ import re
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -80,7 +81,8 @@ class Scale:
         return f"{self.high:.3g}"
 
 
-class Picture(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class Picture:
     """A picture of a page. name: of its file, without a suffix. title: of its section, '' for none."""
 
     name: str
@@ -89,10 +91,15 @@ class Picture(NamedTuple):
     image: Image
     scale: Scale | None = None
 
+    @cached_property
+    def png(self) -> bytes:
+        """The picture as PNG, encoded once for its file and for pages."""
+        return encoded(self.image)
+
     @property
     def src(self) -> str:
         """The picture as a data URL."""
-        return data_url(self.image)
+        return _url(self.png, "PNG")
 
 
 @dataclass(frozen=True)
@@ -111,9 +118,18 @@ class Section:
 
 def data_url(image: Image, kind: str = "PNG", **options: Any) -> str:
     """An image inside a page."""
+    return _url(encoded(image, kind, **options), kind)
+
+
+def encoded(image: Image, kind: str = "PNG", **options: Any) -> bytes:
+    """The bytes of a file of an image."""
     out = io.BytesIO()
     image.save(out, kind, **options)
-    return f"data:image/{kind.lower()};base64,{base64.b64encode(out.getvalue()).decode()}"
+    return out.getvalue()
+
+
+def _url(data: bytes, kind: str) -> str:
+    return f"data:image/{kind.lower()};base64,{base64.b64encode(data).decode()}"
 
 
 def units(value: object) -> str:

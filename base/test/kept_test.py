@@ -1,6 +1,7 @@
 """Values kept by content: computed once, again where anything that decides them changes or the file is damaged."""
 
 import functools
+import importlib.util
 from dataclasses import dataclass
 from multiprocessing import get_context
 from pathlib import Path
@@ -45,6 +46,48 @@ def test_a_value_is_computed_once_for_the_same_content(tmp_path):
     file.write_text("b")
     kept("sums", total, Lens(2.0, np.arange(3)), file)
     assert len(CALLS) == 4
+
+
+def test_a_function_of_a_script_has_no_content(tmp_path):
+    """Its text may change under the same name; a package's is named by its module's code."""
+    script = tmp_path / "script.py"
+    script.write_text("def response(angle):\n    return angle\n")
+    spec = importlib.util.spec_from_file_location("script", script)
+    mine = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(mine)
+    for value in (mine.response, functools.partial(mine.response, 1)):
+        with pytest.raises(Unnamed):
+            content(value)
+    content((np.ma.MaskedArray, functools.partial(total, 1), Path, OSError))
+    for _ in range(2):
+        kept("sums", total, Lens(2.0, np.arange(3)), mine.response)
+    assert len(CALLS) == 2
+
+
+def local(size):
+    CALLS.append(size)
+    return lambda: size
+
+
+def test_a_value_that_cannot_be_pickled_is_computed_each_time(store):
+    assert [kept("local", local, 3)() for _ in range(2)] == [3, 3]
+    assert len(CALLS) == 2 and not (store / "local").exists()
+
+
+def test_what_an_object_computes_of_itself_is_no_content():
+    class Plain:
+        def __init__(self):
+            self.size = 3
+
+        @functools.cached_property
+        def area(self):
+            return self.size**2
+
+    first = Plain()
+    before = content(first)
+    assert first.area == 9 and content(first) == before
+    first.size = 4
+    assert content(first) != before
 
 
 def test_a_value_whose_time_is_measured_is_computed_each_time():

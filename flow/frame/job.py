@@ -4,7 +4,7 @@ import json
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from time import perf_counter
 from typing import Any
@@ -19,9 +19,10 @@ from talbot.flow.simulate.frame import Waves
 from talbot.models.afe import FrontEnd, trim_codes, trim_gain
 from talbot.models.capture import Exposure, Region, Views, captured, exposed, instants, integrate, moving_currents
 from talbot.models.capture import expose as expose_pair
-from talbot.models.chip import front_end_of, golden_frame
+from talbot.models.chip import GoldenFrame, front_end_of, golden_frame
 from talbot.models.digital.stream import decode_stream
-from talbot.models.parameters import SensorParameters
+from talbot.models.digital.stream.frame import DecodedFrame
+from talbot.models.parameters import FrameParameters, SensorParameters, TileParameters
 from talbot.models.pixel import measured_gains
 from talbot.models.plan import Plan, plan
 from talbot.models.scene import Sampling, Scene, load
@@ -56,12 +57,26 @@ class Clock:
 
 def see(request: FrameRequest) -> tuple[Scene, Plan]:
     """The scene that ``request`` names and the plan of its frame. Raises ParameterError."""
-    scene = load(request.scene, Sampling.of(request.sensor), request.depth)
+    scene = _loaded(request)
     for note in scene.notes:
         say(note)
     todo = plan(scene, request.sensor, request.frame)
     instants(scene, request.sensor, todo, request.frame.exposing)  # too fast, or moving in time of flight: refused here
     return scene, todo
+
+
+def _loaded(request: FrameRequest) -> Scene:
+    """The scene; that of a request which names none is kept, with the functions that render it."""
+    sampling = Sampling.of(request.sensor)
+    if request.scene == FrameRequest.scene and request.depth is None:
+        return Scene(**kept("scenes", _parts, request.scene, sampling))
+    return load(request.scene, sampling, request.depth)
+
+
+def _parts(name: str, sampling: Sampling) -> dict[str, Any]:
+    """The fields of a scene: a copy of the scene itself would hold all of its light field."""
+    scene = load(name, sampling)
+    return {item.name: getattr(scene, item.name) for item in fields(scene)}
 
 
 def expose(
@@ -77,23 +92,32 @@ def expose(
     front_end: of an earlier frame of the same chip; None: trimmed to a frame of a flat field. views: None: as many as
     the request says. number: of the frame in a sequence; each has temporal noise of its own.
     """
+    if views or front_end:  # of a sequence: no frame comes again
+        return Exposed(scene, todo, *_samples(request, scene, todo, front_end, views, number))
+    return Exposed(scene, todo, *kept("exposed", _samples, request.of_frame, scene, todo, None, None, number))
+
+
+def _samples(
+    request: FrameRequest, scene: Scene, todo: Plan, front_end: FrontEnd | None, views: Views | None, number: int
+) -> tuple[Views, FrontEnd, Values, Values, Values]:
+    """All of an exposure but its scene and plan; the arguments as of `expose`."""
     sensor, frame = request.lit, request.frame
     front_end = _numbered(front_end or trimmed(request), sensor, number)
     timing = frame.exposing
-    if views:  # of a sequence: no frame comes again
+    if views:
         pairs = moving_currents(scene, sensor, todo, timing, regions=views.regions)
     else:
         views, pairs = kept("captured", captured, scene, sensor, todo, timing, request.views)
 
-    def samples(noise: float) -> Values:
+    def noisy_by(noise: float) -> Values:
         exposure = _exposure(request, noise, number)
         diodes = np.asarray(exposed(pairs, sensor, exposure, trim_gain(front_end.trim)), np.float64)
         return _of_columns(request, diodes, frame.mode)
 
-    noisy = samples(request.noise)
-    clean = samples(0.0) if request.noise else noisy
+    noisy = noisy_by(request.noise)
+    clean = noisy_by(0.0) if request.noise else noisy
     ideal = np.moveaxis(front_end.values(clean, frame.mode), 0, 2)
-    return Exposed(scene, todo, views, front_end, noisy, clean, ideal)
+    return views, front_end, noisy, clean, ideal
 
 
 def trimmed(request: FrameRequest) -> FrontEnd:
@@ -147,9 +171,20 @@ def read_out(
     with clock.step("rtl"):
         chip = hardware.simulate(program, sensor, frame, exposed.samples, exposed.front_end, waves=waves)
     with clock.step("decode"):
-        golden = golden_frame(exposed.samples, sensor, frame, exposed.front_end)
-        decoded = decode_stream(chip.stream, sensor.tile)[0]  # StreamError for a stream without a frame
+        golden = kept("golden", _golden, exposed.samples, sensor, frame, exposed.front_end)
+        decoded = kept("decoded", _decoded, chip.stream, sensor.tile)
     return FrameResult(request, exposed, golden, decoded, chip, program)
+
+
+def _golden(samples: Values, sensor: SensorParameters, frame: FrameParameters, front_end: FrontEnd) -> GoldenFrame:
+    golden = golden_frame(samples, sensor, frame, front_end)
+    _ = golden.stream  # encoded here, and kept with it
+    return golden
+
+
+def _decoded(stream: bytes, tile: TileParameters) -> DecodedFrame:
+    """The first frame of a stream. Raises StreamError where there is none."""
+    return decode_stream(stream, tile)[0]
 
 
 def simulate_frame(request: FrameRequest, note: Callable[[str], None] = lambda text: None) -> FrameResult:

@@ -1,14 +1,16 @@
 """The files of one run: stream, decoded samples, pictures and the report."""
 
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 from markupsafe import Markup
 
 from talbot.base.drawn import drawn
-from talbot.base.page import Picture, Scale
+from talbot.base.kept import kept
+from talbot.base.page import Picture, Scale, encoded
 from talbot.flow.simulate.frame import WAVES
 from talbot.models.parameters import EnergyParameters, LightParameters, sensor_text, sources
 from talbot.models.parameters.drawn import drawn_sources
@@ -32,23 +34,47 @@ NAMES = (
 )
 
 
+MEASURED = "wall_s", "arguments", "tools", "rtl_cycles_per_s"  # of the summary: no picture shows them
+
+
+class Drawn(NamedTuple):
+    """The pictures of a frame, encoded. files: PNG by name, without suffix. The others: as of `report.render`."""
+
+    files: dict[str, bytes]
+    pictures: list[Picture]
+    sheets: list[Picture]
+    views: list[Views]
+
+
 def write(folder: Path, result: FrameResult, summary: dict[str, Any]) -> None:
     """Write everything but summary.json into ``folder``, which exists."""
     (folder / "stream.bin").write_bytes(result.chip.stream)
     result.decoded.save(folder / "decoded.npz")
     (folder / "sensor.toml").write_text(sensor_text(result.request.sensor), encoding="utf-8")
-    singles, errors, sheets = shown(result, summary), error_maps(result, summary), _sheets(result)
-    for picture in (*singles, *errors, *sheets):
-        picture.image.save(folder / f"{picture.name}.png")
-    pictures.overview([(picture.name, picture.image) for picture in singles]).save(folder / "overview.png")
+    told = {name: value for name, value in summary.items() if name not in MEASURED}
+    drawn = kept("pictures", _drawn, result.by_content, told)
+    for name, data in drawn.files.items():
+        (folder / f"{name}.png").write_bytes(data)
     chip = chip_svg(result.request.sensor, result.request.frame)
+    curves = error_plots.figures(result, summary)
+    where, assumed = _where(summary), assumptions(result)
+    page = render(summary, drawn.pictures, chip, drawn.sheets, drawn.views, where, curves, assumed)
+    (folder / "report.html").write_text(page, encoding="utf-8")
+
+
+def _drawn(result: GoldenResult, summary: dict[str, Any]) -> Drawn:
+    """The pictures of a frame. summary: without MEASURED."""
+    singles, errors, sheets = shown(result, summary), error_maps(result, summary), _sheets(result)
+    files = {picture.name: picture.png for picture in (*singles, *errors, *sheets)}
+    files["overview"] = encoded(pictures.overview([(picture.name, picture.image) for picture in singles]))
     fields = _fields(result, summary)
     for name, field in zip(("views", "views_decoded"), fields, strict=False):
-        pictures.view_sheet(field[1]).save(folder / f"{name}.png")
-    curves = error_plots.figures(result, summary)
+        files[name] = encoded(pictures.view_sheet(field[1]))
     every = [picture for single in singles for picture in (single, *(e for e in errors if e.title == single.name))]
-    page = render(summary, every, chip, sheets, _views(fields), _where(summary), curves, assumptions(result))
-    (folder / "report.html").write_text(page, encoding="utf-8")
+    views = _views(fields)
+    for view in views:
+        _ = view.src  # encoded here, and kept with it
+    return Drawn(files, every, sheets, views)
 
 
 def shown(result: GoldenResult, summary: dict[str, Any]) -> list[Picture]:
@@ -109,7 +135,7 @@ def _signed(name: str, caption: str, values: Values, scale: float, unit: str) ->
 def _error(name: str, caption: str, error: Values, unit: str) -> Picture:
     """A signed map; its colours end where all but a hundredth of the pixels are within."""
     scale = max(float(np.nanquantile(np.abs(error), 0.99)), 1e-6)
-    return _signed(f"{name}_error", caption, np.nan_to_num(error), scale, unit)._replace(title=name)
+    return replace(_signed(f"{name}_error", caption, np.nan_to_num(error), scale, unit), title=name)
 
 
 def _depth(result: GoldenResult, summary: dict[str, Any]) -> Picture:
@@ -131,7 +157,7 @@ def _within(result: GoldenResult, image: Values, low: float, high: float) -> tup
     return out, low, high
 
 
-def _sheets(result: FrameResult) -> list[Picture]:
+def _sheets(result: GoldenResult) -> list[Picture]:
     """The contact sheets of the mode."""
     sensor, frame = result.request.sensor, result.request.frame
     if frame.mode not in ("edge", "raw"):
@@ -143,7 +169,7 @@ def _sheets(result: FrameResult) -> list[Picture]:
     return [Picture("edges", f"The {len(edges)} edge images", caption, sheet)]
 
 
-def _fields(result: FrameResult, summary: dict[str, Any]) -> list[tuple[str, Values]]:
+def _fields(result: GoldenResult, summary: dict[str, Any]) -> list[tuple[str, Values]]:
     """Captions and light fields l[v, u, y, x] to show, relative radiance: the scene's, and in raw mode its estimate."""
     scene, out = result.exposed.scene, []
     if scene.angular or result.request.frame.mode == "raw":

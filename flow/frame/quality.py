@@ -95,24 +95,20 @@ def image_quality(result: GoldenResult) -> dict[str, float | str | None]:
 
     image_jpegxl_absent: why JPEG XL has no figure here; None where it has.
     """
-    part = part_read(result.golden.read)
-    truth = np.asarray(result.exposed.scene.image, float)[part]
     codecs = [name for name in CODECS if not absent(name)]
-    figures = kept(
-        "images", image_figures, result.image[part], truth, coded_sum(result)[part], len(result.stream), codecs, VERSION
-    )
+    figures = kept("images", image_figures, result.by_content, len(result.stream), codecs, VERSION)
     none = {f"image_{figure}": None for name in CODECS for figure in (f"psnr_{name}_db", f"ssim_{name}")}
     return {"image_jpegxl_absent": absent("jpegxl")} | none | figures
 
 
-def image_figures(
-    image: Values, truth: Values, seen: Values, size: int, codecs: Sequence[str], version: str
-) -> dict[str, float | None]:
-    """PSNR and SSIM against ``truth`` of ``image``, of flat gray, of ``seen``, and of it in ``size`` bytes of a codec.
+def image_figures(result: GoldenResult, size: int, codecs: Sequence[str], version: str) -> dict[str, float | None]:
+    """PSNR and SSIM of the image, of flat gray, of the coded sum, and of it in ``size`` bytes of each codec.
 
     version: of Pillow, which has most codecs.
     """
-    images = {"": image, "_gray": np.zeros_like(truth), "_sum": seen}
+    part = part_read(result.golden.read)
+    truth, seen = np.asarray(result.exposed.scene.image, float)[part], coded_sum(result)[part]
+    images = {"": result.image[part], "_gray": np.zeros_like(truth), "_sum": seen}
     images |= {f"_{name}": coded(seen, name, size) for name in codecs}
     out: dict[str, float | None] = {}
     for name, shown in images.items():

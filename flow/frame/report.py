@@ -1,8 +1,10 @@
 """The report: one self-contained page from the summary, the pictures and the charts."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from markupsafe import Markup
 from PIL.Image import Image
@@ -19,7 +21,8 @@ VIEW = 256  # px, width of a view on a page at most
 SHEET = 1600  # px, width of all views on a page at most
 
 
-class Views(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class Views:
     """Views of a light field for the slider. columns: views along an axis. sprite: all, edge to edge."""
 
     caption: str
@@ -32,7 +35,7 @@ class Views(NamedTuple):
         """Of pictures, row by row."""
         return cls(caption, len(views), sprite(views, min(VIEW, SHEET // len(views))), scale)
 
-    @property
+    @cached_property
     def src(self) -> str:
         """The sprite as a data URL."""
         return page.data_url(self.sprite, "WEBP", quality=82)

@@ -87,6 +87,11 @@ class FrameRequest:
         return parameters.circuit_columns() if self.sensor.converter == CONVERTERS["circuit"] else None
 
     @property
+    def of_frame(self) -> "FrameRequest":
+        """What of it decides a frame of a scene that is loaded: the content of what is kept depends on no file."""
+        return replace(self, scene=self.name, depth=None, waves=None, waves_format=WAVES[0], out=None)
+
+    @property
     def name(self) -> str:
         """Name of the scene without folder and suffix."""
         return self.scene.name if isinstance(self.scene, LightField) else named(self.scene)

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
@@ -16,13 +17,14 @@ from talbot.models.parameters import SensorParameters
 from talbot.models.pixel.time_of_flight import quadrature
 from talbot.models.plan import Plan
 from talbot.models.reconstruct import edge_images, rebuild, sum_image
-from talbot.models.reconstruct.methods import Found
 from talbot.models.reconstruct.rebuild import Rebuilt
 from talbot.models.scene import Scene
 
-from . import light_field
 from .hardware import HardwareFrame
 from .request import FrameRequest
+
+if TYPE_CHECKING:
+    from talbot.models.reconstruct.methods import Found
 
 PHASE_TURN = 2 * np.pi / 256  # rad a code
 
@@ -58,6 +60,11 @@ class GoldenResult:
     def stream(self) -> bytes:
         """The bytes that were decoded."""
         return self.golden.stream
+
+    @property
+    def by_content(self) -> "GoldenResult":
+        """Itself as an argument of `kept`: without what changes from run to run."""
+        return GoldenResult(self.request.of_frame, self.exposed, self.golden, self.decoded)
 
     @cached_property
     def sensor(self) -> SensorParameters:
@@ -106,11 +113,15 @@ class GoldenResult:
     @property
     def light_field_method(self) -> str:
         """Name of the method of `estimate`; raw mode only."""
+        from . import light_field  # it imports for long
+
         return light_field.method_of(self)
 
     @cached_property
-    def estimate(self) -> Found:
+    def estimate(self) -> "Found":
         """The light field from the decoded diodes, relative radiance, by `light_field_method`; raw mode only."""
+        from . import light_field
+
         return light_field.estimate(self, self.light_field_method)
 
 

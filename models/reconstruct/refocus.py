@@ -9,7 +9,6 @@ from collections.abc import Iterator
 
 import numpy as np
 import numpy.typing as npt
-from scipy.ndimage import gaussian_filter, map_coordinates
 
 Floats = npt.NDArray[np.floating]
 POOL = 2.0  # px, standard deviation of the weights around a pixel with which its neighbours' differences count
@@ -77,6 +76,8 @@ def disparity_of(light_field: Floats, tried: npt.NDArray[np.float64]) -> tuple[F
     spread : float64 (rows, cols)
         Its standard deviation: infinite where the light is uniform, or where an end of ``tried`` is the best.
     """
+    from scipy.ndimage import gaussian_filter  # it imports for long
+
     reference = np.asarray(light_field, float).mean((0, 1))
     count = 0
     errors = np.empty((len(tried), *reference.shape))
@@ -115,6 +116,8 @@ def all_in_focus(light_field: Floats, disparity: Floats) -> Floats:
     array (rows, cols)
         Mean of the rays that meet in each pixel of the middle; linear between pixels, constant outside.
     """
+    from scipy.ndimage import map_coordinates  # it imports for long
+
     y, x = np.indices(disparity.shape, float)
     rays = [
         map_coordinates(view, (y - dv * disparity, x - du * disparity), order=1, mode="nearest")

@@ -8,7 +8,6 @@ from collections.abc import Callable
 
 import numpy as np
 import numpy.typing as npt
-from skimage.data import stereo_motorcycle
 
 from talbot.models.parameters import check_real
 
@@ -39,6 +38,8 @@ def motorcycle(sampling: Sampling) -> Scene:
     ----------
     [Scharstein2014].
     """
+    from skimage.data import stereo_motorcycle  # it imports for long
+
     left, right, measured = stereo_motorcycle()
     lens = sampling.camera
     _check_field(measured.shape, sampling)

@@ -4,7 +4,6 @@ from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
-from skimage import data
 
 from . import camera, resample
 from .depth_file import read_depth
@@ -32,6 +31,8 @@ def photograph(name: str, sampling: Sampling) -> Scene:
     Scene
         With constant disparity and depth.
     """
+    from skimage import data  # it imports for long
+
     codes = getattr(data, name)()
     return scene_of(name, resample.linear(codes), sampling)
 

@@ -1,6 +1,6 @@
 """From a picture with disparity to the whole light field l[v, u, y, x], with occlusion."""
 
-from functools import lru_cache, partial
+from functools import cached_property, lru_cache, partial
 
 import numpy as np
 import numpy.typing as npt
@@ -28,13 +28,17 @@ class Second:
     """
 
     def __init__(self, image: Floats, disparity: Floats, scale: float, offset: float) -> None:
-        self.image, self.scale, self.offset = image, scale, offset
-        everywhere = np.ones(disparity.shape, bool)
-        here = np.full(disparity.shape, warp.NO_SURFACE)
-        warp.splat(here, disparity, everywhere, -scale, -offset, 0.0, 0.0)
-        self.alone = here == warp.NO_SURFACE  # shown by this picture alone
-        warp.fill_rows(here, self.alone)
-        self.disparity = here
+        self.image, self.first, self.scale, self.offset = image, disparity, scale, offset
+
+    @cached_property
+    def own(self) -> tuple[Floats, Bools]:
+        """Disparity of what this picture shows, and where it alone shows it, both (rows, cols)."""
+        everywhere = np.ones(self.first.shape, bool)
+        here = np.full(self.first.shape, warp.NO_SURFACE)
+        warp.splat(here, self.first, everywhere, -self.scale, -self.offset, 0.0, 0.0)
+        alone = here == warp.NO_SURFACE
+        warp.fill_rows(here, alone)
+        return here, alone
 
     def claim(self, surface: Floats, dv: float, du: float) -> Bools:
         """Fill the holes of a view's disparity map in place where this picture shows their contents.
@@ -51,9 +55,9 @@ class Second:
         bool (rows, cols)
             Pixels filled.
         """
-        own = np.full(surface.shape, warp.NO_SURFACE)
-        warp.splat(own, self.disparity, self.alone, self.scale, self.offset, dv, du)
-        return warp.claim(surface, own, self.image.shape[1] - 1, du - self.scale, -self.offset)
+        shown = np.full(surface.shape, warp.NO_SURFACE)
+        warp.splat(shown, *self.own, self.scale, self.offset, dv, du)
+        return warp.claim(surface, shown, self.image.shape[1] - 1, du - self.scale, -self.offset)
 
 
 def view(
@@ -130,9 +134,13 @@ class Pictured:
         self, image: Floats, disparity: Floats, sampling: Sampling, second: Second | None = None, margin: int = 0
     ) -> None:
         self.image, self.disparity, self.sampling, self.second, self.margin = image, disparity, sampling, second, margin
-        self.use = warp.unmixed(disparity)
         self.reach = int(np.ceil(np.abs(disparity).max() * sampling.views / 2)) + 2  # px: of the pupil's rim
         self.inner = (slice(margin, margin + sampling.rows), slice(margin, margin + sampling.cols))
+
+    @cached_property
+    def use(self) -> Bools:
+        """Pixels whose disparity is of one surface, bool (rows + 2 margin, cols + 2 margin)."""
+        return warp.unmixed(self.disparity)
 
     def __call__(self, wanted: Bools) -> View:
         """Views at some pixels.

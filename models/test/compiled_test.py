@@ -1,8 +1,12 @@
-"""Numba's cache: kept, and a damaged file of it is made again."""
+"""Numba's compiler, imported when it is needed; its cache: kept, and a damaged file of it is made again."""
 
 import importlib.util
+import pickle
 
+import numpy as np
 import pytest
+
+from talbot.models.compiled import njit, vectorize
 
 SOURCE = """
 from talbot.models.compiled import njit
@@ -22,7 +26,8 @@ def stats(tmp_path):
         module = importlib.util.module_from_spec(spec)
         spec.loader.exec_module(module)
         assert module.double(3) == 6
-        return sum(module.double.stats.cache_hits.values()), sum(module.double.stats.cache_misses.values())
+        stats = module.double.compiled.stats
+        return sum(stats.cache_hits.values()), sum(stats.cache_misses.values())
 
     return called
 
@@ -34,3 +39,26 @@ def test_what_is_damaged_is_compiled_again(stats, tmp_path, suffix):
     for damaged in (b"", file.read_bytes()[:300], bytes(range(256))):
         file.write_bytes(damaged)
         assert [stats(), stats()] == [(0, 1), (1, 0)]
+
+
+@njit()
+def doubled(x):
+    return 2 * x
+
+
+@njit()
+def quadrupled(x):
+    return doubled(doubled(x))
+
+
+@vectorize(["float64(float64)"])
+def eightfold(x):
+    return doubled(quadrupled(x))
+
+
+def test_compiled_functions_call_one_another():
+    np.testing.assert_array_equal(eightfold(np.arange(3.0)), [0, 8, 16])
+
+
+def test_a_compiled_function_is_pickled_by_its_name():
+    assert pickle.loads(pickle.dumps(quadrupled)) is quadrupled

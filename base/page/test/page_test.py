@@ -2,6 +2,7 @@
 
 import os
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -151,7 +152,7 @@ def test_a_folder_without_a_page_gets_no_index(tmp_path):
 
 
 def test_what_is_broad_has_more_than_a_column():
-    wide = PICTURE._replace(image=Image.new("RGB", (20, 5)))
+    wide = replace(PICTURE, image=Image.new("RGB", (20, 5)))
     figures = [Figure((width, 3)) for width in (4.6, 12)]
     text = page(sections=[Section(pictures=[PICTURE, wide], charts=[svg(figure) for figure in figures])])
     assert text.count('<figure class="broad">') == text.count('class="broad" role="img"') == 1

@@ -1,5 +1,8 @@
 """The page of a frame: error maps are the figures' errors, scales hold the values, words are those of the mode."""
 
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
@@ -70,3 +73,11 @@ def test_words_of_the_bytes(mode):
     assert list(summary["bytes"]) == ["header", "samples", "marks", "trailer"]
     assert sum(summary["bytes"].values()) == summary["stream_bytes"]
     assert report.FIRST[-1] == "image"
+
+
+def test_a_frame_is_prepared_without_numba_and_scipy():
+    """Both import for longer than a frame takes whose results are kept."""
+    program = "import sys, talbot.flow.frame.job, talbot.flow.frame.outputs; print(*sys.modules)"
+    out = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout.split()
+    assert "numpy" in out
+    assert not {"numba", "scipy", "skimage", "matplotlib", "joblib"} & {*out}

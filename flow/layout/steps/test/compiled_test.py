@@ -4,13 +4,13 @@ import json
 from types import ModuleType
 
 import pytest
-from numba.core.dispatcher import Dispatcher
 
 from talbot.flow.layout.parasitics import bins, capacitance, shapes, trees
 from talbot.flow.layout.parasitics.test.extract_test import ROUTE, nets, top
 from talbot.flow.layout.route import grid, index
 from talbot.flow.layout.route.test import route_test
 from talbot.flow.layout.steps.compiled import Compiled
+from talbot.models.compiled import Compiled as Loop
 
 pytestmark = pytest.mark.needs("layout")
 
@@ -21,7 +21,7 @@ LOOPS = bins, capacitance, shapes, trees, grid, index
 def compiled(module: ModuleType) -> dict[str, int]:
     """How often each loop of a module was compiled in this process."""
     found = vars(module).values()
-    return {loop.__name__: len(loop.signatures) for loop in found if isinstance(loop, Dispatcher)}
+    return {loop.__name__: len(loop.compiled.signatures) for loop in found if isinstance(loop, Loop)}
 
 
 def test_a_layout_after_it_compiles_nothing(tmp_path):
