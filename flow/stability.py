@@ -71,8 +71,8 @@ def run(options: Namespace) -> int:
 
 def frame_cases(name: str, arguments: dict[str, Any]) -> list[Case]:
     """Simulate a frame in Verilog: no byte may differ from the golden model, and every figure is finite."""
-    asked = request(**arguments)
-    result = job.simulate_frame(asked)
+    frame_request = request(**arguments)
+    result = job.simulate_frame(frame_request)
     exposed, summary = result.exposed, summarize(result)
     wrong = summary["stream_mismatches"] + summary["decoded_mismatches"]
     finite = bool(np.isfinite(exposed.samples).all() and np.isfinite(exposed.ideal).all())

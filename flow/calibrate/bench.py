@@ -89,8 +89,8 @@ class Bench:
         )
         out = np.empty((2, *kinds.shape))
         for number, kind in enumerate(sensor.tile.types):
-            own = kinds == number
-            out[:, own] = density((kind,), sensor.optics, x[own], y[own])[0]
+            of_type = kinds == number
+            out[:, of_type] = density((kind,), sensor.optics, x[of_type], y[of_type])[0]
         return out
 
     @cached_property

@@ -37,16 +37,16 @@ def run(options: Namespace) -> int:
     typed = typed_of(options, add_arguments)
     standard = list(typed.items()) == [("scene", SCENE)]
     options.out = options.out or results_of("calibrate") / ("" if standard else name_of(typed))
-    asked = request_of(options)
-    check_folder("out", asked.folder)
+    frame_request = request_of(options)
+    check_folder("out", frame_request.folder)
     with Steps(STEPS, lines=True) as progress:
-        done = calibrate(asked, holes, progress.note)
+        done = calibrate(frame_request, holes, progress.note)
         progress.note("report")
-        with staged(asked.folder, page.NAMES) as part:
+        with staged(frame_request.folder, page.NAMES) as part:
             page.write(part, done)
             summary = done.summary | {"arguments": typed}
             (part / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n", encoding="utf-8")
-    _print(done.summary, asked.folder)
+    _print(done.summary, frame_request.folder)
     return 0
 
 

@@ -96,9 +96,9 @@ def _ends(kind: Any, true: Any) -> tuple[tuple[Any, str], ...]:
 def _picture(request: FrameRequest, calibration: Calibration) -> dict[str, Any]:
     """PSNR (dB) of the scene's light field by every method, with the calibration and with the true optics."""
     result = golden_result(replace(request, calibration=calibration))
-    found = read_back(result, prior_of(result)).summary
-    methods = {name: figures["psnr_db"] for name, figures in found["methods"].items()}
-    return {"scene": request.name, "calibrated": methods, "true_optics": found["true_optics"]} | found["baselines"]
+    summary = read_back(result, prior_of(result)).summary
+    methods = {name: figures["psnr_db"] for name, figures in summary["methods"].items()}
+    return {"scene": request.name, "calibrated": methods, "true_optics": summary["true_optics"]} | summary["baselines"]
 
 
 def _rms(error: Values) -> float:

@@ -100,8 +100,8 @@ def _figures(done: Calibrated) -> list[Figure]:
         kind, (a, b) = types[chosen], sweep.diodes[row, block, chosen].T
         nu = sweep.holes[row, 1]
         fine = np.linspace(nu.min(), nu.max(), 121)
-        one, two = density((kind,), OpticsParameters(m=kind.m or 0), fine, 0 * fine)[0]
-        wave = (one - two) / np.maximum(one + two, 1e-12)
+        first, second = density((kind,), OpticsParameters(m=kind.m or 0), fine, 0 * fine)[0]
+        wave = (first - second) / np.maximum(first + second, 1e-12)
         points = {
             "fitted": [(x, y, "") for x, y in zip(fine, wave, strict=True)],
             "measured": [(x, y, "") for x, y in zip(nu, (a - b) / (a + b), strict=True)],

@@ -86,19 +86,19 @@ def capture(
         if code is not None:
             chip = replace(request, sensor=replace(request.sensor, electrical=code))
             by_code = chip, expose(chip, scene, plan(scene, chip.sensor, chip.frame), views=views)
-    asked = [(request, exposed), (replace(request, frame=replace(request.frame, phase=True)), exposed)]
-    asked += _raw(request, exposed)
-    count = len(asked)
+    exposures = [(request, exposed), (replace(request, frame=replace(request.frame, phase=True)), exposed)]
+    exposures += _raw(request, exposed)
+    count = len(exposures)
     if by_code is not None:
-        asked += [by_code, *_raw(*by_code)]
+        exposures += [by_code, *_raw(*by_code)]
     if golden:
         with clock.step("frames"):
-            read = [read_golden(*frame) for frame in each(asked, "frame")]
+            read = [read_golden(*frame) for frame in each(exposures, "frame")]
     else:
         with clock.step("build"):
             program = hardware.program(request.sensor, note=note)
         with clock.step("frames"):
-            read = [read_out(*frame, program) for frame in each(asked, "frame")]
+            read = [read_out(*frame, program) for frame in each(exposures, "frame")]
     still = None if straight is None else np.moveaxis(straight, 2, 0)
     return DepthFrames(read[0], read[1], tuple(read[2:count]), tuple(read[count:]), still)
 

@@ -49,33 +49,33 @@ def run(options: Namespace) -> int:
     from .capture import capture
     from .measure import Depth, read_depth
 
-    own = STANDARD.electrical
-    ours = replace(own, f_mod=F_MOD, contrast=CONTRAST, ambient_current=AMBIENT * own.white_current)
+    standard = STANDARD.electrical
+    ours = replace(standard, f_mod=F_MOD, contrast=CONTRAST, ambient_current=AMBIENT * standard.white_current)
     default = replace(STANDARD, optics=replace(STANDARD.optics, camera=LIFE_SIZE), electrical=ours)
     sensor = asked_sensor(options, default)
-    e, given = sensor.electrical, {}
+    e, changes = sensor.electrical, {}
     if options.f_mod is not None:
-        given["f_mod"] = F_MOD_HZ.value(options)
+        changes["f_mod"] = F_MOD_HZ.value(options)
     if options.contrast is not None:
-        given["contrast"] = CONTRASTS.value(options)
+        changes["contrast"] = CONTRASTS.value(options)
     if options.ambient is not None:
-        given["ambient_current"] = AMBIENTS.value(options) * e.white_current
+        changes["ambient_current"] = AMBIENTS.value(options) * e.white_current
     camera = camera_of(options, sensor.optics.camera)
-    sensor = replace(sensor, optics=replace(sensor.optics, camera=camera), electrical=replace(e, **given))
-    asked, typed = reading.asked(options, "depth", add_arguments, sensor)
-    prior, code = prior_asked(options, asked), _code(options, asked.sensor.electrical)
+    sensor = replace(sensor, optics=replace(sensor.optics, camera=camera), electrical=replace(e, **changes))
+    frame_request, typed = reading.asked(options, "depth", add_arguments, sensor)
+    prior, code = prior_asked(options, frame_request), _code(options, frame_request.sensor.electrical)
 
     def found(note: reading.Note) -> Depth:
-        frames = capture(asked, note, options.golden, code, options.direct)
+        frames = capture(frame_request, note, options.golden, code, options.direct)
         return read_depth(frames, prior(frames.sums), note)
 
-    return reading.run(asked, typed, STEPS, found, page, _print)
+    return reading.run(frame_request, typed, STEPS, found, page, _print)
 
 
-def _code(options: Namespace, own: ElectricalParameters) -> ElectricalParameters | None:
+def _code(options: Namespace, electrical: ElectricalParameters) -> ElectricalParameters | None:
     """What modulates the light of the coded frames, None without any. Raises ParameterError."""
     chips, rate, gate = (number.value(options) for number in (CODE, CHIP_RATE, GATE))
-    coded = replace(own, code=chips, chip_rate=rate, code_delay=2 * gate / SPEED_OF_LIGHT)
+    coded = replace(electrical, code=chips, chip_rate=rate, code_delay=2 * gate / SPEED_OF_LIGHT)
     return coded if chips else None
 
 

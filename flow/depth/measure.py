@@ -86,16 +86,16 @@ def read_depth(frames: DepthFrames, prior: FieldPrior, note: Callable[[str], Non
     coarse, doubt = by_disparity(result, field, prior)
     depth, sure = {}, {}
     for name, phase in _phases(frames, field, ideal, white).items():
-        found = unwrap(np.where(over, np.nan, phase), coarse / ambiguity, doubt / ambiguity)
-        depth[name], sure[name] = found.turns * ambiguity, found.sure
+        unwrapped = unwrap(np.where(over, np.nan, phase), coarse / ambiguity, doubt / ambiguity)
+        depth[name], sure[name] = unwrapped.turns * ambiguity, unwrapped.sure
     for name, got in _coded(frames, estimator, white).items():
         depth[name], sure[name] = got.depth, got.sure & ~over
     left_out = _three(estimator, diodes, white) if still(diodes, NOISE) else None
     if left_out is not None:
         phase, amplitude = demodulate(left_out[0].centre * white)
         phase = np.where(over | (amplitude < FAINT), np.nan, phase)
-        found = unwrap(phase, coarse / ambiguity, doubt / ambiguity)
-        depth["three"], sure["three"] = found.turns * ambiguity, found.sure
+        unwrapped = unwrap(phase, coarse / ambiguity, doubt / ambiguity)
+        depth["three"], sure["three"] = unwrapped.turns * ambiguity, unwrapped.sure
     lead = leading(depth)
     depth = {lead: depth[lead]} | depth
     methods = {name: figures(depth[name], truth, sure[name], ambiguity) for name in depth}
@@ -177,21 +177,21 @@ def by_disparity(result: GoldenResult, field: DepthField | Estimate, prior: Fiel
     sampling = Sampling.of(result.sensor)
     middle, width = (prior.near + prior.far) / 2, (prior.near - prior.far) / np.sqrt(12)
     spread = np.hypot(field.spread, LOOSE)
-    told = np.maximum(1 / spread**2 - 1 / max(width, LOOSE) ** 2, 0)
-    known = told > 0
-    told = np.where(known, told, 1)
-    disparity = middle + (field.disparity - middle) / spread**2 / told
+    information = np.maximum(1 / spread**2 - 1 / max(width, LOOSE) ** 2, 0)
+    known = information > 0
+    information = np.where(known, information, 1)
+    disparity = middle + (field.disparity - middle) / spread**2 / information
     step = (prior.near - prior.far) / max(prior.disparities - 1, 1)
     room = np.minimum(field.disparity - prior.far, prior.near - field.disparity)
     ends = room < EDGE * step + field.spread
     depth = camera.depth(np.clip(disparity, prior.far, prior.near), sampling)
-    doubt = depth**2 / camera.per_inverse_metre(sampling) / np.sqrt(told)
+    doubt = depth**2 / camera.per_inverse_metre(sampling) / np.sqrt(information)
     return depth, np.where(known & ~ends, doubt, np.inf)
 
 
-def figures(found: Values, truth: Values, sure: Bools, ambiguity: float) -> dict[str, float | None]:
+def figures(depth: Values, truth: Values, sure: Bools, ambiguity: float) -> dict[str, float | None]:
     """Errors of a depth in m: RMS where it is sure and everywhere, and modulo a turn; share of wrong turns."""
-    error = found - truth
+    error = depth - truth
     modulo = (error + ambiguity / 2) % ambiguity - ambiguity / 2
     return {
         "rms_m": rms(error[sure]),
@@ -226,15 +226,15 @@ def _behind(
     # Each pixel from where its own depth is in focus
     for disparity in np.linspace(float(ends[0]), float(ends[1]), PLANES):
         passed, strength = _passing(phasors, disparity, clear)
-        found, all_rays = (
+        behind, all_rays = (
             _beyond(np.angle(p), limit, ambiguity) for p in (passed, refocused(phasors, disparity, None))
         )
         here = np.abs(passed) > 0
         agreed = np.where(here, np.abs(passed) / np.where(here, strength, 1), 1)
         between = np.sqrt(-2 * np.log(np.minimum(agreed, 1))) / (2 * np.pi)
-        away = np.where(here, np.abs(camera.disparity(found, sampling) - disparity), np.inf)
+        away = np.where(here, np.abs(camera.disparity(behind, sampling) - disparity), np.inf)
         better = (away < off) | ~seen
-        pairs = (found, depth), (all_rays, mixed), (between, apart), (away, off)
+        pairs = (behind, depth), (all_rays, mixed), (between, apart), (away, off)
         depth, mixed, apart, off = (np.where(better, *pair) for pair in pairs)
         seen |= here
     seen &= apart < APART
@@ -253,10 +253,10 @@ def _passing(phasors: Complexes, disparity: float, clear: Sequence[Bools]) -> tu
     """Mean phasor of the rays that pass, and mean of their amplitudes: of the first of ``clear`` that has some."""
     out = []
     for values in (phasors, np.abs(phasors).astype(complex)):
-        found = refocused(values, disparity, clear[0])
+        depth = refocused(values, disparity, clear[0])
         for rays in clear[1:]:
-            found = np.where(np.abs(found) > 0, found, refocused(values, disparity, rays))
-        out.append(found)
+            depth = np.where(np.abs(depth) > 0, depth, refocused(values, disparity, rays))
+        out.append(depth)
     return out[0], np.abs(out[1])
 
 

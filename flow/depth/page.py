@@ -29,25 +29,25 @@ TEXTS = {
 }
 
 
-def write(folder: Path, found: Depth) -> None:
+def write(folder: Path, depth: Depth) -> None:
     """Write everything but summary.json into ``folder``, which exists."""
-    s = found.summary
-    best, sure = found.depth[found.lead], found.sure[found.lead]
-    arrays = {"taps": found.field.taps.astype(np.float16), "disparity": found.field.disparity, "confidence": sure}
+    s = depth.summary
+    best, sure = depth.depth[depth.lead], depth.sure[depth.lead]
+    arrays = {"taps": depth.field.taps.astype(np.float16), "disparity": depth.field.disparity, "confidence": sure}
     arrays |= {"depth": best.astype(np.float32)}
-    if found.behind is not None:
-        arrays["behind"] = found.behind.astype(np.float32)
+    if depth.behind is not None:
+        arrays["behind"] = depth.behind.astype(np.float32)
     np.savez(folder / "depth.npz", allow_pickle=False, **arrays)
-    shown = _depths(found)
+    shown = _depths(depth)
     groups = [
         Section("Every method beside what costs nothing", head=HEAD, rows=rows(s)),
         Section("Depth", "Gray: the number of turns is not known, or there is no phase.", pictures=shown),
         Section(
-            "Refocused", "Phase through the whole lens: sharp at one depth, mixed at others.", pictures=_focus(found)
+            "Refocused", "Phase through the whole lens: sharp at one depth, mixed at others.", pictures=_focus(depth)
         ),
     ]
-    if found.behind is not None:
-        groups.append(Section("Past the occluder", _past(s), pictures=_behind(found)))
+    if depth.behind is not None:
+        groups.append(Section("Past the occluder", _past(s), pictures=_behind(depth)))
     text = render(
         TABLES,
         f"{s['scene']}: depth by time of flight",
@@ -115,40 +115,40 @@ def _picture(name: str, caption: str, values: Values, ends: tuple[float, float])
     return Picture(name, "", caption, pictures.depth(values, *ends), scale)
 
 
-def _depths(found: Depth) -> list[Picture]:
-    truth = found.truth
+def _depths(depth: Depth) -> list[Picture]:
+    truth = depth.truth
     ends = _ends(truth)
-    wrapped = found.depth[SINE] % found.summary["ambiguity_m"]
+    wrapped = depth.depth[SINE] % depth.summary["ambiguity_m"]
 
     def known(method: str, name: str) -> Picture:
-        return _picture(name, TEXTS[method], np.where(found.sure[method], found.depth[method], np.nan), ends)
+        return _picture(name, TEXTS[method], np.where(depth.sure[method], depth.depth[method], np.nan), ends)
 
     return [
         _picture("true", "depth of the scene", truth, ends),
-        known(found.lead, "depth"),
-        *([known(SINE, "sine")] if found.lead != SINE else []),
-        _picture("wrapped", f"{TEXTS[SINE]}, modulo a turn", wrapped, (0, found.summary["ambiguity_m"])),
-        _picture("coarse", "depth by disparity alone", found.coarse, ends),
+        known(depth.lead, "depth"),
+        *([known(SINE, "sine")] if depth.lead != SINE else []),
+        _picture("wrapped", f"{TEXTS[SINE]}, modulo a turn", wrapped, (0, depth.summary["ambiguity_m"])),
+        _picture("coarse", "depth by disparity alone", depth.coarse, ends),
         known("divider", "divider"),
     ]
 
 
-def _focus(found: Depth) -> list[Picture]:
+def _focus(depth: Depth) -> list[Picture]:
     scale = Scale(pictures.angle_colours(), 0, 360, "degrees")
     out = []
     for name, disparity in zip(
-        ("far", "middle", "near"), np.quantile(found.field.disparity, (0.05, 0.5, 0.95)), strict=True
+        ("far", "middle", "near"), np.quantile(depth.field.disparity, (0.05, 0.5, 0.95)), strict=True
     ):
-        phase = np.angle(refocused(found.field.phasors, float(disparity)))
+        phase = np.angle(refocused(depth.field.phasors, float(disparity)))
         caption = f"phase, focused {name}: at {disparity:+.2f} px a view step"
         out.append(Picture(name, "", caption, pictures.angle(phase / 2 % np.pi - np.pi / 2), scale))
     return out
 
 
-def _behind(found: Depth) -> list[Picture]:
-    truth = np.asarray(found.frames.sums.exposed.scene.behind)
+def _behind(depth: Depth) -> list[Picture]:
+    truth = np.asarray(depth.frames.sums.exposed.scene.behind)
     ends = _ends(truth)
     return [
         _picture("true-behind", "depth behind the occluder, of the scene", truth, ends),
-        _picture("behind", "found with the rays that pass it", np.asarray(found.behind), ends),
+        _picture("behind", "found with the rays that pass it", np.asarray(depth.behind), ends),
     ]

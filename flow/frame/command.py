@@ -131,13 +131,13 @@ def run(options: Namespace) -> int:
         return 0
     typed = typed_of(options, add_arguments)
     options.out = options.out or results_of("sim") / name_of(typed)
-    asked = request_of(options)
+    frame_request = request_of(options)
     from .job import STEPS, run  # Matplotlib and more: not before the arguments are right
 
-    before = arguments_of(asked.folder)
+    before = arguments_of(frame_request.folder)
     with Steps(STEPS) as steps:
-        summary = run(asked, steps.note, typed)
-    _print_figures(summary, asked.folder)
+        summary = run(frame_request, steps.note, typed)
+    _print_figures(summary, frame_request.folder)
     tell_replaced(before, typed)
     return 1 if summary["stream_mismatches"] or summary["decoded_mismatches"] else 0
 
@@ -175,8 +175,8 @@ def tell_replaced(before: dict[str, Any] | None, typed: dict[str, Any]) -> None:
 def arguments_of(folder: Path) -> dict[str, Any] | None:
     """The arguments of the run whose results are in ``folder``, None where there is none."""
     try:
-        found = json.loads((folder / "summary.json").read_text(encoding="utf-8"))["arguments"]
-        return found if found["scene"] else None
+        arguments = json.loads((folder / "summary.json").read_text(encoding="utf-8"))["arguments"]
+        return arguments if arguments["scene"] else None
     except (OSError, ValueError, LookupError, TypeError):
         return None
 
@@ -224,12 +224,12 @@ def request_of(a: Namespace, sensor: SensorParameters | None = None, sequence: b
     )
 
 
-def camera_of(a: Namespace, own: CameraParameters) -> CameraParameters:
+def camera_of(a: Namespace, camera: CameraParameters) -> CameraParameters:
     """The sensor's ``own`` camera with what the options ``a`` change."""
     field = {"focal": "focal_length", "pupil": "exit_pupil"}
-    given = {name: getattr(a, name) for name in (option.replace("-", "_") for option in CAMERA)}
-    chosen = {field.get(n, n): text.real(n, v, 0, float("inf")) for n, v in given.items() if v is not None}
-    return replace(own, **chosen)
+    texts = {name: getattr(a, name) for name in (option.replace("-", "_") for option in CAMERA)}
+    chosen = {field.get(n, n): text.real(n, v, 0, float("inf")) for n, v in texts.items() if v is not None}
+    return replace(camera, **chosen)
 
 
 def _print_figures(s: dict[str, Any], folder: Path) -> None:
@@ -247,8 +247,8 @@ def _print_figures(s: dict[str, Any], folder: Path) -> None:
     if s["light_field_psnr_db"] is not None:
         print(f"  light field, {s['light_field_method']}: {light_field(s)}")
     if "light_field_psnr_true_optics_db" in s:
-        found, true = (decibels(s[f"light_field_psnr{end}_db"]) for end in ("", "_true_optics"))
-        print(f"  light field {found}; with the true optics in place of the calibration {true}")
+        calibrated, true = (decibels(s[f"light_field_psnr{end}_db"]) for end in ("", "_true_optics"))
+        print(f"  light field {calibrated}; with the true optics in place of the calibration {true}")
     if depth_line(s):
         print(f"  {depth_line(s)}")
     if s["capture_error_codes"] is not None:

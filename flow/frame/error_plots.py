@@ -62,10 +62,10 @@ def swept(
     """
 
     def at(threshold: int) -> tuple[int, int, int, float | None]:
-        asked = replace(frame, threshold=threshold)
-        chip = hardware.simulate(Path(program), sensor, asked, samples, front_end)
-        golden = golden_frame(samples, sensor, asked, front_end)
-        error = decoding_error(golden.sent, ideal, golden.read, asked)
+        changed = replace(frame, threshold=threshold)
+        chip = hardware.simulate(Path(program), sensor, changed, samples, front_end)
+        golden = golden_frame(samples, sensor, changed, front_end)
+        error = decoding_error(golden.sent, ideal, golden.read, changed)
         return threshold, len(chip.stream), chip.status["cycles"], snr(error, ideal[golden.read])
 
     with ThreadPoolExecutor(SIMULATORS) as pool:

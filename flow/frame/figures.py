@@ -57,13 +57,13 @@ def energy_of(result: FrameResult) -> dict[str, float]:
     reading with the digital part by the layout. light: of the source in time of flight, on while a row integrates; in
     no total.
     """
-    events, asked, energy = events_of(result), result.request, EnergyParameters()
+    events, request, energy = events_of(result), result.request, EnergyParameters()
     parts = {name: (1e6 * low, 1e6 * high) for name, (low, high) in energy.frame(events).items()}
     out = {name: low for name, (low, _) in parts.items()} | {"adcs_high": parts["adcs"][1]}
     out["total"], out["total_high"] = (1e6 * total for total in energy.total(events))
     if (source := light_of(result)) is not None:
         out["light"] = 1e6 * source["power_w"] * source["lit_s"]
-    if asked.frame.mode != "edge":
+    if request.frame.mode != "edge":
         return out
     plain = image_mode(events, result.golden.samples)
     out["image_mode"], out["image_mode_high"] = (1e6 * total for total in energy.total(plain))
@@ -106,17 +106,17 @@ def light_line(summary: dict[str, Any]) -> str:
     )
 
 
-def edge_pays_below(events: Events, made: int) -> float:
+def edge_pays_below(events: Events, conversions: int) -> float:
     """The share of converted samples below which edge mode takes less than image mode, at most 1.
 
     A converted sample counts with its share of the bytes and changes of the frame that had ``events``.
     """
     none = Events(0, 0, 0.0, WINDOW, 0, DigitalEvents(decisions=WINDOW))
     saved = _by_sample(image_mode(Events(0, 0, 0.0, 0, 0), 1)) - _by_sample(none)
-    made = max(made, 1)
-    searched = DECISIONS * made
+    conversions = max(conversions, 1)
+    searched = DECISIONS * conversions
     digital = DigitalEvents(decisions=searched, bytes=events.digital.bytes)
-    return min(saved * made / _by_sample(Events(0, 0, 0.0, searched, events.toggles, digital)), 1.0)
+    return min(saved * conversions / _by_sample(Events(0, 0, 0.0, searched, events.toggles, digital)), 1.0)
 
 
 def image_mode(events: Events, samples: int) -> Events:
@@ -169,20 +169,20 @@ def exposure_of(result: GoldenResult) -> dict[str, Any]:
     white_electrons: before the first common-mode reset. deviating_rows: rows that integrated other than the formula
     says, by the pins of the chip; of the golden chip none.
     """
-    asked, timing = result.request, result.request.frame.exposing
-    sensor, e, cycles = asked.lit, asked.lit.electrical, integration_cycles(timing)
+    request, timing = result.request, result.request.frame.exposing
+    sensor, e, cycles = request.lit, request.lit.electrical, integration_cycles(timing)
     seconds = sum(cycles) / sensor.chip.f_clk
     measured = result.chip.integrated if isinstance(result, FrameResult) else []
     rows = np.flatnonzero(result.golden.read.any(1)) if measured else []
     light: dict[str, float] = {}
-    if asked.frame.mode != "tof":
-        light = asked.room.white(sensor.array.pitch, sensor.optics.nu_max)._asdict()
+    if request.frame.mode != "tof":
+        light = request.room.white(sensor.array.pitch, sensor.optics.nu_max)._asdict()
     electrons = e.white_current * cycles[0] / sensor.chip.f_clk / ELEMENTARY_CHARGE
     return (
         {
             "rows": timing.exposure,
             "t_int_cycles": timing.t_int,
-            "slot_cycles": slot_cycles(timing, asked.frame.mode == "tof"),
+            "slot_cycles": slot_cycles(timing, request.frame.mode == "tof"),
         }
         | {"integration_cycles": sum(cycles), "integration_s": seconds, "white": light, "white_electrons": electrons}
         | {"white_volts": e.swing * electrons / e.full_well, "white_codes": electrons / e.lsb_electrons}
@@ -276,8 +276,8 @@ def summarize_golden(result: GoldenResult) -> dict[str, Any]:
     raw_bytes: one byte a sample sent. psnr_db: decoded samples against the noiseless analog values, peak 255 codes; of
     phase and amplitude, the amplitude alone. Figures of quality: docs/figures.md.
     """
-    asked, golden, decoded = result.request, result.golden, result.decoded
-    sensor, frame = asked.sensor, asked.frame
+    request, golden, decoded = result.request, result.golden, result.decoded
+    sensor, frame = request.sensor, request.frame
     ideal, marks = result.exposed.ideal, MARK.size * decoded.segments
     sent, size = golden.read.sum() * golden.sent.shape[2], len(result.stream)
     span = np.ptp(ideal_samples(ideal, frame)[golden.read]) if golden.read.any() else 0.0
@@ -286,8 +286,8 @@ def summarize_golden(result: GoldenResult) -> dict[str, Any]:
     parts = {"header": HEADER_BYTES, "samples": rest, "marks": marks, "trailer": TRAILER_BYTES}
     ratio = float(sent) / max(size, 1)
     return (
-        {"scene": asked.name, "mode": frame.mode, "rows": sensor.array.rows, "cols": sensor.array.cols}
-        | {"threshold": frame.threshold, "lanes": sensor.chip.lanes, "noise": asked.noise, "seed": asked.seed}
+        {"scene": request.name, "mode": frame.mode, "rows": sensor.array.rows, "cols": sensor.array.cols}
+        | {"threshold": frame.threshold, "lanes": sensor.chip.lanes, "noise": request.noise, "seed": request.seed}
         | {"window": vars(frame.window), "mask": f"{frame.mask:#08x}", "decimation": frame.decimation}
         | {"camera": camera_of(result), "exposure": exposure_of(result)}
         | {"capture_error_codes": result.exposed.views.error}

@@ -71,9 +71,9 @@ class Chip:
         samples: (taps, rows, cols, 2), of as many taps as `chip` was given. Returns what waits for the frame's end,
         which raises ToolError where the simulator ends before.
         """
-        wanted = dict(frame_writes(frame, trims))
-        new = {address: byte for address, byte in wanted.items() if self._written.get(address) != byte}
-        self._written, after = wanted, status_transfers()
+        values = dict(frame_writes(frame, trims))
+        new = {address: byte for address, byte in values.items() if self._written.get(address) != byte}
+        self._written, after = values, status_transfers()
         run = self._bench.frame(sample_words(samples), [*write_transfers(new.items()), command("start")], after)
         return lambda: _with_status(run.result(), after)
 

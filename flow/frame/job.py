@@ -145,7 +145,7 @@ def flat_field(request: FrameRequest) -> Values:
     pair = kept("flat", integrate, flat, sensor, everywhere)[0]
     exposure = replace(_exposure(request, request.noise), timing=replace(frame.exposing, n_cm=0))
     light, dark = expose_pair(pair, exposure, tap=BENCH), expose_pair(0 * pair, replace(exposure, noise=0.0))
-    light, dark = (_of_columns(request, one[None], "edge")[0] for one in (light, dark))
+    light, dark = (_of_columns(request, diodes[None], "edge")[0] for diodes in (light, dark))
     return light - dark
 
 

@@ -134,11 +134,11 @@ def prior_of(result: Readout, near: float | None = None, far: float | None = Non
 
     near, far: by default a disparity of `SHIFT` between the views at the pupil's ends, however many are between.
     """
-    asked = result.request
+    request = result.request
     rest |= tried(result.exposed.scene.views, near, far)
-    timing, read = asked.frame.exposing, result.decoded.read
-    light = result.decoded.samples[read].mean() / white_sum(asked.lit, timing)
-    noise = float(diode_noise(light, asked.lit, timing, asked.noise))
+    timing, read = request.frame.exposing, result.decoded.read
+    light = result.decoded.samples[read].mean() / white_sum(request.lit, timing)
+    noise = float(diode_noise(light, request.lit, timing, request.noise))
     prior = FieldPrior(noise=max(noise, FieldPrior.noise), **rest)  # a scene is never as even as the prior's planes
     part = part_of(result)
     if part is None or not all(part.types):

@@ -24,12 +24,12 @@ def ratio(value: float | None) -> str:
 
 def against(s: Summary) -> str:
     """PSNR of the 2-D image beside that of flat gray, of JPEG and of JPEG XL."""
-    own, gray, jpeg, jpegxl = (decibels(s[f"image_psnr{name}_db"]) for name in ("", "_gray", "_jpeg", "_jpegxl"))
-    found, nothing = s["image_psnr_db"], s["image_psnr_gray_db"]  # None: no error at all
-    note = ", no better than gray" if found is not None and (nothing is None or found <= nothing) else ""
+    image, gray, jpeg, jpegxl = (decibels(s[f"image_psnr{name}_db"]) for name in ("", "_gray", "_jpeg", "_jpegxl"))
+    psnr, nothing = s["image_psnr_db"], s["image_psnr_gray_db"]  # None: no error at all
+    note = ", no better than gray" if psnr is not None and (nothing is None or psnr <= nothing) else ""
     if s["image_jpegxl_absent"]:
         jpegxl = f"not compared ({s['image_jpegxl_absent']})"
-    return f"PSNR {own}{note}; flat gray {gray}; as many bytes of JPEG {jpeg}, of JPEG XL {jpegxl}"
+    return f"PSNR {image}{note}; flat gray {gray}; as many bytes of JPEG {jpeg}, of JPEG XL {jpegxl}"
 
 
 def sent(s: Summary) -> str:
@@ -39,16 +39,16 @@ def sent(s: Summary) -> str:
 
 def nothing_sent(s: Summary) -> str:
     """What stands beside the SNR of the decoded samples."""
-    found, nothing = s["snr_db"], s["snr_nothing_sent_db"]  # None: no error at all, or no signal
-    note = "no better than " if found is not None and found <= (nothing or 0.0) else ""
+    snr, nothing = s["snr_db"], s["snr_nothing_sent_db"]  # None: no error at all, or no signal
+    note = "no better than " if snr is not None and snr <= (nothing or 0.0) else ""
     return f"{note}nothing sent: {decibels(nothing)}"
 
 
 def light_field(s: Summary) -> str:
     """PSNR of the light field's estimate beside that of the 2-D image in every view."""
-    found, copied = s["light_field_psnr_db"], s["light_field_psnr_copied_db"]
-    note = ", no better" if found is not None and (copied is None or found <= copied) else ""
-    return f"PSNR {decibels(found)}{note}; the 2-D image in every view has {decibels(copied)}"
+    psnr, copied = s["light_field_psnr_db"], s["light_field_psnr_copied_db"]
+    note = ", no better" if psnr is not None and (copied is None or psnr <= copied) else ""
+    return f"PSNR {decibels(psnr)}{note}; the 2-D image in every view has {decibels(copied)}"
 
 
 def table(s: Summary) -> list[tuple[str, str, str]]:
@@ -79,5 +79,5 @@ def table(s: Summary) -> list[tuple[str, str, str]]:
 
 
 def _images(s: Summary, key: str, shown: Callable[[float | None], str]) -> str:
-    there = {end: name for end, name in IMAGES.items() if end != "_jpegxl" or not s["image_jpegxl_absent"]}
-    return ", ".join(f"{name} {shown(s[key.format(end)])}" for end, name in there.items())
+    names = {end: name for end, name in IMAGES.items() if end != "_jpegxl" or not s["image_jpegxl_absent"]}
+    return ", ".join(f"{name} {shown(s[key.format(end)])}" for end, name in names.items())

@@ -116,10 +116,10 @@ def error_maps(result: GoldenResult, summary: dict[str, Any]) -> list[Picture]:
     if frame.mode != "tof":
         caption = "error of the 2-D image, brought to the mean of the scene, of white = 1"
         out.append(_error("image", caption, image_error(result), ""))
-    found = depth_error(result)
-    if found is not None and not np.isnan(found).all():
+    errors = depth_error(result)
+    if errors is not None and not np.isnan(errors).all():
         rms = summary["depth_rms_m"]
-        out.append(_error("depth", f"error of the depth: {100 * rms:.3g} cm RMS", found, "m"))
+        out.append(_error("depth", f"error of the depth: {100 * rms:.3g} cm RMS", errors, "m"))
     return out
 
 
@@ -140,14 +140,14 @@ def _error(name: str, caption: str, error: Values, unit: str) -> Picture:
 
 def _depth(result: GoldenResult, summary: dict[str, Any]) -> Picture:
     """The depth from near to far, as far as the scene reaches where its depth is known."""
-    found, truth = depth_map(result), result.exposed.scene.depth
-    seen = found[~np.isnan(found)] if truth is None else truth
+    depth, truth = depth_map(result), result.exposed.scene.depth
+    seen = depth[~np.isnan(depth)] if truth is None else truth
     low, high = (float(np.quantile(seen, share)) for share in (0.0, 1.0)) if seen.size else (0.0, 1.0)
     margin = 0.05 * max(high - low, 0.1)
     low, high = max(low - margin, 0.0), high + margin
     scale = Scale(pictures.depth_colours(), low, high, "m")
     caption = f"depth from the phase (gray: no amplitude); {depth_line(summary) or 'the scene has no depth to compare'}"
-    return Picture("depth", "", caption, pictures.depth(found, low, high), scale)
+    return Picture("depth", "", caption, pictures.depth(depth, low, high), scale)
 
 
 def _within(result: GoldenResult, image: Values, low: float, high: float) -> tuple[Values, float, float]:
@@ -231,6 +231,6 @@ def assumptions(result: FrameResult) -> list[Sourced]:
     rows = [row._replace(source=drawn.get(row.name.removeprefix("electrical "), row.source)) for row in rows]
     rows += [row._replace(name=f"converter {row.name}", source=source) for row in sources(sensor.converter)]
     for name, value in vars(columns).items() if columns else ():
-        text = ", ".join(f"{one:.6g}" for one in (value if isinstance(value, tuple) else (value,)))
+        text = ", ".join(f"{number:.6g}" for number in (value if isinstance(value, tuple) else (value,)))
         rows.append(Sourced(f"columns {name}", text, "", source))
     return rows

@@ -143,9 +143,9 @@ def view_sheet(light_field: Values, cell: int = 96) -> Image:
 
 def sprite(images: Sequence[Sequence[Image]], width: int) -> Image:
     """Views [v][u] of one size edge to edge, each at most ``width`` pixels wide."""
-    own = images[0][0]
-    size = min(width, own.width), max(1, round(own.height * min(1.0, width / own.width)))
-    sheet = pillow.new(own.mode, (len(images[0]) * size[0], len(images) * size[1]))
+    first = images[0][0]
+    size = min(width, first.width), max(1, round(first.height * min(1.0, width / first.width)))
+    sheet = pillow.new(first.mode, (len(images[0]) * size[0], len(images) * size[1]))
     for v, row in enumerate(images):
         for u, image in enumerate(row):
             sheet.paste(image.resize(size, Resampling.BOX), (u * size[0], v * size[1]))

@@ -79,13 +79,13 @@ def _edges(sent: Codes, ideal: Values, frame: FrameParameters) -> dict[str, floa
     names = ("edge_precision", "edge_recall", "edge_share", "edge_energy_kept")
     if frame.mode != "edge":
         return dict.fromkeys(names)
-    found, true = sent != 0, np.abs(np.rint(ideal)) >= max(frame.threshold, 1)
-    both, energy = int((found & true).sum()), float(np.sum(ideal**2))
+    detected, true = sent != 0, np.abs(np.rint(ideal)) >= max(frame.threshold, 1)
+    both, energy = int((detected & true).sum()), float(np.sum(ideal**2))
     parts = (
-        (both, int(found.sum())),
+        (both, int(detected.sum())),
         (both, int(true.sum())),
         (int(true.sum()), true.size),
-        (float(np.sum(ideal[found] ** 2)), energy),
+        (float(np.sum(ideal[detected] ** 2)), energy),
     )
     return {name: part / whole if whole else None for name, (part, whole) in zip(names, parts, strict=True)}
 
@@ -130,19 +130,21 @@ def ssim(image: Values, truth: Values) -> float | None:
     from skimage.metrics import structural_similarity  # it imports much of SciPy
 
     level = image - image.mean() + truth.mean()
-    found: Any = structural_similarity(level, truth, data_range=1.0, win_size=SSIM_WINDOW)
-    return float(found)
+    similarity: Any = structural_similarity(level, truth, data_range=1.0, win_size=SSIM_WINDOW)
+    return float(similarity)
 
 
 def coded_sum(result: GoldenResult) -> Values:
     """The sum image that the same exposure gives in image mode, every pixel read, relative radiance."""
-    asked, samples = result.request, result.exposed.samples
-    frame = FrameParameters(asked.sensor.full_window, mode="image", timing=asked.frame.exposing)
-    sums = golden_frame(samples.mean(0, keepdims=True), asked.sensor, frame, result.exposed.front_end)
+    request, samples = result.request, result.exposed.samples
+    frame = FrameParameters(request.sensor.full_window, mode="image", timing=request.frame.exposing)
+    sums = golden_frame(samples.mean(0, keepdims=True), request.sensor, frame, result.exposed.front_end)
     # A tap of time of flight is half of the light on average.
-    half = 2.0 if asked.frame.mode == "tof" else 1.0
+    half = 2.0 if request.frame.mode == "tof" else 1.0
     read = result.golden.read
-    return np.asarray(sum_image(half * sums.codes[..., 0].astype(float), asked.lit, read, asked.frame.exposing), float)
+    return np.asarray(
+        sum_image(half * sums.codes[..., 0].astype(float), request.lit, read, request.frame.exposing), float
+    )
 
 
 def field_quality(result: GoldenResult) -> dict[str, float | str | None]:
@@ -177,8 +179,8 @@ def depth_quality(result: GoldenResult) -> dict[str, float | None]:
 def depth_map(result: GoldenResult) -> Values:
     """The depth in time of flight, (rows, cols) in m, NaN where there is no amplitude."""
     phase, strength = result.echo
-    found = depth_of(phase, result.request.sensor.electrical.f_mod)
-    return np.where(result.golden.read & (strength > 0), found, np.nan)
+    depth = depth_of(phase, result.request.sensor.electrical.f_mod)
+    return np.where(result.golden.read & (strength > 0), depth, np.nan)
 
 
 def depth_error(result: GoldenResult) -> Values | None:

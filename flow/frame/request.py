@@ -135,13 +135,13 @@ def request(
         _with(sensor.chip, lanes=lanes),
     )
     full = sensor.full_window
-    own = {field.name: rest.pop(field.name) for field in fields(FrameRequest) if field.name in rest}
+    options = {field.name: rest.pop(field.name) for field in fields(FrameRequest) if field.name in rest}
     phases = dict(timing or {})
     frame = FrameParameters(window=window(full) if window else full, mask=mask, timing=AmpTiming(**phases), **rest)
-    asked = FrameRequest(sensor=sensor, frame=frame, room=RoomParameters(illuminance=lux), **own)
-    if isinstance(asked.scene, LightField):
-        _tell_changes(asked.scene, sensor.array.rows, sensor.array.cols)
-    return replace(asked, frame=replace(frame, timing=_timing(asked, exposure, "t_int" in phases)))
+    frame_request = FrameRequest(sensor=sensor, frame=frame, room=RoomParameters(illuminance=lux), **options)
+    if isinstance(frame_request.scene, LightField):
+        _tell_changes(frame_request.scene, sensor.array.rows, sensor.array.cols)
+    return replace(frame_request, frame=replace(frame, timing=_timing(frame_request, exposure, "t_int" in phases)))
 
 
 def light_field_of(scene: str | LightField) -> LightField | None:
@@ -157,13 +157,13 @@ def light_field_of(scene: str | LightField) -> LightField | None:
 
 def _tell_changes(field: LightField, rows: int, cols: int) -> None:
     """Print what of a light field the sensor does not see as it is."""
-    (height, width), told = field.shape, f"talbot: light field {field.name}: "
+    (height, width), prefix = field.shape, f"talbot: light field {field.name}: "
     if (height, width) != (rows, cols):
         step = min(height / rows, width / cols)
         how = f"enlarged {1 / step:.3g} times" if step < 1 else f"reduced {step:.3g} times" if step > 1 else "cut"
-        _tell(f"{told}{height} x {width} px {how} to the sensor's {rows} x {cols}")
+        _tell(f"{prefix}{height} x {width} px {how} to the sensor's {rows} x {cols}")
     if field.grid != (field.views, field.views):
-        _tell(f"{told}of {field.grid[0]} x {field.grid[1]} views the middle {field.views} x {field.views} are taken")
+        _tell(f"{prefix}of {field.grid[0]} x {field.grid[1]} views the middle {field.views} x {field.views} are taken")
 
 
 @cache
@@ -172,13 +172,13 @@ def _tell(text: str) -> None:
     print(text, file=sys.stderr, flush=True)
 
 
-def _timing(asked: FrameRequest, exposure: int | None, typed: bool) -> AmpTiming:
+def _timing(request: FrameRequest, exposure: int | None, typed: bool) -> AmpTiming:
     """The timing of ``asked`` with its exposure; typed: its t_int stays as it is."""
-    frame, sensor = asked.frame, asked.lit
+    frame, sensor = request.frame, request.lit
     if frame.mode == "tof":
         return replace(frame.timing, exposure=exposure or 0)
     if exposure is None and not typed:
-        return exposed_for(asked.room.signal, frame, sensor)
+        return exposed_for(request.room.signal, frame, sensor)
     timing = frame.timing if typed or not exposure else fitting(frame, sensor)
     return replace(timing, exposure=exposure or 0)
 

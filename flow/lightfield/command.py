@@ -55,15 +55,15 @@ def run(options: Namespace) -> int:
     methods = methods_of(options.method)
     from . import page  # Matplotlib: not before it is needed
 
-    asked, typed = reading.asked(options, "lightfield", add_arguments)
-    prior = prior_asked(options, asked)
+    frame_request, typed = reading.asked(options, "lightfield", add_arguments)
+    prior = prior_asked(options, frame_request)
 
     def found(note: reading.Note) -> Fields:
-        result = reading.frame_of(asked, note, options.golden)
+        result = reading.frame_of(frame_request, note, options.golden)
         return read_back(result, prior(result), note, methods)
 
     steps = "setup", "capture", "build", "rtl", "decode", *methods, "report"
-    return reading.run(asked, typed, steps, found, page, _print)
+    return reading.run(frame_request, typed, steps, found, page, _print)
 
 
 def _print(s: dict[str, Any], folder: Path) -> None:

@@ -68,12 +68,12 @@ def read_back(
     methods = applicable(operator) if set(methods) == {*METHODS} else methods
     for name in methods:
         check_method(name, operator)
-    free, found, figured = baselines(result.image, seen), {}, {}
+    free, estimates, figured = baselines(result.image, seen), {}, {}
     for name in each(methods, "method", str):
         got, seconds = measure(name, estimator, operator, sent)
         got = unsure(got, bad, estimator)
         float_got = measure(name, estimator, operator, ideal)[0]
-        found[name] = got._replace(light_field=got.light_field * corners)
+        estimates[name] = got._replace(light_field=got.light_field * corners)
         figured[name] = figures(got.light_field * corners, seen, free["sum_image_psnr_db"]) | seconds
         figured[name]["left_out"] = got.plain
         figured[name]["psnr_db_float"] = psnr_db(float_got.light_field * corners, seen)
@@ -81,10 +81,10 @@ def read_back(
     if result.request.calibration:
         note("with the true optics")
         summary["true_optics"] = _by_truth(result, prior, truth * corners, sent, methods)
-    field, disparity, spread, plain = found[BEST]
+    field, disparity, spread, plain = estimates[BEST]
     assert disparity is not None and spread is not None
     best = Estimate(field, disparity, spread, plain)
-    return Fields(result, truth, found, best, summary | depth_figures(result, best))
+    return Fields(result, truth, estimates, best, summary | depth_figures(result, best))
 
 
 def _by_truth(
@@ -93,8 +93,8 @@ def _by_truth(
     """PSNR in dB of the methods that know the sensor's true optics in place of a calibration."""
     true = replace(result, request=replace(result.request, calibration=None))
     estimator, operator, corners = estimator_of(true, prior), CaptureOperator(true.sensor), reached(true)
-    found = {name: measure(name, estimator, operator, sent)[0].light_field for name in methods}
-    return {name: psnr_db(field * corners, seen) for name, field in found.items()}
+    estimates = {name: measure(name, estimator, operator, sent)[0].light_field for name in methods}
+    return {name: psnr_db(field * corners, seen) for name, field in estimates.items()}
 
 
 def baselines(image: Values, truth: Values) -> dict[str, float | None]:
@@ -104,7 +104,7 @@ def baselines(image: Values, truth: Values) -> dict[str, float | None]:
     return {"sum_image_psnr_db": psnr_db(copied, truth), "gray_psnr_db": psnr_db(gray, truth)}
 
 
-def depth_figures(result: GoldenResult, found: Estimate) -> dict[str, float | None]:
+def depth_figures(result: GoldenResult, estimate: Estimate) -> dict[str, float | None]:
     """Error of disparity and depth where the method is sure of them, beside that of one value for all.
 
     range_m: from the nearest to the farthest of the scene. sure: share of the pixels.
@@ -112,22 +112,22 @@ def depth_figures(result: GoldenResult, found: Estimate) -> dict[str, float | No
     scene = result.exposed.scene
     names = ("disparity_rms_px", "disparity_median_px", "disparity_rms_constant_px", "depth_rms_m")
     out: dict[str, float | None] = dict.fromkeys((*names, "depth_rms_constant_m", "range_m", "depth_sure"))
-    sure = found.spread <= SURE
+    sure = estimate.spread <= SURE
     out["depth_sure"] = float(sure.mean())
     if scene.disparity is None or not sure.any():
         return out
-    error = np.abs(found.disparity - scene.disparity)[sure]
+    error = np.abs(estimate.disparity - scene.disparity)[sure]
     out["disparity_rms_px"] = rms(error)
     out["disparity_median_px"] = float(np.median(error))
     out["disparity_rms_constant_px"] = float(np.std(scene.disparity[sure]))
     if scene.depth is not None:
-        depth = depth_map(result, found)
+        depth = depth_map(result, estimate)
         out["depth_rms_m"] = rms((depth - scene.depth)[sure])
         out["depth_rms_constant_m"] = float(np.std(scene.depth[sure]))
         out["range_m"] = float(np.ptp(scene.depth))
     return out
 
 
-def depth_map(result: GoldenResult, found: Estimate) -> Values:
+def depth_map(result: GoldenResult, estimate: Estimate) -> Values:
     """Depth from the camera in m, (rows, cols)."""
-    return depth_of_disparity(found.disparity, Sampling.of(result.sensor))
+    return depth_of_disparity(estimate.disparity, Sampling.of(result.sensor))

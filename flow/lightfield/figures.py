@@ -10,34 +10,36 @@ Values = npt.NDArray[np.floating]
 SSIM_WINDOW = 7  # px
 
 
-def figures(found: Values, truth: Values, free: float | None) -> dict[str, float | None]:
+def figures(estimate: Values, truth: Values, free: float | None) -> dict[str, float | None]:
     """Of a light field against the true one: PSNR, SSIM (mean of the views), gain over the copied image, parallax.
 
     slope, correlation: of the difference of opposite outer views, horizontal and vertical, to the true one; None where
     the true views are equal. free: PSNR (dB) of the copied sum image, which the gain is against.
     """
-    psnr = psnr_db(found, truth)
-    slope, correlation = parallax(found, truth)
+    psnr = psnr_db(estimate, truth)
+    slope, correlation = parallax(estimate, truth)
     gain = None if psnr is None or free is None else psnr - free
-    return {"psnr_db": psnr, "ssim": ssim(found, truth), "gain_db": gain, "slope": slope, "correlation": correlation}
+    return {"psnr_db": psnr, "ssim": ssim(estimate, truth), "gain_db": gain, "slope": slope, "correlation": correlation}
 
 
-def ssim(found: Values, truth: Values) -> float | None:
+def ssim(estimate: Values, truth: Values) -> float | None:
     """Structural similarity, mean of the views; None where a view is smaller than the window."""
     if min(truth.shape[2:]) < SSIM_WINDOW:
         return None
-    pairs = ((np.asarray(found[v, u], float), np.asarray(truth[v, u], float)) for v, u in np.ndindex(truth.shape[:2]))
+    pairs = (
+        (np.asarray(estimate[v, u], float), np.asarray(truth[v, u], float)) for v, u in np.ndindex(truth.shape[:2])
+    )
     return float(np.mean([structural_similarity(a, b, data_range=1.0) for a, b in pairs]))
 
 
-def parallax(found: Values, truth: Values) -> tuple[float | None, float | None]:
+def parallax(estimate: Values, truth: Values) -> tuple[float | None, float | None]:
     """Slope and correlation of the found difference of the outermost middle views to the true one."""
     middle = len(truth) // 2
     a, b = (
         np.stack([field[middle, -1] - field[middle, 0], field[-1, middle] - field[0, middle]]).astype(float)
-        for field in (found, truth)
+        for field in (estimate, truth)
     )
-    own, true, shared = float((a * a).sum()), float((b * b).sum()), float((a * b).sum())
+    energy, true, shared = float((a * a).sum()), float((b * b).sum()), float((a * b).sum())
     if not true:
         return None, None
-    return shared / true, shared / np.sqrt(own * true) if own else 0.0
+    return shared / true, shared / np.sqrt(energy * true) if energy else 0.0

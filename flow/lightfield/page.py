@@ -31,7 +31,7 @@ def write(folder: Path, fields: Fields) -> None:
     np.savez(folder / "lightfield.npz", light_field=best.light_field, disparity=best.disparity, spread=best.spread)
     top = pictures.brightest(fields.truth)
     _moving(folder / MOVING, best.light_field, top)
-    shown = [("the scene", fields.truth)] + [(name, found.light_field) for name, found in fields.found.items()]
+    shown = [("the scene", fields.truth)] + [(name, estimate.light_field) for name, estimate in fields.found.items()]
     groups = [("Depth", _depth(fields)), (f"Refocused, by the {fields.summary['best']}", _refocused(fields, top))]
     s, focus = fields.summary, _focus(fields)
     stack = [("the scene", fields.truth), (s["best"], fields.best.light_field)]
@@ -81,7 +81,7 @@ def table(s: dict[str, Any]) -> list[tuple[str, ...]]:
 def _depth(fields: Fields) -> list[Picture]:
     """True and found disparity, gray where it is not sure, and depth."""
     best, scene = fields.best, fields.result.exposed.scene
-    found = np.where(best.spread <= SURE, best.disparity, np.nan)
+    disparity = np.where(best.spread <= SURE, best.disparity, np.nan)
     known = best.disparity if scene.disparity is None else np.asarray(scene.disparity, float)
     low, high = float(known.min()), float(known.max())
     low, high = low - 0.1, high + 0.1
@@ -93,9 +93,9 @@ def _depth(fields: Fields) -> list[Picture]:
     caption = f"disparity from the samples, gray where its standard deviation is above {SURE:g} px"
     if s["disparity_rms_px"] is not None:
         caption += f": {s['disparity_rms_px']:.2f} px RMS (one for all: {s['disparity_rms_constant_px']:.2f})"
-    out.append(Picture("disparity", "", caption, pictures.depth(found, low, high), scale))
+    out.append(Picture("disparity", "", caption, pictures.depth(disparity, low, high), scale))
     if scene.depth is not None and s["depth_rms_m"] is not None:
-        depth = np.where(np.isnan(found), np.nan, depth_map(fields.result, best))
+        depth = np.where(np.isnan(disparity), np.nan, depth_map(fields.result, best))
         near, far = float(scene.depth.min()), float(scene.depth.max()) + 1e-3
         caption = f"depth: {100 * s['depth_rms_m']:.3g} cm RMS of {100 * s['range_m']:.3g} cm"
         caption += f" (one depth for all: {100 * s['depth_rms_constant_m']:.3g} cm)"

@@ -26,12 +26,12 @@ def run(options: Namespace) -> int:
     from .measure import PolarFrame, read_polarization
 
     highlight = HIGHLIGHT.value(options)
-    asked, typed = reading.asked(options, "polar", add_arguments)
+    frame_request, typed = reading.asked(options, "polar", add_arguments)
 
     def found(note: reading.Note) -> PolarFrame:
-        return read_polarization(reading.frame_of(asked, note, options.golden), highlight, note)
+        return read_polarization(reading.frame_of(frame_request, note, options.golden), highlight, note)
 
-    return reading.run(asked, typed, STEPS, found, page, _print)
+    return reading.run(frame_request, typed, STEPS, found, page, _print)
 
 
 def _print(s: dict[str, Any], folder: Path) -> None:

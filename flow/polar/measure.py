@@ -56,17 +56,17 @@ def read_polarization(
     """The polarization of a raw frame of any part of the array. highlight: of a highlight's polarized light."""
     note("polarization")
     start = perf_counter()
-    found, sums, over = _estimate(result, result.decoded.samples.astype(float))
+    polarized, sums, over = _estimate(result, result.decoded.samples.astype(float))
     seconds = perf_counter() - start
     ideal, _, _ = _estimate(result, result.exposed.ideal)
     plain = demosaiced(sums, result.sensor.tile, result.sensor.optics.diattenuation)
-    tags = specular_tags(found, highlight)
+    tags = specular_tags(polarized, highlight)
     shine = result.exposed.scene.specular
     bright = None if shine is None else sums > np.quantile(sums, 1 - shine.mean())
     disparity, off = _disparity(result, tags, over, bright, note)
-    frame = PolarFrame(result, found, plain, over, tags, {}, disparity)
+    frame = PolarFrame(result, polarized, plain, over, tags, {}, disparity)
     psi, degree = frame.truth
-    sure = found.confidence > 0
+    sure = polarized.confidence > 0
     shown = sure & (degree > POLARIZED)
     constant = np.full(psi.shape, _mean_angle(psi[shown])) if shown.any() else psi
     frame.summary.update(
@@ -74,11 +74,11 @@ def read_polarization(
         | {
             "highlight": highlight,
             "sure": float(sure.mean()),
-            "psi_error_deg": angle_error(found.psi, psi, shown),
-            "psi_error_sure_deg": angle_error(found.psi, psi, shown & (found.confidence > 0.5)),
+            "psi_error_deg": angle_error(polarized.psi, psi, shown),
+            "psi_error_sure_deg": angle_error(polarized.psi, psi, shown & (polarized.confidence > 0.5)),
             "psi_error_float_deg": angle_error(ideal.psi, psi, shown),
             "psi_error_demosaiced_deg": angle_error(angle(*plain), psi, shown),
-            "degree_rms": rms((found.degree - degree)[shown]),
+            "degree_rms": rms((polarized.degree - degree)[shown]),
             "degree_rms_float": rms((ideal.degree - degree)[shown]),
             "degree_rms_demosaiced": rms((np.hypot(*plain) - degree)[shown]),
             "wrongly_polarized": float((sure & (degree <= POLARIZED)).mean()),
@@ -138,9 +138,9 @@ def _estimate(result: GoldenResult, pairs: Values) -> tuple[Polarization, Values
     return polarization(sums, result.sensor.tile, optics.diattenuation, noise, used), sums, over
 
 
-def angle_error(found: Values, truth: Values, where: Bools) -> float | None:
+def angle_error(angles: Values, truth: Values, where: Bools) -> float | None:
     """Mean distance of two angles modulo pi, in degrees; None where there are none."""
-    turned = np.abs((found - truth + np.pi / 2) % np.pi - np.pi / 2)[where]
+    turned = np.abs((angles - truth + np.pi / 2) % np.pi - np.pi / 2)[where]
     return float(np.rad2deg(turned.mean())) if turned.size else None
 
 
@@ -148,7 +148,7 @@ def _mean_angle(psi: Values) -> float:
     return float(np.angle(np.exp(2j * psi).mean()) / 2)
 
 
-def _f1(found: Bools, truth: Bools) -> float | None:
+def _f1(tagged: Bools, truth: Bools) -> float | None:
     """Harmonic mean of precision and recall; None where there is nothing to find and nothing found."""
-    total = int(found.sum()) + int(truth.sum())
-    return 2 * int((found & truth).sum()) / total if total else None
+    total = int(tagged.sum()) + int(truth.sum())
+    return 2 * int((tagged & truth).sum()) / total if total else None

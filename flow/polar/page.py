@@ -18,13 +18,13 @@ METHOD = "each pixel's fit of light, gradient and polarization"
 
 def write(folder: Path, frame: PolarFrame) -> None:
     """Write everything but summary.json into ``folder``, which exists."""
-    found, s = frame.found, frame.summary
+    polarized, s = frame.found, frame.summary
     np.savez(
         folder / "polar.npz",
-        psi=found.psi.astype(np.float32),
-        degree=found.degree.astype(np.float32),
-        confidence=found.confidence.astype(np.float32),
-        light=found.light.astype(np.float32),
+        psi=polarized.psi.astype(np.float32),
+        degree=polarized.degree.astype(np.float32),
+        confidence=polarized.confidence.astype(np.float32),
+        light=polarized.light.astype(np.float32),
         highlights=frame.tags,
         full=frame.full,
     )

@@ -29,13 +29,13 @@ def run(options: Namespace) -> int:
 
     typed = typed_of(options, _with_scene)
     options.out = options.out or results_of("sequence") / name_of(typed)
-    asked = request_of(options, sequence=True)
-    clip, before = open_clip(options.scene, Sampling.of(asked.sensor)), arguments_of(asked.folder)
+    frame_request = request_of(options, sequence=True)
+    clip, before = open_clip(options.scene, Sampling.of(frame_request.sensor)), arguments_of(frame_request.folder)
     from .outputs import run  # Matplotlib and more: not before the arguments are right
 
     with Frames(clip.count) as progress:
-        summary = run(asked, clip, progress, typed)
-    _print_figures(summary, asked.folder)
+        summary = run(frame_request, clip, progress, typed)
+    _print_figures(summary, frame_request.folder)
     tell_replaced(before, typed)
     return 1 if summary["frames_that_differ"] else 0
 

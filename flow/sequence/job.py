@@ -65,20 +65,20 @@ def results(
                     todo, front_end = plan(scene, sensor, request.frame), trimmed(request)
             with clock.step("capture"):
                 views = choose(scene, todo)
-                asked = replace(request, frame=replace(request.frame, frame_number=(first + number) % NUMBERS))
-                exposed = expose(asked, scene, todo, front_end, views, number)
+                numbered = replace(request, frame=replace(request.frame, frame_number=(first + number) % NUMBERS))
+                exposed = expose(numbered, scene, todo, front_end, views, number)
             if chip is None or program is None:
                 with clock.step("build"):
                     program = hardware.program(sensor, note=note)
                     chip = stack.enter_context(hardware.chip(program, exposed.front_end, todo.taps))
             with clock.step("send"):
-                coming = chip.frame(asked.frame, exposed.samples, exposed.front_end.trim)
+                coming = chip.frame(numbered.frame, exposed.samples, exposed.front_end.trim)
             with clock.step("golden"):
-                golden = golden_frame(exposed.samples, sensor, asked.frame, exposed.front_end)
+                golden = golden_frame(exposed.samples, sensor, numbered.frame, exposed.front_end)
                 _ = golden.stream
             if before:
                 yield _ended(before, program, clock)
-            before = _Pending(asked, exposed, golden, seconds, coming)
+            before = _Pending(numbered, exposed, golden, seconds, coming)
         if before is None or program is None:
             raise ParameterError("frames = none: must be one or more")
         yield _ended(before, program, clock)
@@ -121,9 +121,9 @@ class _Chooser:
         strength = _gradients(scene)
         if self._views is None or strength > self._limit:
             sensor, timing = self._request.lit, self._request.frame.exposing
-            found = choose_views(scene, sensor, timing, self._request.views, read=todo.read)
-            if self._views is None or found.most >= self._views.most:
-                self._views = _everywhere(found)
+            views = choose_views(scene, sensor, timing, self._request.views, read=todo.read)
+            if self._views is None or views.most >= self._views.most:
+                self._views = _everywhere(views)
             self._limit = strength / SAFETY
         return self._views
 

@@ -85,8 +85,9 @@ def picture(result: FrameResult, figures: Mapping[str, Any], number: str) -> Ima
     image = pictures.enlarge(image, WIDTH)
     out = Image.new("RGB", (image.width, image.height + STRIP), pictures.PAPER)
     out.paste(image)
-    made, left = figures["conversions_made"], figures["conversions_left_out"]
-    text = f"{number}  {figures['stream_bytes']:,} bytes  {100 * made / max(made + left, 1):.1f} % converted  "
+    conversions, skipped = figures["conversions_made"], figures["conversions_left_out"]
+    share = 100 * conversions / max(conversions + skipped, 1)
+    text = f"{number}  {figures['stream_bytes']:,} bytes  {share:.1f} % converted  "
     text += f"SNR {decibels(figures['snr_db'])}"
     wrong = figures["stream_mismatches"] or figures["decoded_mismatches"]
     text += "  DIFFERS" if wrong else ""

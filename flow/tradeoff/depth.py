@@ -41,8 +41,8 @@ def points(quick: bool) -> list[tuple[tuple[str, int, int, int], int]]:
 
 @lru_cache(maxsize=1)
 def _frames(size: int) -> DepthFrames:
-    own = STANDARD.electrical
-    ours = replace(own, f_mod=F_MOD, contrast=CONTRAST, ambient_current=AMBIENT * own.white_current)
+    standard = STANDARD.electrical
+    ours = replace(standard, f_mod=F_MOD, contrast=CONTRAST, ambient_current=AMBIENT * standard.white_current)
     sensor = replace(STANDARD, optics=replace(STANDARD.optics, camera=LIFE_SIZE), electrical=ours)
     return capture(request(sensor=sensor, scene="cornell", mode="tof", rows=size, cols=size), golden=True)
 
@@ -60,11 +60,11 @@ def measure(point: tuple[tuple[str, int, int, int], int]) -> dict[str, Any]:
     estimator.prepare(mixture=True)  # what is done once a sensor
     start = perf_counter()
     if method in ("sums", "disparity"):
-        found = estimator.mixture(diodes[0] / white, diodes.sum(0) / white / 2)
+        estimate = estimator.mixture(diodes[0] / white, diodes.sum(0) / white / 2)
         field = None
     else:
-        field = found = depth_field(estimator, diodes[:taps] / white)
-    coarse, doubt = by_disparity(result, found, prior)
+        field = estimate = depth_field(estimator, diodes[:taps] / white)
+    coarse, doubt = by_disparity(result, estimate, prior)
     depth, sure = coarse, np.isfinite(doubt)
     if method in ("sums", "depth field"):
         sums = np.moveaxis(result.decoded.samples.astype(float), 2, 0)

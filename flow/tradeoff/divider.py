@@ -20,12 +20,12 @@ def points(quick: bool) -> list[tuple[str, int]]:
 def measure(point: tuple[str, int]) -> dict[str, Any]:
     """Error, cycles and simulation time of one divider over all inputs."""
     variant, width = point
-    found = exhaustive.measure(exhaustive.Divider(variant, 8 if variant == "cordic" else width, width))
+    result = exhaustive.measure(exhaustive.Divider(variant, 8 if variant == "cordic" else width, width))
     pixels = SensorParameters().array.rows * SensorParameters().array.cols
     return (
-        {"variant": variant, "width": width, "latency": found.latency, "interval": found.interval}
-        | {"worst_lsb": found.worst, "rms_lsb": found.rms, "cycles_a_frame": pixels * found.interval}
-        | {"simulation_s": found.seconds, "mismatches": found.mismatches}
+        {"variant": variant, "width": width, "latency": result.latency, "interval": result.interval}
+        | {"worst_lsb": result.worst, "rms_lsb": result.rms, "cycles_a_frame": pixels * result.interval}
+        | {"simulation_s": result.seconds, "mismatches": result.mismatches}
     )
 
 

@@ -28,16 +28,16 @@ def measure(point: tuple[int, int]) -> dict[str, Any]:
     return exposed(request(rows=size, cols=size, exposure=lead))
 
 
-def exposed(asked: FrameRequest) -> dict[str, Any]:
+def exposed(request: FrameRequest) -> dict[str, Any]:
     """Rows of lead, exposure, quality and cost of a frame."""
-    result = job.simulate_frame(asked)
+    result = job.simulate_frame(request)
     summary = summarize(result)
     x = summary["exposure"]
     return {
         "exposure": x["rows"],
         "integration_ms": 1e3 * x["integration_s"],
         "frame_ms": 1e3 * summary["frame_s_at_clock"],
-        "white_of_full_well": x["white_volts"] / asked.sensor.electrical.swing,
+        "white_of_full_well": x["white_volts"] / request.sensor.electrical.swing,
         "deviating_rows": x["deviating_rows"],
         "snr_edges_db": summary["snr_db"],
         "psnr_image_db": result.rebuilt.psnr_db,

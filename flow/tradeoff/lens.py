@@ -31,13 +31,13 @@ def points(quick: bool) -> list[tuple[float, float, int]]:
 def measure(point: tuple[float, float, int]) -> dict[str, Any]:
     """Quality and cost of a frame through this lens."""
     f_number, focus, size = point
-    asked = request(rows=size, cols=size, camera=CameraParameters(f_number=f_number, focus=focus))
+    frame_request = request(rows=size, cols=size, camera=CameraParameters(f_number=f_number, focus=focus))
     start = perf_counter()
     with afresh():
-        scene, todo = job.see(asked)
-        exposed = job.expose(asked, scene, todo)
+        scene, todo = job.see(frame_request)
+        exposed = job.expose(frame_request, scene, todo)
     seconds = perf_counter() - start
-    result = job.read_out(asked, exposed, hardware.program(asked.sensor))
+    result = job.read_out(frame_request, exposed, hardware.program(frame_request.sensor))
     summary = summarize(result)
     return {
         "f_number": f_number,

@@ -100,8 +100,8 @@ def measure(point: Point) -> dict[str, Any]:
         field = coder.estimate(pair)
         seconds = perf_counter() - start
     else:
-        found, times = methods.measure(name, estimator_of(result, prior), CaptureOperator(result.sensor), pair)
-        field, seconds, plain = found.light_field, times["seconds"], found.plain
+        estimate, times = methods.measure(name, estimator_of(result, prior), CaptureOperator(result.sensor), pair)
+        field, seconds, plain = estimate.light_field, times["seconds"], estimate.plain
     got = figures(field * corners, truth, psnr_db(free, truth))
     setting = " ".join(f"{key} {value:g}" for key, value in change.items())
     return {"noise": label, "method": name, "setting": setting} | got | {"left_out": plain, "seconds": seconds}

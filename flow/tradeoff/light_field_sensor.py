@@ -53,15 +53,15 @@ def _frame(size: int, views: int, layout: str) -> GoldenResult:
 
 def tile(layout: str) -> TileParameters:
     """The tile of one of `LAYOUTS`."""
-    own, rng = STANDARD.tile, np.random.default_rng(SEED)
+    standard, rng = STANDARD.tile, np.random.default_rng(SEED)
     if layout == "another order":
-        return replace(own, order=tuple(rng.permutation(own.n_types).tolist()))
+        return replace(standard, order=tuple(rng.permutation(standard.n_types).tolist()))
     if layout == "random types":
-        draws = rng.uniform((6, -90, 0), (24, 90, np.pi), (own.n_types, 3))
-        return replace(own, types=tuple(PixelType(*draw) for draw in draws.tolist()))
+        draws = rng.uniform((6, -90, 0), (24, 90, np.pi), (standard.n_types, 3))
+        return replace(standard, types=tuple(PixelType(*draw) for draw in draws.tolist()))
     if layout == "random responses":
-        return replace(own, types=tuple(_dense(seed) for seed in range(own.n_types)))
-    return own
+        return replace(standard, types=tuple(_dense(seed) for seed in range(standard.n_types)))
+    return standard
 
 
 def _dense(seed: int) -> PixelType:
@@ -71,8 +71,8 @@ def _dense(seed: int) -> PixelType:
 
     def response(theta_x: npt.NDArray[np.floating], theta_y: npt.NDArray[np.floating]) -> Floats:
         place = (np.clip((np.stack([theta_y, theta_x]) / edge + 1) / 2, 0, 1 - 1e-9) * len(share)).astype(int)
-        own = aperture(theta_x, theta_y, STANDARD.optics.aperture_sigma)
-        return np.stack([2 * own * share[*place], 2 * own * (1 - share[*place])])
+        envelope = aperture(theta_x, theta_y, STANDARD.optics.aperture_sigma)
+        return np.stack([2 * envelope * share[*place], 2 * envelope * (1 - share[*place])])
 
     return PixelType(50.0, 0.0, 0.0, response=response)
 
@@ -113,8 +113,8 @@ def measure(point: Point) -> dict[str, Any]:
     estimator, operator = estimator_of(result, prior), CaptureOperator(result.sensor)
     row: dict[str, Any] = {"what": what, "value": value, "sent": share, "sum_image_psnr_db": free}
     for name in ("linear", "mixture"):
-        found = figures(methods.METHODS[name](estimator, operator, pair).light_field * corners, truth, free)
-        row |= {f"{name}_{key}": found[key] for key in ("psnr_db", "gain_db", "slope")}
+        quality = figures(methods.METHODS[name](estimator, operator, pair).light_field * corners, truth, free)
+        row |= {f"{name}_{key}": quality[key] for key in ("psnr_db", "gain_db", "slope")}
     return row
 
 

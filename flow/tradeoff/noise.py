@@ -24,8 +24,8 @@ def points(quick: bool) -> list[tuple[float, int]]:
 def measure(point: tuple[float, int]) -> dict[str, Any]:
     """Quality and cost of a frame with this noise."""
     level, size = point
-    asked = request(rows=size, cols=size, noise=level)
-    result = job.simulate_frame(asked)
+    frame_request = request(rows=size, cols=size, noise=level)
+    result = job.simulate_frame(frame_request)
     summary = summarize(result)
     return {
         "noise": level,

@@ -55,8 +55,8 @@ def measure(point: tuple[str, int]) -> dict[str, Any]:
         times.append(perf_counter() - start)
     error = float(np.abs(pair - best).max() / best.max())
     changed = int((_codes(pair, sensor) != _codes(best, sensor)).sum())
-    found = {"error": error, "codes_changed": changed, "samples": size * size, "capture_ms": 1e3 * min(times)}
-    return {"dtype": dtype, "rows": size, **found}
+    row = {"error": error, "codes_changed": changed, "samples": size * size, "capture_ms": 1e3 * min(times)}
+    return {"dtype": dtype, "rows": size, **row}
 
 
 def plot(rows: Sequence[dict[str, Any]]) -> Figure:

@@ -46,9 +46,9 @@ def measure(point: tuple[int, int]) -> dict[str, Any]:
     views, size = point
     sensor, scene, best = _scene(size)
     start = perf_counter()
-    found = _differences(sensor, scene, views)
+    differences = _differences(sensor, scene, views)
     seconds, rendered = perf_counter() - start, int(cells(views).sum())
-    error = {"rms_codes": float(np.sqrt(np.mean((found - best) ** 2))), "signal_codes": float(best.std())}
+    error = {"rms_codes": float(np.sqrt(np.mean((differences - best) ** 2))), "signal_codes": float(best.std())}
     return {
         "views": views,
         "rendered": rendered,

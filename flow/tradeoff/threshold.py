@@ -27,17 +27,17 @@ def points(quick: bool) -> list[tuple[int, int]]:
 @cache
 def _exposure(size: int) -> tuple[FrameRequest, Exposed, Path]:
     """Request, exposure and simulator of the default scene."""
-    asked = request(rows=size, cols=size)
-    scene, todo = job.see(asked)
-    return asked, job.expose(asked, scene, todo), hardware.program(asked.sensor)
+    frame_request = request(rows=size, cols=size)
+    scene, todo = job.see(frame_request)
+    return frame_request, job.expose(frame_request, scene, todo), hardware.program(frame_request.sensor)
 
 
 def measure(point: tuple[int, int]) -> dict[str, Any]:
     """Quality and cost of a frame at this threshold."""
     threshold, size = point
-    asked, exposed, program = _exposure(size)
-    asked = replace(asked, frame=replace(asked.frame, threshold=threshold))
-    result = job.read_out(asked, exposed, program)
+    frame_request, exposed, program = _exposure(size)
+    frame_request = replace(frame_request, frame=replace(frame_request.frame, threshold=threshold))
+    result = job.read_out(frame_request, exposed, program)
     summary = summarize(result)
     quality = {
         "snr_edges_db": summary["snr_db"],

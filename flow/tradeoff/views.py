@@ -30,8 +30,8 @@ def measure(point: tuple[str, int, int]) -> dict[str, Any]:
     if light not in _references:
         _references[light] = exact(sensor.tile.types, sensor.optics, LIGHTS[light])
     optics = replace(sensor.optics, views=views, subsamples=nodes)
-    found = sampling_error(sensor.tile.types, optics, LIGHTS[light], _references[light])
-    errors = {name: getattr(found, name) for name in ("worst", "rms", "seconds")}
+    error = sampling_error(sensor.tile.types, optics, LIGHTS[light], _references[light])
+    errors = {name: getattr(error, name) for name in ("worst", "rms", "seconds")}
     return {"light": light, "views": views, "nodes": nodes, **errors}
 
 

@@ -66,8 +66,8 @@ def convolved(weights: Weights, values: Any, name: str) -> Any:
     near = nn.pad(values.flatten(4), (0, 0, 1, 1, 1, 1)).unfold(2, 3, 1).unfold(3, 3, 1)  # (n, c, 5, 5, px, 3, 3)
     near = near.permute(0, 2, 3, 1, 5, 6, 4).reshape(-1, 9 * values.shape[1], rows, cols)
     flat = kernel.reshape(len(kernel), -1, 3, 3)
-    found = nn.conv2d(near, flat, weights[f"{name}_bias"], padding=1)
-    return found.reshape(-1, VIEWS, VIEWS, len(kernel), rows, cols).permute(0, 3, 1, 2, 4, 5)
+    values_out = nn.conv2d(near, flat, weights[f"{name}_bias"], padding=1)
+    return values_out.reshape(-1, VIEWS, VIEWS, len(kernel), rows, cols).permute(0, 3, 1, 2, 4, 5)
 
 
 def turned(weights: Weights, back: Any) -> Any:
@@ -81,8 +81,8 @@ def turned(weights: Weights, back: Any) -> Any:
 def forward(weights: Weights, kind: str, patches: Any, back: Any) -> Any:
     """What is added to the sum image, (n, 25, rows, cols); by the dense layers (n, 25, PATCHES**2 * rows, cols)."""
     if kind == "dense":
-        found = dense(weights, patches).reshape(len(patches), PATCHES**2, VIEWS**2, PATCH, PATCH)
-        return found.transpose(1, 2).flatten(2, 3)
+        patches_out = dense(weights, patches).reshape(len(patches), PATCHES**2, VIEWS**2, PATCH, PATCH)
+        return patches_out.transpose(1, 2).flatten(2, 3)
     parts = [encoded(weights, patches)] if kind != "convolutions" else []
     parts += [turned(weights, back)] if kind != "autoencoder" else []
     return torch().stack(parts).mean(0).flatten(1, 3)
@@ -107,12 +107,12 @@ def crop(shot: Shot, kind: str, rng: np.random.Generator) -> tuple[npt.NDArray[n
     seen = Seen(noisy(shot.pair[:, *at], noise, rng), sensor(), noise)
     truth = shot.truth[:, :, *at].reshape(VIEWS**2, *seen.total.shape)
     reached = np.asarray(truth.any((1, 2)))[:, None, None]
-    wanted = ((truth - seen.total) * reached).astype(np.float32)
+    target = ((truth - seen.total) * reached).astype(np.float32)
     patches = seen.patches(*firsts).reshape(PATCHES, PATCHES, -1)
     if kind == "dense":
-        windows = sliding_window_view(wanted, (PATCH, PATCH), (1, 2))[:, firsts[0][:, None], firsts[1]]
+        windows = sliding_window_view(target, (PATCH, PATCH), (1, 2))[:, firsts[0][:, None], firsts[1]]
         return patches, np.zeros(0, np.float32), windows.reshape(VIEWS**2, -1, PATCH)
-    return patches, seen.back.astype(np.float32), wanted
+    return patches, seen.back.astype(np.float32), target
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,7 +139,7 @@ def learned(seeds: Sequence[int], steps: int, seed: int) -> Learned:
     pt, rng, start = torch(), np.random.default_rng(seed), perf_counter()
     pt.manual_seed(seed)
     taken = list(each(shots(seeds), "scenes", total=len(seeds)))
-    own, made, error = sensor(), {}, {}
+    chip, arrays, error = sensor(), {}, {}
     weights = {kind: _first(kind, pt) for kind in KINDS[:2]}
     weights["dense"] = {name: value for name, value in weights["autoencoder"].items() if name.startswith("dense")}
     for kind, share in SHARES.items():
@@ -151,11 +151,11 @@ def learned(seeds: Sequence[int], steps: int, seed: int) -> Learned:
             }
         error[kind] = _train(weights[kind], kind, taken, max(round(share * steps), 1), rng)
         if kind in KINDS:
-            made |= {f"{kind}/{n}": value.detach().numpy().astype(np.float16) for n, value in weights[kind].items()}
-    made["phi"] = view_weights(own.tile, own.optics).astype(np.float16)
-    count = sum(value.size for key, value in made.items() if key.startswith("both/"))
+            arrays |= {f"{kind}/{n}": value.detach().numpy().astype(np.float16) for n, value in weights[kind].items()}
+    arrays["phi"] = view_weights(chip.tile, chip.optics).astype(np.float16)
+    count = sum(value.size for key, value in arrays.items() if key.startswith("both/"))
     summary = {"scenes": len(seeds), "first_scene": seeds[0], "steps": steps, "shares": SHARES, "seed": seed}
-    return Learned(made, summary | {"parameters": count, "seconds": perf_counter() - start, "error": error})
+    return Learned(arrays, summary | {"parameters": count, "seconds": perf_counter() - start, "error": error})
 
 
 def _first(kind: str, pt: Any) -> dict[str, Any]:
@@ -172,18 +172,18 @@ def _first(kind: str, pt: Any) -> dict[str, Any]:
 
 def _train(weights: Weights, kind: str, taken: Sequence[Shot], steps: int, rng: np.random.Generator) -> float:
     """Train in place; returns the last tenth's mean square error over that of the sum image."""
-    pt, weight, found = torch(), importance(), []
+    pt, weight, losses = torch(), importance(), []
     optimizer = pt.optim.Adam(weights.values(), RATE / 2 if kind == "both" else RATE)
     schedule = pt.optim.lr_scheduler.CosineAnnealingLR(optimizer, steps)
     for _ in each(range(steps), kind, total=steps):
         crops = [crop(taken[number], kind, rng) for number in rng.integers(len(taken), size=BATCH[kind])]
-        patches, back, wanted = (pt.from_numpy(np.stack(part)) for part in zip(*crops, strict=True))
-        missed = forward(weights, kind, patches, back) - wanted
+        patches, back, target = (pt.from_numpy(np.stack(part)) for part in zip(*crops, strict=True))
+        missed = forward(weights, kind, patches, back) - target
         loss = (missed**2 * pt.from_numpy(weight)).mean()
         optimizer.zero_grad()
         loss.backward()
         optimizer.step()
         schedule.step()
-        reached = (wanted != 0).any(3, keepdim=True).any(2, keepdim=True)
-        found.append(((missed * reached) ** 2).sum().item() / (wanted**2).sum().item())
-    return float(np.mean(found[-max(len(found) // 10, 1) :]))
+        reached = (target != 0).any(3, keepdim=True).any(2, keepdim=True)
+        losses.append(((missed * reached) ** 2).sum().item() / (target**2).sum().item())
+    return float(np.mean(losses[-max(len(losses) // 10, 1) :]))

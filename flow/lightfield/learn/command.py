@@ -38,14 +38,14 @@ def run(options: Namespace) -> int:
     if options.what == "dictionary":
         from .dictionary import learned
 
-        made = learned(seeds, atoms, steps, seed)
+        result = learned(seeds, atoms, steps, seed)
     else:
         from .branches import learned
 
-        made = learned(seeds, steps, seed)
+        result = learned(seeds, steps, seed)
     with staged(out) as part:
-        made.save(part / f"{options.what}.npz")
-        (part / f"{options.what}.json").write_text(json.dumps(made.summary, indent=1) + "\n", encoding="utf-8")
-    print(f"{options.what}: {made.text}")
+        result.save(part / f"{options.what}.npz")
+        (part / f"{options.what}.json").write_text(json.dumps(result.summary, indent=1) + "\n", encoding="utf-8")
+    print(f"{options.what}: {result.text}")
     print(f"look at {out / options.what}.json; talbot/models/reconstruct/{options.what}.npz is the one that is used")
     return 0

@@ -49,8 +49,8 @@ def light_fields(seeds: Sequence[int], size: int = SIZE) -> Iterator[Values]:
 
 def shots(seeds: Sequence[int], size: int = SIZE) -> Iterator[Shot]:
     """The scenes of `light_fields`, and what the diodes see of them."""
-    own = sensor(size)
-    operator = CaptureOperator(replace(own, optics=replace(own.optics, views=PUPIL)))
+    chip = sensor(size)
+    operator = CaptureOperator(replace(chip, optics=replace(chip.optics, views=PUPIL)))
     for view in (_view(seed, size) for seed in seeds):
         yield Shot(_truth(view), operator.forward(_field(view, _offsets(PUPIL) * VIEWS / PUPIL)))
 
