@@ -10,15 +10,19 @@ import signal
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator, Mapping, Sequence
-from functools import cache
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextvars import ContextVar, copy_context
+from functools import cache, partial
 from importlib.util import find_spec
 from pathlib import Path
-from typing import IO
+from threading import Lock
+from typing import IO, TypeVar
 
 from .check import work_begins
 from .environment import of_tools
 
+T = TypeVar("T")
 PLAIN = re.compile(r"[A-Za-z0-9_./+,@%=:-]*")
 
 
@@ -28,6 +32,50 @@ class ToolError(RuntimeError):
 
 class ToolTimeout(ToolError):
     """A tool was stopped at its time limit."""
+
+
+class _Tools:
+    """Tools that run for one call, as long as nobody ends them."""
+
+    def __init__(self) -> None:
+        self._ends, self._lock, self._ended = set[Callable[[], None]](), Lock(), False
+
+    @contextlib.contextmanager
+    def running(self, end: Callable[[], None]) -> Iterator[None]:
+        """Count what ``end`` ends, a tool or the tools of another call, as one of these."""
+        with self._lock:
+            self._ends.add(end)
+            if self._ended:
+                end()
+        try:
+            yield
+        finally:
+            with self._lock:
+                self._ends.remove(end)
+
+    def end(self) -> None:
+        """End those that run, and at once each that starts from now on."""
+        with self._lock:
+            self._ended = True
+            for end in self._ends:
+                end()
+
+
+_tools: ContextVar[_Tools | None] = ContextVar("tools", default=None)
+
+
+@contextlib.contextmanager
+def meanwhile(call: Callable[..., T], *arguments: object) -> Iterator["Future[T]"]:
+    """Run ``call(*arguments)`` in another thread, whose tools end where the context ends by an exception."""
+    outer, tools, context = _tools.get(), _Tools(), copy_context()
+    context.run(_tools.set, tools)
+    with ThreadPoolExecutor(1) as pool, outer.running(tools.end) if outer else contextlib.nullcontext():
+        result = pool.submit(context.run, call, *arguments)
+        try:
+            yield result
+        except BaseException:
+            tools.end()
+            raise
 
 
 def located(name: str) -> str | None:
@@ -109,7 +157,8 @@ def finish(
     finally:
         if output:
             output.close()
-    with child:
+    tools = _tools.get()
+    with child, tools.running(partial(_kill_group, child.pid)) if tools else contextlib.nullcontext():
         try:
             out, err = child.communicate(timeout=seconds)
         except subprocess.TimeoutExpired:

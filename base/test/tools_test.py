@@ -1,11 +1,13 @@
 """Where tools are looked for: on PATH, then a Python package's; Yosys as a package runs scripts as the program does."""
 
+import signal
 import sys
+import time
 
 import pytest
 
 from talbot.base import tools
-from talbot.base.tools import finish
+from talbot.base.tools import finish, meanwhile
 
 VERILOG = "module small(input [3:0] a, output [3:0] q); assign q = a * 3; endmodule"
 
@@ -53,3 +55,33 @@ def test_yosys_of_the_package(tmp_path):
     assert "Yosys 0." in yosys("-V").stdout
     failed = yosys("-q", "-p", "read_verilog none.v")
     assert failed.returncode == 1 and "ERROR: File `none.v' not found" in failed.stderr
+
+
+def test_tools_of_another_thread_end_with_what_waits_for_them(tmp_path):
+    """The one that runs, and what its thread, or a thread of that, starts then; others go on."""
+    begun, statuses = tmp_path / "begun", []
+
+    def compiled():
+        statuses.append(finish(["sh", "-c", f"touch {begun}; exec sleep 100"]).returncode)
+        with meanwhile(finish, ["sleep", "100"]) as other:
+            statuses.append(finish(["sleep", "100"]).returncode)
+            statuses.append(other.result().returncode)
+
+    start = time.monotonic()
+    with meanwhile(finish, ["sh", "-c", "sleep 1; exit 5"]) as apart:
+        with pytest.raises(KeyError, match="scene"), meanwhile(compiled):
+            while not begun.exists():
+                time.sleep(0.01)
+            raise KeyError("scene")
+        assert apart.result().returncode == 5
+    assert statuses[0] == statuses[1] == -signal.SIGKILL and time.monotonic() - start < 90
+
+
+def test_the_result_of_another_thread_or_its_error():
+    with meanwhile(divmod, 7, 2) as result:
+        pass
+    assert result.result() == (3, 1)
+    with meanwhile(divmod, 7, 0) as result:
+        pass
+    with pytest.raises(ZeroDivisionError):
+        result.result()

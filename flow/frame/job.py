@@ -2,7 +2,6 @@
 
 import json
 from collections.abc import Callable, Iterator, Mapping
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
@@ -15,6 +14,7 @@ import numpy.typing as npt
 from talbot.base.files import check_folder, staged
 from talbot.base.kept import kept
 from talbot.base.progress import say
+from talbot.base.tools import meanwhile
 from talbot.flow.simulate.frame import Waves
 from talbot.models.afe import FrontEnd, trim_codes, trim_gain
 from talbot.models.capture import Exposure, Region, Views, captured, exposed, instants, integrate, moving_currents
@@ -219,11 +219,13 @@ def _exposed(request: FrameRequest, clock: Clock) -> Exposed:
 
 
 def _prepared(request: FrameRequest, clock: Clock, waves: str = "") -> tuple[Exposed, Path]:
-    """The exposure and the simulator, which is built while the scene is captured. waves: as of Build."""
+    """The exposure and the simulator, which is built while the scene is captured. waves: as of Build.
+
+    Where the scene cannot be captured the compiler ends, too.
+    """
     with clock.step("setup"):
         scene, todo = see(request)
-    with ThreadPoolExecutor(1) as pool:
-        program = pool.submit(hardware.program, request.sensor, waves, clock.note)
+    with meanwhile(hardware.program, request.sensor, waves, clock.note) as program:
         with clock.step("capture"):
             exposed = expose(request, scene, todo)
         with clock.step("build"):

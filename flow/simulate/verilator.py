@@ -1,13 +1,12 @@
 """The frame bench as a program: Verilog in, executable out, cached by the content of all that went in."""
 
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from talbot.base.cache import cached, digest
 from talbot.base.paths import BUILD, PACKAGE
 from talbot.base.sources import code
-from talbot.base.tools import ToolError
+from talbot.base.tools import ToolError, meanwhile
 from talbot.base.verilator import FAST, compile_program, has_headers, runtime, verilate, verilator_version
 
 from .build import Build
@@ -65,8 +64,7 @@ def program_of(
             raise ToolError(
                 f"waves_format = 'fst': needs {' and '.join(PACKED)} (Debian: zlib1g-dev, liblz4-dev); or vcd"
             )
-        with ThreadPoolExecutor(1) as pool:
-            objects = pool.submit(runtime)  # a compiler runs while Python exports
+        with meanwhile(runtime) as objects:  # a compiler runs while Python exports
             note("exporting the chip's Verilog")
             chip = build.chip_verilog(work)
             note("translating it with Verilator")
