@@ -78,8 +78,8 @@ setup: $(TESTS_READY)
 setup-layout: $(LAYOUT_READY)
 
 # The program's commands, by what is installed before they run. Coriolis needs a certain Python: that is checked first.
-RUN := sim sensor lightfield polar depth calibrate tradeoff stability decode learn index verilog sizes divider
-TESTS := formal coverage mutate fuzz cocotb suite stuck-at document site pixel pixel-layout cosim layout-sweep \
+RUN := sim sensor lightfield polar depth calibrate tradeoff stability decode learn index verilog divider
+TESTS := formal coverage mutate sizes fuzz cocotb suite stuck-at document site pixel pixel-layout cosim layout-sweep \
   layout-energy
 LAYOUT := pixel pixel-layout cosim pixel-circuit analog analog-layout footprints handoff cells cells-report \
   cells-compact cells-compact-area cells-compact-search layout-sweep layout-energy layout-timing layout-compare openroad \
@@ -140,7 +140,7 @@ locks: $(READY)
 
 .PHONY: verify
 verify: $(TESTS_READY) $(LAYOUT_READY)
-	@[ "$$TALBOT_CHECK" ] || BEFORE="$(CHECK)" bash requirements/tools.sh --missing iverilog yosys z3
+	@[ "$$TALBOT_CHECK" ] || BEFORE="$(CHECK)" bash requirements/tools.sh --missing iverilog z3
 	@$(talbot) verify
 
 ifeq ($(BACKEND),openroad)

@@ -23,6 +23,7 @@ from .check import work_begins
 from .environment import of_tools
 
 T = TypeVar("T")
+YOSYS = "yosys", "yosys-abc", "yosys-smtbmc"
 PLAIN = re.compile(r"[A-Za-z0-9_./+,@%=:-]*")
 
 
@@ -79,19 +80,20 @@ def meanwhile(call: Callable[..., T], *arguments: object) -> Iterator["Future[T]
 
 
 def located(name: str) -> str | None:
-    """Return the path of a tool: on PATH, or a Python package's beside this Python; None where neither is.
+    """Return the path of a tool: on PATH, or a YoWASP package's next to this Python; None where neither is.
 
-    Packages: pyosys for yosys (`base.yosys`), YoWASP's for the others.
+    Yosys, its ABC and its model checker are those of packages (pyosys by `base.yosys`, YoWASP's) whatever is on PATH:
+    one version on every machine, since cells, names and reports differ from one to the next.
     """
-    if program := shutil.which(name):
-        return program
-    folder = Path(sys.executable).parent
+    folder, program = Path(sys.executable).parent, shutil.which(name)
     wheel = folder / f"yowasp-{name}"
-    if name == "yosys":
-        if not find_spec("pyosys"):
-            return None
-        wheel = folder / "talbot-yosys"
-    return str(wheel) if wheel.exists() else None
+    if name in ("yosys", "yosys-abc"):
+        package = find_spec("pyosys")
+        if not package or not package.origin:
+            return program
+        wheel = folder / "talbot-yosys" if name == "yosys" else Path(package.origin).with_name(name)
+    found = str(wheel) if wheel.exists() else None
+    return found or program if name in YOSYS else program or found
 
 
 def plain(path: Path) -> Path:
@@ -129,7 +131,7 @@ def finish(
     seconds: float | None = None,
     log: Path | None = None,
 ) -> subprocess.CompletedProcess[str]:
-    """Run ``command`` to its end and return its status and text output.
+    """Run ``command`` to its end and return its status and text output. Its program is looked for as `located` does.
 
     env: variables on top of the clean environment of tools (`environment.of_tools`). The command has a process group
     of its own, which any exception (Ctrl-C too) ends as a whole, with what the command started. seconds: time limit.
@@ -138,6 +140,7 @@ def finish(
     """
     work_begins()
     words = [str(part) for part in command]
+    words[0] = located(words[0]) or words[0]
     output = log.open("wb") if log else None
     try:
         child = subprocess.Popen(

@@ -1,4 +1,4 @@
-"""Yosys from the package pyosys as a program, `talbot-yosys`, for proofs and gates where the system has none.
+"""Yosys from the package pyosys as a program, `talbot-yosys`: one version on every machine (`base.tools.located`).
 
     talbot-yosys [-q] [-V] [-p COMMANDS] [-s SCRIPT] [SCRIPT]
 

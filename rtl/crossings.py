@@ -66,7 +66,7 @@ class Netlist:
         return found
 
 
-def crossings(path: Path, top: str, prepare: str = "proc; flatten") -> list[str]:
+def crossings(path: Path, top: str, prepare: str = "proc; flatten -noscopeinfo") -> list[str]:
     """Return what is wrong at the asynchronous pins of module ``top`` in the file ``path``, one line each.
 
     prepare: commands of Yosys that make a flat netlist. Raises ToolError.

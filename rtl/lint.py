@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from talbot.base.tools import ToolError, finish, plain
+from talbot.base.tools import ToolError, finish, located, plain
 from talbot.base.verilator import verilator_folder, verilator_program
 from talbot.rtl.crossings import crossings
 
@@ -39,7 +39,7 @@ def checks(path: Path, top: str) -> list[Check]:
     out = [Check("Verilator", verilator, {"VERILATOR_ROOT": str(verilator_folder())})]
     if shutil.which("iverilog"):
         out.append(Check("Icarus", ["iverilog", "-g2012", "-t", "null", "-s", top, path]))
-    if shutil.which("yosys"):
+    if located("yosys"):
         out.append(Check("Yosys", ["yosys", "-q", "-p", script]))
     return out
 
@@ -54,7 +54,7 @@ def lint(path: Path, top: str) -> list[str]:
         if result.returncode or output:
             raise LintError(f"{check.tool} on {path}:\n" + "\n".join(output.splitlines()[:20]))
         done.append(f"{check.tool} clean")
-    if top == CHIP and shutil.which("yosys"):
+    if top == CHIP and located("yosys"):
         if problems := crossings(path, top):
             raise LintError(f"{path}: {problems[0]}")
         done.append("crossings clean")

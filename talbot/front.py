@@ -75,7 +75,7 @@ GROUPS: dict[str, dict[str, Command]] = {
         "site": Command("the documentation as a web site: build/site/index.html", "site.command"),
     },
     "Developers": {
-        "tools": Command("install Icarus, Verilator, Yosys, z3, ngspice, OpenSTA, KLayout"),
+        "tools": Command("install Icarus, Verilator, z3, ngspice, OpenSTA, KLayout"),
         "setup-layout": Command("install PDKs, KLayout, OpenROAD and Coriolis into .venv"),
         "lint": Command("ruff, import layers, types, docstrings"),
         "format": Command("format the code and apply ruff's fixes"),

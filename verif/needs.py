@@ -111,10 +111,11 @@ def librelane() -> bool:
 
 NEEDS = {
     "iverilog": Need(programs("iverilog", "vvp"), TOOLS),
-    "yosys": Need(lambda: bool(shutil.which("yosys")), TOOLS),  # the system's: newer ones name cells otherwise
+    "yosys": Need(programs("yosys"), "make setup"),
+    "yosys-tcl": Need(lambda: bool(shutil.which("yosys")), "apt-get install yosys", offered=False),  # pyosys has no Tcl
     "yosys-smtbmc": Need(programs("yosys-smtbmc"), "make setup"),
     "boolector": Need(programs("boolector"), "make setup"),
-    "yosys-abc": Need(programs("yosys-abc"), TOOLS),
+    "yosys-abc": Need(programs("yosys-abc"), "make setup"),
     "z3": Need(programs("z3"), TOOLS),
     "verilator": Need(programs("verilator"), TOOLS),  # a native one, for waves and LibreLane
     "fst": Need(fst, TOOLS),

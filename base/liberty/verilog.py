@@ -14,7 +14,8 @@ def write_models(liberty: Path, verilog: Path, options: str = "") -> None:
     Raises ToolError.
     """
     part = plain(verilog.parent) / verilog.name
-    run(["yosys", "-q", "-p", f"read_liberty {options} {plain(liberty)}; proc; write_verilog -noattr {part}"])
+    script = f"read_liberty {options} {plain(liberty)}; proc; opt_clean; write_verilog -noattr {part}"
+    run(["yosys", "-q", "-p", script])
     verilog.write_text(
         re.sub(r"(?m)^(  reg \w+);$", r"\1 = 1'($random);", verilog.read_text(encoding="utf-8")), encoding="utf-8"
     )

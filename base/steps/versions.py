@@ -2,11 +2,10 @@
 
 import importlib.metadata
 import re
-import shutil
 from functools import cache
 
 from talbot.base.openroad import program
-from talbot.base.tools import ToolError, finish
+from talbot.base.tools import ToolError, finish, located
 
 # Command that prints the version, and the pattern of it in the output; 'python NAME' is the Python package NAME
 COMMANDS = {
@@ -25,7 +24,7 @@ def version(tool: str) -> str:
     """Version of a program or a Python package. Raises ToolError when it is not installed."""
     if tool in COMMANDS or tool == "openroad":
         command, pattern = COMMANDS.get(tool) or ([*(program() or [tool]), "-version"], r"(\S+)")
-        if not shutil.which(command[0]):
+        if not located(command[0]):
             raise ToolError(f"{command[0]}: not found; install it with: make tools")
         done = finish(command)
         match = re.search(pattern, done.stdout + done.stderr)

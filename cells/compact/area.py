@@ -35,7 +35,8 @@ def mapped(verilog: str, top: str, liberty: str) -> Mapped:
         report = Path(folder) / "stat.json"
         path, cells_path = tools.plain(Path(verilog)), tools.plain(Path(liberty))
         script = (
-            f"read_verilog -sv {path}; synth -flatten -top {top}; dfflibmap -liberty {cells_path}; "
+            f"read_verilog -sv {path}; synth -flatten -top {top}; delete t:$scopeinfo; "
+            f"dfflibmap -liberty {cells_path}; "
             f"abc -liberty {cells_path}; opt_clean -purge; tee -q -o {report} stat -json"
         )
         tools.run(["yosys", "-q", "-p", script])

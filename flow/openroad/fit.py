@@ -26,6 +26,7 @@ from .write import rtl
 SCRIPT = """
 read_verilog -sv {sources}
 synth -flatten -top {top}
+delete t:$scopeinfo
 check -assert
 dfflibmap -liberty {liberty}
 abc -liberty {liberty}

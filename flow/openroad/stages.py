@@ -24,6 +24,7 @@ from .netlists import write_synthesized
 
 SCRIPTS = Path(__file__).parent / "tcl"
 # Threads that wait give their core away: beside other jobs, placement of the divider took 15 times its CPU time
+TCL_YOSYS = shutil.which("yosys") or "yosys"  # the system's: the Python package has no Tcl
 ENVIRONMENT = {"OMP_WAIT_POLICY": "passive"}
 
 
@@ -43,7 +44,7 @@ class Stage:
     def command(self) -> list[str]:
         """Its program and arguments."""
         script = f"{self.name}.tcl"
-        return ["yosys", "-q", "-c", script] if self.name == "synth" else openroad.command(script, "max")
+        return [TCL_YOSYS, "-q", "-c", script] if self.name == "synth" else openroad.command(script, "max")
 
 
 def stages(tech: OpenRoadPlatform, wires: Sequence[str] = WIRES) -> list[Stage]:

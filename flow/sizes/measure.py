@@ -2,7 +2,6 @@
 
 import json
 import re
-import shutil
 import tempfile
 from collections import Counter
 from dataclasses import dataclass
@@ -10,13 +9,13 @@ from functools import cache
 from pathlib import Path
 
 from talbot.base.paths import PACKAGE
-from talbot.base.tools import ToolError, finish, plain
+from talbot.base.tools import ToolError, finish, located, plain
 
 LIBRARY = PACKAGE / "cells" / "gates.lib"
 TIES = "hilomap -hicell TIE1 Y -locell TIE0 Y -singleton"
 MAP = f"dfflibmap -liberty {LIBRARY}; abc -liberty {LIBRARY}; {TIES}; opt_clean -purge"
 FLIP_FLOP = "DFF"
-YOSYS_MISSING = "yosys: not found; install it (Debian and Ubuntu: apt-get install yosys; make tools)"
+YOSYS_MISSING = "yosys: not found; make setup installs it (the Python package pyosys)"
 
 
 @dataclass(frozen=True)
@@ -43,8 +42,8 @@ def areas() -> dict[str, float]:
 
 
 def yosys_installed() -> bool:
-    """Whether Yosys is on PATH."""
-    return shutil.which("yosys") is not None
+    """Whether Yosys is installed."""
+    return located("yosys") is not None
 
 
 def synthesize(path: Path, top: str) -> Counter[str]:
@@ -53,7 +52,10 @@ def synthesize(path: Path, top: str) -> Counter[str]:
         raise ToolError(YOSYS_MISSING)
     with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
         report = Path(folder) / "stat.json"
-        script = f"read_verilog -sv {plain(path)}; synth -flatten -top {top}; {MAP}; tee -q -o {report} stat -json"
+        script = (
+            f"read_verilog -sv {plain(path)}; synth -flatten -top {top}; delete t:$scopeinfo; {MAP}; "
+            f"tee -q -o {report} stat -json"
+        )
         result = finish(["yosys", "-q", "-p", script])
         if result.returncode:
             tail = "\n".join((result.stdout + result.stderr).strip().splitlines()[-5:])

@@ -20,7 +20,7 @@ from .program import tool
 STARTED = "started"
 LARGE = 5000  # bits, from which on the last induction is of constants alone
 SCRIPT = """read_verilog -sv dut.v top.v
-hierarchy -check -top Top; proc; flatten; setundef -init -zero; opt_expr; memory_map; techmap; async2sync
+hierarchy -check -top Top; proc; flatten -noscopeinfo; setundef -init -zero; opt_expr; memory_map; techmap; async2sync
 dfflegalize -cell $_DFF_P_ 0; setundef -undriven -zero; expose w:dut.* w:started; write_blif all.blif
 """
 

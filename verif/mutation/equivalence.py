@@ -12,16 +12,18 @@ from talbot.verif.coverage.program import tool
 
 from .mutants import BITS, yosys
 
+# What scorr has reduced to a constant without registers, pdr leaves undecided: iprove, of a few conflicts, says so
+REDUCE = "scorr; dc2; scorr; iprove -N 1 -C 10"
 # Engines in turn, each with its limit in seconds: a short proof, a search for a difference, a long proof
-ENGINES = (("scorr; dc2; scorr; pdr -T 4", 15), ("bmc3 -F 200 -T 10", 20), ("scorr; dc2; scorr; pdr -T 40", 60))
+ENGINES = ((f"{REDUCE}; pdr -T 4", 15), ("bmc3 -F 200 -T 10", 20), (f"{REDUCE}; pdr -T 40", 60))
+PROVEN = "roperty proved", "Networks are equivalent", "UNSATISFIABLE"
 
 EQUIVALENT, DIFFERENT, UNKNOWN = "equivalent", "different", "unknown"
 
 # The miter as an AIG: two-input gates and flip-flops that start at 0
-SCRIPT = """read_verilog -sv mutants.v miter.v; hierarchy -check -top Miter; flatten; proc; setundef -init -zero;
-opt -full; memory_map; opt; techmap; opt; async2sync; dfflegalize -cell $_DFF_P_ 0; opt_clean; setundef -undriven -zero;
-abc -g AND; opt_clean;
-aigmap; opt_clean; stat; write_aiger -zinit -symbols miter.aig"""
+SCRIPT = """read_verilog -sv mutants.v miter.v; hierarchy -check -top Miter; flatten -noscopeinfo; proc;
+setundef -init -zero; opt -full; memory_map; opt; techmap; opt; async2sync; dfflegalize -cell $_DFF_P_ 0; opt_clean;
+setundef -undriven -zero; abc -g AND; opt_clean; aigmap; opt_clean; stat; write_aiger -zinit -symbols miter.aig"""
 
 
 def miter(top: str, ports: Sequence[Port], number: int) -> str:
@@ -105,7 +107,7 @@ def compare(
                 output = tool(["yosys-abc", "-c", f"read_aiger miter.aig; strash; {engine}"], seconds, cwd=folder)
             except ToolTimeout:
                 continue
-            if "roperty proved" in output or "Networks are equivalent" in output:
+            if any(text in output for text in PROVEN):
                 return EQUIVALENT, 0
             if found := re.search(r"was asserted in frame (\d+)", output):
                 return DIFFERENT, int(found[1])

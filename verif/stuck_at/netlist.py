@@ -14,7 +14,7 @@ from talbot.base.tools import run
 
 # Mapped module by module, so that a gate's name begins with its block
 SCRIPT = """read_verilog -sv {path}; hierarchy -check -top {top}; proc; opt; fsm_map; memory_map; opt; techmap; opt;
-dfflegalize -cell $_DFF_P_ x; abc -g AND,NAND,OR,NOR,XOR,XNOR,MUX; opt_clean; flatten; opt_clean;
+dfflegalize -cell $_DFF_P_ x; abc -g AND,NAND,OR,NOR,XOR,XNOR,MUX; opt_clean; flatten -noscopeinfo; opt_clean;
 setundef -undriven -zero; opt_clean; write_json {out}"""
 OPERATORS = ("AND", "NAND", "OR", "NOR", "XOR", "XNOR", "MUX", "NOT", "BUF", "FF")
 AND, NAND, OR, NOR, XOR, XNOR, MUX, NOT, BUF, FF = range(len(OPERATORS))

@@ -4,7 +4,6 @@ A skipped test is an open point: what it checks is not checked.
 """
 
 import shlex
-import shutil
 from argparse import ArgumentParser, Namespace
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
@@ -16,6 +15,7 @@ from talbot.base.jobs import run as run_jobs
 from talbot.base.paths import ROOT
 from talbot.base.records import from_json
 from talbot.base.sources import code
+from talbot.base.tools import located
 from talbot.models.parameters import ParameterError
 from talbot.verif.results import OUT, SEED, BlockResults, Fault, Tests, write_step
 
@@ -33,7 +33,7 @@ def options_of(seed: int) -> tuple[str, ...]:
 
 def jobs(wanted: Iterable[str], seconds: Mapping[str, float], seed: int = SEED) -> list[Job]:
     """Return a Job for each folder, the longest first. seconds: of each folder's last run."""
-    setup = [ROOT / "pyproject.toml", seed, *map(shutil.which, TOOLS)]
+    setup = [ROOT / "pyproject.toml", seed, *map(located, TOOLS)]
     ordered = sorted(wanted, key=lambda folder: -seconds.get(folder, 1e9))
     return [
         Job(folder.replace("/", "-"), run_folder, (folder, options_of(seed)), (code(folder, "conftest"), *setup))

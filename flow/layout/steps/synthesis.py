@@ -37,7 +37,7 @@ read_verilog -sv {rtl}
 design -save read
 hierarchy -top {top}
 proc
-flatten
+flatten -noscopeinfo
 memory
 techmap
 simplemap
@@ -45,6 +45,7 @@ opt_clean
 write_json {registers}
 design -load read
 synth -flatten -nofsm -top {top}
+delete t:$scopeinfo
 {gates}
 dfflibmap -liberty {liberty}
 write_rtlil {design}

@@ -17,7 +17,7 @@ from talbot.flow.layout.timing.constraints import sdc
 from talbot.flow.openroad import command
 from talbot.flow.openroad.netlists import write_synthesized
 from talbot.flow.openroad.signoff import checks, given
-from talbot.flow.openroad.stages import SCRIPTS, pdk_root, run, stages
+from talbot.flow.openroad.stages import SCRIPTS, TCL_YOSYS, pdk_root, run, stages
 from talbot.flow.openroad.test import stub
 from talbot.flow.openroad.test.commands import COMMANDS, OLDER
 from talbot.flow.openroad.test.librelane_pdk import with_delays
@@ -49,7 +49,7 @@ SPEF = """*SPEF "IEEE 1481-1998"
 *END
 """
 needs_tclsh = pytest.mark.needs("tclsh")
-needs_yosys = pytest.mark.needs("yosys")
+needs_yosys = pytest.mark.needs("yosys-tcl")
 needs_sta = pytest.mark.needs("sta")
 
 
@@ -249,7 +249,7 @@ def test_constraints_and_timing_script_in_opensta(pdk, tmp_path):
     assert main(command, ["quad_divider", "--out", str(tmp_path), "--write-only"]) == 0
     folder = tmp_path / "quad_divider-openroad"
     (folder / "synthesis.lib").write_text(with_delays(functions.small_liberty()))
-    done = finish(["yosys", "-q", "-c", "synth.tcl"], cwd=folder, env={"PDK_ROOT": str(pdk)})
+    done = finish([TCL_YOSYS, "-q", "-c", "synth.tcl"], cwd=folder, env={"PDK_ROOT": str(pdk)})
     assert done.returncode == 0, done.stderr
     write_synthesized(folder, "QuadDividerRadix4", KNOWN)
     (folder / "netlist.v").rename(folder / "final.v")

@@ -47,9 +47,9 @@ def test_command_writes_both_files(tmp_path, capsys):
 
 
 def test_missing_yosys(tmp_path, monkeypatch, capsys):
-    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.setattr("talbot.flow.sizes.measure.located", lambda name: None)
     assert main(command, ["RegFile", "--out", str(tmp_path / "out")]) == 2
-    assert "yosys: not found; install it" in capsys.readouterr().err
+    assert "yosys: not found; make setup installs it" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
 
 

@@ -36,7 +36,8 @@ def gates(folder, recorded):
     """The netlist of EdgeAdc in the abstract library's cells, and the cells' models."""
     netlist, cells = folder / "gates.v", folder / "cells.v"
     for script in (
-        f"read_verilog -sv {recorded[1]}; synth -flatten -top EdgeAdc; dfflibmap -liberty {LIBRARY}; "
+        f"read_verilog -sv {recorded[1]}; synth -flatten -top EdgeAdc; delete t:$scopeinfo; "
+        f"dfflibmap -liberty {LIBRARY}; "
         f"abc -liberty {LIBRARY}; hilomap -hicell TIE1 Y -locell TIE0 Y -singleton; opt_clean -purge; "
         f"write_verilog -noattr {netlist}",
         f"read_liberty {LIBRARY}; write_verilog -noattr {cells}",
