@@ -19,8 +19,8 @@ from .supervise import undisturbed, writing
 PART = f".part-{platform.node()}-"  # then the process, so that a killed one's leftovers are recognized
 
 
-def check_folder(field: str, path: Path | str) -> None:
-    """Raise ParameterError unless ``path`` is, or can become, a folder in which this user may write."""
+def check_folder(field: str, path: Path | str, names: Iterable[str] = ()) -> None:
+    """Raise ParameterError unless ``path`` is, or can become, a folder in which this user may write files ``names``."""
     path = Path(path)
     with contextlib.suppress(FileNotFoundError, NotADirectoryError):
         try:
@@ -39,6 +39,7 @@ def check_folder(field: str, path: Path | str) -> None:
         raise ParameterError(
             f"{field} = {str(path)!r}: must be a folder that you may write ({error.strerror})"
         ) from None
+    _check_names(path, names)
 
 
 def check_file(field: str, path: Path) -> None:

@@ -104,3 +104,10 @@ def test_a_full_disk_names_the_folder(tmp_path):
     with pytest.raises(OSError) as error, part_folder(tmp_path / "out"):
         raise OSError(errno.ENOSPC, "No space left on device")
     assert error.value.filename == str(tmp_path / "out")
+
+
+def test_a_folder_in_the_place_of_a_result_is_refused_before_any_work(tmp_path):
+    (tmp_path / "page.html").mkdir()
+    check_folder("out", tmp_path, ["summary.json"])
+    with pytest.raises(ParameterError, match="must not have a folder page.html"):
+        check_folder("out", tmp_path, ["summary.json", "page.html"])

@@ -38,7 +38,7 @@ def run(options: Namespace) -> int:
     standard = list(typed.items()) == [("scene", SCENE)]
     options.out = options.out or results_of("calibrate") / ("" if standard else name_of(typed))
     frame_request = request_of(options)
-    check_folder("out", frame_request.folder)
+    check_folder("out", frame_request.folder, page.NAMES)
     with Steps(STEPS, lines=True) as progress:
         done = calibrate(frame_request, holes, progress.note)
         progress.note("report")

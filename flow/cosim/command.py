@@ -70,7 +70,7 @@ def run(options: Namespace) -> int:
     ]
     asked += [replace(one, extracted=True) for one in asked if options.extracted]
     out = options.out or RESULTS / "cosim"
-    check_folder("out", out)
+    check_folder("out", out, page.names(MODES))
     with Steps(STEPS, lines=True) as steps:
         done = rows(asked, steps.note)
         found: dict[str, Any] = {"rows": [summary(row) for row in done], "model": model_alone(asked[0])}

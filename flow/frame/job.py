@@ -244,7 +244,7 @@ def run(
     """
     from . import outputs  # Matplotlib: not before it is needed
 
-    check_folder("out", request.folder)
+    check_folder("out", request.folder, outputs.NAMES)
     clock = Clock(note=note)
     exposed, program = _prepared(request, clock, request.waves_format if request.waves else "")
     with staged(request.folder, outputs.NAMES) as folder:

@@ -99,7 +99,7 @@ def run(
     Returns 1 where the chip and the golden model differ. arguments: of the command line, kept in the summary.
     Raises ParameterError, ToolError, OSError.
     """
-    check_folder("out", request.folder)
+    check_folder("out", request.folder, page.NAMES)
     before = arguments_of(request.folder)
     with Steps(steps, lines=True) as progress:
 

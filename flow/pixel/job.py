@@ -45,7 +45,7 @@ def make(
     from . import page  # Matplotlib: not before it is needed
 
     start = perf_counter()
-    check_folder("out", out)
+    check_folder("out", out, page.NAMES)
     types = TileParameters().types
     betas = sorted({kind.beta for kind in types})
     found = search(stack, betas, kinds, STORE, note)

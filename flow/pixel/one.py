@@ -20,7 +20,7 @@ NAMES = "summary.json", "response.npz"
 
 def make(geometry: PixelGeometry, wavelength_um: float, out: Path) -> dict[str, Any]:
     """Solve it, write response.npz and summary.json into ``out``; returns the summary. Raises ParameterError."""
-    check_folder("out", out)
+    check_folder("out", out, NAMES)
     start = perf_counter()
     found = respond(geometry, np.deg2rad(DEGREES), wavelength_um)
     summary = asdict(geometry) | {"wavelength_um": wavelength_um} | fit(found).as_dict()
