@@ -38,12 +38,12 @@ def test_refused_file(tmp_path):
 
 @needs_yosys
 def test_command_writes_both_files(tmp_path, capsys):
-    assert main(command, ["RegFile", "--out", str(tmp_path), "--rows", "8"]) == 0
+    assert main(command, ["EdgeAdc", "--out", str(tmp_path), "--rows", "8"]) == 0
     (size,) = json.loads((tmp_path / "sizes.json").read_text())
-    assert size["top"] == "RegFile"
+    assert size["top"] == "EdgeAdc"
     assert size["cells"] == sum(size["by_type"].values())
     assert size["gates"] == sum(areas()[cell] * n for cell, n in size["by_type"].items())
-    assert "| RegFile |" in (tmp_path / "sizes.md").read_text() and "| RegFile |" in capsys.readouterr().out
+    assert "| EdgeAdc |" in (tmp_path / "sizes.md").read_text() and "| EdgeAdc |" in capsys.readouterr().out
 
 
 def test_missing_yosys(tmp_path, monkeypatch, capsys):
