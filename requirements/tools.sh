@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The tools that PyPI does not have, from Debian's packages: Icarus, a native Verilator, z3; for cells and layouts
-# ngspice, OpenSTA and KLayout; for the tests of the foundry's checks and of OpenROAD's scripts Magic and Tcl; for waves
+# ngspice and KLayout; for a foundry's cells a Yosys with Tcl; for tests Magic, Tcl and another OpenSTA; for waves
 # as FST the headers of zlib and lz4; for make cosim ngspice as a library.
 # As root they are installed. As another user apt fetches and verifies them with folders of its own, and they are
 # unpacked in the user's cache: the system is not touched. base/environment.py adds them to PATH.
@@ -8,7 +8,7 @@
 # command line BEFORE, which checks what they are for, must succeed then. With --libc FOLDER alone the C library and
 # loader of this system's next release, unpacked in FOLDER, for a program that asks for a newer one (venv.sh).
 set -euo pipefail
-packages=(iverilog verilator z3 ngspice opensta klayout magic tcl zlib1g-dev liblz4-dev libngspice0-dev)
+packages=(iverilog verilator yosys z3 ngspice opensta klayout magic tcl zlib1g-dev liblz4-dev libngspice0-dev)
 folder=${XDG_CACHE_HOME:-${HOME:?}/.cache}/talbot/tools # talbot.base.paths.TOOLS
 
 fail() { echo "tools: $*" >&2; exit 2; }
@@ -128,7 +128,7 @@ libraries=$lib:$lib/blas:$lib/lapack:$lib/pulseaudio:$root/usr/lib/klayout:$root
 edit "s#/usr/lib/[^ /]*/ngspice#$root&#" "$new/root/usr/share/ngspice/scripts/spinit"
 edit "s#/usr/lib/[^ /]*/magic#$root&#" "$new/root/usr/lib/$triplet/magic/tcl/magic.tcl"
 [ ! -d "$new/root/usr/share/verilator/bin" ] || ln -sf ../../../bin/verilator_bin "$new/root/usr/share/verilator/bin/"
-wrap z3 "$root/usr/bin/z3"
+for name in yosys berkeley-abc z3; do wrap "$name" "$root/usr/bin/$name"; done
 wrap iverilog "$root/usr/bin/iverilog" -- -B "$lib/ivl"
 wrap vvp "$root/usr/bin/vvp" -- -M "$lib/ivl"
 wrap verilator "$root/usr/bin/verilator" "VERILATOR_ROOT=$root/usr/share/verilator"
