@@ -61,13 +61,13 @@ class Parser(argparse.ArgumentParser):
         """The parser's own arguments, without --help."""
         return [action for action in self._actions if not isinstance(action, argparse._HelpAction)]
 
-    def parse_known_args(self, *given: Any, **named: Any) -> tuple[Any, list[str]]:
+    def parse_known_args(self, *arguments: Any, **named: Any) -> tuple[Any, list[str]]:
         """Refuse what is left over, with the nearest option."""
-        found, rest = super().parse_known_args(*given, **named)
+        namespace, rest = super().parse_known_args(*arguments, **named)
         if rest:
             options = [name for action in self.actions for name in action.option_strings]
             self.error(f"unrecognized arguments: {' '.join(rest)}{_near(rest[0].partition('=')[0], options)}")
-        return found, rest
+        return namespace, rest
 
     def _check_value(self, action: argparse.Action, value: Any) -> None:
         """Refuse what is not a choice: the nearest is named, or all."""
@@ -168,25 +168,25 @@ def _silence() -> bool:
 def one_line(error: Exception) -> str:
     """The first line of an error's message and, of a tool's output after it, the first line with an error."""
     lines = [line.strip() for line in str(error).splitlines() if line.strip()] or [type(error).__name__]
-    found = next((line for line in lines[1:] if "error" in line.lower()), lines[-1])
-    return lines[0] if len(lines) == 1 else f"{lines[0]} {found}"
+    detail = next((line for line in lines[1:] if "error" in line.lower()), lines[-1])
+    return lines[0] if len(lines) == 1 else f"{lines[0]} {detail}"
 
 
 def failures(lines: Iterable[str]) -> int:
     """Print what a check found, a line each, on standard error; the exit status: 1 where there is a line, else 0."""
-    found = list(lines)
-    for line in found:
+    problems = list(lines)
+    for line in problems:
         print(line, file=sys.stderr, flush=True)
-    return int(bool(found))
+    return int(bool(problems))
 
 
 def _near(word: str, known: Sequence[str]) -> str:
     """'; did you mean ...?', or nothing."""
-    found = nearest(word, known, LIKE)
-    return found if found.startswith(";") else ""
+    suggestion = nearest(word, known, LIKE)
+    return suggestion if suggestion.startswith(";") else ""
 
 
 def _report(program: str, message: str) -> None:
     """One line; of a long value in it, the beginning."""
-    text = LONG.sub(lambda found: f"{found[found.lastindex or 0]}...", " ".join(message.split()))
+    text = LONG.sub(lambda match: f"{match[match.lastindex or 0]}...", " ".join(message.split()))
     print(f"{program}: error: {text}", file=sys.stderr)

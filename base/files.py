@@ -29,11 +29,11 @@ def check_folder(field: str, path: Path | str, names: Iterable[str] = ()) -> Non
             if error.errno == errno.ENAMETOOLONG:
                 raise ParameterError(f"{field} = {str(path)!r}: must be a shorter name") from None
             raise
-    there = next(p for p in (path.absolute(), *path.absolute().parents) if os.path.lexists(p))
-    if not there.is_dir():
-        raise ParameterError(f"{field} = {str(path)!r}: must be a folder; {there} is a file")
+    existing = next(p for p in (path.absolute(), *path.absolute().parents) if os.path.lexists(p))
+    if not existing.is_dir():
+        raise ParameterError(f"{field} = {str(path)!r}: must be a folder; {existing} is a file")
     try:  # more than the permissions decide: /proc, a medium that is read-only
-        with part_folder(there):
+        with part_folder(existing):
             pass
     except OSError as error:
         raise ParameterError(
@@ -80,7 +80,7 @@ def staged(out: Path | str, replaces: Iterable[str] = ()) -> Iterator[Path]:
     """
     work_begins()
     out, replaces = Path(out), set(replaces)
-    made = not out.exists()
+    is_new = not out.exists()
     _check_names(out, replaces)
     try:
         with part_folder(out) as part:
@@ -93,7 +93,7 @@ def staged(out: Path | str, replaces: Iterable[str] = ()) -> Iterator[Path]:
             with undisturbed():
                 _exchange(out, new, old, sorted(written), sorted(replaces - written))
     finally:
-        if made:
+        if is_new:
             with contextlib.suppress(OSError):
                 out.rmdir()
 
@@ -156,11 +156,11 @@ def marked(document: Path | str, mark: str) -> tuple[str, str, str, str]:
     """The text before such a place, both comments, the text after. Raises ParameterError as `insert`, OSError."""
     first, last = f"<!-- {mark} -->\n", f"<!-- end of {mark} -->"
     try:
-        before, found, rest = Path(document).read_text(encoding="utf-8").partition(first)
+        before, opening, rest = Path(document).read_text(encoding="utf-8").partition(first)
     except UnicodeDecodeError:
         raise ParameterError(f"document = {document}: must be a text file") from None
     _, ends, after = rest.partition(last)
-    if not (found and ends):
+    if not (opening and ends):
         raise ParameterError(f"document = {document}: must have the comments {mark!r} and 'end of {mark}'")
     return before, first, last, after
 

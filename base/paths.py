@@ -25,9 +25,9 @@ def build(root: Path) -> Path:
     cache = user_cache_path("talbot", appauthor=False)
     if not (root / "pyproject.toml").is_file():
         return cache if not unwritable(cache) else _temporary()
-    own = root / "build"
-    if not (first := unwritable(own)):
-        return own
+    in_checkout = root / "build"
+    if not (first := unwritable(in_checkout)):
+        return in_checkout
     folder = cache if not unwritable(cache) else _temporary()
     os.environ[CHOSEN] = str(folder)  # of processes below this one, which say nothing more
     print(f"talbot: {first} is not yours to write: {folder} is used in its place", file=sys.stderr)
@@ -36,10 +36,10 @@ def build(root: Path) -> Path:
 
 def unwritable(folder: Path) -> Path | None:
     """The first of ``folder``, or what is above it, and its folders in which this user may not write."""
-    there = next(path for path in (folder, *folder.absolute().parents) if os.path.lexists(path))
-    if not os.access(there, os.W_OK | os.X_OK):
-        return there
-    if there != folder:
+    existing = next(path for path in (folder, *folder.absolute().parents) if os.path.lexists(path))
+    if not os.access(existing, os.W_OK | os.X_OK):
+        return existing
+    if existing != folder:
         return None
     return next((path for path in folder.iterdir() if path.is_dir() and not os.access(path, os.W_OK)), None)
 

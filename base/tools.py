@@ -105,13 +105,13 @@ def plain(path: Path) -> Path:
     path = Path(path)
     if PLAIN.fullmatch(str(path)):
         return path
-    there = next(p for p in (path, *path.absolute().parents) if p.exists())
-    rest = path.absolute().relative_to(there.absolute())
+    existing = next(p for p in (path, *path.absolute().parents) if p.exists())
+    rest = path.absolute().relative_to(existing.absolute())
     if not PLAIN.fullmatch(str(rest)):
         path.mkdir(parents=True, exist_ok=True)
-        there, rest = path, Path()
+        existing, rest = path, Path()
     link = _links() / secrets.token_hex(4)
-    link.symlink_to(there.absolute())
+    link.symlink_to(existing.absolute())
     return link / rest
 
 

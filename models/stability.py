@@ -194,9 +194,9 @@ def _frames() -> list[Case]:
         sensor = SensorParameters(array=ArrayParameters(rows, cols))
         frame = FrameParameters(sensor.full_window, mode=mode, mask=mask)
         seen = load(scene, Sampling(rows, cols))
-        made = plan(seen, sensor, frame)
-        samples = capture(seen, sensor, made, Exposure(sensor.electrical, frame.timing, noise=0.0))
-        dark = samples[:, ~made.read].max(initial=0.0)
+        planned = plan(seen, sensor, frame)
+        samples = capture(seen, sensor, planned, Exposure(sensor.electrical, frame.timing, noise=0.0))
+        dark = samples[:, ~planned.read].max(initial=0.0)
         limit = 127.5 * (1 + 1e-12)
         ok = np.isfinite(samples).all() and samples.min() >= 0 and samples.max() <= limit and dark < 0.001
         out.append(
@@ -299,13 +299,13 @@ def _polarizations() -> list[Case]:
     for degrees in (89.999, -89.999):
         psi = np.deg2rad(degrees)
         stokes = 0.25 * np.stack([np.full(shape, np.cos(2 * psi)), np.full(shape, np.sin(2 * psi))])
-        found = polarization(0.5 * transmission(stokes, gamma, 1 / 3), tile, 1 / 3, 0.003)
-        error = float(np.rad2deg(np.abs((found.psi - psi + np.pi / 2) % np.pi - np.pi / 2)).max())
+        polarized = polarization(0.5 * transmission(stokes, gamma, 1 / 3), tile, 1 / 3, 0.003)
+        error = float(np.rad2deg(np.abs((polarized.psi - psi + np.pi / 2) % np.pi - np.pi / 2)).max())
         out.append(_within(f"psi of {degrees:g} degrees", "error <= 0.001 degrees", error, 0, 1e-3))
     some, all_ = np.abs(np.rad2deg(gamma)) < 1, np.ones(shape, bool)
     for name, level, used in (("black", 0.0, all_), ("full", 1.25, ~all_), ("of 0 degrees alone", 0.5, some)):
-        found = polarization(np.full(shape, level), tile, 1 / 3, 0.003, used)
-        values = found.confidence + 0 * (found.light + found.psi + found.degree)
+        polarized = polarization(np.full(shape, level), tile, 1 / 3, 0.003, used)
+        values = polarized.confidence + 0 * (polarized.light + polarized.psi + polarized.degree)
         out.append(_within(f"polarization of pixels that are {name}", "confidence 0", float(values.max()), 0, 0))
     return out
 
@@ -314,12 +314,12 @@ def _turns() -> list[Case]:
     """Phase near 2 pi, none at all, and a depth that nothing tells."""
     shape, out = (12, 18), []
     for turns in (1 - 1e-9, 1.0, 3 + 1e-9):
-        found = unwrap(np.full(shape, 2 * np.pi * (turns % 1)), np.full(shape, turns), np.full(shape, 0.2))
-        error = float(np.abs(found.turns - turns).max())
+        unwrapped = unwrap(np.full(shape, 2 * np.pi * (turns % 1)), np.full(shape, turns), np.full(shape, 0.2))
+        error = float(np.abs(unwrapped.turns - turns).max())
         out.append(_within(f"turns of a phase, {turns:.9f}", "error <= 1e-6 turns", error, 0, 1e-6))
     none, zero, unknown = np.full(shape, np.nan), np.zeros(shape), np.full(shape, np.inf)
     for name, phase, doubt in (("no phase (zero albedo, full)", none, zero), ("depth beyond all tried", zero, unknown)):
-        found = unwrap(phase, zero, doubt)
-        measured = float(found.sure.mean() + np.abs(found.turns).max())
+        unwrapped = unwrap(phase, zero, doubt)
+        measured = float(unwrapped.sure.mean() + np.abs(unwrapped.turns).max())
         out.append(_within(f"turns where there is {name}", "0, not sure", measured, 0, 0))
     return out

@@ -96,14 +96,16 @@ def _fields() -> list[Case]:
 def _amid_dead(estimator: FieldEstimator, pair: Floats) -> Estimate:
     """The estimate with dead pixels found, repaired, and no disparity beside them."""
     dead = dead_pixels(pair)
-    found = estimator.mixture(repaired(pair, dead))
-    return found._replace(spread=np.where(estimator.told_by(dead), np.inf, found.spread))
+    estimate = estimator.mixture(repaired(pair, dead))
+    return estimate._replace(spread=np.where(estimator.told_by(dead), np.inf, estimate.spread))
 
 
-def _bounded(name: str, found: Estimate, top: float, known: float | None = None) -> Case:
+def _bounded(name: str, estimate: Estimate, top: float, known: float | None = None) -> Case:
     """An estimate within BOUND times the light ``top``; known: share of the pixels that may have a disparity."""
-    field, sure = found.light_field, float((found.spread < SURE).mean())
-    finite = bool(np.isfinite(field).all() and np.isfinite(found.disparity).all() and not np.isnan(found.spread).any())
+    field, sure = estimate.light_field, float((estimate.spread < SURE).mean())
+    finite = bool(
+        np.isfinite(field).all() and np.isfinite(estimate.disparity).all() and not np.isnan(estimate.spread).any()
+    )
     peak = float(np.abs(field).max())
     ok = finite and peak <= BOUND * top + 1e-6 and (known is None or sure <= known)
     bound = f"|light| <= {BOUND * top:g}" + ("" if known is None else f", disparity of {100 * known:g} %")
@@ -121,24 +123,24 @@ def _polarizations() -> list[Case]:
     psi, plain = 0.6, np.full(SHAPE, 0.5)
     stokes = 0.5 * np.stack([np.full(SHAPE, np.cos(2 * psi)), np.full(SHAPE, np.sin(2 * psi))])
     seen = 0.5 * transmission(stokes, gamma, d)
-    found = polarization(plain * (1 + 0.4 * draw.standard_normal(SHAPE)), tile, d, 0.003)
-    wrong = float((found.confidence > 0).mean())
+    polarized = polarization(plain * (1 + 0.4 * draw.standard_normal(SHAPE)), tile, d, 0.003)
+    wrong = float((polarized.confidence > 0).mean())
     out = [_at_most("unpolarized light with noise of 40 %: share that has a confidence", wrong, 0.01)]
-    found = polarization(seen * (1 + 0.4 * draw.standard_normal(SHAPE)), tile, d, 0.003)
-    out.append(_at_most("polarized light with noise of 40 %: greatest degree", float(found.degree.max()), 1.0))
-    found = polarization(np.where(np.arange(SHAPE[1]) % 10 == 7, 0, seen), tile, d, 0.003)
-    turned = np.rad2deg(np.abs((found.psi - psi + np.pi / 2) % np.pi - np.pi / 2))[found.confidence > 0.5]
+    polarized = polarization(seen * (1 + 0.4 * draw.standard_normal(SHAPE)), tile, d, 0.003)
+    out.append(_at_most("polarized light with noise of 40 %: greatest degree", float(polarized.degree.max()), 1.0))
+    polarized = polarization(np.where(np.arange(SHAPE[1]) % 10 == 7, 0, seen), tile, d, 0.003)
+    turned = np.rad2deg(np.abs((polarized.psi - psi + np.pi / 2) % np.pi - np.pi / 2))[polarized.confidence > 0.5]
     out.append(_at_most("dead columns in polarized light: error of psi in degrees where sure", float(turned.max()), 2))
     kept = tile.type_map(*SHAPE) != 9
-    found = polarization(seen, tile, d, 0.003, kept)
-    error = float(np.hypot(found.s1 - stokes[0], found.s2 - stokes[1]).max())
+    polarized = polarization(seen, tile, d, 0.003, kept)
+    error = float(np.hypot(polarized.s1 - stokes[0], polarized.s2 - stokes[1]).max())
     out.append(_at_most("polarized light without one pixel type: error of the Stokes parameters", error, 1e-3))
     for shape in ((1, 1), (1, 7)):
-        found = polarization(np.full(shape, 0.5), tile, d, 0.003)
-        values = found.confidence + 0 * (found.light + found.psi + found.degree)
+        polarized = polarization(np.full(shape, 0.5), tile, d, 0.003)
+        values = polarized.confidence + 0 * (polarized.light + polarized.psi + polarized.degree)
         out.append(_at_most(f"polarization of {shape[0]} x {shape[1]} pixels: confidence", float(values.max()), 0))
-    found = polarization(0.5 * transmission(stokes, gamma, 1e-3), tile, 1e-3, 0.003)
-    out.append(_at_most("gratings that hardly polarize: confidence", float(found.confidence.max()), 0))
+    polarized = polarization(0.5 * transmission(stokes, gamma, 1e-3), tile, 1e-3, 0.003)
+    out.append(_at_most("gratings that hardly polarize: confidence", float(polarized.confidence.max()), 0))
     return out
 
 
@@ -152,15 +154,15 @@ def _depths() -> list[Case]:
     none = foreground(DepthField(np.zeros((4, 3, 3, 1, 1)), np.zeros((1, 1)), np.ones((1, 1))), np.zeros((1, 1)))
     out.append(Case("occluder of one dark pixel", "none", "none" if none is None else "one", none is None))
     for turns in (0.0, 2.37):
-        found = unwrap(np.full((1, 1), 2 * np.pi * (turns % 1)), np.full((1, 1), turns + 0.1), np.full((1, 1), 0.1))
-        out.append(_at_most(f"turns of one pixel, {turns:g}", float(np.abs(found.turns - turns).max()), 1e-6))
+        unwrapped = unwrap(np.full((1, 1), 2 * np.pi * (turns % 1)), np.full((1, 1), turns + 0.1), np.full((1, 1), 0.1))
+        out.append(_at_most(f"turns of one pixel, {turns:g}", float(np.abs(unwrapped.turns - turns).max()), 1e-6))
     true = np.where(np.arange(SHAPE[1]) < 12, 0.7, 1.7) * np.ones(SHAPE)
     coarse = true + np.random.default_rng(7).normal(0, 0.2, SHAPE)
-    found = unwrap(2 * np.pi * (true % 1), coarse, np.full(SHAPE, 0.2))
-    wrong = float(((np.abs(found.turns - true) > 0.5) & found.sure).mean())
+    unwrapped = unwrap(2 * np.pi * (true % 1), coarse, np.full(SHAPE, 0.2))
+    wrong = float(((np.abs(unwrapped.turns - true) > 0.5) & unwrapped.sure).mean())
     out.append(_at_most("edge of exactly a turn: share wrong and sure", wrong, 0.02))
-    found = unwrap(np.random.default_rng(8).uniform(0, 6, SHAPE), coarse, np.full(SHAPE, np.inf))
-    out.append(_at_most("phase of noise, no disparity: share sure", float(found.sure.mean()), 0))
+    unwrapped = unwrap(np.random.default_rng(8).uniform(0, 6, SHAPE), coarse, np.full(SHAPE, np.inf))
+    out.append(_at_most("phase of noise, no disparity: share sure", float(unwrapped.sure.mean()), 0))
     out += _coded()
     far = unwrap(np.full(SHAPE, 1.0), np.full(SHAPE, 1e4), np.full(SHAPE, 1e3))
     out.append(_at_most("disparity at infinity: turns", float(np.abs(far.turns).max()), 2e4))
@@ -173,9 +175,11 @@ def _coded() -> list[Case]:
     ends, taps = tap_depths(electrical), tap_functions(electrical)
 
     def _sure(name: str, light: Floats, limit: float = 0.0) -> Case:
-        found = coded_depth(light, electrical, 1.0)
-        within = np.isfinite(found.amplitude) & (found.depth >= ends[0] - 1e-9) & (found.depth <= ends[-1] + 1e-9)
-        return _at_most(f"coded light {name}: share sure", float(found.sure.mean()) + float(not within.all()), limit)
+        measured = coded_depth(light, electrical, 1.0)
+        within = (
+            np.isfinite(measured.amplitude) & (measured.depth >= ends[0] - 1e-9) & (measured.depth <= ends[-1] + 1e-9)
+        )
+        return _at_most(f"coded light {name}: share sure", float(measured.sure.mean()) + float(not within.all()), limit)
 
     def _from(depth: float) -> Floats:
         return np.stack([np.full(SHAPE, 100 * tap(depth)) for tap in taps])
@@ -183,8 +187,8 @@ def _coded() -> list[Case]:
     out = [_sure("without light", np.zeros((4, *SHAPE))), _sure("of no code, full", np.full((4, *SHAPE), 255.0))]
     out += [_sure(f"from {where} of its gate", _from(z)) for where, z in (("before", 0.9), ("behind", ends[-1] + 1))]
     out.append(_sure("that is noise", 100 + draw.normal(0, 1, (4, *SHAPE)), 0.02))
-    found = coded_depth(_from(3.0)[:, :1, :1] + 0.01, electrical, 1.0)
-    out.append(_at_most("coded light of one pixel: error in m", float(np.abs(found.depth - 3.0).max()), 1e-3))
+    measured = coded_depth(_from(3.0)[:, :1, :1] + 0.01, electrical, 1.0)
+    out.append(_at_most("coded light of one pixel: error in m", float(np.abs(measured.depth - 3.0).max()), 1e-3))
     beyond = Echo(np.zeros((1, 1, *SHAPE)), np.ones((1, 1, 3)), 0.9, 0.1).returned(lambda z: phase_of(z, 1e8))
     mean = beyond(np.full(SHAPE, 5.0), np.full(SHAPE, 1e4), 0.0, 0.0) / phase_of(1.0, 1e8)
     out.append(_at_most("echoes alone, at a disparity of 10,000 px: error of their mean in m", np.ptp(mean), 1e-9))
@@ -205,8 +209,8 @@ def _calibrations() -> list[Case]:
         return Sweep(holes, means, block_means(places, tile), np.ones(tile.n_types))
 
     for m in (0.0, 1e-4, 1.0):
-        found, pupil, fits = calibrated(_swept(m), 1e-5)
-        error = max(abs((kind.m or 0) - m) for kind in found.types)
+        calibration, pupil, fits = calibrated(_swept(m), 1e-5)
+        error = max(abs((kind.m or 0) - m) for kind in calibration.types)
         out.append(_at_most(f"calibration of m = {m:g}: error of m", error, 0.01))
     out.append(_at_most("condition of a calibration", max(pupil.condition, *(fit.condition for fit in fits)), 100))
     dark = _swept(0.7)

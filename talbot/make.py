@@ -24,30 +24,30 @@ def variables(flags: str) -> dict[str, str]:
     """
     before, dashes, after = f" {flags}".partition(" -- ")
     text = after if dashes or "=" not in before.split(" -")[0] else before
-    found = {}
+    values = {}
     for word in re.findall(r"(?:\\.|[^ \t\\])+", text, re.DOTALL):
         name, _, value = re.sub(r"\\(.)", r"\1", word, flags=re.DOTALL).partition("=")
-        found[name.rstrip(":")] = value.replace("$$", "$")
-    return found
+        values[name.rstrip(":")] = value.replace("$$", "$")
+    return values
 
 
 def arguments(
-    parser: Parser, given: str, fixed: Sequence[str], environment: Mapping[str, str] = os.environ
+    parser: Parser, target_line: str, fixed: Sequence[str], environment: Mapping[str, str] = os.environ
 ) -> list[str]:
     """The arguments for ``parser``, a command's own: ``fixed``, which the target passes itself, then the variables.
 
     given: the target, then the variables that are not for the command. A variable that neither knows ends the program
     with status 2 and the nearest name; in a make that another make started it may be that one's, and is left alone.
     """
-    target, *own = given.split()
+    target, *of_make = target_line.split()
     known = {action.dest.upper(): action for action in parser.actions if action.option_strings or not fixed}
     flags = environment.get("MAKEFLAGS", "")
     flags = flags.replace("$(MAKEOVERRIDES)", environment.get("TALBOT_OVERRIDES", ""))  # of make -e
-    typed = {name: v for name, v in variables(flags).items() if name not in own}
+    typed = {name: v for name, v in variables(flags).items() if name not in of_make}
     if "e" in re.match(r"[a-zA-Z]*", flags)[0]:  # pyright: ignore[reportOptionalSubscript]
         typed = {name: environment[name] for name in known.keys() & environment.keys()} | typed
     for name in sorted(typed.keys() - known.keys()) if environment.get("MAKELEVEL") == "1" else ():
-        must = nearest(name.upper(), [*known, *own], LIKE)
+        must = nearest(name.upper(), [*known, *of_make], LIKE)
         parser.error(f"{name} = {typed[name]!r}: must be a variable of make {target}{must}")
     for name in known.keys() & environment.keys() - typed.keys():
         print(f"talbot: {name} of the environment is not used: make {target} {name}=...", file=sys.stderr)
@@ -63,10 +63,10 @@ def arguments(
 
 def _at_home(parser: Parser, name: str, value: str) -> str:
     """A value with ~ or ~user before it expanded: no shell has seen it (SCENE=~/photo.png)."""
-    found = os.path.expanduser(value)
-    if found.startswith("~"):
+    path = os.path.expanduser(value)
+    if path.startswith("~"):
         parser.error(f"{name} = {value!r}: must begin with a user's home folder (or ./{value})")
-    return found
+    return path
 
 
 def _words(parser: Parser, name: str, action: argparse.Action, value: str) -> list[str]:

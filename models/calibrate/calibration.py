@@ -121,21 +121,21 @@ class Calibration:
 
 def _table(kind: PixelType) -> dict[str, Any]:
     """A type's own response, for a JSON file; {} where it has none."""
-    found = kind.response
-    if not isinstance(found, TableResponse):
+    table = kind.response
+    if not isinstance(table, TableResponse):
         return {}
-    plain = {name: getattr(found, name) for name in TABLE}
+    plain = {name: getattr(table, name) for name in TABLE}
     digits = {"along": 6, "across": 6, "values": 4}
     return {"response": {k: v.round(digits[k]).tolist() if k in digits else v for k, v in plain.items()}}
 
 
 def _type(kind: dict[str, Any]) -> PixelType:
     plain = {name: value for name, value in kind.items() if name != "response"}
-    given = kind.get("response")
-    if given is None:
+    stored = kind.get("response")
+    if stored is None:
         return PixelType(**plain)
-    along, across, values = (np.array(given[name], np.float64) for name in TABLE[:3])
-    response = TableResponse(along, across, values, float(given["gamma"]), str(given["source"]))
+    along, across, values = (np.array(stored[name], np.float64) for name in TABLE[:3])
+    response = TableResponse(along, across, values, float(stored["gamma"]), str(stored["source"]))
     return PixelType(**plain, response=response)
 
 

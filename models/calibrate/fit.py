@@ -107,12 +107,12 @@ def fit_pupil(sweep: Sweep) -> Pupil:
 
     from scipy.optimize import least_squares  # imported where it is needed: it is slow
 
-    found = least_squares(_all, np.array([0.0, np.log(0.3), 0, 0, 0]), x_scale=[1, 1, 1, 1, 1e-3])
-    errors, condition = _errors(found.jac, found.fun)
-    slope, error = float(found.x[4]), float(errors[4])
+    fitted = least_squares(_all, np.array([0.0, np.log(0.3), 0, 0, 0]), x_scale=[1, 1, 1, 1, 1e-3])
+    errors, condition = _errors(fitted.jac, fitted.fun)
+    slope, error = float(fitted.x[4]), float(errors[4])
     seen = across and slope > TILTED * error
-    sigma = float(np.clip(np.exp(found.x[1]), 0.01, 10))
-    return Pupil(sigma, found.x[2:4], slope if seen else 0.0, error, condition)
+    sigma = float(np.clip(np.exp(fitted.x[1]), 0.01, 10))
+    return Pupil(sigma, fitted.x[2:4], slope if seen else 0.0, error, condition)
 
 
 def fit_types(sweep: Sweep, pupil: Pupil) -> list[TypeFit]:
@@ -164,9 +164,9 @@ def calibrated(sweep: Sweep, pitch: float) -> tuple[Calibration, Pupil, list[Typ
 def _seen(sweep: Sweep, pupil: Pupil, number: int) -> tuple[Floats, Floats]:
     """Angles (y, x) of the rays that a type was lit by, (n, 2), and its diodes' signals, (n, 2)."""
     diodes, places = sweep.diodes[:, :, number], sweep.places[:, number]
-    there = np.isfinite(places).all(1)
-    diodes, places = diodes[:, there], places[there]
-    if not pupil.slope and there.any():  # all blocks see the same rays
+    is_seen = np.isfinite(places).all(1)
+    diodes, places = diodes[:, is_seen], places[is_seen]
+    if not pupil.slope and is_seen.any():  # all blocks see the same rays
         diodes, places = diodes.mean(1, keepdims=True), places[:1]
     sums = diodes.sum(-1)
     theta = np.arctan(sweep.holes[:, None] + pupil.axis + pupil.slope * places)
@@ -209,10 +209,10 @@ def _fit_type(sweep: Sweep, pupil: Pupil, number: int) -> TypeFit:
     from scipy.optimize import least_squares
 
     jacobian: Any = _slopes  # SciPy's stubs know none but strings
-    found = least_squares(_rest, first, jacobian, x_scale=[10, 10, 1, 1])
-    errors, condition = _errors(found.jac, found.fun)
-    residual = float(np.sqrt(np.mean((found.fun / weight) ** 2)))
-    y, x, c, s = found.x
+    fitted = least_squares(_rest, first, jacobian, x_scale=[10, 10, 1, 1])
+    errors, condition = _errors(fitted.jac, fitted.fun)
+    residual = float(np.sqrt(np.mean((fitted.fun / weight) ** 2)))
+    y, x, c, s = fitted.x
     m, m_error = float(np.hypot(c, s)), float(max(errors[2:]))
     if not m > CERTAIN * m_error or not np.hypot(y, x) <= BETA_MAX:
         return TypeFit(PixelType(0, 0, 0, 0.0), m_error, np.pi, residual, condition)

@@ -66,6 +66,6 @@ def block_means(samples: Floats, tile: TileParameters) -> Floats:
     size = blocks * tile.n_types
     count = np.bincount(number.ravel(), minlength=size)
     flat = samples.reshape(rows * cols, -1)
-    sums = np.stack([np.bincount(number.ravel(), one, size) for one in flat.T], -1)
+    sums = np.stack([np.bincount(number.ravel(), values, size) for values in flat.T], -1)
     means = np.where(count[:, None] > 0, sums / np.maximum(count, 1)[:, None], np.nan)
     return means.reshape(blocks, tile.n_types, *samples.shape[2:])

@@ -68,5 +68,5 @@ def phase_samples(
     """
     taps = np.asarray(taps, np.int32)
     x, y = taps[..., 0] - taps[..., 2], taps[..., 3] - taps[..., 1]
-    found = divide(chip.divider, chip.n_frac, chip.cordic_iterations, x, y, noise_floor)
-    return found.phase.astype(np.int16), np.where(found.amp_valid, found.amp, 0).astype(np.int16)
+    quotient = divide(chip.divider, chip.n_frac, chip.cordic_iterations, x, y, noise_floor)
+    return quotient.phase.astype(np.int16), np.where(quotient.amp_valid, quotient.amp, 0).astype(np.int16)

@@ -81,8 +81,8 @@ class Scan:
         w, tile = self.frame.window, self.tile
         tiles = np.arange(w.row0, w.row1 + 1, 1 << self.frame.decimation)
         rows = (tile.rows * tiles[:, None] + np.arange(tile.rows)).ravel()
-        wanted = np.array([bool(self.columns_of(r)) for r in range(tile.rows)])
-        return rows[(rows < self.rows) & wanted[rows % tile.rows]]
+        has_samples = np.array([bool(self.columns_of(r)) for r in range(tile.rows)])
+        return rows[(rows < self.rows) & has_samples[rows % tile.rows]]
 
     @cached_property
     def read(self) -> npt.NDArray[np.bool_]:

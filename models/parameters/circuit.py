@@ -180,5 +180,7 @@ def circuit_columns(table: Path = TABLE) -> ColumnCurves:
         For a value out of range.
     """
     written = json.loads(table.read_text(encoding="utf-8"))["columns"]
-    given: dict[str, Any] = {name: tuple(one) if isinstance(one, list) else one for name, one in written.items()}
-    return ColumnCurves(**given)
+    values: dict[str, Any] = {
+        name: tuple(value) if isinstance(value, list) else value for name, value in written.items()
+    }
+    return ColumnCurves(**values)

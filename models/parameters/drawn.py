@@ -125,5 +125,5 @@ def drawn_curves(table: Path = CURVES) -> Mapping[tuple[float, float, float], np
         Sine of the angle in air, ascending; share of the light on the pixel that reaches each diode. Gamma is 0 or
         more: of -gamma they are those of gamma.
     """
-    found = json.loads(table.read_text(encoding="utf-8"))["curves"]
-    return {(c["beta"], c["gamma_deg"], c["alpha"]): np.array([c["sines"], *c["shares"]]) for c in found}
+    curves = json.loads(table.read_text(encoding="utf-8"))["curves"]
+    return {(c["beta"], c["gamma_deg"], c["alpha"]): np.array([c["sines"], *c["shares"]]) for c in curves}

@@ -120,11 +120,11 @@ def keys(kind: type[Any] = SensorParameters, prefix: str = "") -> dict[str, str]
     dict of str to str
         Full name ('optics.camera.focus') to meaning, unit and range.
     """
-    found: dict[str, str] = {}
+    meanings: dict[str, str] = {}
     for name, text in _meanings(kind).items():
         part = _parts(kind).get(name)
-        found |= {f"{prefix}{name}": text} | (keys(part, f"{prefix}{name}.") if part else {})
-    return found
+        meanings |= {f"{prefix}{name}": text} | (keys(part, f"{prefix}{name}.") if part else {})
+    return meanings
 
 
 def nearest(key: str, known: Iterable[str], cutoff: float = 0.7) -> str:

@@ -124,9 +124,9 @@ class Branches:
         self.phi = np.asarray(weights["phi"], np.float32)
         self.layers = {key: np.asarray(value, np.float32) for key, value in weights.items() if "/" in key}
         for key, value in self.layers.items():
-            wanted = shapes()[key.partition("/")[2]]
-            if value.shape != wanted:
-                raise ParameterError(f"{key} = weights of shape {value.shape}: must be {wanted}")
+            shape = shapes()[key.partition("/")[2]]
+            if value.shape != shape:
+                raise ParameterError(f"{key} = weights of shape {value.shape}: must be {shape}")
 
     @classmethod
     @cache
@@ -210,12 +210,12 @@ class Branches:
             values = values @ self.layers[f"{kind}/dense_{number}"].T + self.layers[f"{kind}/dense_{number}_bias"]
             if number < len(DENSE) - 2:
                 np.maximum(values, 0, out=values)
-        found = values.reshape(len(firsts[0]), len(firsts[1]), VIEWS, VIEWS, PATCH, PATCH)
+        patches = values.reshape(len(firsts[0]), len(firsts[1]), VIEWS, VIEWS, PATCH, PATCH)
         out = np.zeros((VIEWS, VIEWS, *seen.total.shape), np.float32)
         count = np.zeros(seen.total.shape, np.float32)
         for y, x in np.ndindex(PATCH, PATCH):
             at = firsts[0][:, None] + y, firsts[1] + x
-            out[:, :, *at] += found[..., y, x].transpose(2, 3, 0, 1)
+            out[:, :, *at] += patches[..., y, x].transpose(2, 3, 0, 1)
             count[at] += 1
         out = (out / count)[:, :, :rows, :cols]
         return out + self._convolved(self._convolved(out[None], f"{kind}/after_0"), f"{kind}/after_1", False)[0]

@@ -98,9 +98,9 @@ def depth_field(estimator: FieldEstimator, pairs: Floats) -> DepthField:
         raise ParameterError(f"pairs = {len(pairs)} taps: must be 3 or 4")
     # Both halves of the wave: its mean light, twice what is ambient
     evidence = pairs.sum(0) / 2 if len(pairs) == 4 else pairs[0] + pairs[2]
-    found = [estimator.mixture(pair, evidence) for pair in pairs]
-    first: Estimate = found[0]
-    taps = [tap.light_field for tap in found]
+    estimates = [estimator.mixture(pair, evidence) for pair in pairs]
+    first: Estimate = estimates[0]
+    taps = [tap.light_field for tap in estimates]
     if len(taps) == 3:
         taps.append(taps[0] + taps[2] - taps[1])
     return DepthField(np.stack(taps), first.disparity, first.spread)
@@ -180,11 +180,11 @@ def unwrap(phase: Floats, coarse: Floats, doubt: Floats) -> Unwrapped:
         links = [(step, link * _counts(by)) for (step, link), by in zip(steps, apart, strict=True)]
         solve = _followed(links, trust * _counts(away))
         smooth = solve(coarse)
-    told = solve(np.ones(phase.shape), False)  # 1: all from the coarse depth, here or along the phase
+    anchored = solve(np.ones(phase.shape), False)  # 1: all from the coarse depth, here or along the phase
     around = _followed([(step, LOCAL * link) for step, link in steps], trust)
     agreed = around(_counts((smooth - coarse) / np.maximum(doubt, AWAY)), False)
     whole = np.abs(smooth - fine - np.rint(smooth - fine)) < SURE
-    sure = known & whole & (told > TOLD) & (agreed > AGREED) & _held(steps)
+    sure = known & whole & (anchored > TOLD) & (agreed > AGREED) & _held(steps)
     turns = fine + np.maximum(np.rint(smooth - fine), 0)
     return Unwrapped(np.where(known, turns, np.maximum(smooth, 0) * known.any()), sure)
 

@@ -51,8 +51,8 @@ def without_highlights(disparity: Floats, spread: Floats, tags: Bools, sure: flo
     known = total > 1e-6 / sure**2
     safe = np.where(known, total, 1)
     mean = first / safe
-    own = np.sqrt(np.maximum(second / safe - mean**2, SPREAD_MIN**2))
-    filled = np.where(known, mean, disparity), np.where(known, own, np.inf)
+    width = np.sqrt(np.maximum(second / safe - mean**2, SPREAD_MIN**2))
+    filled = np.where(known, mean, disparity), np.where(known, width, np.inf)
     return np.where(tags, filled[0], disparity), np.where(tags, filled[1], spread)
 
 

@@ -111,8 +111,8 @@ def applicable(operator: CaptureOperator) -> list[str]:
         Their names, in the order of `METHODS`.
     """
     views, _, *shape = operator.shape
-    _, own, _, *patch = Dictionary.shipped().atoms.shape
-    fits = {"sparse": views == own and min(np.subtract(shape, patch)) >= 0}
+    _, trained, _, *patch = Dictionary.shipped().atoms.shape
+    fits = {"sparse": views == trained and min(np.subtract(shape, patch)) >= 0}
     fits |= dict.fromkeys(BRANCHES, Branches.shipped().knows(operator.sensor))
     return [name for name in METHODS if fits.get(name, True)]
 
@@ -168,5 +168,5 @@ def measure(
     start = perf_counter()
     PREPARE.get(name, lambda estimator, operator: None)(estimator, operator)
     ready = perf_counter()
-    found = METHODS[name](estimator, operator, pair)
-    return found, {"seconds": perf_counter() - ready, "seconds_once": ready - start}
+    result = METHODS[name](estimator, operator, pair)
+    return result, {"seconds": perf_counter() - ready, "seconds_once": ready - start}

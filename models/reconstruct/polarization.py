@@ -90,10 +90,10 @@ def demosaiced(sums: Floats, tile: TileParameters, diattenuation: float) -> tupl
     kinds = np.unique(tile.type_map(*sums.shape))
     parts = []
     for degrees in ORIENTATIONS:
-        own = [k for k in kinds if abs((tile.types[k].gamma_deg - degrees + 90) % 180 - 90) < 1e-6]
-        if not own:
+        of_direction = [k for k in kinds if abs((tile.types[k].gamma_deg - degrees + 90) % 180 - 90) < 1e-6]
+        if not of_direction:
             return np.zeros(sums.shape), np.zeros(sums.shape)
-        parts.append(types[own].mean(0))
+        parts.append(types[of_direction].mean(0))
     i0, i45, i90, i135 = parts
     s1, s2 = stokes(i0, i45, i90, i135, diattenuation)
     excess = np.maximum(np.hypot(s1, s2), 1)
@@ -166,12 +166,12 @@ def polarization(
     return Polarization(light, s1, s2, spread)
 
 
-def specular_tags(found: Polarization, threshold: float) -> npt.NDArray[np.bool_]:
+def specular_tags(polarized: Polarization, threshold: float) -> npt.NDArray[np.bool_]:
     """Where a reflection is seen: as much polarized light as a lamp's mirror image has.
 
     Parameters
     ----------
-    found : Polarization
+    polarized : Polarization
         Full pixels have an infinite spread, and are not tagged.
     threshold : float
         Of the polarized light, 0..16, 1 = white.
@@ -186,7 +186,7 @@ def specular_tags(found: Polarization, threshold: float) -> npt.NDArray[np.bool_
     [Jayasuriya2017], Sec. 4.2: |I0 - I90| and |I45 - I135| beyond a threshold.
     """
     check_real("threshold", threshold, 0, 16)
-    return (found.degree > TAGGED * found.spread) & (found.degree * found.light > threshold)
+    return (polarized.degree > TAGGED * polarized.spread) & (polarized.degree * polarized.light > threshold)
 
 
 def _fits(

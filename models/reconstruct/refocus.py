@@ -97,8 +97,8 @@ def disparity_of(light_field: Floats, tried: npt.NDArray[np.float64]) -> tuple[F
     step = float(tried[1] - tried[0])
     least = np.maximum(at - bend * offset**2, 0)
     spread = step * np.sqrt(least / (curved * 4 * np.pi * POOL**2))
-    told = (bend > FLAT * step**2) & (np.abs(offset) < 1)
-    return tried[best[0]] + step * np.clip(offset, -1, 1), np.where(told, spread, np.inf)
+    is_curved = (bend > FLAT * step**2) & (np.abs(offset) < 1)
+    return tried[best[0]] + step * np.clip(offset, -1, 1), np.where(is_curved, spread, np.inf)
 
 
 def all_in_focus(light_field: Floats, disparity: Floats) -> Floats:

@@ -244,10 +244,10 @@ class SparseEstimator:
                 samples = windows[:, down[:, None], across].transpose(0, 3, 4, 1, 2)
                 samples = samples.reshape(2 * self.patch[0] * self.patch[1], -1)
                 codes = self._codes(samples, int(down[0]), int(across[0]))
-                found = (flat.T @ codes).reshape(self.views, self.views, *self.patch, len(down), len(across))
+                patches = (flat.T @ codes).reshape(self.views, self.views, *self.patch, len(down), len(across))
                 for y, x in np.ndindex(*self.patch):
                     place = (down + y)[:, None], across + x
-                    out[:, :, *place] += found[:, :, y, x]
+                    out[:, :, *place] += patches[:, :, y, x]
                     count[place] += 1
         return out / count
 

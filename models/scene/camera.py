@@ -14,12 +14,12 @@ REFERENCE = 3.0  # m of the scene: middle of the motorcycle and of the tilted pl
 PLANE = 3.72  # m of the scene: where pictures without depth stand, 1 px a view step behind the default focal plane
 
 
-def scaled(own: npt.ArrayLike, camera: CameraParameters) -> npt.NDArray[np.float64]:
-    """Metres from the camera of a scene's own metres.
+def scaled(metres: npt.ArrayLike, camera: CameraParameters) -> npt.NDArray[np.float64]:
+    """Convert metres of a scene to metres in front of the camera.
 
     Parameters
     ----------
-    own : array
+    metres : array
         In m of the scene.
     camera : CameraParameters
         The camera.
@@ -29,7 +29,7 @@ def scaled(own: npt.ArrayLike, camera: CameraParameters) -> npt.NDArray[np.float
     float64
         In m; at most FOCUS_MAX.
     """
-    return np.minimum(np.asarray(own, float) / camera.scale, FOCUS_MAX)
+    return np.minimum(np.asarray(metres, float) / camera.scale, FOCUS_MAX)
 
 
 def per_inverse_metre(sampling: Sampling) -> float:

@@ -110,12 +110,14 @@ class LightField:
             ("stokes", -RADIANCE_MAX, RADIANCE_MAX, ((2, *every), (2, *one))),
         ):
             if getattr(self, name) is not None:
-                own = native(np.asarray(getattr(self, name)))
-                object.__setattr__(self, name, own)
-                if own.shape not in shapes or own.dtype.kind not in "biuf":
+                array = native(np.asarray(getattr(self, name)))
+                object.__setattr__(self, name, array)
+                if array.shape not in shapes or array.dtype.kind not in "biuf":
                     must = " or ".join(map(str, shapes))
-                    raise ParameterError(f"{name} = {own.dtype} array of shape {own.shape}: must be numbers, {must}")
-                check_values(name, own, low, high)
+                    raise ParameterError(
+                        f"{name} = {array.dtype} array of shape {array.shape}: must be numbers, {must}"
+                    )
+                check_values(name, array, low, high)
         if self.echo is not None and self.echo.share.shape != every:
             raise ParameterError(f"echo = shares of shape {self.echo.share.shape}: must be {every}")
 
@@ -180,9 +182,9 @@ class LightField:
         if self.disparity is not None:
             zoom = sampling.cols / (box[2] - box[0])
             parts = np.reshape(self.disparity, (-1, *self.shape))
-            found = np.array([np.clip(resample.pick(part, *size, box) * zoom, -1e4, 1e4) for part in parts])
-            disparity = found[len(found) // 2]
-            surfaces = found.reshape(self.views, self.views, *size) if len(found) > 1 else None
+            views = np.array([np.clip(resample.pick(part, *size, box) * zoom, -1e4, 1e4) for part in parts])
+            disparity = views[len(views) // 2]
+            surfaces = views.reshape(self.views, self.views, *size) if len(views) > 1 else None
         image = field[middle, middle].copy()
         polarization = None if self.stokes is None else self._polarization(field, box)
         depth, specular, behind = (
@@ -243,8 +245,8 @@ class LightField:
         (int, int)
             Those of a view; reduced to `SIZE_MAX` with its proportions where it is larger.
         """
-        factor = max(1.0, *(own / most for own, most in zip(self.shape, SIZE_MAX, strict=True)))
-        rows, cols = (max(1, int(own / factor)) for own in self.shape)
+        factor = max(1.0, *(size / most for size, most in zip(self.shape, SIZE_MAX, strict=True)))
+        rows, cols = (max(1, int(size / factor)) for size in self.shape)
         return rows, cols
 
     def cropped(self, rows: int, cols: int) -> "LightField":
@@ -260,14 +262,14 @@ class LightField:
         LightField
             Of this size, pixel for pixel.
         """
-        top, left = (2 * ((own - n) // 4) for own, n in zip(self.shape, (rows, cols), strict=True))
+        top, left = (2 * ((array - n) // 4) for array, n in zip(self.shape, (rows, cols), strict=True))
         part = np.s_[..., top : top + rows, left : left + cols]
         maps = {name: getattr(self, name) for name in ("disparity", "stokes", "depth", "specular", "behind")}
         return LightField(
             self.values[:, :, top : top + rows, left : left + cols],
             name=self.name,
             echo=None if self.echo is None else self.echo.cropped(top, left, rows, cols),
-            **{name: None if own is None else own[part] for name, own in maps.items()},
+            **{name: None if array is None else array[part] for name, array in maps.items()},
         )
 
     def _polarization(
@@ -275,8 +277,12 @@ class LightField:
     ) -> npt.NDArray[np.float64]:
         """S1/S0 and S2/S0 of every view of ``field``, or of all alike; 0 where there is no light."""
         stokes, rows, cols = np.asarray(self.stokes, float), *field.shape[2:]
-        own = stokes.reshape(-1, *self.shape)
-        scaled = own if own.shape[1:] == (rows, cols) else [resample.resize(part, rows, cols, box) for part in own]
+        parameters = stokes.reshape(-1, *self.shape)
+        scaled = (
+            parameters
+            if parameters.shape[1:] == (rows, cols)
+            else [resample.resize(part, rows, cols, box) for part in parameters]
+        )
         parts = np.reshape(scaled, (*stokes.shape[:-2], rows, cols))
         light = field if stokes.ndim == 5 else field[self.views // 2, self.views // 2]
         ratio = np.where(light > 0, parts / np.where(light > 0, light, 1), 0)

@@ -151,8 +151,8 @@ def write_light_field(light_field: LightField, path: str | Path, white: float = 
         if light_field.echo is not None:
             echo = light_field.echo
             arrays |= dict(zip(ECHO, (echo.share, echo.late, np.array([echo.start, echo.width])), strict=True))
-        given = {name: array for name, array in arrays.items() if array is not None}
-        np.savez_compressed(path, allow_pickle=False, light_field=values, **given)
+        present = {name: array for name, array in arrays.items() if array is not None}
+        np.savez_compressed(path, allow_pickle=False, light_field=values, **present)
     elif re.fullmatch(rf"\.(?:{PICTURES})", path.suffix, re.I):
         tiles = _codes(values, white).swapaxes(1, 2)
         high, tall, wide, broad, *colours = tiles.shape
@@ -204,9 +204,9 @@ def _codes(values: npt.NDArray[Any], white: float) -> npt.NDArray[Any]:
 
 
 def _folder(path: Path) -> LightField:
-    found = sorted(entry for entry in path.iterdir() if entry.is_file())
-    hci = {int(m[1]): entry for entry in found if (m := HCI.fullmatch(entry.name))}
-    stanford = {(int(m[1]), int(m[2])): entry for entry in found if (m := STANFORD.fullmatch(entry.name))}
+    entries = sorted(entry for entry in path.iterdir() if entry.is_file())
+    hci = {int(m[1]): entry for entry in entries if (m := HCI.fullmatch(entry.name))}
+    stanford = {(int(m[1]), int(m[2])): entry for entry in entries if (m := STANFORD.fullmatch(entry.name))}
     count = len(hci) or len(stanford)
     if not count:
         raise ParameterError(

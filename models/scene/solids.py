@@ -96,8 +96,8 @@ def fence(sampling: Sampling) -> Scene:
     start = np.array([-2 * wide, -2 * high, left - 1.5 * (right - left)])
     wall = Facet(start, np.array([4 * wide, 0, 4 * (right - left)]), 4 * side[1], _woven(0.65, grain, 1.9))
     behind = _cast("wall", sampling, [wall])
-    found = _cast("fence", sampling, [wall, bars])
-    return replace(found, behind=behind.depth)
+    scene = _cast("fence", sampling, [wall, bars])
+    return replace(scene, behind=behind.depth)
 
 
 def _focal(sampling: Sampling) -> float:

@@ -24,7 +24,7 @@ class DecodedFrame(Decoded):
     def _repr_png_(self) -> bytes:
         images, edge = self.samples.astype(float).transpose(2, 0, 1), self.header.edge
         top = max(float(np.abs(images).max()), 1.0)
-        shown = [pictures.signed(one, top) if edge else pictures.gray(one, 0, top) for one in images]
+        shown = [pictures.signed(image, top) if edge else pictures.gray(image, 0, top) for image in images]
         return png(pictures.overview([(f"sample {i}", picture) for i, picture in enumerate(shown)]))
 
 

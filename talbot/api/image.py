@@ -40,7 +40,7 @@ class Image(np.ndarray):
         if self.ndim == 2:
             low, high = (float(end) for end in np.quantile(values, (0.005, 0.995)))
             return png(pictures.enlarge(pictures.gray(values, min(low, 0.0), high), WIDTH))
-        images = [pictures.signed(one, float(np.abs(values).max())) for one in values]
+        images = [pictures.signed(plane, float(np.abs(values).max())) for plane in values]
         return png(pictures.contact_sheet(images, [str(i) for i in range(len(images))], min(len(images), 8)))
 
 

@@ -83,8 +83,10 @@ def polarization_of(result: GoldenResult, highlight: float) -> PolarizationResul
     _check_mode(result, "raw", "polarization")
     check_real("highlight", highlight, 0, 16)
     frame = read_polarization(result, highlight)
-    found = frame.found
-    psi, degree, light, confidence = map(Image.of, (found.psi, found.degree, found.light, found.confidence))
+    polarized = frame.found
+    psi, degree, light, confidence = map(
+        Image.of, (polarized.psi, polarized.degree, polarized.light, polarized.confidence)
+    )
     return PolarizationResult(frame.summary, psi, degree, light, confidence, frame.tags)
 
 
@@ -98,25 +100,25 @@ def depth_of(result: GoldenResult, near: float | None, far: float | None, dispar
     check_int("disparities", disparities, 1, 500)
     request = result.request
     frames = capture(request, golden=not isinstance(result, FrameResult))
-    found = read_depth(frames, prior_of(frames.sums, near=near, far=far, disparities=disparities))
-    light = np.clip(found.field.taps.mean(0), 0, RADIANCE_MAX)
-    disparity = found.field.disparity
+    depth = read_depth(frames, prior_of(frames.sums, near=near, far=far, disparities=disparities))
+    light = np.clip(depth.field.taps.mean(0), 0, RADIANCE_MAX)
+    disparity = depth.field.disparity
     return DepthResult(
-        found.summary,
-        Image.of(found.depth[found.lead]),
-        found.sure[found.lead],
+        depth.summary,
+        Image.of(depth.depth[depth.lead]),
+        depth.sure[depth.lead],
         Image.of(disparity),
-        None if found.behind is None else Image.of(found.behind),
+        None if depth.behind is None else Image.of(depth.behind),
         LightField(light, disparity, f"{request.name}_estimate"),
     )
 
 
 def _check_mode(result: GoldenResult, mode: str, what: str) -> None:
     """Raise ParameterError for a frame of another mode."""
-    own = result.request.frame.mode
-    if own != mode:
-        raise ParameterError(f"mode = {own!r}: must be {mode!r}, for {what}")
+    actual = result.request.frame.mode
+    if actual != mode:
+        raise ParameterError(f"mode = {actual!r}: must be {mode!r}, for {what}")
 
 
-def _shown(found: Any, *names: str) -> str:
-    return table({name: found.summary[name] for name in names}) + embedded(found._repr_png_())
+def _shown(result: Any, *names: str) -> str:
+    return table({name: result.summary[name] for name in names}) + embedded(result._repr_png_())

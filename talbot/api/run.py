@@ -129,14 +129,14 @@ class Run:
         if method is not None and what != "light_field":
             raise ParameterError(f"method = {method!r}: must be left out, it is of a light field")
         if what == "disparity":
-            found = estimate(result, "mixture")
-            if found.disparity is None or found.spread is None:
+            estimated = estimate(result, "mixture")
+            if estimated.disparity is None or estimated.spread is None:
                 raise AssertionError("the mixture has a disparity")
-            return Image.of(np.where(found.spread <= SURE, found.disparity, np.nan))
+            return Image.of(np.where(estimated.spread <= SURE, estimated.disparity, np.nan))
         if what == "light_field":
             method = method or result.light_field_method
-            found = result.estimate if method == result.light_field_method else estimate(result, method)
-            values = np.clip(found.light_field, -RADIANCE_MAX, RADIANCE_MAX)
+            estimated = result.estimate if method == result.light_field_method else estimate(result, method)
+            values = np.clip(estimated.light_field, -RADIANCE_MAX, RADIANCE_MAX)
             return LightField(values, name=f"{result.request.name}_{method}")
         if what == "edges":
             return Image.of(result.edges)

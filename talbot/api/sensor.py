@@ -194,43 +194,43 @@ class Sensor:
         """
         if (depth := settings.get("depth")) is not None:
             raise ParameterError(f"depth = {str(depth)!r}: must be left out, a sequence has no depth file")
-        asked = self._request("flat", mode, settings)
+        frame_request = self._request("flat", mode, settings)
         clip = open_clip(frames, Sampling.of(self.parameters))
-        asked = replace(asked, scene=clip.name)
-        return (Run(shown.result) for shown in sequence_results(asked, clip, job.Clock()))
+        frame_request = replace(frame_request, scene=clip.name)
+        return (Run(shown.result) for shown in sequence_results(frame_request, clip, job.Clock()))
 
     def _request(self, scene: Seen, mode: str, settings: Settings) -> FrameRequest:
         known = Settings.__annotations__
         for name in settings.keys() - known.keys():
             raise ParameterError(f"{name} = {settings[name]!r}: must be a setting of a frame{nearest(name, known)}")
-        given: dict[str, Any] = dict(settings)
-        types, window, timing = (given.pop(name, None) for name in ("types", "window", "timing"))
+        options: dict[str, Any] = dict(settings)
+        types, window, timing = (options.pop(name, None) for name in ("types", "window", "timing"))
         if types is not None:
-            given["mask"] = types if isinstance(types, int) else _mask(types)
+            options["mask"] = types if isinstance(types, int) else _mask(types)
         if timing is not None:
             _check_names("timing", timing, [item.name for item in fields(AmpTiming) if item.name != "exposure"])
-            given["timing"] = timing
+            options["timing"] = timing
         if window is not None:
             if len(window) != 4:
                 raise ParameterError(f"window = {window!r}: must be (row0, row1, col0, col1) in tiles")
             cut = Window(*window)
-            given["window"] = lambda full: cut
+            options["window"] = lambda full: cut
         if isinstance(scene, str | Path):
             seen = light_field_of(str(scene)) or str(scene)
         else:
             seen = (scene if isinstance(scene, LightField) else LightField(scene)).data
         if not isinstance(seen, str) and not self.sized:
-            given["rows"], given["cols"] = seen.own_size()
-        return request(sensor=self.parameters, scene=seen, mode=mode, **given)
+            options["rows"], options["cols"] = seen.own_size()
+        return request(sensor=self.parameters, scene=seen, mode=mode, **options)
 
     def __repr__(self) -> str:
         """What is not the default, by name."""
-        own = {name: value for name, value in _values(self.parameters).items() if value != _values(STANDARD)[name]}
+        changed = {name: value for name, value in _values(self.parameters).items() if value != _values(STANDARD)[name]}
         whole = {name: getattr(untabled(self.parameters), name) for name in OBJECTS}
-        own |= {name: value for name, value in whole.items() if value != getattr(STANDARD, name)}
+        changed |= {name: value for name, value in whole.items() if value != getattr(STANDARD, name)}
         if (pixel := pixel_of(self.parameters)) != IDEAL:
-            own["pixel"] = pixel
-        return f"Sensor({', '.join(f'{name}={value!r}' for name, value in own.items())})"
+            changed["pixel"] = pixel
+        return f"Sensor({', '.join(f'{name}={value!r}' for name, value in changed.items())})"
 
     def _repr_html_(self) -> str:
         return chip_svg(self.parameters, FrameParameters(self.parameters.full_window))
@@ -244,21 +244,21 @@ def _mask(types: Iterable[int]) -> int:
     return mask
 
 
-def _check_names(field: str, given: Mapping[str, Any], known: Sequence[str]) -> None:
-    for name in given:
+def _check_names(field: str, values: Mapping[str, Any], known: Sequence[str]) -> None:
+    for name in values:
         if name not in known:
-            raise ParameterError(f"{field} = {dict(given)!r}: {name} must be one of its keys{nearest(name, known)}")
+            raise ParameterError(f"{field} = {dict(values)!r}: {name} must be one of its keys{nearest(name, known)}")
 
 
 def _values(parameters: SensorParameters) -> dict[str, Any]:
     """Every parameter that has a name of its own."""
-    found = {}
+    values = {}
     for name, path in NAMES.items():
         value: Any = parameters
         for step in path.split("."):
             value = getattr(value, step)
-        found[name] = value
-    return found
+        values[name] = value
+    return values
 
 
 def _changed(

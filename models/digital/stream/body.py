@@ -29,8 +29,8 @@ class Body:
         header, layout = frame.header, frame.layout
         samples = int(layout.counts.sum())
         self.view, self.frame, self.sent = view, frame, sent
-        found = np.empty(samples, np.int32), np.empty(samples, np.int16)
-        self.coder = header.edge, base_of(header.threshold), header.segment, *found
+        pixels = np.empty(samples, np.int32), np.empty(samples, np.int16)
+        self.coder = header.edge, base_of(header.threshold), header.segment, *pixels
         self.rows = frame.samples.reshape(header.rows, -1)
         self.first = (frame.start if start is None else start) + HEADER_BYTES
         self.total = layout.rows.size
@@ -86,10 +86,10 @@ class Body:
             return None
         sent_crc = CRC.unpack(self.view[last:stop].tobytes())[0]
         where, change = np.empty(16, np.int64), np.empty(16, np.int64)
-        found = one_byte_changes(
+        changes = one_byte_changes(
             frame_crc(self.sent, self.view[self.first : last].data) ^ sent_crc, last - self.first, where, change
         )
-        for position, bits in zip(where[:found].tolist(), change[:found].tolist(), strict=True):
+        for position, bits in zip(where[:changes].tolist(), change[:changes].tolist(), strict=True):
             view = self.view[start:stop].copy()
             view[HEADER_BYTES + position] ^= bits
             corrected = Body(view, self.frame, self.sent, 0)
@@ -100,7 +100,7 @@ class Body:
                 self._report(self.first + position, row)
                 self.ends = corrected.ends
                 return trailer
-        if found:
+        if changes:
             self.rows[:] = 0
             self.decode(0, self.first)
         return None

@@ -169,11 +169,11 @@ def _decode_around(
     """Go on after each damaged segment: returns (ordinal, position, trailer or None, limit) where no more is found."""
     search, bad, tail = Search(body.view, stop, limit, frame.layout, *body.coder), [], None
     while tail is None:
-        found = search.next_segment(ordinal, at)
-        bad += range(ordinal, found[1] if found else body.total)
-        if not found:
+        segment = search.next_segment(ordinal, at)
+        bad += range(ordinal, segment[1] if segment else body.total)
+        if not segment:
             break
-        ordinal, at, tail = body.decode(found[1], found[0], not bad)
+        ordinal, at, tail = body.decode(segment[1], segment[0], not bad)
     frame.bad_rows = frame.layout.rows[bad].tolist()
     if bad:
         frame.errors.append(f"byte {frame.start}: {len(bad)} of {body.total} rows are bad")

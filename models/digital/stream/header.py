@@ -325,10 +325,10 @@ def read_header(data: bytes) -> ReceivedHeader:
         raise StreamError(f"{len(data)} bytes: a header has {HEADER_BYTES}")
     if sum(a != b for a, b in zip(MAGIC, data, strict=False)) > 1:
         raise StreamError(f"starts with {bytes(data[: len(MAGIC)])!r}: a frame starts with {MAGIC!r}")
-    found = _correct(data)
-    if found is None:
+    corrected = _correct(data)
+    if corrected is None:
         raise StreamError("header CRC-32 does not fit, and no change of one byte corrects it")
-    sent, position = found
+    sent, position = corrected
     magic, version, flags, threshold, lanes, tile, rows, cols, *fields = HEADER_FIELDS.unpack_from(sent)
     row0, row1, col0, col1, mask, frame_number, exposure, n_cm, t_int, calibration = fields
     if magic != MAGIC:

@@ -329,7 +329,7 @@ def decode_segment(
         return end if end <= stop else -1, row + 1 - ordinal, 0, row + 1 - ordinal
     k, r2, _, credit = start(base)
     hold, held = np.uint64(0), 0  # the next bits, from the top
-    here, found, i, work, frame_end = at, 0, 0, 0, int64(0)
+    here, decoded, i, work, frame_end = at, 0, 0, 0, int64(0)
     for count in counts[ordinal:]:
         frame_end += count
     while True:
@@ -341,7 +341,7 @@ def decode_segment(
                 pad = held & 7
                 if pad and data[here - 1] & ((1 << pad) - 1):
                     return -1, 0, 0, work
-                return here, row - ordinal, found, work
+                return here, row - ordinal, decoded, work
             row_end += counts[row]
         top = row_end if full else frame_end  # a run ends here at the latest
         work += 1
@@ -383,9 +383,9 @@ def decode_segment(
         if code != 0:
             if abs(code) < base:
                 return -1, 0, 0, work
-            where[found] = i
-            value[found] = code
-            found += 1
+            where[decoded] = i
+            value[decoded] = code
+            decoded += 1
         i += 1
         held -= length
         if held < 0:
@@ -425,10 +425,10 @@ def check_segment(
     rows, found, work : int
         As in `decode_segment`.
     """
-    end, rows, found, work = decode_segment(data, at, stop, ordinal, counts, edge, base, segment, where, value)
+    end, rows, decoded, work = decode_segment(data, at, stop, ordinal, counts, edge, base, segment, where, value)
     if end < 0 or end + 2 > stop:
         return -1, 0, 0, 0, work
-    return end + 2, crc16_span(data, at, end) ^ _word(data, end), rows, found, work
+    return end + 2, crc16_span(data, at, end) ^ _word(data, end), rows, decoded, work
 
 
 @njit(cache=True)
@@ -474,7 +474,7 @@ def decode_rows(
         Its position.
     """
     while ordinal < rows.size:
-        end, row, many, found, _ = check_segment(
+        end, row, many, decoded, _ = check_segment(
             data, at, data.size, ordinal, counts, edge, base, segment, where, value
         )
         if end < 0 or row != rows[ordinal]:
@@ -482,7 +482,7 @@ def decode_rows(
         first, n = 0, 0
         for this in range(ordinal, ordinal + many):
             place = int64(start[kind[this]])
-            while n < found and where[n] < first + counts[this]:
+            while n < decoded and where[n] < first + counts[this]:
                 out[rows[this], places[place + where[n] - first]] = value[n]
                 n += 1
             if not edge:
@@ -636,17 +636,19 @@ def find_segment(
                 return -1, 0, 0
             if end < 0 or row >= number.size:
                 continue
-            found = number[row]
-            if not first <= found <= last:
+            row_number = number[row]
+            if not first <= row_number <= last:
                 continue
-            end, same, many, _, work = check_segment(data, at, stop, found, counts, edge, base, segment, where, value)
+            end, same, many, _, work = check_segment(
+                data, at, stop, row_number, counts, edge, base, segment, where, value
+            )
             limit -= work
             if (
                 end >= 0
                 and same == row
-                and segment_fits(data, end, stop, found + many, rows, counts, edge, base, segment, where, value)
+                and segment_fits(data, end, stop, row_number + many, rows, counts, edge, base, segment, where, value)
             ):
-                return at, found, limit
+                return at, row_number, limit
     return -1, 0, limit
 
 
@@ -672,11 +674,11 @@ def _last_segment(
         if limit < 0:
             break
         row = crc16_span(data, at, stop - 2) ^ _word(data, stop - 2)
-        found = number[row] if row < number.size else -1
-        if found >= first:
-            end, _, many, _, _ = check_segment(data, at, stop, found, counts, edge, base, segment, where, value)
-            if end == stop and found + many == rows.size:
-                return at, found, limit
+        row_number = number[row] if row < number.size else -1
+        if row_number >= first:
+            end, _, many, _, _ = check_segment(data, at, stop, row_number, counts, edge, base, segment, where, value)
+            if end == stop and row_number + many == rows.size:
+                return at, row_number, limit
     return stop, rows.size, limit
 
 
@@ -698,11 +700,11 @@ def one_byte_changes(syndrome: int, length: int, where: Places, change: Places) 
     int
         Number of candidates.
     """
-    found = 0
+    changes = 0
     for position in range(length - 1, -1, -1):
         byte = CRC32_BACK[syndrome >> 24]
         syndrome = (syndrome ^ CRC32_TABLE[byte]) << 8 | byte
-        if 0 < syndrome < 256 and found < where.size:
-            where[found], change[found] = position, syndrome
-            found += 1
-    return found
+        if 0 < syndrome < 256 and changes < where.size:
+            where[changes], change[changes] = position, syndrome
+            changes += 1
+    return changes

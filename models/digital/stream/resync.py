@@ -75,9 +75,9 @@ class Search:
         after = self._after(lost, at) if lost < total else None
         if after and not self.coder[0]:
             return after  # a row of plain bytes has its length
-        found = self._find(after[0], after[0] + 1, after[1], after[1]) if after else None
-        if found:
-            return found
+        segment = self._find(after[0], after[0] + 1, after[1], after[1]) if after else None
+        if segment:
+            return segment
         following, near = min(lost + 1, total), min(self.stop, at + self.longest + COUNTED_BYTES)
         return self._find(at, near, following, total) or after or self._find(at, self.stop, following, total)
 

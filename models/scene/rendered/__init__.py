@@ -69,10 +69,10 @@ def rendered(name: str, sampling: Sampling) -> Scene:
     Scene
         Its middle, pixel for pixel, or enlarged.
     """
-    own, (size, lens) = read_light_field(FOLDER / f"{name}.npz"), RENDERED[name]
+    field, (size, lens) = read_light_field(FOLDER / f"{name}.npz"), RENDERED[name]
     larger = max(sampling.shape) > size
     if not larger:
-        own = own.cropped(*sampling.shape)
+        field = field.cropped(*sampling.shape)
     if larger or sampling.camera != lens:
-        own = LightField(own.values, own.disparity, own.name, own.stokes, specular=own.specular)
-    return own.scene(sampling)
+        field = LightField(field.values, field.disparity, field.name, field.stokes, specular=field.specular)
+    return field.scene(sampling)
