@@ -69,9 +69,9 @@ def photograph(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def edges(photograph, tmp_path_factory):
-    """The folder of a run in edge mode, with waves of two rows; not to be changed."""
+    """The folder of a run in edge mode; not to be changed."""
     out = tmp_path_factory.mktemp("edges") / "out"
-    words = "sim", "--scene", photograph, "--threshold", "2", "--waves", "5:6", "--out", str(out), *SMALL
+    words = "sim", "--scene", photograph, "--threshold", "2", "--out", str(out), *SMALL
     assert main(words) == 0
     return out
 
@@ -115,7 +115,7 @@ def test_the_folder_tells_the_settings(photograph, tmp_path, monkeypatch, capsys
 def test_a_run_takes_the_pictures_of_another_mode_away_and_says_what_it_replaced(edges, photograph, tmp_path, capsys):
     out = shutil.copytree(edges, tmp_path / "out")
     words = ["sim", "--scene", photograph, *SMALL, "--mode", "image", "--out", str(out)]
-    for said in ("a_photo_s_name-threshold=2-rows=13-cols=50-lanes=4-waves=5_6\n", ""):
+    for said in ("a_photo_s_name-threshold=2-rows=13-cols=50-lanes=4\n", ""):
         assert main(words) == 0
         assert capsys.readouterr().out.partition("  replaced there: ")[2] == said
     assert (edges / "differences.png").exists() and not (out / "differences.png").exists()
@@ -128,8 +128,12 @@ def test_a_name_that_is_too_long_stays_one(tmp_path):
     assert len(names) == 2 and {len(name) for name in names} == {NAME_MAX}
 
 
-def test_waves_of_a_window_of_rows(edges):
-    lines = (edges / "waves.vcd").read_text().splitlines()
+@pytest.mark.slow
+def test_waves_of_a_window_of_rows(photograph, tmp_path):
+    """By a simulator of its own, which takes 15 s of processor to compile."""
+    words = "sim", "--scene", photograph, "--threshold", "2", "--waves", "5:6", "--out", str(tmp_path / "out"), *SMALL
+    assert main(words) == 0
+    lines = (tmp_path / "out" / "waves.vcd").read_text().splitlines()
     row = next(line.split()[3] for line in lines if line.split()[:1] == ["$var"] and line.split()[4] == "row")
     seen = {int(line[1:].split()[0], 2) for line in lines if line[:1] == "b" and line.endswith(f" {row}")}
     assert seen == {5, 6, 7}  # the clock edge that ends the last row is there

@@ -54,7 +54,7 @@ def program_of(size):
 
 
 @pytest.mark.parametrize("mode, phase", MODE_CASES)
-@pytest.mark.parametrize("size", ["odd", "row", pytest.param("tile", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("size", ["odd", *(pytest.param(name, marks=pytest.mark.slow) for name in ("row", "tile"))])
 def test_every_mode_at_odd_sizes(size, mode, phase):
     asked = asked_of(size, mode=mode, phase=phase)
     check(program_of(size), asked, front_end_of(asked.sensor, [7] * 24), exposure(asked.sensor, 1))
