@@ -101,9 +101,11 @@ for lock in "$@"; do
     esac
 done
 echo "setup: installing the packages of $*"
-# A lock names all that its packages depend on. pip compiles 8,000 modules with one core, compileall with all
+# A lock names all that its packages depend on. pip compiles 6,000 modules with one core, compileall with all, and without
+# half of their text: tests, and packages that few commands import. Python compiles those when it imports them
+later='site-packages/((.*/)?(tests?|testcases)|pip|setuptools|networkx|fontTools|pygments)/'
 "$folder/bin/python" -m pip install --quiet --no-deps --no-compile --require-hashes "${requirements[@]}"
-"$folder/bin/python" -m compileall -q -j 0 "$folder"/lib/python*/site-packages >/dev/null 2>&1 || true # of templates, too
+"$folder/bin/python" -m compileall -q -j 0 -x "$later" "$folder"/lib/python*/site-packages >/dev/null 2>&1 || true # of templates, too
 case " $* " in # the project itself, with the packages that it cannot do without
     *run.lock*) "$folder/bin/python" -m pip install --quiet --no-deps --no-build-isolation --editable . ;;
 esac
