@@ -13,7 +13,10 @@ from .tools import ToolError
 
 LAUNCHER = Path(__file__).with_name("openroad_wheel.py")
 OPTIONS = "-no_init", "-no_splash", "-exit"
-INSTALL = "make setup-layout installs it on Linux with x86-64; elsewhere: https://openroad.readthedocs.io"
+INSTALL = (
+    "make setup-layout installs it on Linux with x86-64 and glibc 2.38, Debian 12 or Ubuntu 22.04; "
+    "elsewhere: https://openroad.readthedocs.io"
+)
 
 
 def program() -> list[str]:
