@@ -124,7 +124,8 @@ def test_taps_keep_the_disparity_of_their_sum():
     found = depth_field(estimator, pairs)
     whole = estimator.mixture(pairs.sum(0) / 2)
     np.testing.assert_array_equal(found.disparity, whole.disparity)
-    np.testing.assert_allclose(found.taps.sum(0) / 2, whole.light_field, atol=2e-3)
+    # White noise of full scale, which the prior does not expect: the rounding of solves in float32
+    np.testing.assert_allclose(found.taps.sum(0) / 2, whole.light_field, atol=5e-3)
     with pytest.raises(ParameterError, match="pairs = 2 taps"):
         depth_field(estimator, pairs[:2])
 
