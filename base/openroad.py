@@ -1,7 +1,8 @@
 """OpenROAD on this machine: the program, or the Python package of its developers, which brings none.
 
 The package is for x86-64 with glibc 2.38 and later. On an older system requirements/venv.sh unpacks it and a newer C
-library in a folder of the environment; under that library's loader any Python runs it.
+library in a folder of the environment; under that library's loader any Python runs it. With zlib 1.3.2 and later it
+crashes, since Python's zlib takes a part of its calls: there the folder has an older zlib.
 """
 
 import shutil
@@ -12,6 +13,7 @@ from pathlib import Path
 from .tools import ToolError
 
 LAUNCHER = Path(__file__).with_name("openroad_wheel.py")
+LOADER = Path("/lib64/ld-linux-x86-64.so.2")
 OPTIONS = "-no_init", "-no_splash", "-exit"
 INSTALL = (
     "make setup-layout installs it on Linux with x86-64 and glibc 2.38, Debian 12 or Ubuntu 22.04; "
@@ -25,11 +27,11 @@ def program() -> list[str]:
         return ["openroad"]
     # -P: the launcher's folder has modules with names of the standard library's
     python = [sys.executable, "-P", str(LAUNCHER)]
-    if find_spec("_openroadpy"):
-        return python
-    libc = Path(sys.prefix) / "openroad" / "libc"
-    loader = libc / "ld-linux-x86-64.so.2"
-    return [str(loader), "--library-path", str(libc), *python] if loader.is_file() else []
+    libraries = Path(sys.prefix) / "openroad" / "libc"
+    if not libraries.is_dir():
+        return python if find_spec("_openroadpy") else []
+    loader = libraries / LOADER.name
+    return [str(loader if loader.is_file() else LOADER), "--library-path", str(libraries), *python]
 
 
 def command(script: Path | str, threads: int | str = 1) -> list[str]:

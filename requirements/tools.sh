@@ -5,8 +5,8 @@
 # As root they are installed. As another user apt fetches and verifies them with folders of its own, and they are
 # unpacked in the user's cache: the system is not touched. base/environment.py adds them to PATH.
 # With --missing [COMMAND ...] only where one of the commands, by default those of cells and layouts, is missing; the
-# command line BEFORE, which checks what they are for, must succeed then. With --libc FOLDER alone the C library and
-# loader of this system's next release, unpacked in FOLDER, for a program that asks for a newer one (venv.sh).
+# command line BEFORE, which checks what they are for, must succeed then. With --library PACKAGE FOLDER alone the
+# libraries of PACKAGE of another release, unpacked in FOLDER, for a program that asks for them (venv.sh).
 set -euo pipefail
 packages=(iverilog verilator yosys z3 ngspice opensta klayout magic tcl zlib1g-dev liblz4-dev libngspice0-dev)
 folder=${XDG_CACHE_HOME:-${HOME:?}/.cache}/talbot/tools # talbot.base.paths.TOOLS
@@ -27,25 +27,25 @@ private_apt() { # FOLDER [OPTION ...]
     apt-get "${apt_options[@]}" update
 }
 
-if [ "${1:-}" = --libc ]; then
-    folder=$2
+if [ "${1:-}" = --library ]; then
+    package=$2 folder=$3
     # shellcheck source=/dev/null
     case $(. /etc/os-release && echo "${UBUNTU_CODENAME:-${VERSION_CODENAME:-}}") in
-        bookworm) next=trixie ;;
-        jammy) next=noble ;;
-        *) fail "libc6 = no newer release known: must be Debian 12 or Ubuntu 22.04" ;;
+        bookworm | forky | sid) release=trixie ;;
+        jammy) release=noble ;;
+        *) fail "$package = no release known that has it: must be Debian or Ubuntu 22.04" ;;
     esac
     mirror=$(apt-get indextargets --format "\$(REPO_URI)" | grep -E -m 1 '/(debian|ubuntu)/?$') \
         || fail "mirror = none of Debian's or Ubuntu's among apt's sources"
     rm -rf "$folder"
     mkdir -p "$folder/apt"
     folder=$(cd "$folder" && pwd)
-    echo "deb $mirror $next main" >"$folder/apt/sources.list"
-    echo "tools: fetching libc6 of $next, in $folder (3 MB)"
+    echo "deb $mirror $release main" >"$folder/apt/sources.list"
+    echo "tools: fetching $package of $release, in $folder (3 MB)"
     private_apt "$folder/apt" -o "Dir::Etc::SourceList=$folder/apt/sources.list" -o Dir::Etc::SourceParts=/dev/null \
         -o Dir::State::status=/dev/null
-    (cd "$folder/apt/archives" && apt-get "${apt_options[@]}" download libc6)
-    dpkg-deb -x "$folder"/apt/archives/libc6_*.deb "$folder/apt/root"
+    (cd "$folder/apt/archives" && apt-get "${apt_options[@]}" download "$package")
+    dpkg-deb -x "$folder"/apt/archives/"$package"_*.deb "$folder/apt/root"
     mv "$folder"/apt/root/usr/lib/*-linux-gnu/*.so* "$folder"
     rm -rf "$folder/apt"
     exit

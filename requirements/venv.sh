@@ -83,7 +83,7 @@ export PIP_CONFIG_FILE=/dev/null
 # OpenROAD's wheel is for x86-64 with glibc 2.38 and later. A system with an older one gets the wheel and the C library of
 # its next release in a folder of the environment, from which base/openroad.py runs it
 openroad_fits() { [ "$(printf '%s\n' 2.38 "$1" | sort -V | sed -n 1p)" = 2.38 ]; }
-requirements=() unpacked=
+requirements=() unpacked="" native=""
 for lock in "$@"; do
     case $lock in
         *openroad.lock)
@@ -91,7 +91,7 @@ for lock in "$@"; do
             if [ "$(uname -sm)" != "Linux x86_64" ] || [ -z "$libc" ]; then
                 echo "setup: openroad = no package for $(uname -sm): left out" >&2
             elif openroad_fits "${libc#glibc }"; then
-                requirements+=(-r "$lock")
+                requirements+=(-r "$lock") native=1
             elif ! command -v apt-get >/dev/null; then
                 echo "setup: openroad = no package for $libc, must be 2.38 or later, or a system with apt: left out" >&2
             else
@@ -109,11 +109,18 @@ later='site-packages/((.*/)?(tests?|testcases)|pip|setuptools|networkx|fontTools
 case " $* " in # the project itself, with the packages that it cannot do without
     *run.lock*) "$folder/bin/python" -m pip install --quiet --no-deps --no-build-isolation --editable . ;;
 esac
+# From zlib 1.3.2 on, of which Python's process takes a part of the wheel's calls, it crashes as it reads a file
+if [ "$native" ] && "$folder/bin/python" -c 'import sys, zlib
+version = [int(part) for part in zlib.ZLIB_RUNTIME_VERSION.split(".")[:3] if part.isdigit()]
+sys.exit(version < [1, 3, 2])' && command -v apt-get >/dev/null; then
+    rm -rf "$folder/openroad"
+    bash "$here/tools.sh" --library zlib1g "$folder/openroad/libc"
+fi
 if [ "$unpacked" ]; then
     rm -rf "$folder/openroad" "$folder/openroad.new"
     "$folder/bin/python" -m pip install --quiet --no-deps --require-hashes --only-binary=:all: \
         --platform manylinux_2_38_x86_64 --target "$folder/openroad.new/package" -r "$unpacked"
-    bash "$here/tools.sh" --libc "$folder/openroad.new/libc"
+    bash "$here/tools.sh" --library libc6 "$folder/openroad.new/libc"
     mv "$folder/openroad.new" "$folder/openroad"
 fi
 touch "$ready"

@@ -33,7 +33,7 @@ def called(tmp_path, script):
     return finish(openroad.command("script.tcl", "max"), cwd=tmp_path)
 
 
-def test_the_program_comes_before_the_package_and_that_before_the_unpacked(tmp_path, monkeypatch):
+def test_the_program_comes_before_the_package_with_its_own_libraries(tmp_path, monkeypatch):
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.setattr(sys, "path", [str(tmp_path)])
     monkeypatch.setattr(sys, "prefix", str(tmp_path))
@@ -44,10 +44,12 @@ def test_the_program_comes_before_the_package_and_that_before_the_unpacked(tmp_p
     (libc := tmp_path / "openroad" / "libc").mkdir(parents=True)
     (libc / "ld-linux-x86-64.so.2").write_text("")
     assert openroad.program() == [str(libc / "ld-linux-x86-64.so.2"), "--library-path", str(libc), *python]
+    (libc / "ld-linux-x86-64.so.2").unlink()  # the system's, with another zlib
+    assert openroad.program() == ["/lib64/ld-linux-x86-64.so.2", "--library-path", str(libc), *python]
+    shutil.rmtree(tmp_path / "openroad")
     (tmp_path / "_openroadpy.py").write_text("")
     assert openroad.program() == python
     (tmp_path / "_openroadpy.py").unlink()
-    shutil.rmtree(tmp_path / "openroad")
     (tmp_path / "openroad").write_text("#!/bin/sh\n")
     (tmp_path / "openroad").chmod(0o755)
     words = ["openroad", "-no_init", "-no_splash", "-exit", "-threads", "max", "a.tcl"]

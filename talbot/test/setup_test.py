@@ -15,6 +15,7 @@ SCRIPT = ROOT / "requirements" / "venv.sh"
 FAKE = """#!/usr/bin/env bash
 case "$*" in
     *fcntl* | *literal_eval*) exec "$REAL" "$@" ;;
+    *ZLIB_RUNTIME_VERSION*) exec "$REAL" -c "import zlib; zlib.ZLIB_RUNTIME_VERSION = '${ZLIB:-1.3.1}'; $2" ;;
     "-m pip config list") echo "${CONF:-}" ;;
     "-m venv "*) mkdir -p "$3/bin" && cp "$0" "$3/bin/python" ;;
     "-m pip --version") exit 0 ;;
@@ -138,7 +139,7 @@ def test_coriolis_is_refused_in_one_line_where_it_has_no_packages(checkout, unfi
 SYSTEM = {"getconf": "echo glibc {libc}", "uname": "echo {machine}", "apt-get": "exit 0"}
 
 
-def system(checkout, libc="2.41", machine="Linux x86_64"):
+def system(checkout, libc="2.41", machine="Linux x86_64", **environment):
     """Put the programs of a system in front of this one's, and a tools.sh that unpacks a loader."""
     folder = Path(checkout[1]["PATH"].split(":")[0])
     for name, line in SYSTEM.items():
@@ -146,9 +147,9 @@ def system(checkout, libc="2.41", machine="Linux x86_64"):
         (folder / name).chmod(0o755)
     (checkout[0] / "requirements" / "openroad.lock").touch()
     (checkout[0] / "requirements" / "tools.sh").write_text(
-        'mkdir -p "$2" && echo "$1" >"$2/loader"\n', encoding="utf-8"
+        'mkdir -p "$3" && echo "$1" "$2" >"$3/loader"\n', encoding="utf-8"
     )
-    done = start(checkout, "python3", ".venv", ".venv/.ready", "a.lock", "requirements/openroad.lock")
+    done = start(checkout, "python3", ".venv", ".venv/.ready", "a.lock", "requirements/openroad.lock", **environment)
     _, err = done.communicate()
     calls = Path(checkout[1]["LOG"] + ".pip").read_text(encoding="utf-8").splitlines()
     return done.returncode, err, [call for call in calls if "openroad.lock" in call]
@@ -160,11 +161,17 @@ def test_openroad_is_a_package_of_the_environment_from_glibc_2_38_on(checkout):
     assert not (checkout[0] / ".venv" / "openroad").exists()
 
 
+def test_openroad_has_an_older_zlib_where_the_systems_is_new(checkout):
+    status, err, calls = system(checkout, ZLIB="1.10")
+    assert (status, err, len(calls)) == (0, "", 1)
+    assert (checkout[0] / ".venv" / "openroad" / "libc" / "loader").read_text(encoding="utf-8") == "--library zlib1g\n"
+
+
 def test_openroad_is_unpacked_next_to_a_newer_glibc_on_an_older_system(checkout):
     status, err, calls = system(checkout, "2.9")
     assert (status, err, len(calls)) == (0, "", 1) and "--platform manylinux_2_38_x86_64" in calls[0]
     assert "--require-hashes" in calls[0] and "a.lock" not in calls[0]
-    assert (checkout[0] / ".venv" / "openroad" / "libc" / "loader").read_text(encoding="utf-8") == "--libc\n"
+    assert (checkout[0] / ".venv" / "openroad" / "libc" / "loader").read_text(encoding="utf-8") == "--library libc6\n"
 
 
 @pytest.mark.parametrize("machine", ["Linux aarch64", "Darwin arm64"])
