@@ -53,12 +53,9 @@ def opensta(path: Path, script: str) -> str:
     Raises ToolError when it fails; StepError where it reports an error, or a name of the SPEF that it does not
     know, whose parasitics would be missing from every figure.
     """
-    lef = path.with_suffix(".lef")
-    path.write_text(f"set cells_lef {{{lef}}}\n{CELLS}{script}\nexit\n", encoding="utf-8")
-    try:
-        done = finish(openroad.command(path))
-    finally:
-        lef.unlink(missing_ok=True)
+    cells = f"set cells_lef {{{path.with_suffix('.lef')}}}\n{CELLS}"
+    path.write_text(f"{cells}{script}\nexit\n", encoding="utf-8")
+    done = finish(openroad.command(path))
     output = (done.stdout + done.stderr).strip().splitlines()
     if wrong := next((line for line in output if re.search(r"Error|\[ERROR", line)), None):
         raise StepError(f"{path.stem}: OpenSTA: {wrong}")
