@@ -52,7 +52,7 @@ class BlockLiberty(CornerStep[BlockLibertyParameters]):
     inputs |= {"liberty": "timing.{corner}", "areas": "floorplan.floorplan"}
     outputs = {"liberty": "block.lib"}
     metrics = {"model_error_ns": "ns", "arcs": ""}
-    tools = ("openroad", "yosys")
+    tools = ("sta", "yosys")
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         clock, folder = self.parameters.clock, outputs["liberty"].parent

@@ -87,7 +87,7 @@ class Repair(Step[RepairParameters]):
         super().__init__(parameters)
         if parameters.corner:
             self.inputs = {**self.inputs, "liberty": f"timing.{parameters.corner}", "sdc": "sdc"}
-            self.tools = (*self.tools, "openroad")
+            self.tools = (*self.tools, "sta")
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         p, tech = self.parameters, coriolis_platform(self.parameters.pdk)

@@ -29,7 +29,7 @@ class StaBlocks(CornerStep[StaBlocksParameters]):
     inputs |= {"liberty": "timing.{corner}"}
     outputs = {"report": "sta.txt"}
     metrics = {"blocks_wns_ns": "ns", "blocks_whs_ns": "ns"}
-    tools = ("openroad",)
+    tools = ("sta",)
 
     def __init__(self, parameters: StaBlocksParameters) -> None:
         super().__init__(parameters)

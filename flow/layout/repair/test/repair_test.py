@@ -236,7 +236,7 @@ def test_length_of_a_net():
     assert length([(0.0, 0.0), (3.0, 4.0), (1.0, 1.0), (2.0, 2.0), (3.0, 3.0)]) > 7
 
 
-@pytest.mark.needs("openroad")
+@pytest.mark.needs("sta")
 def test_slacks_are_those_of_the_tables(tmp_path):
     from talbot.flow.layout.design import Clock, Design
 

@@ -14,7 +14,7 @@ from talbot.flow.layout.steps.sta_blocks import StaBlocks, StaBlocksParameters
 from talbot.flow.layout.timing.constraints import sdc
 from talbot.flow.layout.timing.spef import spef
 
-pytestmark = pytest.mark.needs("openroad", "yosys")
+pytestmark = pytest.mark.needs("sta", "yosys")
 TOP = Netlist(
     "Top",
     (Port("clk", "input", 1), Port("in", "input", 1), Port("out", "output", 1)),
