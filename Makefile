@@ -77,17 +77,18 @@ setup: $(TESTS_READY)
 .PHONY: setup-layout
 setup-layout: $(LAYOUT_READY)
 
-# The program's commands, by what is installed before they run.
+# The program's commands, by what is installed before they run. Coriolis needs a certain Python: that is checked first.
 RUN := sim sensor lightfield polar depth calibrate tradeoff stability decode learn index verilog divider
-TESTS := formal coverage mutate sizes fuzz cocotb suite stuck-at document site pixel pixel-layout cosim layout layout-sweep \
+TESTS := formal coverage mutate sizes fuzz cocotb suite stuck-at document site pixel pixel-layout cosim layout-sweep \
   layout-energy
 LAYOUT := pixel pixel-layout cosim pixel-circuit analog analog-layout footprints handoff cells cells-report \
-  cells-compact cells-compact-area cells-compact-search layout layout-sweep layout-energy layout-timing openroad \
+  cells-compact cells-compact-area cells-compact-search layout-sweep layout-energy layout-timing layout-compare openroad \
   openroad-compare openroad-fit
-TOOLS := pixel-circuit analog analog-layout cells cells-report cells-compact cells-compact-search layout layout-sweep \
+TOOLS := pixel-circuit analog analog-layout cells cells-report cells-compact cells-compact-search layout-sweep \
   layout-energy layout-timing
 COMMANDS := $(sort $(RUN) $(TESTS) $(LAYOUT) $(TOOLS))
 .PHONY: $(COMMANDS)
+layout-sweep layout-energy: have-coriolis
 $(COMMANDS): $(READY)
 $(TESTS): $(TESTS_READY)
 $(LAYOUT): $(LAYOUT_READY)
@@ -142,6 +143,13 @@ verify: $(TESTS_READY) $(LAYOUT_READY)
 	@[ "$$TALBOT_CHECK" ] || BEFORE="$(CHECK)" bash requirements/tools.sh --missing iverilog z3
 	@$(talbot) verify
 
+ifeq ($(BACKEND),openroad)
+layout: KNOWN += BACKEND
+endif
+.PHONY: layout
+layout: $(if $(filter openroad,$(BACKEND)),,have-coriolis) $(TESTS_READY) $(LAYOUT_READY) $(if $(filter openroad,$(BACKEND)),,have-tools)
+	@$(talbot) $(if $(filter openroad,$(BACKEND)),openroad,layout)
+
 LIBRELANE := build/librelane
 $(LIBRELANE)/.ready: requirements/librelane.lock | $(READY)
 	@rm -rf '$(LIBRELANE)'
@@ -164,6 +172,10 @@ tools:
 .PHONY: have-tools
 have-tools:  # `make cells` and `make layout` install what is missing themselves, where they may
 	@BEFORE="$(CHECK)" bash requirements/tools.sh --missing
+
+.PHONY: have-coriolis
+have-coriolis:  # before anything is installed
+	@bash requirements/venv.sh --coriolis '$(PYTHON)' '$(VENV)'
 
 .PHONY: clean
 clean:

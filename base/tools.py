@@ -188,16 +188,11 @@ def _kill_group(leader: int) -> None:
 
 @contextlib.contextmanager
 def started(
-    command: Sequence[object],
-    log: IO[bytes],
-    files: Sequence[int] = (),
-    env: Mapping[str, str] | None = None,
-    cwd: Path | str | None = None,
+    command: Sequence[object], log: IO[bytes], files: Sequence[int] = ()
 ) -> Iterator["subprocess.Popen[bytes]"]:
     """Start ``command``, a process group of its own, which ends with the context at the latest.
 
-    log: gets both outputs. files: open ones that it keeps. env: see `finish`. Raises ToolError when there is no such
-    program.
+    log: gets both outputs. files: open ones that it keeps. Raises ToolError when there is no such program.
     """
     work_begins()
     words = [str(part) for part in command]
@@ -208,8 +203,7 @@ def started(
             stdout=log,
             stderr=log,
             pass_fds=files,
-            env=of_tools(env),
-            cwd=cwd,
+            env=of_tools(),
             start_new_session=True,
         )
     except FileNotFoundError as error:

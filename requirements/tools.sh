@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The tools that PyPI does not have, from Debian's packages: Icarus, a native Verilator, z3; for cells and layouts
-# ngspice and KLayout; for a foundry's cells a Yosys with Tcl; for tests Magic, Tcl and another OpenSTA; for waves
+# ngspice, OpenSTA and KLayout; for a foundry's cells a Yosys with Tcl; for tests Magic and Tcl; for waves
 # as FST the headers of zlib and lz4; for make cosim ngspice as a library.
 # As root they are installed. As another user apt fetches and verifies them with folders of its own, and they are
 # unpacked in the user's cache: the system is not touched. base/environment.py adds them to PATH.
@@ -54,7 +54,7 @@ fi
 missing=()
 if [ "${1:-}" = --missing ]; then
     shift
-    [ $# -gt 0 ] || set -- iverilog verilator ngspice klayout
+    [ $# -gt 0 ] || set -- iverilog verilator ngspice sta klayout
     for command in "$@"; do
         [ -x "$folder/bin/$command" ] || command -v "$command" >/dev/null || missing+=("$command")
     done

@@ -74,4 +74,5 @@ def test_a_command_that_fails_ends_it(line, status, said, tmp_path):
 
 @pytest.mark.needs("openroad")
 def test_its_version_is_of_digits():
-    assert (said := version("openroad"))[0].isdigit(), said
+    # Not that kept of another test's program
+    assert (said := version.__wrapped__("openroad"))[0].isdigit(), said

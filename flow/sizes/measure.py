@@ -13,7 +13,7 @@ from talbot.base.tools import ToolError, finish, located, plain
 
 LIBRARY = PACKAGE / "cells" / "gates.lib"
 TIES = "hilomap -hicell TIE1 Y -locell TIE0 Y -singleton"
-MAP = f"dfflibmap -liberty {LIBRARY}; abc -liberty {LIBRARY}; {TIES}; opt_clean -purge"
+MAP = f"dfflibmap -liberty {{library}}; abc -liberty {{library}}; {TIES}; opt_clean -purge"
 FLIP_FLOP = "DFF"
 YOSYS_MISSING = "yosys: not found; make setup installs it (the Python package pyosys)"
 
@@ -53,7 +53,8 @@ def synthesize(path: Path, top: str) -> Counter[str]:
     with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
         report = Path(folder) / "stat.json"
         script = (
-            f"read_verilog -sv {plain(path)}; synth -flatten -top {top}; delete t:$scopeinfo; {MAP}; "
+            f"read_verilog -sv {plain(path)}; synth -flatten -top {top}; delete t:$scopeinfo; "
+            f"{MAP.format(library=plain(LIBRARY))}; "
             f"tee -q -o {report} stat -json"
         )
         result = finish(["yosys", "-q", "-p", script])

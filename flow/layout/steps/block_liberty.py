@@ -48,11 +48,11 @@ class BlockLiberty(CornerStep[BlockLibertyParameters]):
     """
 
     name = "block_liberty_{corner}"
-    inputs = {"netlist": "stream_out.netlist", "verilog": "stream_out.verilog", "spef": "extraction.{wires}"}
-    inputs |= {"liberty": "timing.{corner}", "areas": "stream_out.plan"}
+    inputs = {"netlist": "repair.netlist", "verilog": "stream_out.verilog", "spef": "extraction.{wires}"}
+    inputs |= {"liberty": "timing.{corner}", "areas": "floorplan.floorplan"}
     outputs = {"liberty": "block.lib"}
     metrics = {"model_error_ns": "ns", "arcs": ""}
-    tools = ("openroad", "yosys")
+    tools = ("sta", "yosys")
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         clock, folder = self.parameters.clock, outputs["liberty"].parent

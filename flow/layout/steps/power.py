@@ -46,11 +46,11 @@ class Power(CornerStep[PowerParameters]):
     """
 
     name = "power_{corner}"
-    inputs = {"netlist": "stream_out.netlist", "verilog": "stream_out.verilog", "spef": "extraction.{wires}"}
+    inputs = {"netlist": "repair.netlist", "verilog": "stream_out.verilog", "spef": "extraction.{wires}"}
     inputs |= {"sdc": "sdc", "liberty": "timing.{corner}", "activity": "gate_delays_{corner}.activity"}
     outputs = {"instances": "power.json"}
     metrics = {"power_uw": "uW", "by_kind": "uW", "by_block": "uW", "energy_pj_cycle": "pJ", "transitions_cycle": ""}
-    tools = ("openroad",)
+    tools = ("sta",)
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         p, netlist = self.parameters, Netlist.read(inputs["netlist"])

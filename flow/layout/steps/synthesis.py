@@ -33,6 +33,7 @@ SHORT = 0.1  # of the period: what a mapping may be too slow by, which `repair` 
 LIMIT = "buffer -c -N {most}\ntopo\nupsize -D {aim:.0f}\ndnsize -D {aim:.0f}\n"  # of the fan-out
 READ = """
 read_verilog -sv {rtl}
+{blocks}
 design -save read
 hierarchy -top {top}
 proc
@@ -64,7 +65,7 @@ class SynthesisParameters:
     """Parameters of `Synthesis`.
 
     top: module. clock: its port, '' without one. period_ns: of the clock. fan_out: most loads of a net, 0 for no limit.
-    load_pf: of an output.
+    load_pf: of an output. macros: modules laid out before, black boxes here.
     """
 
     top: str = ""
@@ -72,6 +73,7 @@ class SynthesisParameters:
     period_ns: float = field(default=10.0, metadata={"unit": "ns"})
     fan_out: int = 16
     load_pf: float = field(default=0.0, metadata={"unit": "pF"})
+    macros: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         check_real("period_ns", self.period_ns, 0.1, 10_000)
@@ -91,6 +93,10 @@ class Synthesis(Step[SynthesisParameters]):
     metrics = {"cells": "", "flip_flops": "", "clock_gates": "", "cell_area_um2": "um2", "mappings": ""}
     tools = ("yosys",)
 
+    def __init__(self, parameters: SynthesisParameters) -> None:
+        super().__init__(parameters)
+        self.inputs = {**self.inputs, **{name: f"macro.{name}.verilog" for name in parameters.macros}}
+
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         p, um2 = self.parameters, areas(inputs["liberty"])
         gated = bool(p.clock) and CLOCK_GATE.cell in um2
@@ -99,13 +105,17 @@ class Synthesis(Step[SynthesisParameters]):
             for path, text in CLOCK_GATE.files(folder).items():
                 path.write_text(text, encoding="utf-8")
             made = {"registers": folder / "registers.json", "design": folder / "design.il"}
+            blocks = "\n".join(f"blackbox {macro}" for macro in p.macros)
             gates = f"script {folder / GATES}" if gated else ""
-            yosys(folder, READ.format(top=p.top, gates=gates, **inputs, **made))
+            yosys(folder, READ.format(top=p.top, blocks=blocks, gates=gates, **inputs, **made))
             names = register_names(made["registers"], p.top)
             netlist, tried = self.best(folder, inputs, names, gated)
         netlist.write(outputs["netlist"])
-        outputs["verilog"].write_text(netlist.verilog(), encoding="utf-8")
-        area = sum(um2[i.cell] for i in netlist.instances)
+        outputs["verilog"].write_text(
+            "\n".join([netlist.verilog(), *(inputs[name].read_text(encoding="utf-8") for name in p.macros)]),
+            encoding="utf-8",
+        )
+        area = sum(um2[i.cell] for i in netlist.instances if i.cell not in p.macros)
         registers = sum(is_register(i.cell) for i in netlist.instances)
         clock_gates = sum(i.cell in (cells.gate.cell for cells in CLOCK_CELLS) for i in netlist.instances)
         sizes = {"cells": len(netlist.instances), "cell_area_um2": round(area, 2)}
@@ -122,7 +132,7 @@ class Synthesis(Step[SynthesisParameters]):
         limit = LIMIT.format(most=p.fan_out, aim=aim) if p.fan_out else ""
         files["mapping"].write_text(START + mapping + limit + "print_stats\n", encoding="utf-8")
         yosys(folder, MAP.format(aim=aim, timing=inputs.get("timing", inputs["liberty"]), **files))
-        netlist = Netlist.from_yosys(files["json"], p.top, BUFFER, names)
+        netlist = Netlist.from_yosys(files["json"], p.top, BUFFER, p.macros, names).with_input_buffers(p.macros, BUFFER)
         if p.load_pf > BARE_PF:
             netlist = buffer_outputs(netlist, DRIVER)
         if p.fan_out:
@@ -136,7 +146,7 @@ class TimedSynthesis(Synthesis):
     The mapping of the least area that is not too slow at the second, slowest one, else the fastest.
     """
 
-    tools = ("yosys", "openroad")
+    tools = ("yosys", "sta")
 
     def __init__(self, parameters: SynthesisParameters, corner: str, slowest: str) -> None:
         super().__init__(parameters)

@@ -1,6 +1,6 @@
 """The timing of a netlist at its ports: which input reaches what, and delays and constraints measured with OpenSTA.
 
-OpenSTA's slacks at a grid of slews and loads are the model (2.0.17 had no `write_timing_model`).
+Debian's OpenSTA (2.0.17) has no `write_timing_model`: its slacks at a grid of slews and loads are that model here.
 """
 
 import re

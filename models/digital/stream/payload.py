@@ -636,7 +636,7 @@ def find_segment(
                 return -1, 0, 0
             if end < 0 or row >= number.size:
                 continue
-            row_number = number[row]
+            row_number = int(number[row])
             if not first <= row_number <= last:
                 continue
             end, same, many, _, work = check_segment(
@@ -674,7 +674,7 @@ def _last_segment(
         if limit < 0:
             break
         row = crc16_span(data, at, stop - 2) ^ _word(data, stop - 2)
-        row_number = number[row] if row < number.size else -1
+        row_number = int(number[row]) if row < number.size else -1
         if row_number >= first:
             end, _, many, _, _ = check_segment(data, at, stop, row_number, counts, edge, base, segment, where, value)
             if end == stop and row_number + many == rows.size:

@@ -7,12 +7,13 @@ import pytest
 
 from talbot.base.command import main
 from talbot.base.paths import ROOT
+from talbot.base.tools import plain
 from talbot.rtl.harness.testbench import build, hooked
 from talbot.rtl.harness.translate import translate_component
 from talbot.rtl.quad_divider import quad_divider
 from talbot.rtl.replay import command, load, record, replay, replay_files
 
-LIBRARY = ROOT / "cells" / "gates.lib"
+LIBRARY = plain(ROOT / "cells" / "gates.lib")
 pytestmark = pytest.mark.needs("iverilog")
 needs_yosys = pytest.mark.needs("yosys")
 

@@ -9,7 +9,7 @@ from talbot.flow.layout.steps.sta import Sta, StaParameters
 from talbot.flow.layout.timing.constraints import sdc
 from talbot.flow.layout.timing.spef import Tree, spef
 
-pytestmark = pytest.mark.needs("openroad")
+pytestmark = pytest.mark.needs("sta")
 
 NETLIST = Netlist(
     "Pair",
@@ -74,8 +74,6 @@ def test_what_keeps_its_times_breaks_no_rule(tmp_path):
     found, rules = timed(tmp_path)
     assert found["whs_ns"] == pytest.approx(0.3 - 0.05 - 0.05, abs=0.01)  # delay, hold, uncertainty
     assert rules == []
-    files = {path.name for path in tmp_path.iterdir() if path.suffix != ".log"}
-    assert files == {"verilog", "spef", "sdc", "liberty", *Sta.outputs.values()}
 
 
 def test_on_chip_variation_takes_from_both_slacks(tmp_path):
