@@ -1,8 +1,9 @@
 """The program `openroad` from the Python package of the same name (`pip install openroad`), which brings none.
 
-Run as a file, in any Python that has the package, or in an environment where requirements/venv.sh has unpacked it:
-python openroad_wheel.py [-threads N] [other options] SCRIPT. Options are
-those of the program; those without a meaning here are ignored.
+    python openroad_wheel.py [-threads N] [other options] SCRIPT
+
+The Python has the package, or requirements/venv.sh has unpacked it in the environment. Options are those of the
+program; those without a meaning here are ignored.
 """
 
 import ctypes

@@ -93,7 +93,7 @@ def located(name: str) -> str | None:
             return program
         wheel = folder / "talbot-yosys" if name == "yosys" else Path(package.origin).with_name(name)
     found = str(wheel) if wheel.exists() else None
-    return found or program if name in YOSYS else program or found
+    return (found or program) if name in YOSYS else (program or found)
 
 
 def plain(path: Path) -> Path:

@@ -225,7 +225,7 @@ def request_of(a: Namespace, sensor: SensorParameters | None = None, sequence: b
 
 
 def camera_of(a: Namespace, camera: CameraParameters) -> CameraParameters:
-    """The sensor's ``own`` camera with what the options ``a`` change."""
+    """The ``camera`` with what the options ``a`` change."""
     field = {"focal": "focal_length", "pupil": "exit_pupil"}
     texts = {name: getattr(a, name) for name in (option.replace("-", "_") for option in CAMERA)}
     chosen = {field.get(n, n): text.real(n, v, 0, float("inf")) for n, v in texts.items() if v is not None}
@@ -248,7 +248,7 @@ def _print_figures(s: dict[str, Any], folder: Path) -> None:
         print(f"  light field, {s['light_field_method']}: {light_field(s)}")
     if "light_field_psnr_true_optics_db" in s:
         calibrated, true = (decibels(s[f"light_field_psnr{end}_db"]) for end in ("", "_true_optics"))
-        print(f"  light field {calibrated}; with the true optics in place of the calibration {true}")
+        print(f"  light field {calibrated}; with the true optics instead of the calibration {true}")
     if depth_line(s):
         print(f"  {depth_line(s)}")
     if s["capture_error_codes"] is not None:

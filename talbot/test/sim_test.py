@@ -130,7 +130,7 @@ def test_a_name_that_is_too_long_stays_one(tmp_path):
 
 @pytest.mark.slow
 def test_waves_of_a_window_of_rows(photograph, tmp_path):
-    """By a simulator of its own, which takes 15 s of processor to compile."""
+    """A separate simulator, which takes 15 s of processor time to compile."""
     words = "sim", "--scene", photograph, "--threshold", "2", "--waves", "5:6", "--out", str(tmp_path / "out"), *SMALL
     assert main(words) == 0
     lines = (tmp_path / "out" / "waves.vcd").read_text().splitlines()
