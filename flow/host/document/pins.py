@@ -7,23 +7,22 @@ from talbot.rtl.asp_chip.pins import pins
 from .markdown import table
 
 HOST = {  # the pins of the digital side
-    "clk": "System clock. Every other pin but the SPI pins is synchronous to its rising edge.",
-    "reset": "Active high; synchronized on the chip. Hold it for 4 rising edges of `clk` or more.",
+    "clk": "System clock. All pins except SPI's are synchronous to its rising edge.",
+    "reset": "Active high, synchronized on the chip; at least 4 rising edges of `clk`.",
     "sclk": "SPI clock, mode 0, at most f_clk / 8.",
     "csn": "SPI chip select, active low.",
     "mosi": "SPI data to the chip, most significant bit first.",
     "miso": "SPI data from the chip; 0 while `csn` is high.",
-    "miso_oe": "Output enable of a shared `miso` pad: high while `csn` is low, and not in reset.",
+    "miso_oe": "Output enable of a shared `miso` pad: `csn` is low, and no reset.",
     "link_data": "A byte of the stream.",
-    "link_val": "`link_data` is valid. A byte on offer stays until it is taken (or abort, or reset).",
+    "link_val": "`link_data` is valid. The byte stays until it is taken (or abort, or reset).",
     "link_rdy": "The receiver takes `link_data` at the next rising edge of `clk`.",
-    "frame_sync": "High from the offer of a frame's first byte until its last byte is taken; low for loop-back bytes.",
-    "busy": "A frame is in progress, or its bytes wait for the link. Falls when `done` or an error bit is set: its "
-    "falling edge is the host's interrupt.",
+    "frame_sync": "High from the offer of a frame's first byte until its last is taken; low in loop-back.",
+    "busy": "A frame runs, or its bytes wait for the link. Falls when `done` or an error bit is set: the host's interrupt.",
 }
 ANALOG = {  # to and from the array, the amplifiers and the converters; a host leaves them alone
-    "comparator": "Decision of each lane: its held value is at or above the level of its `dac`.",
-    "dac": "Code of each lane, lane 0 in the lowest bits; offset binary unless `unsigned_`.",
+    "comparator": "Each lane: the held value is at or above the level of its `dac`.",
+    "dac": "Code of each lane, lane 0 lowest; offset binary unless `unsigned_`.",
     "hold": "The lanes in `en` sample at the end of this cycle.",
     "unsigned_": "Range of the converters: codes 0..255; low: -128..127.",
     "mode": "The readout mode, as in the register.",
@@ -36,13 +35,13 @@ ANALOG = {  # to and from the array, the amplifiers and the converters; a host l
     "pixel_reset": "Amplifier phase: reset of the pixels of row `reset_row`.",
     "shutter": "From the first integration to the end of the last.",
     "ref_ctl": "With `read`: the reference level, then the signal.",
-    "integrate": "Amplifier phase: row `amp_row` integrates, and no longer than this.",
-    "expose": "One cycle: row `reset_row` integrates from now on, until `integrate` of its own slot ends.",
+    "integrate": "Amplifier phase: row `amp_row` integrates.",
+    "expose": "One cycle: row `reset_row` integrates from here until `integrate` of the slot that reads it ends.",
     "cm_reset": "Amplifier phase: common-mode reset.",
     "read": "Amplifier phase: read.",
     "sample": "Last cycle of each half of `read`.",
     "tap": "Time-of-flight tap, for the modulation generator.",
-    "amp_row": "Row of the amplifier phases but `pixel_reset`.",
+    "amp_row": "Row of the amplifier phases except `pixel_reset`.",
     "reset_row": "Row of `pixel_reset` and `expose`: `exposure` rows ahead of `amp_row`.",
 }
 

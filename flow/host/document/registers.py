@@ -12,37 +12,38 @@ from .markdown import table
 NOTE = (
     "Generated from models/parameters/registers/asp_chip.rdl by talbot document. Byte addresses; a field of more than "
     "a byte is little-endian. Access: ro read only, rw read and write (the configuration), wo write only (reads 0), "
-    "w1c sticky, cleared by writing 1. Addresses and bits that are not listed read 0 and ignore writes."
+    "w1c sticky, cleared by writing 1. A register without a name has that of its field. Addresses and bits that are "
+    "not listed read 0 and ignore writes."
 )
-COLUMNS = "address", "register", "bits", "field", "access", "range", "reset", "meaning"
+COLUMNS = "address, register", "bits", "field", "access", "reset", "meaning"
 
 
 @dataclass(frozen=True)
 class Row:
-    """A field, or the fields of a register array; ``more``: registers after the first."""
+    """A field of the map; of a register array the first field, and ``more``, the number of registers after it."""
 
     field: Field
     more: int = 0
 
     @property
     def cells(self) -> tuple[str, ...]:
-        """Texts in the order of COLUMNS."""
+        """Return the row's texts, in the order of COLUMNS."""
         f, high = self.field, self.field.lsb + self.field.width - 1
-        low, top = f.range
+        register = f.register.partition("[")[0] + (f"[0..{self.more}]" if self.more else "")
         return (
-            f"0x{f.address:02X}" + (f" + {f.size} i" if self.more else ""),
-            f.register.partition("[")[0] + (f"[0..{self.more}]" if self.more else ""),
+            f"0x{f.address:02X}"
+            + (f" + {f.size} i" if self.more else "")
+            + (f" {register}" if register != f.name else ""),
             f"{high}:{f.lsb}" if f.width > 1 else f"{f.lsb}",
             f.name,
             f.access,
-            f"{low}..{top}" if f.width <= 16 else f"{f.width} bits",
             f"{f.reset:#x}" if f.reset > 9 else f"{f.reset}",
             f.description,
         )
 
 
 def rows(chip: RegisterMap) -> Iterator[Row]:
-    """The rows of the map, ascending."""
+    """Yield the rows of the map, by ascending address."""
     arrays: dict[str, list[Field]] = {}
     for f in chip.fields:
         arrays.setdefault(f.register.partition("[")[0], []).append(f)
@@ -51,13 +52,13 @@ def rows(chip: RegisterMap) -> Iterator[Row]:
 
 
 def markdown(chip: RegisterMap) -> str:
-    """The map as a Markdown document."""
+    """Return the map as a Markdown document."""
     note = f"{NOTE} How a host uses them: [host.md](host.md)."
     return f"# Registers of AspChip\n\n{note}\n\n{table(COLUMNS, (row.cells for row in rows(chip)))}\n"
 
 
 def html(chip: RegisterMap, listed: bool = False) -> str:
-    """The map as a page. listed: in the index of results."""
+    """Return the map as an HTML page; ``listed``: the index of results has it."""
     table = [[cell.replace("`", "") for cell in row.cells] for row in rows(chip)]
     return (
         render(

@@ -1,4 +1,4 @@
-"""What `talbot document` writes between the marks of docs/host.md: pins, tile, worked examples."""
+"""The tables that `talbot document` writes between the marks of docs/host.md: pins, tile, worked examples."""
 
 import math
 from collections.abc import Callable
@@ -29,48 +29,50 @@ EXAMPLE = FrameParameters(
 
 
 def tile_order() -> str:
-    """Pixel type at each position of a tile."""
+    """Return the table of the pixel type at each position of a tile."""
     tile = SENSOR.tile
     rows = ([f"**{r}**", *tile.order[tile.cols * r : tile.cols * (r + 1)]] for r in range(tile.rows))
     return table(["row in tile \\ k", *map(str, range(tile.cols))], rows)
 
 
 def pixel_types() -> str:
-    """Angular frequency, direction and phase of each pixel type."""
+    """Return the table of beta, gamma and alpha, a row for all types of the same beta and gamma."""
+    gratings: dict[tuple[float, float], dict[int, float]] = {}
+    for t, p in enumerate(SENSOR.tile.types):
+        gratings.setdefault((p.beta, p.gamma_deg), {})[t] = math.degrees(p.alpha)
     rows = (
-        (t, f"{p.beta:g}", f"{p.gamma_deg:g}", f"{math.degrees(p.alpha):g}") for t, p in enumerate(SENSOR.tile.types)
+        (", ".join(map(str, alphas)), f"{beta:g}", f"{gamma:g}", ", ".join(f"{alpha:g}" for alpha in alphas.values()))
+        for (beta, gamma), alphas in gratings.items()
     )
-    return table(["type", "beta", "gamma, degrees", "alpha, degrees"], rows)
+    return table(["types", "beta", "gamma, degrees", "alpha, degrees"], rows)
 
 
 def phase_examples() -> str:
-    """Taps, and what the chip sends for them."""
-    taps = [(200, 100, 100, 100), (100, 100, 100, 200), (100, 100, 200, 100), (100, 200, 100, 100), (200, 100, 0, 10)]
-    taps += [(255, 0, 0, 255), (90, 91, 90, 89), (7, 7, 7, 7)]
+    """Return the table of taps, their differences, and the phase and amplitude that the chip sends."""
+    taps = [(100, 100, 100, 200), (200, 100, 0, 10), (255, 0, 0, 255), (90, 91, 90, 89), (7, 7, 7, 7)]
     sent = zip(*phase_samples(np.array(taps), SENSOR.chip, noise_floor=8))
     rows = ((*four, four[0] - four[2], four[3] - four[1], *pair) for four, pair in zip(taps, sent))
     return table(["i0", "i90", "i180", "i270", "x", "y", "phase sent", "amplitude sent"], rows)
 
 
 def pattern_examples() -> str:
-    """Values of the test pattern."""
-    places = [(0, 0, 0, 0), (0, 0, 5, 0), (0, 1, 0, 0), (0, 2, 0, 0), (4, 0, 0, 0), (4, 2, 3, 0), (0, 0, 0, 1)]
-    places += [(100, 63, 5, 3), (383, 63, 5, 0)]
+    """Return the table of test pattern values at a few positions."""
+    places = [(0, 0, 5, 0), (0, 1, 0, 0), (4, 0, 0, 0), (4, 2, 3, 0), (100, 63, 5, 3), (383, 63, 5, 0)]
     return table(["row", "tile", "k", "sub", "value"], ((*p, int(pattern_value(*p))) for p in places))
 
 
 def session() -> str:
-    """Every byte of a short frame of the default chip, on SPI and on the link."""
+    """Return every byte of a short frame of the default chip, on SPI and on the link."""
     chip = register_map()
     resets = chip.image(chip.configuration)
     values = chip.image(chip.configuration, frame_values(EXAMPLE))
     stream = golden_frame(np.zeros(0), SENSOR, EXAMPLE, PatternEnd(SENSOR.array.rows, SENSOR.array.cols)).stream
     done = 1 << chip["done"].shift
-    lines = ["SPI, a transfer a line: out, and what comes in where it matters"]
+    lines = ["SPI, one transfer a line: mosi -> miso"]
     for text, sent, answer in (
         ("identity", read_transfer(chip["id"].byte, 2), bytes((0, chip["id"].reset, chip["version"].reset))),
         *(
-            ("configuration, bytes that differ from the reset", transfer, b"")
+            ("configuration", transfer, b"")
             for transfer in write_transfers(sorted(set(values.items()) - set(resets.items())))
         ),
         ("start", command("start"), b""),
