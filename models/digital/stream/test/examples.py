@@ -95,18 +95,18 @@ def frame_example(header, samples, made, left_out):
 
 
 def edges():
-    """Runs, values of both signs, a long run, and a run that the row cuts off."""
-    return row_example(5, [0] * 5 + [12, 0, 0, -10, 15, 0, -31] + [0] * 30 + [10] + [0] * 7, 10)
+    """Return a segment with runs, values of both signs, a long run, and a run that ends with the segment."""
+    return row_example(5, [0] * 5 + [12, 0, 0, -10, 15, -31] + [0] * 14 + [10] + [0] * 7, 10)
 
 
 def faint():
-    """Under the noise: single samples, zeros among them, until zeros prevail."""
-    return row_example(8, [-1, 1, -2, 0, 1, -1, 3, -1, -2, 1, 0, -1, -3, 0, 0, 1, 0, 0, 0, 0, -1], 1)
+    """Return a segment under the noise: tokens of single samples, zeros among them."""
+    return row_example(8, [-1, 1, -2, 0, 1, -1, 3, -1, -2, 0, -3, 0], 1)
 
 
 def noise():
-    """Values that do not compress: literals follow when the credit is used up."""
-    return row_example(0, [-128, 127, -128, 127, -128, 127, -128, 127, 0, 100], 0)
+    """Return a segment that does not compress: literals follow when the credit is used up."""
+    return row_example(0, [-128, 127, -128, 127, -128, 0], 0)
 
 
 def small_frame():
