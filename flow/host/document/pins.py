@@ -18,7 +18,7 @@ HOST = {  # the pins of the digital side
     "link_val": "`link_data` is valid. The byte stays until it is taken (or abort, or reset).",
     "link_rdy": "The receiver takes `link_data` at the next rising edge of `clk`.",
     "frame_sync": "High from the offer of a frame's first byte until its last is taken; low in loop-back.",
-    "busy": "A frame runs, or its bytes wait for the link. Falls when `done` or an error bit is set: the host's interrupt.",
+    "busy": "A frame runs, or its bytes wait for the link. Falls with `done` or an error bit: the host's interrupt.",
 }
 ANALOG = {  # to and from the array, the amplifiers and the converters; a host leaves them alone
     "comparator": "Each lane: the held value is at or above the level of its `dac`.",
