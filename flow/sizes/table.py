@@ -7,7 +7,7 @@ from .measure import Size
 
 
 def markdown(sizes: Sequence[Size]) -> str:
-    """Table of Size objects, in the order given."""
+    """Return a table of ``sizes``, in their order."""
     lines = [
         "# Sizes",
         "",
@@ -24,21 +24,20 @@ def markdown(sizes: Sequence[Size]) -> str:
 
 
 def blocks_table(sizes: Sequence[Size]) -> str:
-    """Table of the blocks for docs/results/blocks.md: what each is, its contract's figures, and its size."""
+    """Return the table of docs/results/blocks.md: function, latency, throughput and size of each block."""
     by_top = {s.top: s for s in sizes}
     lines = [
-        "| block | what it does | latency | throughput | levels under one test bench | cells | flip-flops | gates |",
-        "|---|---|---|---|---|---:|---:|---:|",
+        "| block | what it does | latency | throughput | cells | flip-flops | gates |",
+        "|---|---|---|---|---:|---:|---:|",
     ]
     for top, about in BLOCKS.items():
         s, folder = by_top[top], FOLDERS.get(top) or re.sub("(?!^)(?=[A-Z])", "_", top).lower()
-        cells = [f"[{top}](../../rtl/{folder}/README.md)", *about, LEVELS.get(top, "FL, CL, RTL, Verilog")]
+        cells = [f"[{top}](../../rtl/{folder}/README.md)", *about]
         cells += [f"{s.cells:,}", f"{s.flip_flops:,}", f"{s.gates:,.0f}"]
         lines.append(f"| {' | '.join(cells)} |")
     lines += [
         "",
-        "Yosys, `cells/gates.lib` (an abstract library; a gate is a NAND2 equivalent); a block includes all below it.",
-        "Verilog runs in Verilator and in Icarus (4-state). Written by `make sizes`.",
+        "Gates are NAND2 equivalents of `cells/gates.lib`, an abstract library; a block includes all below it.",
     ]
     return "\n".join(lines)
 
@@ -58,10 +57,5 @@ BLOCKS = {
     "RegFile": ("registers behind SPI mode 0", "a byte: 8 SPI clocks", "-"),
     "AspChip": ("the whole digital chip", "a frame", "1 sample a cycle"),
 }
-# of the others: the top's name in snake case, and "FL, CL, RTL, Verilog"
+# Folders whose name is not the top's in snake case
 FOLDERS = dict.fromkeys([top for top in BLOCKS if top.startswith("QuadDivider") or top == "Cordic"], "quad_divider")
-LEVELS = dict.fromkeys(FOLDERS, "FL, CL, RTL, Verilog; all 2^18 inputs") | {
-    "AmpCtrl": "FL = CL, RTL, Verilog",
-    "RegFile": "FL, RTL, Verilog",
-    "AspChip": "FL, RTL, Verilog; whole frames in Verilator and Icarus",
-}
