@@ -29,7 +29,7 @@ RELTOL = 1e-3  # moves a setup time by less than 1 ps, and takes half the time o
 NEAR = 16e-12  # s, first step away from a guess
 PATIENCE = 5.0  # s of run time for one run of a search
 # Shares of the clock-to-output delay, of the data's slew and of the clock's, added to what is measured: from the errors
-# that cells/README.md has
+# in docs/results/cells.md
 MARGINS = {"setup": (0.04, 0.01, 0.0), "hold": (0.01, 0.0, 0.01), "recovery": (0, 0, 0), "removal": (0.02, 0.01, 0.0)}
 FAR = 1.0  # share of the settling time in which a constraint is searched, beyond the ramps
 

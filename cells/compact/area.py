@@ -1,6 +1,6 @@
-"""Area of our own blocks on this library against sky130_fd_sc_hd.
+"""Area of the chip's blocks on the compact library and on sky130_fd_sc_hd.
 
-Both by the same Yosys script from Liberty files without delays: the mapper sees areas and logic depth alone.
+The same Yosys script maps both, from Liberty files without delays: the mapper sees areas and logic depth alone.
 """
 
 import json
@@ -57,8 +57,8 @@ def compare(
             raise ParameterError(f"blocks = {block!r}: must be a file {file} (make verilog)")
     pairs = product(files.items(), (("ours", ours), ("theirs", theirs)))
     todo = [jobs.Job(f"{b}.{k}", mapped, (str(file), b, str(lib)), (file, lib)) for (b, file), (k, lib) in pairs]
-    found = jobs.run(todo, store, "blocks mapped")
-    return dict(zip(files, zip(found[::2], found[1::2], strict=True), strict=True))
+    modules = jobs.run(todo, store, "blocks mapped")
+    return dict(zip(files, zip(modules[::2], modules[1::2], strict=True), strict=True))
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -67,11 +67,11 @@ def add_arguments(parser: ArgumentParser) -> None:
     add("--verilog", type=Path, default=Path("build/verilog"), help="folder of the blocks' Verilog (make verilog)")
     add("--liberty", type=Path, default=Path("build/cells/compact/compact.lib"), help="of this library")
     add("--blocks", default=",".join(BLOCKS), help="names, with commas between them")
-    add("--document", type=Path, help="also put the tables between the marks 'area' of this Markdown file")
+    add("--document", type=Path, help="also write the table of blocks between the marks 'area' of this Markdown file")
 
 
 def run(options: Namespace) -> int:
-    """Print the areas of both; 1 where ours is larger than the limit allows."""
+    """Print the areas on both libraries; return 1 where the ratio is above LIMIT."""
     from talbot.platforms.sky130.functions import liberty
 
     if options.document:
@@ -81,28 +81,28 @@ def run(options: Namespace) -> int:
     STORE.mkdir(parents=True, exist_ok=True)
     theirs = STORE / "sky130_fd_sc_hd.lib"
     theirs.write_text(liberty(), encoding="utf-8")
-    found = compare(options.verilog, options.blocks.split(","), ours, theirs)
-    total = [sum(pair[k]["um2"] for pair in found.values()) for k in (0, 1)]
-    text = f"{_blocks(found, total)}\n\n{_cells(found, 0, ours)}\n\n{_cells(found, 1, theirs)}"
-    print(text)
+    areas_of_blocks = compare(options.verilog, options.blocks.split(","), ours, theirs)
+    total = [sum(pair[k]["um2"] for pair in areas_of_blocks.values()) for k in (0, 1)]
+    table = _blocks(areas_of_blocks, total)
+    print(f"{table}\n\n{_cells(areas_of_blocks, 0, ours)}\n\n{_cells(areas_of_blocks, 1, theirs)}")
     if options.document:
-        insert(options.document, "area", text)
+        insert(options.document, "area", table)
     print(f"\nratio {total[0] / total[1]:.2f}, limit {LIMIT}")
     return 0 if total[0] / total[1] <= LIMIT else 1
 
 
-def _blocks(found: Mapping[str, tuple[Mapped, Mapped]], total: Sequence[float]) -> str:
+def _blocks(blocks: Mapping[str, tuple[Mapped, Mapped]], total: Sequence[float]) -> str:
     lines = ["| block | Compact um2 | sky130_fd_sc_hd um2 | ratio |", "|---|---:|---:|---:|"]
-    rows = [(block, a["um2"], b["um2"]) for block, (a, b) in found.items()]
+    rows = [(block, a["um2"], b["um2"]) for block, (a, b) in blocks.items()]
     for block, a, b in (*rows, ("all", total[0], total[1])):
         lines.append(f"| {block} | {a:,.0f} | {b:,.0f} | {a / b:.2f} |")
     return "\n".join(lines)
 
 
-def _cells(found: Mapping[str, tuple[Mapped, Mapped]], k: int, liberty: Path, most: int = 10) -> str:
+def _cells(blocks: Mapping[str, tuple[Mapped, Mapped]], k: int, liberty: Path, most: int = 10) -> str:
     """The table of the cells with the largest share of the area, in library ``k`` of 0 and 1."""
     area, count = areas(liberty), Counter()
-    for pair in found.values():
+    for pair in blocks.values():
         count.update(pair[k]["cells"])
     total = sum(count[cell] * area[cell] for cell in count)
     lines = [f"| {liberty.stem}: cell | number | um2 each | share of the area |", "|---|---:|---:|---:|"]

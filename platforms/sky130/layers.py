@@ -23,8 +23,8 @@ CELL_CORE = 81, 4  # areaid.core: cells of a library
 CELL_OUTLINE = 236, 0
 NWELL_LABEL, PWELL_LABEL = (64, 5), (64, 59)
 
-# aF between facing edges of li1: 0.43 of Magic's 25.5. Fitted, with models.FIT, to SkyWater's tables (cells/README.md);
-# with 25.5 slews at small loads are 10 % too long, whatever else is fitted.
+# aF between facing edges of li1: 0.43 of Magic's 25.5. Fitted, with models.FIT, to SkyWater's tables
+# (docs/results/cells.md); with 25.5 slews at small loads are 10 % too long, whatever else is fitted.
 LI_SIDEWALL = 11.0
 
 _layer = partial(Layer, datatype=20, label_datatype=LABEL, pin_datatype=PIN)

@@ -19,7 +19,7 @@ give 0.265 um and 0.28 um for every transistor, and the .spice netlists leave th
 stress than these models say: what a single gate has too much of mobility, the inner gates of NAND4 and INV8 lack. With
 KVSAT at BSIM4's largest, 1 (saturation velocity follows mobility in full), and 1.4 times KVTH0 for p, one mobility
 does for all of them. Fitted with li's sidewall capacitance to the tables of the cells FITTED of sky130_fd_sc_hd at
-tt_025C_1v80 alone; cells/README.md has the error of others, and at other corners.
+tt_025C_1v80 alone; docs/results/cells.md has the errors of other cells and corners.
 The factors hold for plain pfet_01v8, too: sky130_fd_sc_hs inv_1 (1.12 um) rises within 1 % of its tables at
 tt_100C_1v80 and ss_100C_1v60, where the binned models are 6 to 7 % off.
 """
