@@ -13,7 +13,7 @@ from talbot.models.parameters import AmpTiming, FrameParameters, SensorParameter
 from talbot.models.parameters.registers import register_map
 
 from .markdown import table
-from .pins import analog_pins, host_pins
+from .pins import host_pins
 
 SENSOR = SensorParameters()
 # A short frame that the default chip sends with nothing connected to its analog pins
@@ -85,7 +85,6 @@ def session() -> str:
 
 TABLES: dict[str, Callable[[], str]] = {
     "host pins": host_pins,
-    "analog pins": analog_pins,
     "tile": tile_order,
     "pixel types": pixel_types,
     "phase examples": phase_examples,

@@ -10,8 +10,10 @@ from talbot.commands import main
 from talbot.flow.host.document.command import DOCUMENT, HEADER
 from talbot.flow.host.document.exports import HEADER as HEADER_OF_STRUCTS
 from talbot.flow.host.document.exports import IPXACT, PAGE, export
+from talbot.flow.host.document.pins import MEANING
 from talbot.flow.host.document.tables import TABLES
 from talbot.models.parameters.registers import register_map
+from talbot.rtl.asp_chip.pins import pins
 
 WRITTEN = "registers.md", "registers.html", DOCUMENT
 
@@ -65,6 +67,11 @@ def test_every_field_is_documented():
 def test_the_host_document_explains_every_field():
     words = set(re.findall(r"\w+", (ROOT / "docs" / DOCUMENT).read_text()))
     assert not {f.name for f in register_map().fields} - words
+
+
+def test_every_pin_is_documented():
+    named = set(re.findall(r"`(\w+)`", (ROOT / "docs" / "chip.md").read_text())) | set(MEANING)
+    assert not {name for ports in pins(1) for name in ports} - named
 
 
 def test_the_host_document_has_a_place_for_every_table():
