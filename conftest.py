@@ -47,6 +47,18 @@ def every_page_is_checked():
         yield
 
 
+@pytest.fixture(autouse=True)
+def environment_is_restored():
+    """Fail a test that leaves the environment changed: later tests of its process would find other caches or tools."""
+    before = dict(os.environ)
+    yield
+    names = {name for name, _ in before.items() ^ os.environ.items()} - {"PYTEST_CURRENT_TEST"}
+    if names:
+        os.environ.clear()
+        os.environ.update(before)
+        pytest.fail(f"the test left the environment changed: {', '.join(sorted(names))}")
+
+
 PACKAGE = Path(__file__).parent / "talbot"
 NETLISTS = pytest.StashKey()  # rtl.harness.netlists.Netlists of --netlist
 

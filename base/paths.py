@@ -41,7 +41,8 @@ def unwritable(folder: Path) -> Path | None:
         return existing
     if existing != folder:
         return None
-    return next((path for path in folder.iterdir() if path.is_dir() and not os.access(path, os.W_OK)), None)
+    denied = (path for path in folder.iterdir() if path.is_dir() and not os.access(path, os.W_OK))
+    return next((path for path in denied if path.exists()), None)  # not one that another process has removed since
 
 
 def _temporary() -> Path:

@@ -30,7 +30,8 @@ def checkout(tmp_path, monkeypatch):
     (tmp_path / "checkout" / "build" / "simulator").mkdir(parents=True)
     (tmp_path / "checkout" / "pyproject.toml").touch()
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    monkeypatch.delenv(paths.CHOSEN, raising=False)
+    monkeypatch.setenv(paths.CHOSEN, "")  # so that what `build` sets goes after the test
+    monkeypatch.delenv(paths.CHOSEN)
     monkeypatch.setattr(paths.tempfile, "tempdir", str(tmp_path))
     monkeypatch.delenv(paths.RUN, raising=False)
     denied = set()
@@ -49,6 +50,19 @@ def test_what_another_user_has_built_is_left_and_the_cache_used_with_one_line(ch
     assert capsys.readouterr().err.splitlines() == [
         f"talbot: {(root / denied)} is not yours to write: {tmp_path}/cache/talbot is used in its place"
     ]
+
+
+def test_a_folder_that_another_process_removes_meanwhile_denies_nothing(checkout, monkeypatch, capsys):
+    root, _ = checkout
+    access = os.access
+
+    def removed(path, mode):
+        if os.path.basename(path) == "simulator":
+            os.rmdir(path)
+        return access(path, mode)
+
+    monkeypatch.setattr(paths.os, "access", removed)
+    assert build(root) == root / "build" and not capsys.readouterr().err
 
 
 def test_a_user_without_a_home_has_a_folder_among_the_temporary_ones(checkout, tmp_path):

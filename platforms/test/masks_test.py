@@ -8,7 +8,7 @@ import pytest
 
 from talbot.base.gds import db, write_gds
 from talbot.base.tools import finish
-from talbot.platforms.sky130.coriolis import PLATFORM
+from talbot.platforms.sky130.layout import PLATFORM
 
 NWELL, ACTIVE, POLY, LICON, NPC = (64, 20), (65, 20), (66, 20), (66, 44), (95, 20)
 NSDM, PSDM, HVTP, LVTN = (93, 44), (94, 20), (78, 44), (125, 44)
@@ -106,7 +106,7 @@ def broken(tmp_path_factory):
     return found
 
 
-pytestmark = pytest.mark.needs("klayout")
+pytestmark = pytest.mark.needs("klayout", "layout")
 
 
 def test_what_keeps_every_rule(broken):

@@ -10,7 +10,7 @@ from talbot.flow.analog import job, row_driver
 from talbot.flow.analog.deck import EDGE, deck, simulator
 from talbot.pixels.circuits.row_driver import RowDriverSpec, bank, row, row_line
 
-pytestmark = pytest.mark.needs("ngspice")
+pytestmark = pytest.mark.needs("ngspice", "layout")
 SETUP, _ = job.setup_of("sky130")
 CORNER = Corner.parse(job.TYPICAL)
 SPEC = RowDriverSpec.of()
