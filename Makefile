@@ -37,7 +37,7 @@ talbot = $(PY) -m talbot --make '$@ $(KNOWN)'
 
 .PHONY: help
 help:
-	@$(PYTHON) -I talbot/front.py
+	@'$(PYTHON)' -I talbot/front.py
 
 # The options of a command: make sim-help
 %-help: $(READY)
@@ -77,18 +77,17 @@ setup: $(TESTS_READY)
 .PHONY: setup-layout
 setup-layout: $(LAYOUT_READY)
 
-# The program's commands, by what is installed before they run. Coriolis needs a certain Python: that is checked first.
+# The program's commands, by what is installed before they run.
 RUN := sim sensor lightfield polar depth calibrate tradeoff stability decode learn index verilog divider
-TESTS := formal coverage mutate sizes fuzz cocotb suite stuck-at document site pixel pixel-layout cosim layout-sweep \
+TESTS := formal coverage mutate sizes fuzz cocotb suite stuck-at document site pixel pixel-layout cosim layout layout-sweep \
   layout-energy
 LAYOUT := pixel pixel-layout cosim pixel-circuit analog analog-layout footprints handoff cells cells-report \
-  cells-compact cells-compact-area cells-compact-search layout-sweep layout-energy layout-timing layout-compare openroad \
+  cells-compact cells-compact-area cells-compact-search layout layout-sweep layout-energy layout-timing openroad \
   openroad-compare openroad-fit
-TOOLS := pixel-circuit analog analog-layout cells cells-report cells-compact cells-compact-search layout-sweep \
+TOOLS := pixel-circuit analog analog-layout cells cells-report cells-compact cells-compact-search layout layout-sweep \
   layout-energy layout-timing
 COMMANDS := $(sort $(RUN) $(TESTS) $(LAYOUT) $(TOOLS))
 .PHONY: $(COMMANDS)
-layout-sweep layout-energy: have-coriolis
 $(COMMANDS): $(READY)
 $(TESTS): $(TESTS_READY)
 $(LAYOUT): $(LAYOUT_READY)
@@ -143,13 +142,6 @@ verify: $(TESTS_READY) $(LAYOUT_READY)
 	@[ "$$TALBOT_CHECK" ] || BEFORE="$(CHECK)" bash requirements/tools.sh --missing iverilog z3
 	@$(talbot) verify
 
-ifeq ($(BACKEND),openroad)
-layout: KNOWN += BACKEND
-endif
-.PHONY: layout
-layout: $(if $(filter openroad,$(BACKEND)),,have-coriolis) $(TESTS_READY) $(LAYOUT_READY) $(if $(filter openroad,$(BACKEND)),,have-tools)
-	@$(talbot) $(if $(filter openroad,$(BACKEND)),openroad,layout)
-
 LIBRELANE := build/librelane
 $(LIBRELANE)/.ready: requirements/librelane.lock | $(READY)
 	@rm -rf '$(LIBRELANE)'
@@ -172,10 +164,6 @@ tools:
 .PHONY: have-tools
 have-tools:  # `make cells` and `make layout` install what is missing themselves, where they may
 	@BEFORE="$(CHECK)" bash requirements/tools.sh --missing
-
-.PHONY: have-coriolis
-have-coriolis:  # before anything is installed
-	@bash requirements/venv.sh --coriolis '$(PYTHON)' '$(VENV)'
 
 .PHONY: clean
 clean:

@@ -188,11 +188,16 @@ def _kill_group(leader: int) -> None:
 
 @contextlib.contextmanager
 def started(
-    command: Sequence[object], log: IO[bytes], files: Sequence[int] = ()
+    command: Sequence[object],
+    log: IO[bytes],
+    files: Sequence[int] = (),
+    env: Mapping[str, str] | None = None,
+    cwd: Path | str | None = None,
 ) -> Iterator["subprocess.Popen[bytes]"]:
     """Start ``command``, a process group of its own, which ends with the context at the latest.
 
-    log: gets both outputs. files: open ones that it keeps. Raises ToolError when there is no such program.
+    log: gets both outputs. files: open ones that it keeps. env: see `finish`. Raises ToolError when there is no such
+    program.
     """
     work_begins()
     words = [str(part) for part in command]
@@ -203,7 +208,8 @@ def started(
             stdout=log,
             stderr=log,
             pass_fds=files,
-            env=of_tools(),
+            env=of_tools(env),
+            cwd=cwd,
             start_new_session=True,
         )
     except FileNotFoundError as error:

@@ -16,16 +16,16 @@ from talbot.base.gds import write_gds
 from talbot.base.lef import write as lef_text
 from talbot.base.lef.read import Box
 from talbot.models.parameters import ArrayParameters, ChipParameters
-from talbot.platforms.coriolis import coriolis_platform
 from talbot.platforms.die import top_metal
 from talbot.platforms.layers import Layer
+from talbot.platforms.layout import layout_platform
 
 from .blocks import DEEP_UM, SUPPLIES, AnalogSizes, Block, Pin, blocks
 
 if TYPE_CHECKING:
     import klayout.db as db
 
-# Of CoriolisPlatform.metals: of pins in the north and south, and in the west and east
+# Of LayoutPlatform.metals: of pins in the north and south, and in the west and east
 VERTICAL, ACROSS = 4, 3
 WIDE_UM = 0.4  # of a signal's pin
 USES = {name: "GROUND" if name == "vssa" else "POWER" for name in SUPPLIES}
@@ -35,7 +35,7 @@ def layer(pin: Pin, pdk: str) -> Layer:
     """The metal of a pin. Raises ParameterError for a process without one for supplies."""
     if pin.supply:
         return top_metal(pdk).metal
-    return coriolis_platform(pdk).metals[VERTICAL if pin.side in ("north", "south") else ACROSS]
+    return layout_platform(pdk).metals[VERTICAL if pin.side in ("north", "south") else ACROSS]
 
 
 def box(pin: Pin, block: Block, supply_um: float, grid_um: float) -> Box:
@@ -54,7 +54,7 @@ def lef(block: Block, pdk: str, supply_um: float, taken: Iterable[str] = ()) -> 
 
     taken: LEF names of further layers that are obstructed.
     """
-    grid_um = coriolis_platform(pdk).grid_um
+    grid_um = layout_platform(pdk).grid_um
     pieces: dict[str, list[tuple[Pin, str]]] = {}
     for pin in block.pins:
         pieces.setdefault(pin.name, []).append((pin, layer(pin, pdk).lef))
@@ -83,7 +83,7 @@ def black_box(block: Block, pdk: str, supply_um: float) -> "db.Layout":
     """The layout of a footprint: pins with their names, and the outline."""
     import klayout.db as db
 
-    tech, layout = coriolis_platform(pdk), db.Layout()
+    tech, layout = layout_platform(pdk), db.Layout()
     layout.dbu = 0.001
     cell = layout.create_cell(block.name)
     draw_pins(layout, cell, block, pdk, supply_um)
@@ -95,7 +95,7 @@ def draw_pins(layout: "db.Layout", cell: "db.Cell", block: Block, pdk: str, supp
     """Draw the pins of a block into its cell, with their names."""
     import klayout.db as db
 
-    tech = coriolis_platform(pdk)
+    tech = layout_platform(pdk)
     for pin in block.pins:
         metal = layer(pin, pdk)
         corners = db.DBox(*box(pin, block, supply_um, tech.grid_um))

@@ -11,7 +11,7 @@ PROCESSES = ("sky130",)
 
 @dataclass(frozen=True)
 class TopMetal:
-    """The metal above the highest of CoriolisPlatform.metals, and the via between the two."""
+    """The metal above the highest of LayoutPlatform.metals, and the via between the two."""
 
     metal: Layer
     via: Via

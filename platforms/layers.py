@@ -1,6 +1,6 @@
 """Layers and vias of a process: the types of the tables ``platforms/<pdk>/layers.py``.
 
-Every description of a process (extraction, Coriolis, OpenROAD, die) is built from that one table.
+Every description of a process (extraction, layout, OpenROAD, die) is built from that one table.
 """
 
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ GdsLayer = tuple[int, int]  # layer, datatype
 class Layer:
     """A conducting layer above the field; a coefficient of 0 is one that no tool here reads.
 
-    name, lef: in PDKMaster and Coriolis; in LEF and in extracted netlists. layer, datatype, label_datatype,
+    name, lef: in PDKMaster; in LEF and in extracted netlists. layer, datatype, label_datatype,
     pin_datatype: GDS numbers of shapes, net names and pin shapes. area_af_um2, fringe_af_um: aF/um2 and aF/um of edge,
     to the substrate. sidewall_af_um: aF times length / (distance + sidewall_offset_um) between facing edges.
     sheet_ohm: ohm a square. antenna_ratio: limit of side wall (or metal) area by gate area on a net without a

@@ -13,7 +13,7 @@ PROCESSES = ("sky130",)
 
 @dataclass(frozen=True)
 class Capacitor:
-    """A capacitor for decoupling: a top plate over the metal below the highest via of CoriolisPlatform.vias.
+    """A capacitor for decoupling: a top plate over the metal below the highest via of LayoutPlatform.vias.
 
     plate: GDS layer and datatype of the top plate, which that via contacts. area_ff_um2, edge_ff_um: typical.
     """

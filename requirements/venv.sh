@@ -1,10 +1,8 @@
 #!/usr/bin/env bash
 # The Python environment: venv.sh PYTHON FOLDER READY LOCK ... makes the file READY once every package of the files LOCK is
-# in FOLDER at its version and hash. venv.sh --coriolis PYTHON FOLDER: whether that Python can have Coriolis.
+# in FOLDER at its version and hash.
 set -euo pipefail
-only=
-[ "$1" != --coriolis ] || { only=coriolis; shift; }
-python=$1 folder=$2 ready=${3:-}
+python=$1 folder=$2 ready=$3
 here=$(cd "$(dirname "$0")" && pwd)
 
 fail() { echo "setup: $*" >&2; exit 2; }
@@ -36,14 +34,6 @@ if [ "$python" = python3 ]; then # the default: this one, or another of the syst
 fi
 fits "$python" || fail "python = '$given': must be Python 3.11 to 3.14, is $(found "$given") (make PYTHON=/path/to/python3)"
 
-if [ -n "$only" ]; then
-    [ ! -x "$folder/bin/python" ] || python=$folder/bin/python
-    "$python" -c 'import platform, sys
-sys.exit(not (sys.version_info < (3, 13) and (sys.platform, platform.machine()) == ("linux", "x86_64")))' \
-        || fail "python = '$python': must be Python 3.11 or 3.12 on Linux x86-64, for which alone Coriolis, which places and" \
-            "routes, has packages, is $(found "$python") on $(uname -sm) (rm -r $folder; make PYTHON=python3.12)"
-    exit
-fi
 command -v g++ >/dev/null || fail "g++ = not found: a C++ compiler is needed (Debian: apt-get install g++; macOS: xcode-select --install)"
 
 # One set-up at a time: a lock on this script, which ends with this process. macOS has no flock(1)

@@ -76,7 +76,7 @@ GROUPS: dict[str, dict[str, Command]] = {
     },
     "Developers": {
         "tools": Command("install Icarus, Verilator, z3, ngspice, OpenSTA, KLayout"),
-        "setup-layout": Command("install PDKs, KLayout, OpenROAD and Coriolis into .venv"),
+        "setup-layout": Command("install PDKs, KLayout and OpenROAD into .venv"),
         "lint": Command("ruff, import layers, types, docstrings"),
         "format": Command("format the code and apply ruff's fixes"),
         "bench": Command("benchmarks of speed and memory"),
@@ -85,9 +85,8 @@ GROUPS: dict[str, dict[str, Command]] = {
         "learn": Command(
             "learn the dictionary or the two-branch network of light fields", "flow.lightfield.learn.command"
         ),
-        "layout-sweep": Command("layouts of divider variants or placer efforts, plotted", "flow.layout.sweep.command"),
-        "layout-compare": Command("finished layouts in one table", "flow.layout.report.compare"),
-        "openroad-compare": Command("layouts of both engines in one table", "flow.openroad.compare"),
+        "layout-sweep": Command("layouts of divider variants, plotted", "flow.layout.sweep.command"),
+        "openroad-compare": Command("layouts with both cell libraries in one table", "flow.openroad.compare"),
         "cells-report": Command("the characterizer compared with a foundry's tables", "cells.report.command"),
         "cells-compact": Command("draw and check the cell library Compact", "cells.compact.command"),
         "divider": Command("every input of a divider through its Verilog", "flow.simulate.divider.exhaustive"),

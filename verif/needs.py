@@ -30,7 +30,7 @@ import pytest
 SLOW, BENCHMARK = "slow: make verify, or pytest --all", "Skipping benchmark"
 SKIPPED = "needs "  # how the reason of a skipped test begins, ahead of its missing needs
 TOOLS, LAYOUT = "make tools", "make setup-layout"
-PACKAGES = {"layout": ("klayout", "pdkmaster", "c4m", "sky130"), "coriolis": ("coriolis", "coloquinte")}
+PACKAGES = ("klayout", "pdkmaster", "c4m", "sky130")  # of layouts
 
 
 class Need(NamedTuple):
@@ -125,9 +125,7 @@ NEEDS = {
     "klayout": Need(programs("klayout"), TOOLS),  # the program; the package comes with `layout`
     "magic": Need(programs("magic"), TOOLS),
     "tclsh": Need(programs("tclsh"), TOOLS),
-    "layout": Need(packages(*PACKAGES["layout"]), LAYOUT, imported=True),
-    "coriolis": Need(packages(*PACKAGES["coriolis"]), LAYOUT, offered=sys.version_info < (3, 13), imported=True),
-    "python-coriolis": Need(lambda: sys.version_info < (3, 13), "make PYTHON=python3.12", offered=False),
+    "layout": Need(packages(*PACKAGES), LAYOUT, imported=True),
     "librelane": Need(librelane, "make librelane"),
     "torch": Need(packages("torch"), "pip install 'talbot[nn]'", offered=False, imported=True),
     "mitsuba": Need(packages("mitsuba", "mitransient"), "make render", offered=False, imported=True),
@@ -221,9 +219,8 @@ def _without_package() -> Iterator[None]:
     except (ModuleNotFoundError, ToolError) as error:
         absent = error if isinstance(error, ModuleNotFoundError) else error.__cause__
         package = (getattr(absent, "name", None) or "").partition(".")[0]
-        for name in ("layout", "coriolis"):
-            if package in PACKAGES[name]:
-                skip_without(name)
+        if package in PACKAGES:
+            skip_without("layout")
         raise
 
 

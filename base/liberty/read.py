@@ -3,6 +3,7 @@
 import fnmatch
 import re
 from collections.abc import Callable, Collection, Sequence
+from math import inf
 from pathlib import Path
 
 from talbot.base.liberty.group import Group, Scalar, Table
@@ -67,6 +68,14 @@ def is_whole(path: Path) -> bool:
 def areas(path: Path) -> dict[str, float]:
     """The area of every cell of a Liberty file, in its own unit (um2)."""
     return {cell.name: cell.number("area") for cell in read(path).all("cell")}
+
+
+def most_loads(path: Path) -> dict[str, float]:
+    """The least max_capacitance of the outputs of every cell of a Liberty file that states any, in its own unit."""
+    limits = {
+        cell.name: [pin.number("max_capacitance", inf) for pin in cell.all("pin")] for cell in read(path).all("cell")
+    }
+    return {cell: least for cell, found in limits.items() if (least := min(found, default=inf)) < inf}
 
 
 def without(text: str, patterns: Sequence[str]) -> str:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from talbot.models.parameters import ParameterError
-from talbot.platforms.sky130.coriolis import PLATFORM
+from talbot.platforms.sky130.layout import PLATFORM
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Canvas:
 
     def __post_init__(self) -> None:
         if abs(self.height / self.site - round(self.height / self.site)) > 1e-9:
-            must = f"must be a multiple of site = {self.site} (Coriolis rounds the pitch of rows up to one)"
+            must = f"must be a multiple of site = {self.site} (a placement site)"
             raise ParameterError(f"height = {self.height}: {must}")
         if self.site < 2 * (0.135 + 0.04 + 0.085) - 1e-9:
             raise ParameterError(f"site = {self.site}: must be at least 0.52 um: two diffusions end side by side in it")

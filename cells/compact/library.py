@@ -31,7 +31,7 @@ def drawn(
 
 
 def library(canvas: Canvas | None = None, store: Path = FOLDER / "drawn", workers: int = -1) -> "RoutingGaugeLibrary":
-    """All cells as a library of PDKMaster, for the exporters to Coriolis, KLayout and SPICE.
+    """All cells as a library of PDKMaster, for the exporters to KLayout and SPICE.
 
     workers: see `drawn`; 1 in a process that should end by itself (joblib's workers keep it waiting for minutes).
     """

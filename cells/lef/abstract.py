@@ -14,7 +14,7 @@ from talbot.base.lef.write import Rectangles
 from talbot.cells.extract.devices import CellLayout, find, read_cell
 from talbot.models.parameters import ParameterError, check_choice
 from talbot.platforms.extraction import ExtractionPlatform
-from talbot.platforms.layers import DIFFUSION
+from talbot.platforms.layers import DIFFUSION, Via
 
 DIRECTIONS = ("INPUT", "OUTPUT", "INOUT")
 USES = ("SIGNAL", "CLOCK", "POWER", "GROUND")
@@ -32,21 +32,41 @@ class PinKind:
         check_choice("use", self.use, USES)
 
 
-def abstract(gds: str | Path, name: str, tech: ExtractionPlatform, pins: Mapping[str, PinKind], site: str) -> str:
-    """LEF macro of cell ``name`` in the file ``gds``. pins: in order; site: name of its placement site.
+def abstract(
+    gds: str | Path,
+    name: str,
+    tech: ExtractionPlatform,
+    pins: Mapping[str, PinKind],
+    site: str,
+    kind: str = "CORE",
+    vias: Sequence[Via] = (),
+) -> str:
+    """LEF macro of cell ``name`` in the file ``gds``. pins: in order; site: of its placement; kind: its CLASS.
 
-    Wells and poly are left out: rows take care of the first, and nobody routes on the second. Raises ParameterError
-    when a pin has no metal in the cell, or the cell no outline.
+    vias: those that are drawn, in the pin whose lower layer they are on. Wells and poly are left out: rows take care
+    of the first, and nobody routes on the second. Raises ParameterError when a pin has no metal in the cell, or the
+    cell no outline.
     """
     found = find(gds, name, tech)
     outline = _outline(gds, name, tech)
     metals = [layer.lef for layer in tech.conductors if layer.lef != "poly"]
+    for via in vias:
+        found.shapes[via.lef] = _by_net(gds, name, via, found)
+    metals += [via.lef for via in vias]
     others = {metal: [found.shapes[metal][net] for net in found.shapes[metal] if net not in pins] for metal in metals}
     blocked = {metal: sum(regions, db.Region()) for metal, regions in others.items()}
-    head = ["CLASS CORE", f"FOREIGN {name}", "ORIGIN 0.000 0.000", write.size(outline.width(), outline.height())]
+    head = [f"CLASS {kind}", f"FOREIGN {name}", "ORIGIN 0.000 0.000", write.size(outline.width(), outline.height())]
     head += ["SYMMETRY X Y", f"SITE {site}"]
     obstructions = list(_rectangles(blocked, found.dbu)) if any(others.values()) else None
     return write.macro(name, head, [_pin(pin, kind, found, metals) for pin, kind in pins.items()], obstructions)
+
+
+def _by_net(gds: str | Path, name: str, via: Via, found: CellLayout) -> "dict[str, db.Region]":
+    """A cell's vias by the net of the metal below each."""
+    layout, cell = read_cell(gds, name)
+    drawn = db.Region(cell.begin_shapes_rec(layout.layer(*via.gds))).merged()
+    below = [nets for layer in via.below if (nets := found.shapes.get(layer))]
+    return {net: drawn.inside(metal.merged()) for nets in below for net, metal in nets.items()}
 
 
 def _outline(gds: str | Path, name: str, tech: ExtractionPlatform) -> "db.DBox":

@@ -22,8 +22,8 @@ from talbot.flow.layout.parasitics.trees import trees
 from talbot.pixels.analog_layout.cells import Cell
 from talbot.pixels.circuits.netlist import Capacitor, Circuit, Resistor
 from talbot.platforms.analog import AnalogMasks
-from talbot.platforms.coriolis import coriolis_platform
 from talbot.platforms.extraction import extraction_platform
+from talbot.platforms.layout import layout_platform
 from talbot.platforms.wires import Wires
 
 SUBSTRATE = "vss"
@@ -73,7 +73,7 @@ class _Pin:
 def extract(made: Cell, masks: AnalogMasks, wires: Wires, resistance: bool = True) -> tuple[Extracted, Nets]:
     """The circuit of a drawn cell with its parasitics, and these by net. Raises StepError where a net is in pieces."""
     pdk = masks.base.name
-    tech, platform = coriolis_platform(pdk), extraction_platform(pdk)
+    tech, platform = layout_platform(pdk), extraction_platform(pdk)
     whole, cut = _layouts(made, masks)
     found = shapes(whole, whole.top_cell(), tech, platform)
     pins = list(_pins(made))

@@ -39,7 +39,7 @@ from talbot.pixels.circuits.row_driver import RowDriverSpec
 from talbot.pixels.circuits.specification import LaneSpec
 from talbot.pixels.circuits.support import SupportSpec
 from talbot.platforms.analog import AnalogMasks, analog_masks
-from talbot.platforms.coriolis import coriolis_platform
+from talbot.platforms.layout import layout_platform
 from talbot.platforms.wires import wire_corner
 
 from . import amplifier, column, row_driver, switch
@@ -167,7 +167,7 @@ def _table(
 
 def _extracted(made: dict[str, Cell], masks: AnalogMasks, corner: str) -> dict[str, tuple[Extracted, Nets]]:
     """Every cell with its parasitics, wires at ``corner``: typ, min or max."""
-    wires = coriolis_platform(masks.base.name).wires[corner]
+    wires = layout_platform(masks.base.name).wires[corner]
     return {name: extract(cell, masks, wires) for name, cell in made.items()}
 
 

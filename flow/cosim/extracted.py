@@ -17,11 +17,11 @@ def circuits() -> Mapping[str, Circuit]:
     from talbot.flow.analog_layout.extract import extract
     from talbot.flow.analog_layout.job import cells
     from talbot.platforms.analog import analog_masks
-    from talbot.platforms.coriolis import coriolis_platform
+    from talbot.platforms.layout import layout_platform
 
     masks, (setup, sizes) = analog_masks(PDK), setup_of(PDK)
     made = cells(masks, sizes, amplifier_of(setup, sizes)[1], 1, column_of(setup)[1])
-    wires = coriolis_platform(PDK).wires[WIRES]
+    wires = layout_platform(PDK).wires[WIRES]
     return {name: extract(made[name], masks, wires)[0] for name in NAMES}
 
 

@@ -6,12 +6,13 @@ from collections.abc import Mapping, Sequence
 from importlib.metadata import version
 from pathlib import Path
 
+from talbot.flow.layout.block import SCRIPTS
 from talbot.flow.layout.design import Design
 from talbot.flow.layout.netlist.netlist import SUPPLIES
 from talbot.flow.layout.report.metrics import broken
 from talbot.flow.openroad.tinytapeout import PROJECTS, project_files
 from talbot.models.parameters import ParameterError
-from talbot.platforms.coriolis import coriolis_platform
+from talbot.platforms.layout import layout_platform
 
 from .archive import sha256
 from .pages import datasheet, pinout
@@ -83,7 +84,7 @@ def contents(
             substitutes[suffix] = substitute
     netlist = files[f"netlist/{design.name}.v"].decode()
     lef = files[f"layout/{design.name}.lef"].decode()
-    frame = coriolis_platform(summary["pdk"]).frame(design.frame) if design.frame else None
+    frame = layout_platform(summary["pdk"]).frame(design.frame) if design.frame else None
     supplies: dict[str, str] = dict(zip(SUPPLIES, frame.supplies if frame else SUPPLIES, strict=True))
     files |= {
         f"netlist/{design.name}.power.v": powered(netlist, supplies).encode(),
@@ -91,6 +92,7 @@ def contents(
         "datasheet.md": datasheet(design, summary, lef, waivers).encode(),
         "waivers.json": _json(waivers),
     }
+    files |= {f"{SCRIPTS}/{path.name}": path.read_bytes() for path in sorted((folder / SCRIPTS).glob("*"))}
     if design.name in PROJECTS:
         files |= shuttle_files(design, files)
     return files, substitutes

@@ -1,28 +1,26 @@
-"""Lay out one design with the macros in it: all steps, the results under the design's name, the report."""
+"""Lay out one design: all steps, the results under the design's name, the report."""
 
 import json
 import shutil
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from talbot.base.files import staged
 from talbot.base.page import Picture
-from talbot.base.steps import Runner, StepError
-from talbot.platforms.coriolis import coriolis_platform
+from talbot.base.steps import Runner
+from talbot.platforms.layout import layout_platform
 from talbot.platforms.wires import wire_corner
 
-from .chain import input_files
-from .design import Design, folder_name, macro_designs
-from .macros import check_same, macro_files
+from .chain import input_files, scripts_of
+from .design import Design, folder_name
 from .netlist.netlist import Netlist
 from .options import Options
 from .power.energy import blocks
 from .report.metrics import broken, summarize
 from .report.page import picture, write_report
-from .report.picture import by_block, render
+from .report.picture import LayoutPicture, by_block, clock_tree, congestion, render
 from .search import lay_out_smallest
 
 RESULTS = {"gds": "fill.gds", "v": "stream_out.verilog", "lef": "lef.lef", "spef": "extraction.typ", "sdc": "sdc"}
@@ -30,6 +28,9 @@ RESULTS |= {"drc.lyrdb": "drc.report", "foundry.lyrdb": "foundry_drc.report", "m
 RESULTS |= {"lvsdb": "lvs.report"}
 BY_CORNER = {"sdf": "sta_{}.sdf", "sta.txt": "sta_{}.report", "lib": "block_liberty_{}.liberty"}
 BY_CORNER |= {"power.json": "power_{}.instances", "ir_drop.png": "ir_drop_{}.picture"}
+# Suffix and caption of the pictures next to that of the layout
+PICTURES = {"blocks.png": "Cells by block", "clock.png": "Clock tree", "congestion.png": "Congestion: share of metal"}
+SCRIPTS = "openroad"  # folder of the stages' scripts and their inputs, for a user's own OpenROAD
 FIRST = "sdf", "lib"  # of the first corner, also under the design's name alone
 
 
@@ -40,36 +41,30 @@ def lay_out(
     note: Callable[[str], None],
     beside: Callable[[Runner], AbstractContextManager[None]] = lambda runner: nullcontext(),
 ) -> tuple[Runner, dict[str, Any]]:
-    """Lay out ``design``, its macros before it: (its Runner, its summary). Each has its folder in ``out``.
+    """Lay out ``design`` in its folder in ``out``: (its Runner, its summary).
 
-    beside: what goes on meanwhile, of the design's Runner. Raises StepError for a macro that breaks a limit.
+    beside: what goes on meanwhile, of the design's Runner. Raises ToolError, StepError.
     """
-    runners = {}
-    for macro in macro_designs(design):
-        own = replace(options, utilization=macro.utilization)
-        runners[macro.name], summary = lay_out(macro, own, out, lambda text, name=macro.name: note(f"{name}: {text}"))
-        if wrong := broken(summary):
-            raise StepError(f"{design.name}: its block {macro.name} breaks a limit: {wrong[0]}")
     folder = out / folder_name(design, options.pdk)
     files = input_files(design, options, folder)
-    check_same(design, files["rtl"], runners)
-    runner = Runner(folder / "steps", files | macro_files(design, runners, options.corners), note, out / "shared")
+    runner = Runner(folder / "steps", files, note, out / "shared")
     with beside(runner):
         summary = summarize(design, options, runner, lay_out_smallest(design, options, runner))
-        publish(folder, design.name, options, runner, summary)
+        publish(folder, design, options, runner, summary)
     return runner, summary
 
 
-def publish(folder: Path, name: str, options: Options, runner: Runner, summary: dict[str, Any]) -> None:
-    """Copy the results into ``folder``, with report and summary, under the design's ``name``."""
-    tech = coriolis_platform(options.pdk)
+def publish(folder: Path, design: Design, options: Options, runner: Runner, summary: dict[str, Any]) -> None:
+    """Copy the results into ``folder``, with report and summary, under the design's name."""
+    name = design.name
+    tech = layout_platform(options.pdk)
     results = dict(RESULTS)
     for corner in options.corners:
         results |= {f"{corner}.{suffix}": source.format(corner) for suffix, source in BY_CORNER.items()}
         results[f"{corner}.spef"] = f"extraction.{wire_corner(corner)}"
     for suffix in FIRST if options.corners else ():
         results[suffix] = BY_CORNER[suffix].format(options.corners[0])
-    with staged(folder, [f"{name}.{suffix}" for suffix in (*results, "png", "blocks.png")]) as part:
+    with staged(folder, [f"{name}.{suffix}" for suffix in (*results, "png", *PICTURES)]) as part:
         for suffix, source in results.items():  # results of an earlier run are removed where this one has none
             if source in runner.paths:
                 shutil.copyfile(runner.paths[source], part / f"{name}.{suffix}")
@@ -77,19 +72,26 @@ def publish(folder: Path, name: str, options: Options, runner: Runner, summary: 
         if "fill.gds" in runner.paths:
             layout = render(runner.paths["fill.gds"], tech, runner.paths["stream_out.gds"])
             layout.image.save(part / f"{name}.png")
-        write_report(part, folder, summary, broken(summary), layout, draw(part, name, runner, options))
+        (part / SCRIPTS).mkdir()
+        for file, text in scripts_of(design, options, summary["attempts"][-1]["asked"], runner.paths).items():
+            (part / SCRIPTS / file).write_text(text, encoding="utf-8")
+        write_report(part, folder, summary, broken(summary), layout, draw(part, design, runner, options, layout))
 
 
-def draw(folder: Path, name: str, runner: Runner, options: Options) -> list[Picture]:
-    """Draw the cells by block; pictures of this and of the IR drop, none where the layout has no power."""
-    first = next(iter(options.corners), "")
-    step = "assemble" if "assemble.netlist" in runner.paths else "repair"
-    if f"{step}.netlist" not in runner.paths or f"ir_drop_{first}.picture" not in runner.paths:
+def draw(folder: Path, design: Design, runner: Runner, options: Options, layout: LayoutPicture | None) -> list[Picture]:
+    """Draw the cells by block, the clock's tree and the congestion; pictures of these and of the IR drop.
+
+    layout: as drawn; None, and no picture, where the layout has no power.
+    """
+    first, name = options.corners[0], design.name
+    if layout is None or f"ir_drop_{first}.picture" not in runner.paths:
         return []
-    keys = f"{step}.placement", "library.areas", "floorplan.floorplan"
+    keys = "stream_out.placement", "library.areas", "stream_out.plan"
     placement, areas, plan = (json.loads(runner.paths[key].read_text(encoding="utf-8")) for key in keys)
-    netlist, tech = Netlist.read(runner.paths[f"{step}.netlist"]), coriolis_platform(options.pdk)
-    file = f"{name}.blocks.png"
-    by_block(folder / file, netlist, placement["instances"], areas, tech, blocks(netlist), plan)
-    drop = folder / f"{name}.{first}.ir_drop.png"
-    return [picture(folder / file, "Cells by block"), picture(drop, f"IR drop, {first}")]
+    netlist, tech = Netlist.read(runner.paths["stream_out.netlist"]), layout_platform(options.pdk)
+    placed, files = placement["instances"], [folder / f"{name}.{suffix}" for suffix in PICTURES]
+    by_block(files[0], netlist, placed, areas, tech, blocks(netlist), plan)
+    clock_tree(files[1], netlist, placed, design.clock.port, plan)
+    congestion(files[2], layout, [metal.name for metal in tech.metals[1:]])
+    drawn = [picture(path, caption) for path, caption in zip(files, PICTURES.values(), strict=True)]
+    return [*drawn, picture(folder / f"{name}.{first}.ir_drop.png", f"IR drop, {first}")]

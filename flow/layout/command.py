@@ -13,7 +13,7 @@ from talbot.platforms.processes import PROCESSES
 
 from .block import lay_out
 from .chain import all_steps
-from .design import DESIGNS, Design, design, folder_name, macro_designs
+from .design import DESIGNS, Design, design, folder_name
 from .options import Options
 from .report.metrics import broken
 from .report.page import closing
@@ -26,11 +26,9 @@ def add_arguments(parser: ArgumentParser) -> None:
     add = parser.add_argument
     add("design", nargs="?", default=CHIP, help=f"one of {', '.join((*DESIGNS, SENSOR))}")
     add("--pdk", default=PROCESSES[0], help=f"process, one of {', '.join(PROCESSES)}")
-    add("--backend", default="coriolis", help="what places and routes: coriolis (openroad: see talbot openroad)")
     add("--utilization", type=float, help="cells' area by core area where the search begins (default: the design's)")
     cells = "characterized cells at a corner (again for further corners; default: those shipped)"
     add("--liberty", type=Path, action="append", default=[], help=cells)
-    add("--untimed", action="store_true", help="no timing: cells by area alone")
     add("--analog", type=Path, help=f"folder with <block>.lef and .gds in place of {SENSOR}'s black boxes")
     add("--out", type=Path, default=RESULTS / "layout", help="folder of the layouts")
 
@@ -38,12 +36,10 @@ def add_arguments(parser: ArgumentParser) -> None:
 def run(arguments: Namespace) -> int:
     """Lay out a design and print what came of it; 1 where a limit is broken."""
     check_choice("DESIGN", arguments.design, (*DESIGNS, SENSOR))
-    if arguments.backend != "coriolis":
-        raise ParameterError(f"backend = {arguments.backend!r}: must be coriolis (openroad: talbot openroad, or make)")
     chosen = design(CHIP if arguments.design == SENSOR else arguments.design)
     start = chosen.utilization if arguments.utilization is None else arguments.utilization
     decks = tuple(installed(arguments.pdk).items())
-    options = Options(arguments.pdk, start, tuple(arguments.liberty), arguments.untimed, decks=decks)
+    options = Options(arguments.pdk, start, tuple(arguments.liberty), decks=decks)
     if arguments.design == SENSOR:
         steps = [f"{CHIP}: {step.name}" for step in all_steps(chosen, options)]
         steps += [step.name for step in die_steps(chosen, options, BLOCKS)]
@@ -60,7 +56,6 @@ def block(chosen: Design, options: Options, arguments: Namespace) -> tuple[Path,
     """Lay out a design: (path of summary.json, limits broken). Raises as `lay_out`."""
     if arguments.analog:
         raise ParameterError(f"analog = {arguments.analog}: must be with DESIGN={SENSOR} alone")
-    steps = [f"{macro.name}: {step.name}" for macro in macro_designs(chosen) for step in all_steps(macro, options)]
-    with Steps([*steps, *(step.name for step in all_steps(chosen, options))], lines=True) as bar:
+    with Steps([step.name for step in all_steps(chosen, options)], lines=True) as bar:
         _, summary = lay_out(chosen, options, arguments.out, bar.note)
     return arguments.out / folder_name(chosen, options.pdk) / "summary.json", broken(summary)

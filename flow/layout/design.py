@@ -1,4 +1,4 @@
-"""The designs: top module, clock, I/O constraints, macros, and the tests that the netlist must pass."""
+"""The designs: top module, clock, I/O constraints, and the tests that the netlist must pass."""
 
 from dataclasses import dataclass, field
 from functools import partial
@@ -39,28 +39,15 @@ class IoConstraints:
 
 
 @dataclass(frozen=True)
-class MacroPlacement:
-    """A macro in a design: another design, laid out before it.
-
-    instance: path in the Verilog. design: name in DESIGNS. at: shares of the free width and height to its west and
-    south.
-    """
-
-    instance: str
-    design: str
-    at: tuple[float, float] = (0.5, 0.0)
-
-
-@dataclass(frozen=True)
 class Design:
     """A block that can be laid out.
 
     top: module that rtl.export writes with ``options``. folder: of the block in rtl/. netlist_names: names under which
     the block's tests build it with these parameters, for `pytest --netlist`; a block whose tests have a size of their
-    own is laid out in that size. utilization: where the search for the smallest area begins. spread: of what is empty,
-    the share between cells. aspect: width by height. divider, n_frac: of the chip in whose frame the block's stimulus
-    is recorded. io: constraints of its ports. asynchronous: inputs that pass synchronizers, a false path. reset: port,
-    active at 0 if it ends in _n. frame: a shuttle's outline, see platforms.frame; '' for the smallest that there is.
+    own is laid out in that size. utilization: where the search for the smallest area begins. aspect: width by height.
+    divider, n_frac: of the chip in whose frame the block's stimulus is recorded. io: constraints of its ports.
+    asynchronous: inputs that pass synchronizers, a false path. reset: port, active at 0 if it ends in _n. frame: a
+    shuttle's outline, see platforms.frame; '' for the smallest that there is. closed: edges without pins.
     """
 
     name: str
@@ -68,17 +55,16 @@ class Design:
     folder: str
     netlist_names: tuple[str, ...] = ()
     options: tuple[str, ...] = ()
-    utilization: float = 0.88
-    spread: float = 1.0
+    utilization: float = 0.8
     aspect: float = 1.0
     divider: str = "radix4"
     n_frac: int = 8
-    macros: tuple[MacroPlacement, ...] = ()
     clock: Clock = Clock()
     io: IoConstraints = IoConstraints()
     asynchronous: tuple[str, ...] = ()
     reset: str = "reset"
     frame: str = ""
+    closed: tuple[str, ...] = ()
 
 
 def divider(name: str, variant: str, n_frac: int = 8) -> Design:
@@ -89,17 +75,13 @@ def divider(name: str, variant: str, n_frac: int = 8) -> Design:
 
 
 SMALL = "--rows=7", "--cols=31", "--lanes=2"
-PHASE = "PhasePath", "phase_path", ("PhasePath_8_radix4",)
-DIVIDER = MacroPlacement("divider", "quad_divider")
-# As in the thesis (B.3.2): both blocks are macros
-TWO = MacroPlacement("phase.divider", "quad_divider", (0.1, 1.0)), MacroPlacement("amp", "amp_ctrl", (0.93, 0.8))
 DIE = IoConstraints(load_pf=0.25)  # of the chip on the sensor's die: the longest nets of flow.layout.sensor
 tile = partial(Design, folder="tinytapeout", reset="rst_n")  # a block behind Tiny Tapeout's pins
 chip = partial(Design, top="AspChip", folder="asp_chip", io=DIE, asynchronous=ASYNCHRONOUS)
 DESIGNS = {
     made.name: made
     for made in (
-        Design("amp_ctrl", "AmpCtrl", "amp_ctrl", ("AmpCtrl",), utilization=0.8),
+        Design("amp_ctrl", "AmpCtrl", "amp_ctrl", ("AmpCtrl",)),
         Design("readout_seq", "ReadoutSeq", "readout_seq", ("ReadoutSeq_7_31_2",), SMALL),
         Design("edge_adc", "EdgeAdc", "edge_adc", ("EdgeAdc",)),
         Design("adc_bank", "AdcBank", "adc_bank", ("AdcBank8",)),
@@ -107,23 +89,13 @@ DESIGNS = {
         divider("quad_divider_radix2", "radix2"),
         divider("quad_divider_pipelined", "pipelined"),
         divider("cordic", "cordic"),
-        Design("phase_path", *PHASE),
-        Design("phase_path_macros", *PHASE, utilization=0.8, macros=(DIVIDER,)),
+        Design("phase_path", "PhasePath", "phase_path", ("PhasePath_8_radix4",)),
         Design("run_length", "RunLength", "run_length", ("RunLength",), ("--rows=12", "--cols=36", "--lanes=4")),
-        Design(
-            "reg_file",
-            "RegFile",
-            "reg_file",
-            ("RegFile",),
-            ("--rows=12", "--cols=18"),
-            utilization=0.44,
-            asynchronous=SPI_INPUTS,
-        ),
+        Design("reg_file", "RegFile", "reg_file", ("RegFile",), ("--rows=12", "--cols=18"), asynchronous=SPI_INPUTS),
         tile("tt_quad_divider", "tt_um_talbot_divider", netlist_names=("tt_um_talbot_divider",), frame="tt_1x1"),
         tile("tt_amp_ctrl", "tt_um_talbot_amp_ctrl", netlist_names=("tt_um_talbot_amp_ctrl",), frame="tt_1x2"),
         tile("tt_asp_chip", "tt_um_talbot_chip", netlist_names=("tt_um_talbot_chip",), frame="tt_4x4"),
-        chip("asp_chip", utilization=0.44, aspect=1.5),
-        chip("asp_chip_macros", utilization=0.41, macros=TWO),
+        chip("asp_chip", utilization=0.65, aspect=1.5, closed=("bottom", "top")),
     )
 }
 
@@ -136,22 +108,11 @@ def design(name: str) -> Design:
 
 
 def flat_design(name: str) -> Design:
-    """Look up a Design without macros and frame by its name. Raises ParameterError, also for one with either."""
+    """Look up a Design without a frame by its name. Raises ParameterError, also for one with a frame."""
     found = design(name)
-    if found.macros or found.frame:
-        why = "only make layout with the Coriolis backend supports these"
-        raise ParameterError(f"DESIGN = {name!r}: must be without {'macros' if found.macros else 'a frame'}: {why}")
+    if found.frame:
+        raise ParameterError(f"DESIGN = {name!r}: must be without a frame, which only our own cells' layouts have")
     return found
-
-
-def macro_designs(design: Design) -> list[Design]:
-    """Designs of the macros in ``design``, each once: they are laid out before it."""
-    return [DESIGNS[name] for name in dict.fromkeys(placement.design for placement in design.macros)]
-
-
-def macro_modules(design: Design) -> tuple[str, ...]:
-    """Verilog modules of the macros in ``design``, each once."""
-    return tuple(dict.fromkeys(DESIGNS[placement.design].top for placement in design.macros))
 
 
 def folder_name(design: Design, pdk: str) -> str:

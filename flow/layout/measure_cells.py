@@ -7,7 +7,7 @@ from talbot.base.files import check_folder
 from talbot.base.paths import RESULTS
 from talbot.base.progress import Steps
 from talbot.base.steps import Runner
-from talbot.platforms.coriolis import coriolis_platform
+from talbot.platforms.layout import layout_platform
 from talbot.platforms.processes import PROCESSES
 
 from .steps.library import Library
@@ -27,7 +27,7 @@ def run(options: Namespace) -> int:
     """Measure every cell at every corner in ngspice, and write the tables that a layout takes if they are shipped."""
     pdk = PROCESSES[0]  # the one whose device models are here
     check_folder("out", options.out)
-    corners = coriolis_platform(pdk).corners
+    corners = layout_platform(pdk).corners
     steps = Library(PdkParameters(pdk)), Timing(TimingParameters(pdk, corners, measured=True))
     with Steps([step.name for step in steps], lines=True) as bar:
         runner = Runner(options.layouts / "shared", {}, bar.note)

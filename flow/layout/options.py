@@ -1,12 +1,13 @@
-"""What a user chooses for a layout: process, utilization, cells' timing, effort, the foundry's decks."""
+"""What a user chooses for a layout: process, utilization, cells' timing, the foundry's decks."""
 
 import re
 from dataclasses import dataclass
 from pathlib import Path
 
 from talbot.base.liberty.read import is_library, is_whole, names, text_of
-from talbot.models.parameters import ParameterError, check_int, check_real
-from talbot.platforms.coriolis import coriolis_platform
+from talbot.models.parameters import ParameterError, check_real
+from talbot.platforms.layout import layout_platform
+from talbot.platforms.place_and_route import place_and_route
 
 from . import tables
 
@@ -22,26 +23,23 @@ def corner_of(path: Path) -> str:
 class Options:
     """Choices for one layout.
 
-    pdk: process. utilization: cells' area by core area at which the search begins. liberty: characterized cells, a file
-    a corner; () for the process's corners, as shipped (`tables`). untimed: whether there is no timing at all. effort:
-    of the placer, 1..9. decks: pairs (name, path) of the foundry's own checks (`platforms.foundry`).
+    pdk: process. utilization: area of the synthesized cells by core area at which the search begins. liberty:
+    characterized cells, a file a corner; () for the process's corners, as shipped (`tables`). decks: pairs (name, path)
+    of the foundry's own checks (`platforms.foundry`).
     """
 
     pdk: str = "sky130"
     utilization: float = 0.8
     liberty: tuple[Path, ...] = ()
-    untimed: bool = False
-    effort: int = 3
     decks: tuple[tuple[str, Path], ...] = ()
 
     @property
     def corners(self) -> tuple[str, ...]:
         """Names of the corners, that of synthesis first."""
-        if self.untimed:
-            return ()
-        return tuple(map(corner_of, self.liberty)) or coriolis_platform(self.pdk).corners
+        return tuple(map(corner_of, self.liberty)) or layout_platform(self.pdk).corners
 
     def __post_init__(self) -> None:
+        place_and_route(self.pdk)
         for path in self.liberty:
             if not path.is_file():
                 without = "without LIBERTY the shipped ones are taken, in build/layout/shared/timing.* after a layout"
@@ -61,4 +59,3 @@ class Options:
         if len({corner_of(path) for path in self.liberty}) != len(self.liberty):
             raise ParameterError(f"liberty = {', '.join(map(str, self.liberty))}: must be of different corners")
         check_real("utilization", self.utilization, LEAST_UTILIZATION, 0.95)
-        check_int("effort", self.effort, 1, 9)

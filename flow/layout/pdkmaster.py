@@ -1,31 +1,14 @@
-"""PDKMaster's description of a process and its cells, exported for Coriolis, KLayout and simulators."""
+"""PDKMaster's description of a process and its cells, exported for KLayout and simulators."""
 
 import re
 from collections.abc import Sequence
-from dataclasses import asdict
-from pathlib import Path
 from typing import Any
 
-from talbot.base.steps import StepError
-from talbot.cells.standard import StandardCells
-from talbot.platforms.coriolis import CoriolisPlatform
 from talbot.platforms.layers import Layer
-
-from .netlist.netlist import OUTPUT_PINS
-
-DIRECTIONS = {"vdd": "supply", "iovdd": "supply", "vss": "ground", "iovss": "ground"}
-DIRECTIONS |= dict.fromkeys((*OUTPUT_PINS, "co", "s"), "out")
+from talbot.platforms.layout import LayoutPlatform
 
 
-def layout_geometry(tech: CoriolisPlatform) -> dict[str, Any]:
-    """What of the process decides where routes are, and not how they behave: a layout is built again only for that."""
-    made = asdict(tech)
-    del made["fill"], made["rail_um"], made["corners"], made["masks"]
-    made["metals"] = [{"name": metal.name, "gds": metal.gds, "hole_um2": metal.min_hole_um2} for metal in tech.metals]
-    return made
-
-
-def routing_rules(tech: CoriolisPlatform, primitives: Any) -> dict[str, Any]:
+def routing_rules(tech: LayoutPlatform, primitives: Any) -> dict[str, Any]:
     """Rules of the metal layers and vias in PDKMaster's ``primitives``, in um: for JSON."""
 
     def enclosure(layers: Sequence[Any], enclosures: Sequence[Any], metal: Layer) -> list[float]:
@@ -42,7 +25,12 @@ def routing_rules(tech: CoriolisPlatform, primitives: Any) -> dict[str, Any]:
     return {
         "space_um": {name: float(metal.min_space) for name, metal in metals.items()},
         "metals": {
-            name: {"width": float(own.min_width), "space": float(own.min_space), "area": float(own.min_area or 0)}
+            name: {
+                "width": float(own.min_width),
+                "space": float(own.min_space),
+                "wide_space": float(own.space_table[-1][-1]) if own.space_table else 0.0,
+                "area": float(own.min_area or 0),
+            }
             for name, own in metals.items()
         },
         "vias": vias,
@@ -53,24 +41,6 @@ def cell_area(cell: Any) -> float:
     """Area of a cell, um2."""
     box = cell.layout.boundary
     return round((box.right - box.left) * (box.top - box.bottom), 4)
-
-
-def export_coriolis(folder: Path, description: Any, standard: StandardCells, tech: CoriolisPlatform) -> None:
-    """Write the package ``exported`` with the technology and the cells into ``folder``."""
-    from pdkmaster.io.coriolis import CoriolisExportSpec, FileExporter
-
-    spec = CoriolisExportSpec(globalnets=("vdd", "vss"), net_direction_cb=lambda net: DIRECTIONS.get(net, "in"))
-    export = FileExporter(tech=description.tech, gds_layers=description.gds_layers, spec=spec)
-    package, library = folder / "exported", standard.library
-    package.mkdir(parents=True)
-    (package / "__init__.py").write_text("", encoding="utf-8")
-    (package / "techno.py").write_text(export(), encoding="utf-8")
-    text, feeds = re.subn(r"feedNames = '.*'", f"feedNames = '{','.join(tech.fill_cells)}'", export(library))
-    if feeds != 1:
-        raise StepError(f"library: PDKMaster's export names cells that fill rows {feeds} times, once was expected")
-    (package / "StdCellLib.py").write_text(text, encoding="utf-8")
-    if standard.fix:
-        (package / "StdCellLib_fix.py").write_text(standard.fix, encoding="utf-8")
 
 
 def export_decks(description: Any, devices: Any) -> dict[str, str]:

@@ -1,14 +1,17 @@
 """The search for the smallest area whose layout keeps all design rules."""
 
-from talbot.base.steps import Runner
-from talbot.base.steps.versions import version
-from talbot.models.parameters import ParameterError
-from talbot.platforms.coriolis import coriolis_platform
+from collections.abc import Sequence
 
-from .chain import Signoff, all_steps, attempts, routing_steps, signoff_steps, synthesis_steps
+from talbot.base.steps import Runner, Step, StepError
+from talbot.base.steps.versions import version
+from talbot.platforms.layout import layout_platform
+
+from .chain import Signoff, all_steps, checks, floors, signoff_steps, stages, synthesis_steps
 from .design import Design
 from .options import Options
 from .report.metrics import Attempt
+
+FIRST = "floorplan", "power"  # stages that no other outline helps
 
 
 def lay_out_smallest(
@@ -18,9 +21,9 @@ def lay_out_smallest(
 
     An attempt closes when every net is routed and no rule of design or antennas is broken. signoff: function
     (design, options) -> the steps after it; those that need no more than there is begin beside the steps before. Raises
-    ParameterError where macros find no place in any attempt, ToolError for a missing tool, before anything runs.
+    ToolError for a missing tool, before anything runs, and StepError where no attempt can close.
     """
-    version(f"python {coriolis_platform(options.pdk).wheel}")
+    version(f"python {layout_platform(options.pdk).wheel}")
     for step in all_steps(design, options, signoff):
         for tool in step.tools:
             version(tool)
@@ -35,32 +38,36 @@ def lay_out_smallest(
 
 
 def _attempted(design: Design, options: Options, runner: Runner) -> list[Attempt]:
-    """Place and route until an attempt closes: the attempts. Raises as `lay_out_smallest`."""
-    tried, placed, misfit, known = [], 0, None, dict(runner.paths)
-    for floorplan, place, arrange in attempts(design, options):
+    """Place and route in OpenROAD until an attempt closes: the attempts.
+
+    Raises StepError where no attempt can close: the first stages do not run.
+    """
+    tried, known = [], dict(runner.paths)
+    for floor in floors(design, options):
         runner.paths = dict(known)
-        shape = floorplan.parameters
-        attempt = Attempt(shape.utilization, shape.aspect, arrange.parameters.spread)
+        attempt = Attempt(floor.utilization, floor.aspect)
         tried.append(attempt)
-        try:
-            attempt.utilization = runner.run(floorplan)["metrics"]["utilization"]
-        except ParameterError as error:
-            misfit = error
+        *places, out = stages(design, options, floor)
+        for stage in places:
+            metrics = runner.run(stage)["metrics"]
+            attempt.again += [f"{stage.name}: {metrics['again']}"] if metrics["again"] else []
+            if metrics["stopped"]:
+                attempt.stopped = f"{stage.name}: {metrics['stopped']}"
+                if stage.name in FIRST:
+                    raise StepError(attempt.stopped)
+                break
+            attempt.open_nets = metrics.get("open_nets")
+        if attempt.stopped:
+            runner.note(f"utilization {floor.utilization:g}: {attempt.stopped}")
             continue
-        placed += 1
-        found = runner.run(place)["metrics"]
-        if found["stopped"] is not None:
-            continue
-        if runner.run(arrange)["metrics"]["stopped"] is not None:
-            continue
-        repair, route, *checks = routing_steps(design, options)
-        runner.run(repair)
-        attempt.open_nets = runner.run(route)["metrics"]["open_nets"]
-        if not attempt.open_nets:
-            pairs = zip(checks, runner.run_all(checks), strict=True)
-            attempt.rules_broken = sum(made["metrics"].get(f"{step.name}_violations", 0) for step, made in pairs)
-            if not attempt.rules_broken:
-                return tried
-    if misfit and not placed:
-        raise misfit
+        attempt.utilization = runner.run(out)["metrics"]["utilization"]
+        attempt.rules_broken = broken_rules(checks(options), runner)
+        if not attempt.open_nets and not attempt.rules_broken:
+            break
     return tried
+
+
+def broken_rules(steps: Sequence[Step], runner: Runner) -> int:
+    """Run the checks; how many design rules, densities and antennas are broken."""
+    pairs = zip(steps, runner.run_all(steps), strict=True)
+    return sum(record["metrics"].get(f"{step.name}_violations", 0) for step, record in pairs)

@@ -12,9 +12,9 @@ from talbot.base.paths import RESULTS
 from talbot.base.progress import Steps
 from talbot.base.tools import ToolError
 from talbot.flow.layout.design import DESIGNS, flat_design
+from talbot.flow.layout.geometry.merge import merge
 from talbot.platforms.openroad import openroad_platform
 
-from .merge import merge
 from .results import broken, summarize
 from .signoff import check, checks
 from .stages import missing_tools, pdk_root, stages, wire_corners

@@ -1,4 +1,4 @@
-"""Both back ends, design by design: figures of finished layouts, as a table."""
+"""Our own cells and a foundry's, design by design: figures of finished layouts, as a table."""
 
 import json
 from argparse import ArgumentParser, Namespace
@@ -8,14 +8,13 @@ from typing import Any
 
 from talbot.base.files import insert, marked
 from talbot.base.paths import RESULTS
-from talbot.flow.layout.design import design
-from talbot.flow.layout.report.metrics import broken as broken_of_layout
+from talbot.flow.layout.design import DESIGNS, design
 
 from .results import broken
 
-DESIGNS = "quad_divider", "amp_ctrl", "asp_chip"
+FOUNDRY = "quad_divider", "amp_ctrl", "asp_chip"  # designs with a row of the foundry's cells, run or not
 HEAD = (
-    "design | back end | area, mm2 | cells | cell area, um2 | f_max at ss, MHz | setup, hold, ns | "
+    "design | cells | area, mm2 | instances | cell area, um2 | f_max at ss, MHz | setup, hold, ns | "
     "power at tt, uW | wire, mm | wire, pF | seconds | MiB | limits broken"
 )
 NOT_RUN = "not run"
@@ -23,7 +22,9 @@ NOT_RUN = "not run"
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot openroad-compare`."""
-    parser.add_argument("designs", nargs="*", default=DESIGNS, metavar="DESIGN", help="designs that are laid out")
+    parser.add_argument(
+        "designs", nargs="*", default=tuple(DESIGNS), metavar="DESIGN", help="designs that are laid out"
+    )
     parser.add_argument("--out", type=Path, default=RESULTS / "layout", help="folder of the layouts")
     parser.add_argument(
         "--document", type=Path, help="also put the table between the marks of this file; rows of layouts not here stay"
@@ -31,14 +32,14 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 
 def run(options: Namespace) -> int:
-    """Print the table of the designs' summaries; a back end that has not run has none of the figures."""
+    """Print the table of the designs' summaries; of a layout that has not run it has none of the figures."""
     before = ""
     if options.document:
-        marked(options.document, "back ends")  # refused before the work
+        marked(options.document, "cells")  # refused before the work
         before = options.document.read_text(encoding="utf-8")
     text = table([design(name).name for name in options.designs], options.out, before)
     if options.document:
-        insert(options.document, "back ends", text)
+        insert(options.document, "cells", text)
     print(text)
     return 0
 
@@ -48,8 +49,10 @@ def table(names: Sequence[str], out: Path, before: str = "") -> str:
     columns = HEAD.count("|") + 1
     lines = [f"| {HEAD} |", "|---" * 2 + "|---:" * (columns - 2) + "|"]
     for name in names:
-        for backend, folder in (("embedded", name), ("OpenROAD", f"{name}-openroad")):
-            first, path = f"| {name} | {backend} |", out / folder / "summary.json"
+        for library, folder in (("compact", name), ("sky130_fd_sc_hd", f"{name}-openroad")):
+            first, path = f"| {name} | {library} |", out / folder / "summary.json"
+            if folder != name and name not in FOUNDRY and not path.is_file():
+                continue
             cells = (
                 row(json.loads(path.read_text(encoding="utf-8")))
                 if path.is_file()
@@ -64,7 +67,6 @@ def row(summary: Mapping[str, Any]) -> list[str]:
     """The figures of one summary; '' for one that it does not have."""
     slacks = [min(summary[name].values()) if summary[name] else None for name in ("wns_ns", "whs_ns")]
     power = next((uw for corner, uw in (summary["power_uw"] or {}).items() if corner.startswith("tt")), None)
-    own = broken if summary["backend"] == "openroad" else broken_of_layout
     figures = (
         (summary["area_um2"], 1e-6, ".4f"),
         (summary["cells"], 1, ",d"),
@@ -77,7 +79,7 @@ def row(summary: Mapping[str, Any]) -> list[str]:
         *(_written(*figure) for figure in figures),
         ", ".join(_written(slack, 1, "+.2f") for slack in slacks),
         *(_written(*figure) for figure in (*more, *run)),
-        str(len(own(dict(summary)))),
+        str(len(broken(dict(summary)))),
     ]
 
 

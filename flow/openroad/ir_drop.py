@@ -41,7 +41,7 @@ class IrDrop(CornerStep[IrDropParameters]):
     """Rails, straps, vias as resistors, the straps' pins at the supply; static: the mean over the trace, no peaks."""
 
     name = "ir_drop_{corner}"
-    inputs = {"database": "database", "sdc": "sdc", "spef": "extraction.typ", "netlist": "repair.netlist"}
+    inputs = {"database": "database", "sdc": "sdc", "spef": "extraction.typ", "netlist": "stream_out.netlist"}
     inputs |= {"liberty": "timing.{corner}", "activity": "gate_delays_{corner}.activity"}
     outputs = {"supply": "supply.csv", "ground": "ground.csv"}
     metrics = {"supply_drop_mv": "mV", "ground_rise_mv": "mV", "ir_drop_percent": "%"}

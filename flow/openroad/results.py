@@ -38,7 +38,7 @@ def summarize(
 
     found: figures of the stages' logs. folder: of the run. size_um: (width, height) of the die. checked: the checks.
     """
-    netlist = Netlist.read(checked.paths["repair.netlist"])
+    netlist = Netlist.read(checked.paths["stream_out.netlist"])
     um2 = areas(checked.paths["library.liberty"])
     slacks = {name: worst(found, name, tech.corners) for name in ("wns_ns", "whs_ns")}
     spefs = {"placement": f"placement_{tech.corners[0]}", "global routes": f"global_{tech.corners[0]}"}
@@ -46,7 +46,7 @@ def summarize(
     wires = {name: total_pf(folder / f"{file}.spef") for name, file in spefs.items()}
     slowest = slacks["wns_ns"][tech.corners[0]]
     options = Options(pdk=tech.name, utilization=tech.utilization)
-    made = of_steps(design, options, checked, [Attempt(tech.utilization, 1.0, 0.0)])
+    made = of_steps(design, options, checked, [Attempt(tech.utilization, 1.0, tech.utilization)])
     by_wires = {
         name: sum(value for key, value in found.items() if key.startswith(f"{name}.")) or 0
         for name in ("slew_violations", "capacitance_violations")
@@ -61,7 +61,6 @@ def summarize(
         "wire_um": wire_um((folder / "final.def").read_text(encoding="utf-8")),
         **{name: found.get(name) for name in ("open_nets", "router_drc_violations", "router_antennas")},
         "clock_buffers": sum(i.name.startswith("clkbuf") for i in netlist.instances),
-        "evictions": 0,
         "antenna_diodes": sum(i.cell == tech.diode for i in netlist.instances),
         **by_wires,
         **slacks,

@@ -71,8 +71,8 @@ def given(
     return {
         "rtl": folder / f"{design.top}.sv",
         "sdc": made / "final.sdc",
-        "repair.netlist": made / "netlist.json",
-        "floorplan.floorplan": made / "floorplan.json",
+        "stream_out.netlist": made / "netlist.json",
+        "stream_out.plan": made / "floorplan.json",
         "synthesis.verilog": folder / "netlist.v",
         "stream_out.verilog": folder / "final.v",
         "stream_out.gds": folder / "final.gds",

@@ -17,15 +17,13 @@ from talbot.base.liberty.read import without
 from talbot.base.steps.alone import alone
 from talbot.base.steps.versions import version
 from talbot.base.tools import ToolError, finish
+from talbot.flow.layout.steps.stage import ENVIRONMENT
 from talbot.models.parameters import ParameterError
 from talbot.platforms.openroad import WIRES, OpenRoadPlatform
 
 from .netlists import write_synthesized
 
-SCRIPTS = Path(__file__).parent / "tcl"
-# Threads that wait give their core away: beside other jobs, placement of the divider took 15 times its CPU time
 TCL_YOSYS = shutil.which("yosys") or "yosys"  # the system's: the Python package has no Tcl
-ENVIRONMENT = {"OMP_WAIT_POLICY": "passive"}
 
 
 @dataclass(frozen=True)

@@ -5,16 +5,16 @@ from pathlib import Path
 from talbot.base.files import staged
 from talbot.flow.layout.design import DESIGNS, Design
 from talbot.flow.layout.netlist.gating import ClockGate
+from talbot.flow.layout.steps.stage import SCRIPTS
 from talbot.flow.layout.timing.constraints import sdc
+from talbot.flow.layout.variables import Floor, variables
 from talbot.platforms.openroad import OpenRoadPlatform
 from talbot.platforms.sky130.tinytapeout import FRAME
 from talbot.rtl.verilog import export_verilog
 
 from .librelane import librelane
 from .orfs import orfs
-from .stages import SCRIPTS
 from .tinytapeout import PROJECTS, project_files
-from .variables import variables
 
 
 def rtl(design: Design, folder: Path) -> str:
@@ -23,13 +23,31 @@ def rtl(design: Design, folder: Path) -> str:
     return path.read_text(encoding="utf-8")
 
 
+def design_tcl(design: Design, tech: OpenRoadPlatform) -> str:
+    """Text of design.tcl; files of the PDK are under the environment's PDK_ROOT."""
+    files: dict[str, object] = {
+        "pdk_root": "$::env(PDK_ROOT)",
+        "rtl": f"{design.top}.sv",
+        "synthesis_liberty": "synthesis.lib",
+        "period_ps": round(1000 * design.clock.period_ns),
+        "corners": tech.corners,
+        "closed": (),
+        "clock": "",
+        "tech_lef": f"$pdk_root/{tech.tech_lef}",
+        "cell_lef": f"$pdk_root/{tech.cell_lef}",
+        "liberty": {corner: f"$pdk_root/{path}" for corner, path in tech.liberty.items()},
+        "rcx_rules": tech.rcx_rules,
+    }
+    return variables(design.top, tech, Floor(tech.utilization), files)
+
+
 def write(design: Design, tech: OpenRoadPlatform, folder: Path) -> list[str]:
     """Write the files of ``design`` for the process ``tech`` into ``folder``; returns their names."""
     folder = Path(folder)
     verilog = rtl(design, folder)
     files = {
         f"{design.top}.sdc": sdc(design, propagated=False),
-        "design.tcl": variables(design, tech),
+        "design.tcl": design_tcl(design, tech),
         **orfs(design, tech, verilog),
         **librelane(design, tech, verilog),
     }

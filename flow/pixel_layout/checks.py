@@ -9,7 +9,7 @@ from talbot.base.sources import code
 from talbot.base.steps import StepError
 from talbot.flow.layout.geometry.decks import broken_rules, hole_rules, is_circuit, via_rules, with_taps
 from talbot.flow.layout.pdkmaster import export_decks
-from talbot.platforms.coriolis import coriolis_platform
+from talbot.platforms.layout import layout_platform
 from talbot.platforms.patience import imported
 from talbot.platforms.pixel import pixel_process
 
@@ -24,7 +24,7 @@ WAIVERS = {
 
 def common_decks(pdk: str) -> tuple[list[str], str]:
     """What drawn cells of all kinds are checked by: the rules as pieces of a deck, and PDKMaster's deck of LVS."""
-    tech = coriolis_platform(pdk)
+    tech = layout_platform(pdk)
 
     def make(folder: Path) -> None:
         devices = imported(tech.package).prims_spiceparams

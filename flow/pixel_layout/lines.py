@@ -19,8 +19,8 @@ from talbot.flow.layout.parasitics.shapes import labels, shapes
 from talbot.pixels.layout.array import ArrayLayout, draw_array, draw_pixels
 from talbot.pixels.layout.pixel import COLUMN, COLUMNS, LINE, READ_Y, RESET_Y, ROWS_ON, PixelLayout, draw
 from talbot.pixels.layout.write import array_layout
-from talbot.platforms.coriolis import coriolis_platform
 from talbot.platforms.extraction import extraction_platform
+from talbot.platforms.layout import layout_platform
 from talbot.platforms.wires import CORNERS
 
 BASE = 4, 6  # rows and columns of the smaller array: a tile
@@ -73,7 +73,7 @@ def _farads(made: ArrayLayout) -> dict[str, dict[str, float]]:
     layout.dbu = 0.001
     top = draw_array(layout, made, draw_pixels(layout, made))
     pdk = made.pixels[0].process.name
-    tech, devices = coriolis_platform(pdk), extraction_platform(pdk)
+    tech, devices = layout_platform(pdk), extraction_platform(pdk)
     found = shapes(layout, top, tech, devices)
     places = labels(layout, top, tech)
     middle = {name: f"{name}_row[{made.array.rows // 2}]" for name in ROWS}

@@ -145,7 +145,7 @@ VIA4 = _via(
     ohm=0.38,
 )
 VIAS = MCON, VIA, VIA2, VIA3, VIA4  # VIAS[k] connects METALS[k] and METALS[k + 1]
-TOP = TopMetal(MET5, VIA4)  # above what Coriolis routes on
+TOP = TopMetal(MET5, VIA4)  # above what blocks are routed on
 
 CROSSINGS = (
     Crossing("li1", DIFFUSION, 55.30, 44.27, 0.0),

@@ -10,7 +10,8 @@ capacitance and are not read. End caps and clock buffers: open_pdks' configurati
 from itertools import chain, zip_longest
 from pathlib import Path
 
-from talbot.platforms.openroad import WIRES, OpenRoadPlatform, Strap
+from talbot.platforms.openroad import WIRES, OpenRoadPlatform
+from talbot.platforms.place_and_route import Strap
 
 from . import layers
 from .cells import LIBRARY, SITE
@@ -46,6 +47,8 @@ PLATFORM = OpenRoadPlatform(
     high=f"{LIBRARY}__conb_1/HI",
     low=f"{LIBRARY}__conb_1/LO",
     buffer=(f"{LIBRARY}__buf_2", "A", "X"),
+    output_buffer=f"{LIBRARY}__buf_2",  # repair puts none before a port, and a gate alone cannot drive the load outside
+    core_space_um=10.0,  # pins and their way in
     diode=f"{LIBRARY}__diode_2",
     tap=f"{LIBRARY}__tapvpwrvgnd_1",
     tap_um=14.0,
@@ -57,6 +60,7 @@ PLATFORM = OpenRoadPlatform(
     pins=("met3", "met2"),
     signal=("met1", "met5"),
     clock=("met3", "met5"),
+    kept_free={f"met{k}": 0.3 for k in range(1, 6)},
     layer_rc={
         "li1": (7.176e-2, 1.499e-4),
         "met1": (8.929e-4, 1.72375e-4),

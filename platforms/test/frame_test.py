@@ -5,8 +5,8 @@ from dataclasses import replace
 import pytest
 
 from talbot.models.parameters import ParameterError
-from talbot.platforms.coriolis import coriolis_platform
 from talbot.platforms.frame import Frame
+from talbot.platforms.layout import layout_platform
 
 FRAME = Frame(20.0, 15.0, (1.0, 2.0), (("a", 3.0), ("b", 5.0)), (0.3, 1.0), "met4", ("VPWR", "VGND"))
 
@@ -32,13 +32,13 @@ def test_it_refuses(change, message):
 
 def test_a_process_without_the_frame_says_so():
     with pytest.raises(ParameterError, match=r"pdk = 'ihp-sg13g2': must have the frame tt_1x1"):
-        coriolis_platform("ihp-sg13g2").frame("tt_1x1")
+        layout_platform("ihp-sg13g2").frame("tt_1x1")
 
 
 @pytest.mark.parametrize("name, size", (("tt_1x1", (161.00, 111.52)), ("tt_1x2", (161.00, 225.76))))
 def test_tiny_tapeouts_ports(name, size):
     """Places as in def/tt_block_1x1_pg.def and tt_block_1x2_pg.def of tt-support-tools."""
-    tech = coriolis_platform("sky130")
+    tech = layout_platform("sky130")
     frame = tech.frame(name)
     ports = dict(frame.ports)
     assert (frame.width_um, frame.height_um) == size and len(ports) == 43

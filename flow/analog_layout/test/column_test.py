@@ -17,7 +17,7 @@ from talbot.pixels.circuits.column import TAPS
 from talbot.pixels.circuits.column_block import BANK_INPUTS, BANK_OUTPUTS
 from talbot.pixels.circuits.column_sizes import ColumnSpec, size
 from talbot.platforms.analog import analog_masks
-from talbot.platforms.coriolis import coriolis_platform
+from talbot.platforms.layout import layout_platform
 from talbot.platforms.sky130 import analog as process
 
 pytestmark = pytest.mark.needs("layout", "klayout")
@@ -74,7 +74,7 @@ def test_a_column_is_its_circuit_and_faults_are_found(column, tmp_path):
 
 def test_what_a_sample_depends_on_is_apart_from_what_it_must_not(column):
     """F between nets: 0.04 fF of an output to the other diode's line, of 31 fF, is half an LSB of its light."""
-    _, nets = extract(column[0], MASKS, coriolis_platform("sky130").wires["typ"], resistance=False)
+    _, nets = extract(column[0], MASKS, layout_platform("sky130").wires["typ"], resistance=False)
     most = {("column_b", "out_a"): 0.02, ("column_a", "out_b"): 0.025, ("cin_a", "out_b"): 0.15}
     most |= {("back_b.above", "cin_a"): 0.02, ("back_b.tap0.inner", "cin_a"): 0.15}
     most |= {(f"back_{d}.f", f"back_{d}.x"): 0.5 for d in "ab"}
@@ -87,7 +87,7 @@ def test_no_net_of_a_column_has_an_antenna(monkeypatch):
     """The two gates of clear bear some 50 um of the third metal: a line as long as the strip was too much."""
 
     def antennas(made):
-        found = violations(made.layout, made.cell, coriolis_platform("sky130"))
+        found = violations(made.layout, made.cell, layout_platform("sky130"))
         return [level for level, bad in found.items() if bad.count()]
 
     assert antennas(column_cell(MASKS, SIZES)) == []

@@ -64,7 +64,7 @@ class Part:
 
 def nets_of(netlist: Netlist) -> dict[str, str]:
     """Short name of each net, as the counters have it."""
-    return plain_names(netlist, "")
+    return plain_names(netlist)
 
 
 def counted_verilog(netlist: Netlist) -> str:

@@ -67,7 +67,7 @@ class CountingBench(Step[NoParameters]):
     """The netlist with a counter at every net in the bench of frames, compiled by Icarus."""
 
     name = "counting_bench"
-    inputs = {"netlist": "repair.netlist", "cells": "library.verilog"}
+    inputs = {"netlist": "stream_out.netlist", "cells": "library.verilog"}
     outputs = {"program": "bench.vvp"}
     metrics = {"nets": ""}
     tools = ("iverilog",)
@@ -89,7 +89,7 @@ class Transitions(Step[FrameParameters]):
     """
 
     name = "transitions"
-    inputs = {"netlist": "repair.netlist", "program": "counting_bench.program"}
+    inputs = {"netlist": "stream_out.netlist", "program": "counting_bench.program"}
     outputs = {"counts": "counts.json"}
     metrics = {"cycles": "", "transitions": "", "bytes": "", "events": ""}
     tools = ("iverilog",)
@@ -175,7 +175,7 @@ class Measure(CornerStep[PowerParameters]):
     """
 
     name = "energy_{corner}"
-    inputs = {"netlist": "repair.netlist", "liberty": "timing.{corner}", "spef": "extraction.{wires}"}
+    inputs = {"netlist": "stream_out.netlist", "liberty": "timing.{corner}", "spef": "extraction.{wires}"}
     inputs |= {"slews": "slews_{corner}.slews"} | {frame.name: f"transitions_{frame.name}.counts" for frame in EVERY}
     outputs = {"instances": "energy.json"}
     metrics = {"frames": "pJ", "leakage_uw": "uW", "supply_v": "V"}

@@ -11,8 +11,8 @@ from talbot.base.lef.write import Rectangles
 from talbot.flow.layout.geometry.antenna import connected
 from talbot.flow.layout.netlist.netlist import SUPPLIES
 from talbot.models.parameters import ParameterError
-from talbot.platforms.coriolis import CoriolisPlatform
 from talbot.platforms.layers import Layer
+from talbot.platforms.layout import LayoutPlatform
 
 EDGE_UM = 0.3  # how far from the edge a pin is taken for one
 USES = "POWER", "GROUND"  # of supply and ground
@@ -43,7 +43,7 @@ def ports(verilog: str) -> dict[str, str]:
 
 
 def abstract(
-    gds: Path, directions: Mapping[str, str], tech: CoriolisPlatform, supplies: Sequence[str] = SUPPLIES,
+    gds: Path, directions: Mapping[str, str], tech: LayoutPlatform, supplies: Sequence[str] = SUPPLIES,
     framed: bool = False,
 ) -> str:  # fmt: skip
     """Text of the LEF of the GDS's top cell.
@@ -87,7 +87,7 @@ def abstract(
 
 
 def antennas(
-    layout: "db.Layout", top: "db.Cell", tech: CoriolisPlatform, found: Mapping[str, list[PinArea]], signals: Set[str]
+    layout: "db.Layout", top: "db.Cell", tech: LayoutPlatform, found: Mapping[str, list[PinArea]], signals: Set[str]
 ) -> dict[str, Charge]:
     """Antenna areas of those nets of the pins ``found`` that are in ``signals``, with all metals connected."""
     nets = next(connected(layout, top, tech, [len(tech.metals) - 1]))
@@ -122,7 +122,7 @@ def _antenna(charge: Charge) -> Iterator[str]:
 
 
 def read_back(
-    lef: Path, gds: Path, directions: Mapping[str, str], tech: CoriolisPlatform, supplies: Sequence[str] = SUPPLIES
+    lef: Path, gds: Path, directions: Mapping[str, str], tech: LayoutPlatform, supplies: Sequence[str] = SUPPLIES
 ) -> list[str]:
     """What is wrong with the file ``lef`` as KLayout reads it, against ``gds``. Other arguments: see `abstract`.
 

@@ -8,7 +8,7 @@ from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 
 from talbot.base.gds import db
-from talbot.platforms.coriolis import CoriolisPlatform
+from talbot.platforms.layout import LayoutPlatform
 
 from .boxes import Box, corners
 
@@ -26,7 +26,7 @@ class Connected:
 
 
 def connected(
-    layout: "db.Layout", top: "db.Cell", tech: CoriolisPlatform, levels: Collection[int]
+    layout: "db.Layout", top: "db.Cell", tech: LayoutPlatform, levels: Collection[int]
 ) -> Iterator[Connected]:
     """Yield the nets joined by the layers up to each of ``levels``. One is void as soon as the next is asked for."""
     l2n = db.LayoutToNetlist(db.RecursiveShapeIterator(layout, top, []))
@@ -54,7 +54,7 @@ def connected(
             l2n.connect(metals[-1], below)
 
 
-def metal_beyond(nets: Connected, tech: CoriolisPlatform) -> "db.Region":
+def metal_beyond(nets: Connected, tech: LayoutPlatform) -> "db.Region":
     """Metal of the highest of ``nets``'s layers that is too large for the gates of its net."""
     metal = tech.metals[len(nets.metals) - 1]
     base, more = metal.antenna_diffusion
@@ -69,7 +69,7 @@ def metal_beyond(nets: Connected, tech: CoriolisPlatform) -> "db.Region":
 
 
 def violations(
-    layout: "db.Layout", top: "db.Cell", tech: CoriolisPlatform, levels: Collection[int] | None = None
+    layout: "db.Layout", top: "db.Cell", tech: LayoutPlatform, levels: Collection[int] | None = None
 ) -> "dict[int, db.Region]":
     """Metal of the nets on which it is too large for their gates, by level of tech.metals; ``levels``: default all."""
     every = range(len(tech.metals)) if levels is None else levels
@@ -77,7 +77,7 @@ def violations(
 
 
 def charged(
-    layout: "db.Layout", top: "db.Cell", tech: CoriolisPlatform, levels: Collection[int]
+    layout: "db.Layout", top: "db.Cell", tech: LayoutPlatform, levels: Collection[int]
 ) -> list[tuple[int, str, tuple[Box, ...]]]:
     """What `violations` finds: the level, the metal as KLayout writes a polygon, the gates (dbu) that it charges."""
     found = []

@@ -12,8 +12,8 @@ from joblib import Parallel, delayed
 
 from talbot.base.steps import StepError
 from talbot.base.tools import ToolError, finish
-from talbot.platforms.coriolis import CoriolisPlatform
 from talbot.platforms.layers import GdsLayer
+from talbot.platforms.layout import LayoutPlatform
 
 # Rules of a deck: spaces of a layer, and of its wide shapes
 SPACES = r"^(?:(\w+)\.space\([\d.]+\)|space4width_check\((\w+), [\d., ]+\))\.output\(\n(?:.*\n)*?\)\n"
@@ -168,7 +168,7 @@ def with_doubts(deck: str, vias: Iterable[str]) -> str:
     return deck
 
 
-def hole_rules(tech: CoriolisPlatform) -> Iterator[str]:
+def hole_rules(tech: LayoutPlatform) -> Iterator[str]:
     """Lines for a deck: the least areas of holes that ``tech`` has beyond PDKMaster's rules."""
     for metal in tech.metals:
         if metal.min_hole_um2:
@@ -177,7 +177,7 @@ def hole_rules(tech: CoriolisPlatform) -> Iterator[str]:
             yield f"{metal.name}.holes.with_area(nil, {metal.min_hole_um2}).output({report})"
 
 
-def via_rules(tech: CoriolisPlatform) -> Iterator[str]:
+def via_rules(tech: LayoutPlatform) -> Iterator[str]:
     """Lines for a deck: every via has its size and is inside the metals that it joins.
 
     PDKMaster's rules see neither two vias that overlap, as one of another length, nor one outside its metal.

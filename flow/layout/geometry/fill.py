@@ -4,8 +4,8 @@ import numpy as np
 import numpy.typing as npt
 
 from talbot.base.gds import db
-from talbot.platforms.coriolis import Fill
 from talbot.platforms.layers import Layer
+from talbot.platforms.layout import Fill
 
 from .boxes import Box, Boxes, boxes
 

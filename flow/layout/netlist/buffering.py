@@ -39,9 +39,15 @@ def buffer_fan_out(netlist: Netlist, sides: Mapping[str, Sequence[str]], buffer:
     return replace(netlist, instances=tuple(instances))
 
 
-def buffer_outputs(netlist: Netlist, buffer: Buffer) -> Netlist:
-    """Insert a buffer in front of every output: its load outside slows no path inside."""
+def buffer_outputs(netlist: Netlist, buffer: Buffer, weak: Collection[str] | None = None) -> Netlist:
+    """Insert a buffer in front of every output: its load outside slows no path inside.
+
+    weak: cells that do not bear that load; only outputs that one of them drives get a buffer.
+    """
     outputs = {net: f"{net}_within" for port in netlist.ports if port.direction == "output" for net in port.bits()}
+    if weak is not None:
+        driven = {i.pins[pin] for i in netlist.instances if i.cell in weak for pin in OUTPUT_PINS if pin in i.pins}
+        outputs = {net: within for net, within in outputs.items() if net in driven}
     instances = [instance.with_nets(outputs) for instance in netlist.instances]
     drivers = [buffer.instance(f"{net}_driver", within, net) for net, within in outputs.items()]
     return replace(netlist, instances=(*instances, *drivers))

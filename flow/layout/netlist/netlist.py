@@ -1,4 +1,4 @@
-"""A flat netlist of library cells: from Yosys or from Coriolis's database, as Verilog, BLIF, SPICE or JSON."""
+"""A flat netlist of library cells: from Yosys or from a routed design, as Verilog, SPICE or JSON."""
 
 import json
 import re
@@ -12,7 +12,6 @@ from talbot.base.steps import StepError
 SUPPLIES = ("vdd", "vss")
 # Of the cells of PDKMaster, and of SkyWater
 OUTPUT_PINS = "q", "nq", "zero", "one", "sum", "carry", "X", "Y", "Q", "Q_N", "HI", "LO", "SUM", "COUT"
-MacroNames = Mapping[str, tuple[str, Mapping[str, str]]]  # by instance the cell and its pins by names for Coriolis
 DIODE = "diode_w1"  # of PDKMaster's cells
 REGISTER = "_reg"  # after a register's name: its flip-flop
 
@@ -51,7 +50,7 @@ class Port:
 
 @dataclass(frozen=True)
 class Instance:
-    """A cell and its nets by pin, without supplies; of a macro's buses bit by bit, name[bit]."""
+    """A cell and its nets by pin, without supplies."""
 
     name: str
     cell: str
@@ -98,17 +97,14 @@ class Netlist:
         path.write_text(json.dumps(asdict(self), indent=0) + "\n", encoding="utf-8")
 
     @classmethod
-    def from_yosys(
-        cls, path: Path, top: str, buffer: Buffer, macros: Collection[str] = (), registers: Collection[str] = ()
-    ) -> "Netlist":
+    def from_yosys(cls, path: Path, top: str, buffer: Buffer, registers: Collection[str] = ()) -> "Netlist":
         """Read the module ``top`` of Yosys's JSON, every cell one of the library and every constant a cell's output.
 
-        buffer: inserted where two ports are one signal. A flip-flop is named after its register, a macro, whose cell is
-        one of ``macros``, as in the Verilog, any other cell u<number>. registers: names that come before others of a
-        flip-flop's output. Raises StepError for a constant pin.
+        buffer: inserted where two ports are one signal. A flip-flop is named after its register, any other cell
+        u<number>. registers: names that come before others of a flip-flop's output. Raises StepError for a constant
+        pin.
         """
-        modules = json.loads(path.read_text(encoding="utf-8"))["modules"]
-        module = modules[top]
+        module = json.loads(path.read_text(encoding="utf-8"))["modules"][top]
         names, ports, extra = {}, [], []
         for name, port in module["ports"].items():
             made = Port(name, port["direction"], len(port["bits"]))
@@ -125,34 +121,18 @@ class Netlist:
                     register_of[bit] = full
                 register_of.setdefault(bit, full)
         instances = []
-        for number, (called, cell) in enumerate(module["cells"].items()):
+        for number, cell in enumerate(module["cells"].values()):
             pins = {}
             for pin, bits in cell["connections"].items():
                 for net, bit in zip(Port(pin, "", len(bits)).bits(), bits, strict=True):
                     if not isinstance(bit, int):
                         raise StepError(f"netlist of {top}: pin {net} of a {cell['type']} is constant {bit}")
                     pins[net] = names.setdefault(bit, f"n{bit}")
-            for pin, port in modules[cell["type"]]["ports"].items() if cell["type"] in macros else ():
-                for net in Port(pin, "", len(port["bits"])).bits():
-                    pins.setdefault(net, f"{called}.{net}")  # an output without a load
-            name = called if cell["type"] in macros else f"u{number}"
+            name = f"u{number}"
             if is_register(cell["type"]):
                 name = register_of[cell["connections"].get("q", cell["connections"].get("Q"))[0]] + REGISTER
             instances.append(Instance(name, cell["type"], pins))
         return cls(top, tuple(ports), (*instances, *extra))
-
-    def with_input_buffers(self, macros: Collection[str], buffer: Buffer) -> "Netlist":
-        """Insert a buffer between inputs and ``macros`` (cells), except at clocks.
-
-        Else a net from outside would end in a macro alone, with nothing here that keeps it from being an antenna.
-        """
-        inputs = {net for port in self.ports if port.direction == "input" for net in port.bits()}
-        inputs -= {i.pins["clk"] for i in self.instances if "clk" in i.pins and i.cell not in macros}
-        shared = sorted({net for i in self.instances if i.cell in macros for net in i.pins.values()} & inputs)
-        inner = {net: f"{net}_inside" for net in shared}
-        instances = [i.with_nets(inner) if i.cell in macros else i for i in self.instances]
-        instances += [buffer.instance(f"inside{k}", net, inner[net]) for k, net in enumerate(shared)]
-        return replace(self, instances=tuple(instances))
 
     def verilog(self) -> str:
         """Structural Verilog with the ports of the RTL."""
@@ -186,18 +166,6 @@ class Netlist:
             pins = i.pins | dict(zip(SUPPLIES, supplies, strict=True))
             lines.append(f"X{number} " + " ".join(_plain(pins[pin]) for pin in orders[i.cell]) + f" {i.cell}")
         return "\n".join([*lines, ".ends", cells])
-
-    def blif(self, model: str, net_names: Mapping[str, str], macros: MacroNames | None = None) -> str:
-        """For Coriolis: model ``model``, nets by ``net_names``, instances in their order."""
-        lines = [f".model {model}"]
-        for word, direction in ((".inputs", "input"), (".outputs", "output")):
-            nets = [net_names[net] for port in self.ports if port.direction == direction for net in port.bits()]
-            lines.append(f"{word} {' '.join(nets)}")
-        for i in self.instances:
-            cell, pins = (macros or {}).get(i.name, (i.cell, {}))
-            joined = " ".join(f"{pins.get(pin, pin)}={net_names[net]}" for pin, net in i.pins.items())
-            lines.append(f".gate {cell} {joined}")
-        return "\n".join([*lines, ".end", ""])
 
 
 def _buses(pins: Mapping[str, str]) -> dict[str, str]:

@@ -13,8 +13,8 @@ from pathlib import Path
 import numpy as np
 
 from talbot.base.gds import db
-from talbot.platforms.coriolis import CoriolisPlatform
 from talbot.platforms.extraction import ExtractionPlatform
+from talbot.platforms.layout import LayoutPlatform
 from talbot.platforms.wires import Wires
 
 from ..netlist.netlist import OUTPUT_PINS, Netlist
@@ -29,7 +29,7 @@ def extract(
     layout: "db.Layout",
     netlist: Netlist,
     placement: Path,
-    tech: CoriolisPlatform,
+    tech: LayoutPlatform,
     devices: ExtractionPlatform,
     corners: Sequence[Wires],
 ) -> Iterator[dict[str, Tree]]:
@@ -74,7 +74,7 @@ def with_fill_floating(found: Shapes, all_of_it: Capacitances, floats: Flags) ->
 
 
 def pin_capacitances(
-    layout: "db.Layout", cell: str, tech: CoriolisPlatform, devices: ExtractionPlatform, corners: Sequence[Wires]
+    layout: "db.Layout", cell: str, tech: LayoutPlatform, devices: ExtractionPlatform, corners: Sequence[Wires]
 ) -> dict[str, list[float]]:
     """Capacitance in fF, at each of ``corners``, of the nets of a ``cell`` alone, by the texts on them."""
     found = shapes(layout, layout.cell(cell), tech, devices)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from talbot.base.gds import db
 from talbot.base.steps import StepError
-from talbot.platforms.coriolis import CoriolisPlatform
+from talbot.platforms.layout import LayoutPlatform
 
 from ..geometry.instances import transformation
 from ..netlist.netlist import Netlist
@@ -27,12 +27,12 @@ class Place:
 
 
 def places(
-    netlist: Netlist, placement: Path, layout: "db.Layout", tech: CoriolisPlatform, shapes: Shapes
+    netlist: Netlist, placement: Path, layout: "db.Layout", tech: LayoutPlatform, shapes: Shapes
 ) -> dict[str, list[Place]]:
     """Every net's pins and ports, by the texts in the cells and in the top cell.
 
-    placement: JSON of `repair.placement`. Raises StepError for a pin without metal, and for a net whose pins the layout
-    does not connect.
+    placement: JSON of `stream_out.placement`. Raises StepError for a pin without metal, and for a net whose pins the
+    layout does not connect.
     """
     found: dict[str, list[Place]] = {}
     for net, pin, cell, at in _texts(netlist, placement, layout, tech):
@@ -50,7 +50,7 @@ def places(
 
 
 def _texts(
-    netlist: Netlist, placement: Path, layout: "db.Layout", tech: CoriolisPlatform
+    netlist: Netlist, placement: Path, layout: "db.Layout", tech: LayoutPlatform
 ) -> Iterator[tuple[str, Pin, str, list[tuple[int, int, int]]]]:
     """(net, pin, cell, [(level, x, y)]) of every pin and port."""
     placed = json.loads(placement.read_text(encoding="utf-8"))["instances"]
@@ -59,8 +59,6 @@ def _texts(
         if not instance.pins:
             continue
         trans = transformation(layout, x, y, orientation)
-        if layout.cell(cell) is None:  # a macro's black box, larger than the macro in its place
-            cell, trans = instance.cell, _nearest(layout, instance.cell, trans.disp)
         if cell not in cells:
             cells[cell] = labels(layout, layout.cell(cell), tech)
         for pin, net in instance.pins.items():
@@ -70,10 +68,3 @@ def _texts(
     for port in netlist.ports:
         for bit in port.bits():
             yield bit, ("", bit), "", ports.get(bit, [])
-
-
-def _nearest(layout: "db.Layout", cell: str, at: "db.Vector") -> "db.Trans":
-    """Where the instance of ``cell`` nearest to a point is in the top cell."""
-    index = layout.cell(cell).cell_index()
-    found = [instance.trans for instance in layout.top_cell().each_inst() if instance.cell_index == index]
-    return min(found, key=lambda trans: (trans.disp - at).sq_length())

@@ -8,9 +8,9 @@ from scipy.sparse.csgraph import connected_components
 
 from talbot.base.gds import db
 from talbot.models.compiled import njit
-from talbot.platforms.coriolis import CoriolisPlatform
 from talbot.platforms.extraction import ExtractionPlatform
 from talbot.platforms.layers import DIFFUSION
+from talbot.platforms.layout import LayoutPlatform
 from talbot.platforms.wires import SUBSTRATE
 
 from .bins import Bins, Ints, at, binned
@@ -46,12 +46,12 @@ class Shapes:
         return at(self.boxes, self.levels, self.bins, level, x, y)
 
 
-def level_names(tech: CoriolisPlatform) -> tuple[str, ...]:
+def level_names(tech: LayoutPlatform) -> tuple[str, ...]:
     """LEF names of the levels, from the substrate up."""
     return (SUBSTRATE, DIFFUSION, "poly", *(metal.lef for metal in tech.metals))
 
 
-def shapes(layout: "db.Layout", cell: "db.Cell", tech: CoriolisPlatform, devices: ExtractionPlatform) -> Shapes:
+def shapes(layout: "db.Layout", cell: "db.Cell", tech: LayoutPlatform, devices: ExtractionPlatform) -> Shapes:
     """The conductors of ``cell`` and all below it; trapezoids that are no rectangles as the boxes around them."""
 
     def region(*layers: tuple[int, int]) -> "db.Region":
@@ -78,7 +78,7 @@ def shapes(layout: "db.Layout", cell: "db.Cell", tech: CoriolisPlatform, devices
     return Shapes(layout.dbu, level_names(tech), boxes, levels, nets, found, bins)
 
 
-def labels(layout: "db.Layout", cell: "db.Cell", tech: CoriolisPlatform) -> Labels:
+def labels(layout: "db.Layout", cell: "db.Cell", tech: LayoutPlatform) -> Labels:
     """The texts of ``cell`` itself on the layers of pins and labels of the metals."""
     found: Labels = {}
     for level, metal in enumerate(tech.metals, METAL_LEVEL):

@@ -9,9 +9,7 @@ import numpy.typing as npt
 from scipy import sparse
 from scipy.sparse.linalg import spsolve
 
-from talbot.platforms.coriolis import CoriolisPlatform
-
-Box = tuple[float, float, float, float]  # left, bottom, right, top, um
+from talbot.platforms.layout import LayoutPlatform
 
 
 @dataclass(frozen=True)
@@ -31,16 +29,8 @@ class Tap(NamedTuple):
     ampere: float
 
 
-class Gap(NamedTuple):
-    """A cut in the strap at x_um."""
-
-    x_um: float
-    bottom_um: float
-    top_um: float
-
-
-def metal(tech: CoriolisPlatform) -> Metal:
-    """Resistances of a process: rails on that of the cells, straps on its highest, stacks as straps.py draws them."""
+def metal(tech: LayoutPlatform) -> Metal:
+    """Resistances of a process: rails on that of the cells, straps on its highest, stacks as many vias as fit."""
     low, high = tech.metals[tech.rail], tech.metals[-1]
     stack = 0.0
     for via in tech.vias[tech.rail :]:
@@ -53,27 +43,19 @@ def metal(tech: CoriolisPlatform) -> Metal:
 
 
 def drops(
-    rails: Sequence[float],
-    straps: Sequence[float],
-    height: float,
-    taps: Sequence[Tap],
-    metal: Metal,
-    breaks: Sequence[Box] = (),
-    gaps: Sequence[Gap] = (),
+    rails: Sequence[float], straps: Sequence[float], height: float, taps: Sequence[Tap], metal: Metal
 ) -> tuple[npt.NDArray[np.float64], float]:
     """Voltage between each tap and the pads (V), array (taps,), and the share of current that the solution loses.
 
-    rails: y of each, um. straps: x of each, um, at least one; their ends at 0 and ``height`` are the pads. breaks:
-    boxes without rails.
+    rails: y of each, um. straps: x of each, um, at least one; their ends at 0 and ``height`` are the pads.
     """
     crossing = np.arange(len(rails) * len(straps)).reshape(len(straps), len(rails))  # nodes of the straps
     edges: list[tuple[int, int, float]] = []
     pads: list[tuple[int, float]] = []
     where = np.zeros(len(taps), int)  # nodes of the taps
-    for x, own in zip(straps, crossing.tolist(), strict=True):  # up a strap; half a um of it at least to a pad
+    for own in crossing.tolist():  # up a strap; half a um of it at least to a pad
         for low, high, a, b in zip(rails, rails[1:], own, own[1:]):
-            if not any(x == gap.x_um and low < gap.top_um and gap.bottom_um < high for gap in gaps):
-                edges.append((a, b, metal.strap * (high - low)))
+            edges.append((a, b, metal.strap * (high - low)))
         pads += [(own[0], metal.strap * max(0.5, rails[0])), (own[-1], metal.strap * max(0.5, height - rails[-1]))]
     nodes = crossing.size
     for r, y in enumerate(rails):  # along a rail: its taps, and where straps cross it
@@ -86,7 +68,7 @@ def drops(
                 edges.append((nodes, int(crossing[k][r]), metal.stack))
             else:
                 where[k] = nodes
-            if before is not None and not any(b[1] <= y <= b[3] and before <= b[0] and b[2] <= x for b in breaks):
+            if before is not None:
                 edges.append((nodes - 1, nodes, ohm * max(x - before, 1e-3)))
             before, nodes = x, nodes + 1
     drawn = np.zeros(nodes)

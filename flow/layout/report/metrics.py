@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -24,15 +24,18 @@ RULES = json.loads((Path(__file__).parent / "rules.json").read_text(encoding="ut
 class Attempt:
     """One floorplan with its placement and routing.
 
-    aspect: width by height. open_nets: after routing; None where the placer gave up or macros found no place.
-    rules_broken: of design and antennas; None without a layout.
+    asked: area of the synthesized cells by that of the core. aspect: width by height. utilization: the same of all
+    cells of the layout. open_nets: after routing. rules_broken: of design and antennas; None without a layout. stopped:
+    why there is no layout. again: stages that ran twice, and why.
     """
 
-    utilization: float
+    asked: float
     aspect: float
-    spread: float
+    utilization: float | None = None
     open_nets: int | None = None
     rules_broken: int | None = None
+    stopped: str | None = None
+    again: list[str] = field(default_factory=list)
 
 
 def summarize(design: Design, options: Options, runner: Runner, attempts: Sequence[Attempt]) -> dict[str, Any]:
@@ -51,25 +54,23 @@ def summarize(design: Design, options: Options, runner: Runner, attempts: Sequen
 
     first = next(iter(options.corners), "")
     slowed = ChipParameters().f_clk * design.clock.period_ns * 1e-9  # factor to the chip's clock
-    cells = "assemble" if design.macros else "repair"  # with those of its macros, or without; with all buffers
     tools = {}
     for record in records.values():
         tools |= record["tools"]
     return {
         "design": design.name,
         "top": design.top,
-        "backend": "coriolis",
+        "backend": "openroad",
         "pdk": options.pdk,
-        **own(cells, "cells", "cell_area_um2"),
-        "flip_flops": metric("assemble", "flip_flops") or metric("synthesis", "flip_flops"),
-        "area_um2": metric("stream_out", "area_um2") or metric("floorplan", "core_area_um2"),
+        **own("stream_out", "cells", "cell_area_um2"),
+        **own("synthesis", "flip_flops"),
+        **own("stream_out", "area_um2"),
         "utilization": attempts[-1].utilization,
         "attempts": [asdict(attempt) for attempt in attempts],
-        "macros": {macro.instance: macro.design for macro in design.macros} or None,
-        "wire_um": metric("assemble", "wire_um") or metric("route", "wire_um"),
-        **own("route", "open_nets", "evictions", "diodes"),
-        "clock_buffers": metric("place", "clock_buffers"),
-        **own("repair", "sized", "buffers"),
+        **own("stream_out", "wire_um", "vias"),
+        **own("finish", "open_nets"),
+        **own("route", "router_drc_violations", "router_antennas"),
+        **own("stream_out", "diodes", "clock_buffers"),
         "clock_gates": metric("synthesis", "clock_gates"),
         "drc_violations": metric("drc", "drc_violations"),
         "lvs_match": metric("lvs", "lvs_match"),
@@ -80,7 +81,6 @@ def summarize(design: Design, options: Options, runner: Runner, attempts: Sequen
         "equivalence": metric("equivalence", "equivalence"),
         "timing_rests_on": timing_basis(options),
         **{name: by_corner(name) for name in ("wns_ns", "whs_ns")},
-        **{name: by_corner(name, "sta_blocks") for name in ("blocks_wns_ns", "blocks_whs_ns")},
         **{name: by_corner(name) for name in ("slew_violations", "capacitance_violations")},
         "f_max_mhz": min((by_corner("f_max_mhz") or {"": None}).values()),
         **{name: by_corner(name, "power") for name in ("power_uw", "energy_pj_cycle")},
@@ -130,8 +130,6 @@ def gate_tests(records: Mapping[str, dict[str, Any]]) -> dict[str, Any] | None:
 
 def timing_basis(options: Options) -> str:
     """What the timing figures rest on."""
-    if not options.corners:
-        return "no timing: cells by area alone"
     cells = ", ".join(path.name for path in options.liberty) or f"measured at {', '.join(options.corners)}"
     return (
         f"cells: {cells}; parasitics: of the finished layout, with coupling (as to ground) and fill, every net a tree "

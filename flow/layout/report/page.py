@@ -15,7 +15,6 @@ from .text import as_text
 
 NOT_FIGURES = {"design", "top", "backend", "pdk", "attempts", "wall_s", "peak_mib", "tools", "timing_rests_on"}
 NOT_FIGURES |= {"table_6_1", "not_checked", "power_by_block_uw"}
-NO_MACROS = "macros", None  # which a design may have
 ACRONYMS = "drc", "lvs"
 UNITS = {"um2": "um2", "um": "um", "pf": "pF", "uw": "uW", "mhz": "MHz", "ns": "ns", "percent": "%", "mv": "mV"}
 PARTS = {"pixel_array": "pixel array", "amplifiers": "amplifiers; here: their control"}
@@ -23,8 +22,6 @@ PARTS |= {"timing": "timing, addressing", "adcs": "converters; here: their logic
 BY_CORNER = (
     ("wns_ns", "setup slack, ns"),
     ("whs_ns", "hold slack, ns"),
-    ("blocks_wns_ns", "setup slack by the macros' Liberty, ns"),
-    ("blocks_whs_ns", "hold slack by the macros' Liberty, ns"),
     ("setup_margin_ns", "least simulated setup margin, ns"),
     ("slews_over", "slews beyond the cells' tables"),
     ("worst_slew_ns", "the longest of these, ns"),
@@ -125,9 +122,8 @@ def _corners(s: dict[str, Any]) -> tuple[list[str], list[list[str | None]]] | No
 
 def _attempts(s: dict[str, Any]) -> list[list[str | None]]:
     """Rows of the search for the smallest area."""
-    names = "utilization", "aspect", "spread", "open_nets", "rules_broken"
-    rows = [[_text(attempt[name]) for name in names] for attempt in s.get("attempts") or ()]
-    return [[*row[:3], row[3] or "placer stopped", *row[4:]] for row in rows]
+    names = "asked", "aspect", "utilization", "open_nets", "rules_broken", "stopped", "again"
+    return [[_text(attempt[name]) for name in names] for attempt in s.get("attempts") or ()]
 
 
 def _blocks(s: dict[str, Any]) -> list[tuple[str, float, float]]:
@@ -147,7 +143,7 @@ def _table(s: dict[str, Any]) -> list[tuple[str, ...]]:
 def _figures(s: dict[str, Any]) -> list[tuple[str, str | None]]:
     """Rows (name, value as text, None for what was not run) of the figures without a table of their own."""
     left = NOT_FIGURES | dict(BY_CORNER).keys()
-    return [(_name(name), _text(value)) for name, value in s.items() if name not in left and (name, value) != NO_MACROS]
+    return [(_name(name), _text(value)) for name, value in s.items() if name not in left]
 
 
 def _name(name: str) -> str:

@@ -1,6 +1,7 @@
 """Pictures of a layout: every layer by KLayout's own rendering, without its window; the cells by block."""
 
 import io
+from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -12,9 +13,9 @@ from PIL.Image import Image
 from talbot.base.gds import db, read_gds
 from talbot.base.page import data_url
 from talbot.base.style import own_style
-from talbot.flow.layout.netlist.netlist import Netlist
+from talbot.flow.layout.netlist.netlist import OUTPUT_PINS, Instance, Netlist, is_register
 from talbot.flow.layout.netlist.placed import MIRRORED
-from talbot.platforms.coriolis import CoriolisPlatform
+from talbot.platforms.layout import LayoutPlatform
 
 PALETTE = (0x43A047, 0xE53935, 0x1E88E5, 0x8E24AA, 0xF9A825, 0xEF6C00)  # metal layers, from the lowest up
 OTHERS = {"fill": 0x707A86, "diffusion": 0x6D4C41, "poly": 0xA1887F}
@@ -63,7 +64,7 @@ class LayoutPicture:
         return image
 
 
-def render(gds: Path, tech: CoriolisPlatform, unfilled: Path | None = None, side: int = LARGEST) -> LayoutPicture:
+def render(gds: Path, tech: LayoutPlatform, unfilled: Path | None = None, side: int = LARGEST) -> LayoutPicture:
     """Draw the layers of the layout ``gds``, the longer side ``side`` pixels.
 
     unfilled: the same layout without metal fill, which then is a layer of its own.
@@ -117,7 +118,7 @@ def by_block(
     netlist: Netlist,
     placed: list[list[Any]],
     areas: dict[str, float],
-    tech: CoriolisPlatform,
+    tech: LayoutPlatform,
     found: dict[str, str],
     plan: dict[str, Any],
 ) -> None:
@@ -144,3 +145,61 @@ def by_block(
     axes.set(xlim=(0, plan["width_um"]), ylim=(0, plan["height_um"]), aspect="equal", xlabel="µm", ylabel="µm")
     figure.legend(loc="outside right center", frameon=False)
     figure.savefig(png, dpi=130, bbox_inches="tight", metadata={"Software": None})
+
+
+@own_style()
+def clock_tree(png: Path, netlist: Netlist, placed: list[list[Any]], clock: str, plan: dict[str, Any]) -> None:
+    """Draw the nets from the port ``clock`` on: a line from each driver to each of its loads, a colour a level.
+
+    placed: instances of the placement, in the netlist's order. plan: with width_um and height_um.
+    """
+    from matplotlib.collections import LineCollection
+    from matplotlib.figure import Figure
+
+    at = {i.name: (x, y) for i, (_, _, x, y, _) in zip(netlist.instances, placed, strict=True)}
+    loads, outputs = dict[str, list[Instance]](), dict[str, str]()
+    for instance in netlist.instances:
+        for pin, net in instance.pins.items():
+            if pin in OUTPUT_PINS:
+                outputs[instance.name] = net
+            else:
+                loads.setdefault(net, []).append(instance)
+    figure = Figure(figsize=(8, 6), layout="constrained")
+    axes = figure.subplots()
+    nets, level = [(clock, None)], 0
+    while nets:
+        lines, following, sinks = [], list[tuple[str, Any]](), []
+        for net, start in nets:
+            for load in loads.get(net, ()):
+                lines += [(start, at[load.name])] if start else []
+                sinks.append(at[load.name])
+                if not is_register(load.cell) and load.name in outputs:
+                    following.append((outputs[load.name], at[load.name]))
+        axes.add_collection(LineCollection(lines, colors=f"C{level % 10}", linewidths=0.7))
+        if sinks:
+            axes.plot(
+                *zip(*sinks), "s", color=f"C{level % 10}", markersize=3, label=f"level {level}: {len(sinks)} loads"
+            )
+        nets, level = following, level + 1
+    axes.set(xlim=(0, plan["width_um"]), ylim=(0, plan["height_um"]), aspect="equal", xlabel="µm", ylabel="µm")
+    figure.legend(loc="outside right center", frameon=False)
+    figure.savefig(png, dpi=130, bbox_inches="tight", metadata={"Software": None})
+
+
+@own_style()
+def congestion(png: Path, layout: LayoutPicture, metals: Collection[str], tile_um: float = 5.0) -> None:
+    """Draw the share of metal in tiles of ``tile_um``, the mean of the layers named ``metals``."""
+    from matplotlib.figure import Figure
+
+    masks = [np.asarray(layer.mask, float) for layer in layout.layers if layer.name in metals]
+    share = np.mean(masks, axis=0)
+    side = max(1, round(tile_um * share.shape[1] / layout.width_um))
+    rows, columns = (length // side for length in share.shape)
+    tiles = share[: rows * side, : columns * side].reshape(rows, side, columns, side)
+    figure = Figure(figsize=(8, 6), layout="constrained")
+    axes = figure.subplots()
+    extent = (0, layout.width_um, 0, layout.height_um)
+    shown = axes.imshow(tiles.mean(axis=(1, 3)), extent=extent, cmap="inferno", vmin=0)
+    figure.colorbar(shown, label="share of metal, mean of the layers")
+    axes.set(xlabel="µm", ylabel="µm")
+    figure.savefig(png, dpi=130, metadata={"Software": None})

@@ -18,8 +18,8 @@ from talbot.models.parameters import ArrayParameters
 from talbot.pixels.blocks import AnalogSizes
 from talbot.pixels.layout.array import DUMMIES, SUPPLY_BUS
 from talbot.pixels.layout.pixel import COLUMNS, LINE, PLATE, PLATES, UPPER
-from talbot.platforms.coriolis import CoriolisPlatform
 from talbot.platforms.die import TopMetal
+from talbot.platforms.layout import LayoutPlatform
 
 NET = "vdda"
 LEAST_OHM = 1e-3  # of a pad, and of the track between two places
@@ -51,7 +51,7 @@ class Mesh:
     south_um: float
 
 
-def mesh(plan: Mapping[str, Any], array: ArrayParameters, tech: CoriolisPlatform, top: TopMetal) -> Mesh:
+def mesh(plan: Mapping[str, Any], array: ArrayParameters, tech: LayoutPlatform, top: TopMetal) -> Mesh:
     """The mesh of the die's plan, its supplies in the east."""
     pitch = array.pitch * 1e6
     left, bottom, right, upper = (nm / 1000 for nm in plan["blocks"]["pixel_array"]["box"])
@@ -76,7 +76,7 @@ def mesh(plan: Mapping[str, Any], array: ArrayParameters, tech: CoriolisPlatform
     return Mesh(plate, line, bus, tech.vias[PLATES].ohm / 6, track_ohm(tech), feeds, pads, south)
 
 
-def track_ohm(tech: CoriolisPlatform) -> float:
+def track_ohm(tech: LayoutPlatform) -> float:
     """Of a um of the ring's track: three metals, each as wide as the pads have it."""
     return 1 / sum(width / tech.metals[level].sheet_ohm for level, width in ((2, 13.8), (3, 12.3), (4, 13.8)))
 

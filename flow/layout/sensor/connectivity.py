@@ -4,9 +4,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from talbot.platforms.coriolis import CoriolisPlatform
 from talbot.platforms.die import TopMetal
 from talbot.platforms.layers import GdsLayer
+from talbot.platforms.layout import LayoutPlatform
 
 from .plan import Terminal
 
@@ -19,7 +19,7 @@ Ring = Mapping[tuple[str, int, int], str]
 
 
 def nets(
-    gds: Path, cells: Mapping[str, str], ring: "Ring", tech: CoriolisPlatform, top_metal: TopMetal, plate: GdsLayer
+    gds: Path, cells: Mapping[str, str], ring: "Ring", tech: LayoutPlatform, top_metal: TopMetal, plate: GdsLayer
 ) -> list[set[Terminal]]:
     """Terminals that each net of the top cell connects.
 

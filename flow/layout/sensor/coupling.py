@@ -8,14 +8,14 @@ import numpy as np
 from talbot.base.gds import db
 from talbot.flow.layout.parasitics.capacitance import capacitances
 from talbot.flow.layout.parasitics.shapes import METAL_LEVEL, shapes
-from talbot.platforms.coriolis import CoriolisPlatform
 from talbot.platforms.extraction import ExtractionPlatform
+from talbot.platforms.layout import LayoutPlatform
 from talbot.platforms.wires import CORNERS
 
 MOST = CORNERS[-1]  # the corner of wires with the most capacitance
 
 
-def femtofarads(plan: Mapping[str, Any], tech: CoriolisPlatform, devices: ExtractionPlatform) -> dict[str, float]:
+def femtofarads(plan: Mapping[str, Any], tech: LayoutPlatform, devices: ExtractionPlatform) -> dict[str, float]:
     """Capacitance (fF) of each routed net of the plan to the substrate and to the other routes, at the corner MOST.
 
     Blocks, bars and pads are left out: branches and trunks are beside each other, hardly any beside these.

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from talbot.base.gds import db
-from talbot.flow.layout.route.rules import RoutingRules
+from talbot.flow.layout.sensor.rules import RoutingRules
 from talbot.platforms.die import TopMetal
 from talbot.platforms.pads import Capacitor
 

@@ -18,8 +18,8 @@ from talbot.flow.layout.report.picture import render
 from talbot.flow.layout.steps.foundry_drc import FoundryDrcParameters
 from talbot.flow.layout.steps.parameters import PdkParameters
 from talbot.flow.layout.steps.sta import StaParameters
-from talbot.platforms.coriolis import coriolis_platform
 from talbot.platforms.die import top_metal
+from talbot.platforms.layout import layout_platform
 from talbot.platforms.pads import pad_process
 from talbot.platforms.pixel import pixel_process
 from talbot.platforms.wires import CORNERS
@@ -127,7 +127,7 @@ def lay_out_die(
     folder = runner.folder.parent
     runner.run_all(die_steps(chip, options, drawn, die))
     summary = summarize(SENSOR, options, runner, black_boxes)
-    lines, tech = broken(summary, RULES), coriolis_platform(options.pdk)
+    lines, tech = broken(summary, RULES), layout_platform(options.pdk)
     tech = replace(tech, metals=(*tech.metals, top_metal(options.pdk).metal))
     results = RESULTS | {f"{corner}.sta.txt": f"die_sta_{corner}.report" for corner in options.corners}
     with staged(folder, [*(f"{SENSOR}.{suffix}" for suffix in results), *PACKAGE]) as part:

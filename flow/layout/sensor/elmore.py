@@ -4,7 +4,7 @@ from collections.abc import Hashable, Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from talbot.flow.layout.timing.parasitics import parasitics
-from talbot.platforms.coriolis import CoriolisPlatform
+from talbot.platforms.layout import LayoutPlatform
 
 from .plan import CORE, Terminal
 from .routing import BRANCH, STUB, TRUNK
@@ -49,7 +49,7 @@ def net(
     y: int,
     driver: Terminal,
     tracks: Mapping[str, int],
-    tech: CoriolisPlatform,
+    tech: LayoutPlatform,
     pin_pf: float,
     femtofarad: float,
 ) -> dict[Terminal, float]:
@@ -67,7 +67,7 @@ def net(
 
 
 def tree(
-    branches: Branches, y: int, tracks: Mapping[str, int], tech: CoriolisPlatform
+    branches: Branches, y: int, tracks: Mapping[str, int], tech: LayoutPlatform
 ) -> tuple[list[Edge], dict[Terminal, Hashable]]:
     """Edges of a net, and the node of each terminal.
 

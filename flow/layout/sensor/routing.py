@@ -4,8 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from talbot.base.steps import StepError
-from talbot.flow.layout.route.ports import LEVELS
-from talbot.flow.layout.route.rules import RoutingRules
+from talbot.flow.layout.sensor.rules import RoutingRules
 
 from .channel import check_apart, left_edge
 from .plan import CORE, SIGNALS, SUPPLIES, Block, Box, DieParameters, Terminal, bar, check_way, driver, nm, touching
@@ -13,7 +12,7 @@ from .ring import BESIDE_CHIP, CIRCUITS_ON_SIDE, GAP, UM, Pads, function
 
 # Places in RoutingRules.layers. Branches are the highest: a net is connected only there, with its driver, so that no
 # gate has a trunk or a branch as an antenna before. Stubs are where the chip's ports are
-STUB, TRUNK, BRANCH = LEVELS["west"], 3, 4
+STUB, TRUNK, BRANCH = 3, 3, 4
 STUB_HALF, ABOVE = 150, 700  # of the metal from a pad's pin, and how far inside of the ring its vias are
 Nets = Mapping[str, list[Terminal]]
 

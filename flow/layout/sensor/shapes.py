@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from talbot.flow.layout.route.rules import Layer, RoutingRules, Via
+from talbot.flow.layout.sensor.rules import Layer, RoutingRules, Via
 from talbot.platforms import layers
 
 from .plan import CORE, Box

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from talbot.base.steps import StepError
-from talbot.flow.layout.route.rules import Layer, RoutingRules
+from talbot.flow.layout.sensor.rules import Layer, RoutingRules
 from talbot.platforms.die import TopMetal
 
 from . import plan, shapes

@@ -5,7 +5,7 @@ from typing import Any
 
 from talbot.base.gds import read_gds
 from talbot.base.steps import Files, Step
-from talbot.platforms.coriolis import CoriolisPlatform, coriolis_platform
+from talbot.platforms.layout import LayoutPlatform, layout_platform
 
 from ..geometry.antenna import violations
 from .parameters import PdkParameters
@@ -29,6 +29,6 @@ class Antenna(Step[PdkParameters]):
         outputs["summary"].write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
         return {"antenna_violations": sum(map(len, found.values()))}
 
-    def tech(self) -> CoriolisPlatform:
+    def tech(self) -> LayoutPlatform:
         """The technology with the layers to check."""
-        return coriolis_platform(self.parameters.pdk)
+        return layout_platform(self.parameters.pdk)

@@ -48,8 +48,8 @@ class BlockLiberty(CornerStep[BlockLibertyParameters]):
     """
 
     name = "block_liberty_{corner}"
-    inputs = {"netlist": "repair.netlist", "verilog": "stream_out.verilog", "spef": "extraction.{wires}"}
-    inputs |= {"liberty": "timing.{corner}", "areas": "floorplan.floorplan"}
+    inputs = {"netlist": "stream_out.netlist", "verilog": "stream_out.verilog", "spef": "extraction.{wires}"}
+    inputs |= {"liberty": "timing.{corner}", "areas": "stream_out.plan"}
     outputs = {"liberty": "block.lib"}
     metrics = {"model_error_ns": "ns", "arcs": ""}
     tools = ("sta", "yosys")

@@ -3,7 +3,7 @@
 from typing import Any
 
 from talbot.base.steps import Files, Step
-from talbot.platforms.coriolis import coriolis_platform
+from talbot.platforms.layout import layout_platform
 
 from ..geometry.decks import check_rules, hole_rules, via_rules
 from .parameters import PdkParameters
@@ -29,7 +29,7 @@ class Drc(Step[PdkParameters]):
         return deck
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
-        tech = coriolis_platform(self.parameters.pdk)
+        tech = layout_platform(self.parameters.pdk)
         masks = [tech.masks.read_text(encoding="utf-8")] if tech.masks else []
         deck, flat = self.exported(inputs["deck"].read_text(encoding="utf-8")), (*hole_rules(tech), *masks)
         found = check_rules(deck, via_rules(tech), flat, inputs["gds"], outputs)

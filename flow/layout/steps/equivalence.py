@@ -50,7 +50,12 @@ class Equivalence(Step[EquivalenceParameters]):
     """
 
     name = "equivalence"
-    inputs = {"rtl": "rtl", "netlist": "repair.netlist", "verilog": "stream_out.verilog", "liberty": "library.liberty"}
+    inputs = {
+        "rtl": "rtl",
+        "netlist": "stream_out.netlist",
+        "verilog": "stream_out.verilog",
+        "liberty": "library.liberty",
+    }
     outputs = {"summary": "equivalence.json"}
     metrics = {
         "equivalence": "",

@@ -1,12 +1,11 @@
 """Parasitics of every net from the finished layout, as SPEF at the corners of wires."""
 
-import json
 from typing import Any
 
-from talbot.base.gds import db, read_gds
+from talbot.base.gds import read_gds
 from talbot.base.steps import Files, Step
-from talbot.platforms.coriolis import coriolis_platform
 from talbot.platforms.extraction import extraction_platform
+from talbot.platforms.layout import layout_platform
 
 from ..netlist.netlist import Netlist
 from ..parasitics.extract import extract
@@ -22,27 +21,18 @@ class Extraction(Step[PdkParameters]):
     """
 
     name = "extraction"
-    inputs = {"gds": "fill.gds", "netlist": "repair.netlist", "placement": "route.placement"}
-    inputs |= {"plan": "floorplan.floorplan"}
+    inputs = {"gds": "fill.gds", "netlist": "stream_out.netlist", "placement": "stream_out.placement"}
     outputs = {"typ": "parasitics.spef", "min": "parasitics.min.spef", "max": "parasitics.max.spef"}
     metrics = {"wire_pf": "pF", "largest_ff": "fF", "largest_ohm": "Ohm"}
     tools = ("python klayout",)
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         pdk, netlist = self.parameters.pdk, Netlist.read(inputs["netlist"])
-        tech, devices = coriolis_platform(pdk), extraction_platform(pdk)
+        tech, devices = layout_platform(pdk), extraction_platform(pdk)
         layout, corners = read_gds(inputs["gds"]), [tech.wires[name] for name in outputs]
-        left, bottom, *_ = json.loads(inputs["plan"].read_text(encoding="utf-8")).get("frame", (0.0, 0.0))
-        layout.top_cell().transform(db.DTrans(left, bottom))  # to where the cells were placed
         found = list(extract(layout, netlist, inputs["placement"], tech, devices, corners))
         for name, nets in zip(outputs, found, strict=True):
             outputs[name].write_text(spef(netlist, nets), encoding="utf-8")
         ff = [net.femtofarad for net in found[0].values()]
         ohm = max(sum(ohm for *_, ohm in net.resistors) for net in found[0].values())
         return {"wire_pf": round(sum(ff) / 1000, 3), "largest_ff": round(max(ff), 2), "largest_ohm": round(ohm, 1)}
-
-
-class ExtractionBlocks(Extraction):
-    """The same of a design with macros, these as cells."""
-
-    name = "extraction_blocks"

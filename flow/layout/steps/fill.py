@@ -5,7 +5,7 @@ from typing import Any
 
 from talbot.base.gds import read_gds, write_gds
 from talbot.base.steps import Files, Step
-from talbot.platforms.coriolis import coriolis_platform
+from talbot.platforms.layout import layout_platform
 
 from ..geometry.fill import fill, peak_density
 from .parameters import PdkParameters
@@ -25,7 +25,7 @@ class Fill(Step[PdkParameters]):
     tools = ("python klayout",)
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
-        tech, layout = coriolis_platform(self.parameters.pdk), read_gds(inputs["gds"])
+        tech, layout = layout_platform(self.parameters.pdk), read_gds(inputs["gds"])
         top = layout.top_cell()
         before = {metal.name: peak_density(layout, top, metal, tech.fill) for metal in tech.metals}
         squares = sum(fill(layout, top, metal, tech.fill) for metal in tech.metals[1:])

@@ -39,7 +39,7 @@ class GateDelays(CornerStep[GateDelaysParameters]):
     """
 
     name = "gate_delays_{corner}"
-    inputs = {"netlist": "repair.netlist", "cells": "library.verilog", "sdf": "sta_{corner}.sdf"}
+    inputs = {"netlist": "stream_out.netlist", "cells": "library.verilog", "sdf": "sta_{corner}.sdf"}
     inputs |= {"head": "stimulus.head", "trace": "stimulus.trace"}
     outputs = {"activity": "activity.json"}
     metrics = {"passed": "", "failed": "", "cycles": "", "paths": "", "setup_margin_ns": "ns", "hold_margin_ns": "ns"}

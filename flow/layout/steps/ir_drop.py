@@ -11,11 +11,11 @@ import numpy.typing as npt
 
 from talbot.base.steps import Files
 from talbot.base.style import own_style
-from talbot.platforms.coriolis import CoriolisPlatform, coriolis_platform
+from talbot.platforms.layout import LayoutPlatform, layout_platform
 
 from ..netlist.netlist import Netlist
 from ..netlist.placed import MIRRORED
-from ..power.mesh import Box, Gap, Tap, drops, metal
+from ..power.mesh import Tap, drops, metal
 from .corner import CornerStep
 
 Rows = Sequence[Sequence[Any]]  # of the placement's JSON
@@ -38,31 +38,31 @@ class IrDrop(CornerStep[IrDropParameters]):
     """
 
     name = "ir_drop_{corner}"
-    inputs = {"netlist": "repair.netlist", "placement": "repair.placement", "plan": "floorplan.floorplan"}
+    inputs = {"netlist": "stream_out.netlist", "placement": "stream_out.placement", "plan": "stream_out.plan"}
     inputs |= {"areas": "library.areas", "power": "power_{corner}.instances"}
     outputs = {"picture": "ir_drop.png", "cells": "ir_drop.json"}
     metrics = {"supply_drop_mv": "mV", "ground_rise_mv": "mV", "ir_drop_percent": "%"}
     metrics |= {"current_ua": "uA", "current_lost": ""}
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
-        tech = coriolis_platform(self.parameters.pdk)
+        tech = layout_platform(self.parameters.pdk)
         netlist, plan = Netlist.read(inputs["netlist"]), json.loads(inputs["plan"].read_text(encoding="utf-8"))
         placed = json.loads(inputs["placement"].read_text(encoding="utf-8"))
         areas, power = (json.loads(inputs[name].read_text(encoding="utf-8")) for name in ("areas", "power"))
-        cells = currents(netlist, placed["instances"], areas, power, tech)
-        rows, height = round(plan["height_um"] / tech.row_um), plan["height_um"]
+        _, bottom, _, top = plan["core"]
+        cells = currents(netlist, placed["instances"], areas, power, tech, bottom)
+        rows, height = round((top - bottom) / tech.row_um), top - bottom
         found, lost = [], []
         for net, odd in (("vdd", 1), ("vss", 0)):  # rails of even rows are ground
             rails = list(range(odd, rows + 1, 2))
-            straps = [x for supply, x, _ in placed["straps"] if supply == net]
-            gaps = [Gap(x, *gap) for supply, x, own in placed["straps"] if supply == net for gap in own]
+            straps = [x for supply, x in placed["straps"] if supply == net]
             taps = [Tap(rails.index(row + (row % 2 != odd)), x_um, ampere) for row, x_um, ampere in cells]
             heights = [row * tech.row_um for row in rails]
-            drop, share = drops(heights, straps, height, taps, metal(tech), breaks(plan["macros"]), gaps)
+            drop, share = drops(heights, straps, height, taps, metal(tech))
             found.append(drop * 1000)
             lost.append(share)
         total = found[0] + found[1]
-        at = [(cell.x_um, (cell.row + 0.5) * tech.row_um) for cell in cells]
+        at = [(cell.x_um, bottom + (cell.row + 0.5) * tech.row_um) for cell in cells]
         rounded = [[round(x, 3), round(y, 3), float(mv)] for (x, y), mv in zip(at, total, strict=True)]
         outputs["cells"].write_text(json.dumps(rounded, indent=0) + "\n", encoding="utf-8")
         picture(outputs["picture"], at, total, placed["straps"], plan)
@@ -84,28 +84,25 @@ class Current(NamedTuple):
 
 
 def currents(
-    netlist: Netlist, placed: Rows, areas: Mapping[str, float], power: Mapping[str, float], tech: CoriolisPlatform
+    netlist: Netlist,
+    placed: Rows,
+    areas: Mapping[str, float],
+    power: Mapping[str, float],
+    tech: LayoutPlatform,
+    bottom: float = 0.0,
 ) -> list[Current]:
     """Currents of the cells that have one.
 
-    placed: of the placement, in the netlist's order. areas: cell -> um2. power: instance -> uW.
+    placed: of the placement, in the netlist's order. areas: cell -> um2. power: instance -> uW. bottom: of the
+    rows, um.
     """
     found = []
     for instance, (_, cell, x, y, orientation) in zip(netlist.instances, placed, strict=True):
         if instance.name in power:
             (across, up), width = MIRRORED[orientation], areas[cell] / tech.row_um
-            row, middle = round(y / tech.row_um) - (up < 0), x + across * width / 2
+            row, middle = round((y - bottom) / tech.row_um) - (up < 0), x + across * width / 2
             found.append(Current(row, middle, power[instance.name] * 1e-6 / tech.supply_v))
     return found
-
-
-def breaks(macros: Sequence[Mapping[str, Any]]) -> list[Box]:
-    """Boxes without rails: on the west and the east of the floorplan's macros."""
-    return [
-        (left, m["y_um"], right, m["y_um"] + m["height_um"])
-        for m in macros
-        for left, right in ((m["outer"][0], m["x_um"]), (m["x_um"] + m["width_um"], m["outer"][2]))
-    ]
 
 
 @own_style()
@@ -116,7 +113,7 @@ def picture(path: Path, at: Sequence[Point], drop: Values, straps: Rows, plan: M
     figure = Figure(figsize=(7, 6), layout="constrained")
     axes = figure.subplots()
     x, y = np.transpose(at)
-    for _, place, _ in straps:
+    for _, place in straps:
         axes.axvline(place, color="0.8", linewidth=1, zorder=0)
     shown = axes.scatter(x, y, c=drop, s=max(1.0, 20000 / len(at)), cmap="inferno", marker="s")
     figure.colorbar(shown, label="IR drop of supply and ground, mV")

@@ -1,4 +1,4 @@
-"""The cells of a process as the other steps need them: for Coriolis, KLayout, Yosys and simulators."""
+"""The cells of a process as the other steps need them: for OpenROAD, KLayout, Yosys and simulators."""
 
 import json
 from typing import Any
@@ -6,11 +6,13 @@ from typing import Any
 from talbot.base.liberty.verilog import write_models
 from talbot.base.steps import Files, Step
 from talbot.cells.standard import standard_cells
-from talbot.platforms.coriolis import coriolis_platform
 from talbot.platforms.extraction import device_models, extraction_platform
+from talbot.platforms.layout import layout_platform
 from talbot.platforms.patience import imported
+from talbot.platforms.place_and_route import place_and_route
 
 from .. import pdkmaster
+from ..geometry import process_lef
 from ..netlist.netlist import SUPPLIES
 from ..timing import liberty
 from .parameters import PdkParameters
@@ -23,7 +25,6 @@ class Library(Step[PdkParameters]):
 
     name = "library"
     outputs = {
-        "coriolis": "coriolis",
         "gds": "cells.gds",
         "spice": "cells.spi",
         "drc": "process.drc",
@@ -32,7 +33,8 @@ class Library(Step[PdkParameters]):
         "liberty": "cells.lib",
         "verilog": "cells.v",
         "rules": "rules.json",
-        "geometry": "geometry.json",
+        "tech_lef": "tech.lef",
+        "cell_lef": "cells.lef",
     }
     metrics = {"cells": ""}
     shared = True
@@ -40,25 +42,29 @@ class Library(Step[PdkParameters]):
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         pdk = self.parameters.pdk
-        tech = coriolis_platform(pdk)
-        devices = imported(tech.package).prims_spiceparams
+        tech = layout_platform(pdk)
+        models = imported(tech.package).prims_spiceparams
         description = imported(f"{tech.package}.pdkmaster")
         standard = standard_cells(pdk, outputs["gds"].parents[1] / "drawn")
         library = standard.library
         cells = [cell for cell in library.cells if cell.name != "Gallery"]
         rules = pdkmaster.routing_rules(tech, description.tech.primitives)
-        outputs["geometry"].write_text(json.dumps(pdkmaster.layout_geometry(tech), indent=1) + "\n", encoding="utf-8")
         outputs["rules"].write_text(json.dumps(rules, indent=1) + "\n", encoding="utf-8")
-        pdkmaster.export_coriolis(outputs["coriolis"], description, standard, tech)
-        for name, deck in pdkmaster.export_decks(description, devices).items():
+        for name, deck in pdkmaster.export_decks(description, models).items():
             outputs[name].write_text(deck, encoding="utf-8")
         standard.write_gds(outputs["gds"])
-        outputs["spice"].write_text(pdkmaster.export_spice(cells, devices), encoding="utf-8")
+        outputs["spice"].write_text(pdkmaster.export_spice(cells, models), encoding="utf-8")
         areas = {cell.name: pdkmaster.cell_area(cell) for cell in cells}
         outputs["areas"].write_text(json.dumps(areas, indent=1), encoding="utf-8")
-        ports = {cell.name: [port.name for port in cell.circuit.ports if port.name not in SUPPLIES] for cell in cells}
+        every = {cell.name: [port.name for port in cell.circuit.ports] for cell in cells}
+        tools, devices = place_and_route(pdk), extraction_platform(pdk)
+        outputs["tech_lef"].write_text(process_lef.technology(rules, tech, tools), encoding="utf-8")
+        outputs["cell_lef"].write_text(
+            process_lef.library(outputs["gds"], every, tech, devices, tools), encoding="utf-8"
+        )
+        ports = {cell: [name for name in names if name not in SUPPLIES] for cell, names in every.items()}
         logic = [name for name in ports if not name.startswith(UNUSED)]
-        found = liberty.functions(outputs["gds"], logic, device_models(pdk), extraction_platform(pdk))
+        found = liberty.functions(outputs["gds"], logic, device_models(pdk), devices)
         chosen = {name: cell for name, cell in found.items() if not cell.storage or cell.storage.kind != "latch"}
         outputs["liberty"].write_text(liberty.liberty(chosen, ports, areas), encoding="utf-8")
         write_models(outputs["liberty"], outputs["verilog"])

@@ -4,7 +4,7 @@ import json
 from typing import Any
 
 from talbot.base.steps import Files, Step, StepError
-from talbot.platforms.coriolis import coriolis_platform
+from talbot.platforms.layout import layout_platform
 
 from ..geometry.decks import run_exported
 from ..geometry.lvs_deck import hierarchical, with_ports
@@ -22,14 +22,14 @@ class Lvs(Step[PdkParameters]):
     """
 
     name = "lvs"
-    inputs = {"gds": "fill.gds", "spice": "stream_out.spice", "netlist": "repair.netlist", "deck": "library.lvs"}
-    inputs |= {"plan": "floorplan.floorplan"}
+    inputs = {"gds": "fill.gds", "spice": "stream_out.spice", "netlist": "stream_out.netlist", "deck": "library.lvs"}
+    inputs |= {"plan": "stream_out.plan"}
     outputs = {"report": "lvs.lvsdb", "deck": "ports.lvs"}
     metrics = {"lvs_match": ""}
     tools = ("klayout",)
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
-        deck = hierarchical(inputs["deck"].read_text(encoding="utf-8"), coriolis_platform(self.parameters.pdk).active)
+        deck = hierarchical(inputs["deck"].read_text(encoding="utf-8"), layout_platform(self.parameters.pdk).active)
         outputs["deck"].write_text(
             with_ports(
                 deck, Netlist.read(inputs["netlist"]), supplies(json.loads(inputs["plan"].read_text(encoding="utf-8")))

@@ -46,7 +46,7 @@ class Power(CornerStep[PowerParameters]):
     """
 
     name = "power_{corner}"
-    inputs = {"netlist": "repair.netlist", "verilog": "stream_out.verilog", "spef": "extraction.{wires}"}
+    inputs = {"netlist": "stream_out.netlist", "verilog": "stream_out.verilog", "spef": "extraction.{wires}"}
     inputs |= {"sdc": "sdc", "liberty": "timing.{corner}", "activity": "gate_delays_{corner}.activity"}
     outputs = {"instances": "power.json"}
     metrics = {"power_uw": "uW", "by_kind": "uW", "by_block": "uW", "energy_pj_cycle": "pJ", "transitions_cycle": ""}

@@ -1,82 +1,120 @@
-"""The routed layout as GDS with the design's own names, and the final netlist as Verilog and SPICE."""
+"""The routed design as GDS, and its netlist as JSON, Verilog and SPICE: what all checks read."""
 
 import json
-from dataclasses import dataclass
+import re
+from dataclasses import dataclass, replace
 from typing import Any
 
-from talbot.base.gds import read_gds, write_gds
-from talbot.base.steps import Files, Step
-from talbot.platforms.coriolis import coriolis_platform
+from talbot.base.gds import db, read_gds, write_gds
+from talbot.base.steps import Files, Step, StepError
+from talbot.platforms.layout import LayoutPlatform, layout_platform
+from talbot.platforms.place_and_route import place_and_route
 
-from ..geometry import area, notch, trim
-from ..geometry.frame import into_frame, mark_straps
-from ..geometry.labels import relabel
-from ..netlist.netlist import SUPPLIES, Netlist, supplies, with_diodes
-
-COUNTS = ("instances", "trimmed", "grown", "notches")
+from ..geometry.merge import merge
+from ..netlist.netlist import SUPPLIES, Netlist, is_register, with_diodes
+from ..netlist.routed import Routed
 
 
 @dataclass(frozen=True)
 class StreamOutParameters:
-    """Parameters of `StreamOut`.
-
-    pdk: process. assembled: whether there are macros in it.
-    """
+    """Parameters of `StreamOut`. pdk: process. frame: of the process, or ''."""
 
     pdk: str = "sky130"
-    assembled: bool = False
+    frame: str = ""
 
 
 class StreamOut(Step[StreamOutParameters]):
-    """Ports labelled, narrow notches filled, segment ends trimmed, small pads grown; moved into the plan's frame.
+    """OpenROAD's DEF and the cells' GDS as one layout.
 
-    The Verilog has no hierarchy; in the SPICE a macro is a subcircuit, and there are the diodes, which do nothing.
+    plan: size, box of the rows (core), names of the supplies, in a frame its box. placement: the straps, (net, x in
+    um), and of each instance of the netlist [None, cell, x, y, orientation]. The diodes are in the SPICE alone: they
+    do nothing.
     """
 
     name = "stream_out"
     inputs = {
-        "gds": "route.gds",
-        "netlist": "repair.netlist",
-        "diodes": "route.diodes",
-        "cells": "library.spice",
-        "rules": "library.rules",
-        "geometry": "library.geometry",
-        "plan": "floorplan.floorplan",
+        "def": "finish.def",
+        "synthesized": "synthesis.netlist",
+        "tech_lef": "library.tech_lef",
+        "cell_lef": "library.cell_lef",
+        "cells": "library.gds",
+        "spice": "library.spice",
+        "areas": "library.areas",
     }
-    outputs = {"gds": "layout.gds", "verilog": "final.v", "spice": "reference.spi"}
-    metrics = {"width_um": "um", "height_um": "um", "area_um2": "um2", **dict.fromkeys(COUNTS, "")}
+    outputs = {
+        "gds": "layout.gds",
+        "netlist": "netlist.json",
+        "verilog": "final.v",
+        "spice": "reference.spi",
+        "placement": "placement.json",
+        "plan": "plan.json",
+    }
+    metrics = {"width_um": "um", "height_um": "um", "area_um2": "um2", "cells": "", "cell_area_um2": "um2"}
+    metrics |= {"utilization": "", "flip_flops": "", "wire_um": "um", "vias": "", "diodes": "", "clock_buffers": ""}
     tools = ("python klayout",)
 
-    def __init__(self, parameters: StreamOutParameters) -> None:
-        super().__init__(parameters)
-        if parameters.assembled:
-            assembled = {"gds": "assemble.gds", "cells": "assemble.spice", "flat": "assemble.netlist"}
-            self.inputs = {**self.inputs, **assembled}
-
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
-        tech, layout = coriolis_platform(self.parameters.pdk), read_gds(inputs["gds"])
-        netlist, plan = Netlist.read(inputs["netlist"]), json.loads(inputs["plan"].read_text(encoding="utf-8"))
-        rules = json.loads(inputs["rules"].read_text(encoding="utf-8"))
-        (top,) = layout.top_cells()
-        top.name = netlist.name
-        relabel(layout, {net for port in netlist.ports for net in port.bits()} | set(SUPPLIES), tech, supplies(plan))
-        changed = {
-            "notches": notch.fill(layout, top, tech.metals, rules["space_um"]),
-            "trimmed": trim.trim(layout, top, tech.metals, rules["space_um"]),
-            "grown": area.grow(layout, top, tech.metals, rules["metals"]),
-        }
-        outline = top.bbox()
-        if "frame" in plan:
-            outline = into_frame(layout, plan["frame"])
-            mark_straps(layout, supplies(plan), tech)
-        top.shapes(layout.layer(*tech.outline)).insert(outline)
-        write_gds(layout, outputs["gds"])
-        flat = Netlist.read(inputs["flat"]) if "flat" in inputs else netlist
-        outputs["verilog"].write_text(flat.verilog(), encoding="utf-8")
-        drawn = with_diodes(netlist, **json.loads(inputs["diodes"].read_text(encoding="utf-8")))
-        outputs["spice"].write_text(
-            drawn.spice(inputs["cells"].read_text(encoding="utf-8"), supplies(plan)), encoding="utf-8"
+        tech, tools = layout_platform(self.parameters.pdk), place_and_route(self.parameters.pdk)
+        frame = tech.frame(self.parameters.frame) if self.parameters.frame else None
+        supplies = frame.supplies if frame else SUPPLIES
+        before, areas = Netlist.read(inputs["synthesized"]), json.loads(inputs["areas"].read_text(encoding="utf-8"))
+        routed = Routed.read(inputs["def"], tools.straps[-1].layer, tech.row_um)
+        netlist = routed.netlist(before.name, before.ports)
+        if lost := {i.name for i in before.instances if is_register(i.cell)} - {i.name for i in netlist.instances}:
+            raise StepError(
+                f"stream_out: registers of the netlist are not in the layout: {', '.join(sorted(lost)[:3])}"
+            )
+        width, height = merge(
+            inputs["def"], [inputs["tech_lef"], inputs["cell_lef"]], inputs["cells"], tools, outputs["gds"]
         )
-        width, height = top.dbbox().width(), top.dbbox().height()
-        size = {"width_um": round(width, 3), "height_um": round(height, 3), "area_um2": round(width * height, 2)}
-        return size | {"instances": len(flat.instances)} | changed
+        layout = read_gds(outputs["gds"])
+        label(layout, tech)
+        write_gds(layout, outputs["gds"])
+        netlist.write(outputs["netlist"])
+        outputs["verilog"].write_text(netlist.verilog(), encoding="utf-8")
+        library = inputs["spice"].read_text(encoding="utf-8")
+        drawn = with_diodes(with_open_nets(netlist, library), routed.diodes(), {})
+        outputs["spice"].write_text(drawn.spice(library, supplies), encoding="utf-8")
+        widths = {cell: area / tech.row_um for cell, area in areas.items()}
+        straps = [(dict(zip(supplies, SUPPLIES, strict=True))[net], x) for net, x in routed.straps]
+        placement = {"straps": straps, "instances": routed.instances(widths, tech.row_um)}
+        outputs["placement"].write_text(json.dumps(placement, indent=0) + "\n", encoding="utf-8")
+        size = {"width_um": width, "height_um": height}
+        plan = size | {"core": routed.core_um, "supplies": supplies}
+        if frame:
+            plan["frame"] = [0.0, 0.0, width, height]
+        outputs["plan"].write_text(json.dumps(plan, indent=1), encoding="utf-8")
+        logic = [i for i in netlist.instances if i.pins]
+        left, bottom, right, top = routed.core_um
+        used = sum(areas[i.cell] for i in logic)
+        return size | {
+            "area_um2": round(width * height, 2),
+            "cells": len(logic),
+            "cell_area_um2": round(used, 2),
+            "utilization": round(used / ((right - left) * (top - bottom)), 4),
+            "flip_flops": sum(is_register(i.cell) for i in logic),
+            "wire_um": routed.wire_um,
+            "vias": routed.vias,
+            "diodes": len(routed.diodes()),
+            "clock_buffers": sum(i.name.startswith("clkbuf") for i in logic),
+        }
+
+
+def label(layout: "db.Layout", tech: LayoutPlatform) -> None:
+    """Put the ports' labels where the decks read them, too: on the layer of pins."""
+    top = layout.top_cell()
+    for metal in tech.metals:
+        for shape in list(top.shapes(layout.layer(*metal.label)).each(db.Shapes.STexts)):
+            top.shapes(layout.layer(*metal.pin)).insert(shape.text)
+    for info in [info for info in layout.layer_infos() if info.layer == tech.blockage_layer]:
+        layout.clear_layer(layout.layer(info))
+
+
+def with_open_nets(netlist: Netlist, library: str) -> Netlist:
+    """Give every pin of a cell that the netlist leaves out a net of its own. library: SPICE of the cells."""
+    ports = {m[1]: m[2].split() for m in re.finditer(r"(?im)^\.subckt (\S+) (.*)$", library)}
+    instances = []
+    for number, i in enumerate(netlist.instances):
+        nets = {pin: i.pins.get(pin, f"open{number}_{pin}") for pin in ports[i.cell] if pin not in SUPPLIES}
+        instances.append(replace(i, pins=nets))
+    return replace(netlist, instances=tuple(instances))

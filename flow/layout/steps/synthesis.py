@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from talbot.base.liberty.read import areas
+from talbot.base.liberty.read import areas, most_loads
 from talbot.base.steps import Files, Step
 from talbot.base.tools import run
 from talbot.models.parameters import check_int, check_real
@@ -21,6 +21,7 @@ CLOCK_CELLS = [ClockCells(ClockGate(f"cg_{x}", "i", "clk", "q"), Buffer(f"buf_{x
 CLOCK_GATE = CLOCK_CELLS[0].gate
 REGISTERS = 12  # most that a clock gate or buffer drives
 BARE_PF = 0.1  # load of an output above which it has its own buffer
+SPARE = 1.5  # times that load: what the driver of an output without a buffer bears at least
 AIM = 0.25  # share of the period that the mapper aims at: it knows one corner and no parasitics
 START, LEVELS = "strash\nifraig\nscorr\ndc2\n", "if -g -K 6\nstrash\ndch -f\n"
 # From the least area to the least delay: structures of fewer levels (if -g), those before them as choices (dch)
@@ -33,7 +34,6 @@ SHORT = 0.1  # of the period: what a mapping may be too slow by, which `repair` 
 LIMIT = "buffer -c -N {most}\ntopo\nupsize -D {aim:.0f}\ndnsize -D {aim:.0f}\n"  # of the fan-out
 READ = """
 read_verilog -sv {rtl}
-{blocks}
 design -save read
 hierarchy -top {top}
 proc
@@ -65,7 +65,7 @@ class SynthesisParameters:
     """Parameters of `Synthesis`.
 
     top: module. clock: its port, '' without one. period_ns: of the clock. fan_out: most loads of a net, 0 for no limit.
-    load_pf: of an output. macros: modules laid out before, black boxes here.
+    load_pf: of an output.
     """
 
     top: str = ""
@@ -73,7 +73,6 @@ class SynthesisParameters:
     period_ns: float = field(default=10.0, metadata={"unit": "ns"})
     fan_out: int = 16
     load_pf: float = field(default=0.0, metadata={"unit": "pF"})
-    macros: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         check_real("period_ns", self.period_ns, 0.1, 10_000)
@@ -93,10 +92,6 @@ class Synthesis(Step[SynthesisParameters]):
     metrics = {"cells": "", "flip_flops": "", "clock_gates": "", "cell_area_um2": "um2", "mappings": ""}
     tools = ("yosys",)
 
-    def __init__(self, parameters: SynthesisParameters) -> None:
-        super().__init__(parameters)
-        self.inputs = {**self.inputs, **{name: f"macro.{name}.verilog" for name in parameters.macros}}
-
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         p, um2 = self.parameters, areas(inputs["liberty"])
         gated = bool(p.clock) and CLOCK_GATE.cell in um2
@@ -105,17 +100,13 @@ class Synthesis(Step[SynthesisParameters]):
             for path, text in CLOCK_GATE.files(folder).items():
                 path.write_text(text, encoding="utf-8")
             made = {"registers": folder / "registers.json", "design": folder / "design.il"}
-            blocks = "\n".join(f"blackbox {macro}" for macro in p.macros)
             gates = f"script {folder / GATES}" if gated else ""
-            yosys(folder, READ.format(top=p.top, blocks=blocks, gates=gates, **inputs, **made))
+            yosys(folder, READ.format(top=p.top, gates=gates, **inputs, **made))
             names = register_names(made["registers"], p.top)
             netlist, tried = self.best(folder, inputs, names, gated)
         netlist.write(outputs["netlist"])
-        outputs["verilog"].write_text(
-            "\n".join([netlist.verilog(), *(inputs[name].read_text(encoding="utf-8") for name in p.macros)]),
-            encoding="utf-8",
-        )
-        area = sum(um2[i.cell] for i in netlist.instances if i.cell not in p.macros)
+        outputs["verilog"].write_text(netlist.verilog(), encoding="utf-8")
+        area = sum(um2[i.cell] for i in netlist.instances)
         registers = sum(is_register(i.cell) for i in netlist.instances)
         clock_gates = sum(i.cell in (cells.gate.cell for cells in CLOCK_CELLS) for i in netlist.instances)
         sizes = {"cells": len(netlist.instances), "cell_area_um2": round(area, 2)}
@@ -125,6 +116,11 @@ class Synthesis(Step[SynthesisParameters]):
         """The netlist, and how many mappings were tried. names: of registers."""
         return self.mapped(folder, inputs, MAPPINGS[0], names, gated), 1
 
+    def weak(self, inputs: Files) -> set[str]:
+        """Cells that do not bear the load of an output with some to spare: OpenROAD adds no buffer between the two."""
+        limits = most_loads(inputs["slowest"]) if "slowest" in inputs else {}
+        return {cell for cell, most in limits.items() if most < SPARE * self.parameters.load_pf}
+
     def mapped(self, folder: Path, inputs: Files, mapping: str, names: set[str], gated: bool) -> Netlist:
         """The netlist of the design in ``folder``, by a mapping."""
         p, aim = self.parameters, AIM * self.parameters.period_ns * 1000
@@ -132,9 +128,11 @@ class Synthesis(Step[SynthesisParameters]):
         limit = LIMIT.format(most=p.fan_out, aim=aim) if p.fan_out else ""
         files["mapping"].write_text(START + mapping + limit + "print_stats\n", encoding="utf-8")
         yosys(folder, MAP.format(aim=aim, timing=inputs.get("timing", inputs["liberty"]), **files))
-        netlist = Netlist.from_yosys(files["json"], p.top, BUFFER, p.macros, names).with_input_buffers(p.macros, BUFFER)
+        netlist = Netlist.from_yosys(files["json"], p.top, BUFFER, names)
         if p.load_pf > BARE_PF:
             netlist = buffer_outputs(netlist, DRIVER)
+        elif p.load_pf:
+            netlist = buffer_outputs(netlist, BUFFER, self.weak(inputs))
         if p.fan_out:
             netlist = buffer_fan_out(netlist, pins(netlist.ports), BUFFER, p.fan_out)
         return drive_registers(netlist, pins(netlist.ports), p.clock, CLOCK_CELLS, REGISTERS) if gated else netlist

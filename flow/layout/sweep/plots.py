@@ -1,16 +1,13 @@
-"""The sweeps as figures."""
+"""The sweep as a figure."""
 
 from collections.abc import Iterable, Sequence
 from typing import Any
 
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.ticker import LogFormatter
 
 from talbot.base.charts import COLOURS
 
-QUALITY = ("area_um2", "area, um2"), ("wire_um", "wire length, um"), ("wns_ns", "worst setup slack, ns")
-MARKS = {1: "o", 3: "s", 6: "^"}
 Point = dict[str, Any]  # of points.py, for JSON
 
 
@@ -48,39 +45,3 @@ def pareto_plot(points: Sequence[Point]) -> Figure:
     right.set(ylabel="energy a result in a real frame, pJ", yscale="log")
     right.yaxis.set_minor_formatter(LogFormatter(labelOnlyBase=False, minor_thresholds=(3, 1)))
     return figure
-
-
-def effort_plot(points: Sequence[Point]) -> Figure:
-    """Plot seconds of place and route against area, wire length and worst slack.
-
-    A mark an effort, a colour a utilization, the spread as labels; crosses at the bottom did not close.
-    """
-    figure = Figure(figsize=(13, 4.6), layout="constrained")
-    shares = sorted({point["utilization"] for point in points})
-    colour = {share: COLOURS[k % len(COLOURS)] for k, share in enumerate(shares)}
-    for axes, (key, words) in zip(figure.subplots(1, 3), QUALITY, strict=True):
-        for point in points:
-            if not point["closed"]:
-                bottom = {"transform": axes.get_xaxis_transform(), "clip_on": False}
-                axes.plot(point["seconds"], 0, "x", color=colour[point["utilization"]], **bottom)
-        for (value, effort, share), same in alike(points, key).items():
-            axes.plot([point["seconds"] for point in same], [value] * len(same), MARKS[effort], color=colour[share])
-            if key != "area_um2":  # which follows from the utilization
-                label, at = ", ".join(f"{point['spread']:g}" for point in same), (same[-1]["seconds"], value)
-                axes.annotate(label, at, fontsize=7, xytext=(6, -3), textcoords="offset points")
-        axes.set(xlabel="seconds of placement, routing and rerouting", ylabel=words)
-        axes.margins(0.08)
-    marks = [(mark, "0.5", f"effort {effort}") for effort, mark in MARKS.items()]
-    marks += [("o", colour[share], f"utilization {share:g}") for share in shares] + [("x", "0.5", "did not close")]
-    handles = [Line2D([], [], linestyle="", marker=mark, color=c, label=label) for mark, c, label in marks]
-    figure.legend(handles=handles, loc="outside upper center", ncols=len(handles), fontsize=8, frameon=False)
-    return figure
-
-
-def alike(points: Iterable[Point], key: str) -> dict[tuple[float, int, float], list[Point]]:
-    """Group the points that closed by (value of ``key``, effort, utilization), the slowest last."""
-    found: dict[tuple[float, int, float], list[Point]] = {}
-    for point in sorted(points, key=lambda point: point["seconds"]):
-        if point["closed"]:
-            found.setdefault((point[key], point["effort"], point["utilization"]), []).append(point)
-    return found

@@ -1,12 +1,11 @@
 """One layout as a point of a sweep: a dict of figures for JSON."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from talbot.base.steps import Runner, Step
-from talbot.flow.layout.chain import attempts, input_files, routing_steps, synthesis_steps, timing_steps
+from talbot.flow.layout.chain import input_files, timing_steps
 from talbot.flow.layout.design import Design, divider
 from talbot.flow.layout.options import Options
 from talbot.flow.layout.search import lay_out_smallest
@@ -53,38 +52,6 @@ def variant_point(design: Design, liberty: Sequence[str], out: str, pdk: str = "
 
 def _signoff(design: Design, options: Options) -> list[Step]:
     return [Extraction(PdkParameters(options.pdk)), *timing_steps(design, options)]
-
-
-def effort_point(
-    design: Design, liberty: Sequence[str], out: str, effort: int, spread: float, utilization: float
-) -> dict[str, Any]:
-    """Place and route a design once; quality where it closes, and the seconds of place and route.
-
-    effort: of the placer. spread: of what is empty, the share between cells. closed: every net is routed and no rule
-    broken.
-    """
-    options = Options("sky130", utilization, tuple(map(Path, liberty)), effort=effort)
-    design = replace(design, spread=spread)
-    runner = _runner(design, options, out)
-    floorplan, place, arrange = next(attempts(design, options))
-    for step in (*synthesis_steps(design, options), floorplan):
-        runner.run(step)
-    found = runner.run(place)
-    made: dict[str, Any] = {"effort": effort, "spread": spread, "utilization": utilization, "closed": False}
-    made |= {"seconds": found["wall_s"], "stopped": found["metrics"]["stopped"]}
-    if found["metrics"]["stopped"] is not None:
-        return made
-    repair, route, *others = routing_steps(design, options)
-    arranged, _, wires = (runner.run(step) for step in (arrange, repair, route))
-    made["seconds"] = round(made["seconds"] + arranged["wall_s"] + wires["wall_s"], 2)
-    if wires["metrics"]["open_nets"]:
-        return made
-    broken = sum(runner.run(step)["metrics"].get(f"{step.name}_violations", 0) for step in others)
-    runner.run(Extraction(PdkParameters(options.pdk)))
-    sta = [step for step in timing_steps(design, options) if step.name.startswith("sta_")]
-    slack = min(runner.run(step)["metrics"]["wns_ns"] for step in sta)
-    area = runner.records["stream_out"]["metrics"]["area_um2"]
-    return made | {"closed": not broken, "wns_ns": slack, "wire_um": wires["metrics"]["wire_um"], "area_um2": area}
 
 
 def _runner(design: Design, options: Options, out: str) -> Runner:

@@ -9,12 +9,10 @@ import pytest
 
 from talbot.base.command import main, one_line
 from talbot.base.liberty.read import read
-from talbot.base.steps import StepError, versions
+from talbot.base.steps import versions
 from talbot.flow.layout import chain, command, search, tables
-from talbot.flow.layout.netlist.netlist import Instance
 from talbot.flow.layout.netlist.test import shift_register as small
 from talbot.flow.layout.options import Options
-from talbot.flow.layout.steps.floorplan import Floorplan, FloorplanParameters
 from talbot.models.parameters import ParameterError
 
 
@@ -31,14 +29,13 @@ def reported(capsys, arguments):
     "arguments, words",
     [
         (["nope"], "DESIGN = 'nope': must be one of amp_ctrl"),
-        (["quad_divider", "--pdk", "gf180"], "pdk = 'gf180': must be one of sky130, ihp-sg13g2"),
-        (["quad_divider", "--backend", "magic"], "backend = 'magic': must be"),
+        (["quad_divider", "--pdk", "gf180"], "pdk = 'gf180': must be one of sky130"),
         (["quad_divider", "--utilization", "1.2"], "utilization = 1.2: must be"),
         (["quad_divider", "--utilization", "0"], "utilization = 0.0: must be"),
         (["quad_divider", "--utilization", "nan"], "utilization = nan: must be"),
         (["quad_divider", "--liberty", "nowhere.lib"], "liberty = nowhere.lib: no such file"),
         (["quad_divider", "--analog", "mine"], "must be with DESIGN=asp_sensor alone"),
-        (["asp_sensor", "--pdk", "ihp-sg13g2"], "pdk = 'ihp-sg13g2': must be one of sky130 for a whole die"),
+        (["asp_sensor", "--pdk", "ihp-sg13g2"], "pdk = 'ihp-sg13g2': must be one of sky130 for OpenROAD"),
     ],
 )
 def test_bad_arguments(capsys, tmp_path, arguments, words):
@@ -86,20 +83,9 @@ def test_a_missing_tool(capsys, tmp_path, monkeypatch, missing):
 
 
 def test_a_missing_pdk(capsys, tmp_path, monkeypatch):
-    tech = search.coriolis_platform("sky130")
-    monkeypatch.setattr(search, "coriolis_platform", lambda pdk: replace(tech, wheel="c4m-pdk-none"))
+    tech = search.layout_platform("sky130")
+    monkeypatch.setattr(search, "layout_platform", lambda pdk: replace(tech, wheel="c4m-pdk-none"))
     assert "c4m-pdk-none: not installed" in reported(capsys, ["quad_divider", "--out", tmp_path / "out"])
-
-
-def test_a_cell_without_a_layout_is_named(tmp_path):
-    netlist = small.shift()
-    replace(netlist, instances=(*netlist.instances, Instance("u9", "nand9_x1", {"i": "a"}))).write(tmp_path / "n.json")
-    (tmp_path / "areas.json").write_text('{"inv_x1": 5, "dff_x1": 20}')
-    with pytest.raises(StepError, match="no layout of the cells nand9_x1"):
-        Floorplan(FloorplanParameters()).run(
-            {"netlist": tmp_path / "n.json", "areas": tmp_path / "areas.json"},
-            {"floorplan": tmp_path / "floorplan.json"},
-        )
 
 
 @pytest.mark.needs("mount")

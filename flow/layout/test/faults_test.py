@@ -3,9 +3,9 @@
 import pytest
 
 from talbot.base.steps import Runner
-from talbot.flow.layout.chain import attempts, routing_steps, synthesis_steps
 from talbot.flow.layout.design import Design
 from talbot.flow.layout.options import Options
+from talbot.flow.layout.search import lay_out_smallest
 from talbot.flow.layout.steps.drc import Drc
 from talbot.flow.layout.steps.lvs import Lvs
 from talbot.flow.layout.steps.parameters import PdkParameters
@@ -21,14 +21,8 @@ def runner(tmp_path_factory):
     folder = tmp_path_factory.mktemp("counter")
     design = Design("counter", "Counter", "")
     made = Runner(folder / "steps", counter.files(design, counter.VERILOG, folder))
-    options = Options(utilization=0.4, untimed=True)
-    for step in synthesis_steps(design, options):
-        made.run(step)
-    floorplan, place = next(attempts(design, options))
-    made.run(floorplan)
-    assert made.run(place)["metrics"]["stopped"] is None
-    for step in routing_steps(design, options)[:4]:  # repaired, routed, streamed out, filled
-        made.run(step)
+    tried = lay_out_smallest(design, Options(utilization=0.6), made, lambda design, options: [])
+    assert tried[-1].rules_broken == 0, tried
     return made
 
 

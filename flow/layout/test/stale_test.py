@@ -78,7 +78,7 @@ EXACTLY = [
     ("models/capture/operator.py", {"stimulus"}),
     ("flow/simulate/bench.sv", FRAMES),
     ("pixels/afe.sv", FRAMES),
-    ("flow/layout/coriolis/straps.py", {"place"}),
+    ("flow/layout/netlist/routed.py", {"stream_out"}),
     ("flow/layout/power/mesh.py", {"ir_drop"}),
     ("cells/characterize/constraint.py", {"timing"}),
     ("cells/report/curve.py", set()),
@@ -97,9 +97,9 @@ def test_exactly_these_steps_run_again(step_keys, tree, file, expected):
 @pytest.mark.parametrize(
     "file, some, others",
     [
-        ("platforms/sky130/coriolis.py", {"library", "place", "fill", "drc", "extraction"}, {"gate_frames", "sta"}),
+        ("platforms/sky130/layout.py", {"library", "stream_out", "fill", "drc", "extraction"}, {"gate_frames", "sta"}),
         ("rtl/quad_divider/test/quad_divider_test.py", {"gate_tests_final_icarus"}, {"drc", "gate_frames"}),
-        ("flow/layout/netlist/netlist.py", {"synthesis", "lvs", "place"}, {"drc", "timing"}),
+        ("flow/layout/netlist/netlist.py", {"synthesis", "lvs", "stream_out"}, {"drc", "timing"}),
         ("models/parameters/checks.py", {"drc", "sta", "gate_frames", "timing"}, set()),
     ],
 )

@@ -19,12 +19,12 @@ from talbot.flow.layout.steps.library import Library
 from talbot.flow.layout.steps.parameters import PdkParameters
 from talbot.flow.layout.steps.timing import Timing, TimingParameters, conditions_of, sources_of
 from talbot.flow.layout.tables import SHIPPED, key, shipped, write
-from talbot.platforms.coriolis import coriolis_platform
 from talbot.platforms.extraction import device_models, extraction_platform
+from talbot.platforms.layout import layout_platform
 
 needs_models = pytest.mark.needs("layout")
 needs_cells = pytest.mark.needs("layout")
-CORNERS = coriolis_platform("sky130").corners
+CORNERS = layout_platform("sky130").corners
 INDEX = json.loads((SHIPPED / "sky130.json").read_text())
 INVERTER = Source(
     "inv_1",

@@ -7,7 +7,7 @@ resistance; there is no coupling. `flow.layout.parasitics` extracts a finished l
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from talbot.platforms.coriolis import CoriolisPlatform
+from talbot.platforms.layout import LayoutPlatform
 
 
 class Parasitics(NamedTuple):
@@ -17,7 +17,7 @@ class Parasitics(NamedTuple):
     ohm: float
 
 
-def parasitics(segments: Iterable[tuple[str, float, float]], tech: CoriolisPlatform) -> Parasitics:
+def parasitics(segments: Iterable[tuple[str, float, float]], tech: LayoutPlatform) -> Parasitics:
     """Parasitics of a net's ``segments``: (layer, length_um, width_um), a via with length 0."""
     metals = {metal.name: metal for metal in tech.metals}
     names = [metal.name for metal in tech.metals]

@@ -130,7 +130,7 @@ def replay(
     cells: Verilog of the cells. folder: of the files that Icarus reads. count: whether to count transitions. Raises
     ToolError, StepError.
     """
-    nets = plain_names(netlist, "")
+    nets = plain_names(netlist)
     names = {instance.name: f"x{k}" for k, instance in enumerate(netlist.instances)}
     head = json.loads(trace.read_text(encoding="utf-8"))
     (folder / "cells.log").write_text(specified(cells, delays, netlist) if delays else cells, encoding="utf-8")

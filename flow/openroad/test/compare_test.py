@@ -1,4 +1,4 @@
-"""The table of both back ends."""
+"""The table of both libraries of cells."""
 
 import json
 
@@ -6,7 +6,7 @@ from talbot.base.command import main
 from talbot.flow.openroad import compare
 
 SUMMARY = {
-    "backend": "embedded",
+    "backend": "openroad",
     "wns_ns": {"ss": 1.0, "tt": 2.0},
     "whs_ns": {"ss": 0.3, "tt": 0.1},
     "power_uw": {"tt": 29.0},
@@ -17,17 +17,17 @@ SUMMARY = {
 
 def test_a_row_stays_where_its_layout_is_not_there(tmp_path, capsys):
     document, folder = tmp_path / "README.md", tmp_path / "layout" / "quad_divider"
-    rows = "| quad_divider | OpenROAD | 7 |\n| quad_divider | embedded | 8 |\n"
-    document.write_text(f"<!-- back ends -->\n\n{rows}\n<!-- end of back ends -->\n")
+    rows = "| quad_divider | sky130_fd_sc_hd | 7 |\n| quad_divider | compact | 8 |\n"
+    document.write_text(f"<!-- cells -->\n\n{rows}\n<!-- end of cells -->\n")
     folder.mkdir(parents=True)
     (folder / "summary.json").write_text(json.dumps(SUMMARY))
     line = ["quad_divider", "amp_ctrl", "--out", str(folder.parent)]
     assert main(compare, [*line, "--document", str(document)]) == 0
     written = document.read_text().splitlines()
-    assert written[0] == "<!-- back ends -->" and "| quad_divider | OpenROAD | 7 |" in written
-    (measured,) = [text for text in written if text.startswith("| quad_divider | embedded |")]
+    assert written[0] == "<!-- cells -->" and "| quad_divider | sky130_fd_sc_hd | 7 |" in written
+    (measured,) = [text for text in written if text.startswith("| quad_divider | compact |")]
     assert "| 0.0050 | 5,000 |" in measured and "| +1.00, +0.10 | 29 |" in measured and "| 637 | 405 |" in measured
     assert sum("| amp_ctrl | " in text and "| not run |" in text for text in written) == 2
     capsys.readouterr()
     assert main(compare, line) == 0  # of no document nothing is known
-    assert "| quad_divider | OpenROAD | not run |" in capsys.readouterr().out
+    assert "| quad_divider | sky130_fd_sc_hd | not run |" in capsys.readouterr().out

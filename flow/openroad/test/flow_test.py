@@ -1,30 +1,23 @@
-"""The stages, run in their order by the real Yosys and by a stand-in for OpenROAD; and the SDC by the real OpenSTA."""
+"""What is written for a design with a foundry's cells; synthesis by the real Yosys, timing by the real OpenSTA."""
 
-import json
-import re
 import shutil
 from dataclasses import replace
 
 import pytest
 
 from talbot.base.command import main
-from talbot.base.steps import Runner
-from talbot.base.tools import ToolError, finish
+from talbot.base.tools import finish
 from talbot.flow.layout.design import DESIGNS, design
-from talbot.flow.layout.steps.library import Library
-from talbot.flow.layout.steps.parameters import PdkParameters
+from talbot.flow.layout.steps.stage import SCRIPTS
 from talbot.flow.layout.timing.constraints import sdc
 from talbot.flow.openroad import command
 from talbot.flow.openroad.netlists import write_synthesized
-from talbot.flow.openroad.signoff import checks, given
-from talbot.flow.openroad.stages import SCRIPTS, TCL_YOSYS, pdk_root, run, stages
-from talbot.flow.openroad.test import stub
-from talbot.flow.openroad.test.commands import COMMANDS, OLDER
+from talbot.flow.openroad.signoff import given
+from talbot.flow.openroad.stages import TCL_YOSYS, pdk_root, stages
 from talbot.flow.openroad.test.librelane_pdk import with_delays
-from talbot.flow.openroad.variables import variables
-from talbot.flow.openroad.write import write
+from talbot.flow.openroad.write import design_tcl
 from talbot.models.parameters import ParameterError
-from talbot.platforms.openroad import WIRES, openroad_platform
+from talbot.platforms.openroad import openroad_platform
 from talbot.platforms.sky130 import cells as sky130_hd
 from talbot.platforms.sky130 import functions
 
@@ -70,168 +63,6 @@ def pdk(tmp_path_factory):
     shutil.copyfile(sky130_hd.file("inv_1", "lef"), root / KNOWN.cell_lef)
     shutil.copyfile(sky130_hd.file("inv_1", "gds"), root / KNOWN.cell_gds)
     return root
-
-
-@pytest.fixture
-def openroad(tmp_path, monkeypatch):
-    """The stand-in ahead on PATH."""
-    stub.install(tmp_path)
-    monkeypatch.setenv("PATH", str(tmp_path), prepend=":")
-
-
-@pytest.fixture(scope="module")
-def divider(tmp_path_factory):
-    """The divider's files."""
-    folder = tmp_path_factory.mktemp("written")
-    write(design("quad_divider"), KNOWN, folder)
-    return folder
-
-
-@pytest.fixture
-def written(divider, tmp_path, monkeypatch):
-    """The divider's files, a netlist in place of Yosys's stage, and the others in no process of their own."""
-    monkeypatch.setattr("talbot.flow.openroad.stages.alone", lambda call, *arguments: (call(*arguments), 1))
-    monkeypatch.setattr("talbot.flow.openroad.stages.stages", lambda tech, wires: stages(tech, wires)[1:])
-    shutil.copytree(divider, tmp_path, dirs_exist_ok=True)
-    (tmp_path / "netlist.v").write_text("")
-    return design("quad_divider")
-
-
-def unchecked(design, tech, root, folder, size_um, note):
-    """In place of the checks: their inputs alone."""
-    runner = Runner(folder / "steps", given(design, tech, root, folder, size_um), note)
-    runner.paths |= {"library.liberty": folder / "signoff" / f"{CORNERS[0]}.lib"}
-    steps = [Library(PdkParameters(tech.name)), *checks(design, tech)]
-    known = runner.paths.keys() | {f"{step.name}.{name}" for step in steps for name in step.outputs}
-    assert {source for step in steps for source in step.inputs.values()} <= known
-    made = "fill.gds", "drc.report", "lvs.report", *(f"block_liberty_{corner}.liberty" for corner in CORNERS)
-    runner.paths |= dict.fromkeys(made, folder / "final.gds")
-    return runner
-
-
-@needs_tclsh
-@needs_yosys
-@needs_cells
-def test_every_stage_runs_with_known_commands_only(pdk, openroad, tmp_path, monkeypatch, capsys):
-    monkeypatch.setenv("PDK_ROOT", str(pdk))
-    monkeypatch.setattr(command, "check", unchecked)
-    assert main(command, ["quad_divider", "--out", str(tmp_path / "out")]) == 1
-    assert "equivalence = None: must be proven" in capsys.readouterr().err
-    folder = tmp_path / "out" / "quad_divider-openroad"
-    summary = json.loads((folder / "summary.json").read_text())
-    assert 500 < summary["cells"] < 1200 and summary["cell_area_um2"] > 3000
-    assert summary["wns_ns"] == dict.fromkeys(CORNERS, 1.5) and summary["router_drc_violations"] == 0
-    assert len(summary["slacks_by_wires"]) == 2 * len(WIRES) * len(CORNERS) and summary["slew_violations"] == 0
-    assert re.search(r"sky130_fd_sc_hd__dfxtp_1 \\\S+_reg ", (folder / "netlist.v").read_text())
-    assert (folder / "QuadDividerRadix4.sv").read_text().count("module QuadDividerRadix4") == 1
-    assert "dfxtp" not in (folder / "QuadDividerRadix4.sv").read_text()  # the RTL is left as it was
-    assert summary["area_um2"] == 600
-    timed = [f"{corner}.{suffix}" for corner in CORNERS for suffix in ("lib", "sdf")]
-    assert {f"quad_divider.{suffix}" for suffix in ("gds", "lef", "v", "spef", "sdc", *timed)} <= {
-        path.name for path in folder.iterdir()
-    }
-    called = [line.split()[0] for line in (folder / "calls.txt").read_text().splitlines()]
-    order = [
-        "initialize_floorplan",
-        "pdngen",
-        "place_pins",
-        "clock_tree_synthesis",
-        "global_route",
-        "detailed_route",
-        "write_spef",
-        "read_spef",
-    ]
-    assert [called.index(name) for name in order] == sorted(called.index(name) for name in order)
-    # Behind all that moves cells far, loads are repaired on global routes between their places
-    placed = called[len(called) - called[::-1].index("improve_placement") : called.index("detailed_route")]
-    assert "repair_timing" not in placed and placed.index("global_route") < placed.index("repair_design")
-    assert called.count("write_db") == 7 and called.count("write_sdf") == len(WIRES) * len(CORNERS)
-
-
-@needs_tclsh
-@pytest.mark.parametrize(
-    "line, said",
-    [
-        ("global_placement -densty 0.5", "unknown option"),
-        ("place_pin_s", "invalid command"),
-        ("write_def", "arguments"),
-        ("read_db nowhere.odb", "no file"),
-    ],
-)
-def test_the_stand_in_refuses_what_openroad_does_not_have(line, said, openroad, tmp_path):
-    (tmp_path / "wrong.tcl").write_text(line + "\n")
-    done = finish([tmp_path / "openroad", "-exit", "wrong.tcl"], cwd=tmp_path)
-    assert done.returncode == 1 and said in done.stderr
-
-
-@needs_tclsh
-@needs_cells
-@pytest.mark.parametrize(
-    "commands, called, other",
-    [
-        (COMMANDS, "set_extraction_rules_file", "-ext_model_file"),
-        (OLDER, "-ext_model_file", "set_extraction_rules_file"),
-    ],
-)
-def test_older_releases_get_the_options_that_they_want(commands, called, other, pdk, openroad, written, tmp_path):
-    stub.install(tmp_path, commands)
-    assert run(tmp_path, written.top, KNOWN, pdk, lambda text: None)["router_drc_violations"] == 0
-    calls = (tmp_path / "calls.txt").read_text()
-    assert called in calls and other not in calls and all(f"{pdk}/{path}" in calls for path in RULES)
-
-
-@needs_tclsh
-@needs_cells
-@pytest.mark.parametrize("violations, diodes, routed", [("0", "0", 1), ("1", "0", 1), ("1", "2", 4)])
-def test_routes_are_made_again_while_diodes_help_then_fillers(
-    violations, diodes, routed, pdk, openroad, written, tmp_path
-):
-    stub.install(
-        tmp_path,
-        COMMANDS
-        | {
-            "check_antennas": replace(COMMANDS["check_antennas"], says=violations),
-            "repair_antennas": replace(COMMANDS["repair_antennas"], says=diodes),
-        },
-    )
-    assert run(tmp_path, written.top, KNOWN, pdk, lambda text: None)["router_antennas"] == float(violations)
-    called = [line.split()[0] for line in (tmp_path / "calls.txt").read_text().splitlines()]
-    assert called.count("detailed_route") == routed
-    assert called.index("filler_placement") > max(k for k, name in enumerate(called) if name == "detailed_route")
-
-
-@needs_tclsh
-@needs_cells
-def test_a_stage_that_fails_is_named(pdk, openroad, written, tmp_path):
-    (tmp_path / "cts.tcl").write_text("clock_tree\n")
-    seen = []
-    with pytest.raises(ToolError, match='openroad cts: status 1, cts.odb not written:\ninvalid command name "clock_tr'):
-        run(tmp_path, written.top, KNOWN, pdk, seen.append)
-    assert seen == ["floorplan", "power", "place", "cts"]
-
-
-@needs_tclsh
-@needs_cells
-def test_a_stage_runs_again_only_where_its_inputs_changed(pdk, openroad, written, tmp_path):
-    calls = tmp_path / "calls.txt"
-
-    def called():
-        """Commands of one more run, and its figures."""
-        calls.write_text("")
-        found = run(tmp_path, written.top, KNOWN, pdk, lambda text: None)
-        return [line.split()[0] for line in calls.read_text().splitlines()], found
-
-    every, found = called()
-    assert every[:2] == ["read_lef", "read_lef"] and "write_sdf" in every
-    assert called() == ([], found)
-    script = tmp_path / "route.tcl"
-    script.write_text(script.read_text().replace("-congestion_iterations 100", "-congestion_iterations 99"))
-    again = called()[0]
-    assert "initialize_floorplan" not in again and again.count("write_db") == 1 and "write_sdf" in again
-    for name in ("final.v", "finish.json"):
-        (tmp_path / name).write_text("damaged")
-        assert called()[0].count("write_verilog") == 2
-        assert called()[0] == []
 
 
 @needs_tclsh
@@ -293,7 +124,7 @@ def test_asynchronous_pins_are_not_timed():
 
 @pytest.mark.parametrize("name", DESIGNS)
 def test_variables_are_in_range(name):
-    text = variables(design(name), KNOWN)
+    text = design_tcl(design(name), KNOWN)
     values = dict(line.split(" ", 2)[1:] for line in text.splitlines() if line.startswith("set "))
     utilization, addon = (float(values[key].strip("{}")) for key in ("utilization", "density_addon"))
     assert 10 <= utilization <= 85 and 0 <= addon <= 0.3
@@ -302,11 +133,11 @@ def test_variables_are_in_range(name):
 def test_bad_input_is_one_line_and_status_2(tmp_path, monkeypatch, capsys):
     assert main(command, ["divider", "--out", str(tmp_path)]) == 2
     assert main(command, ["quad_divider", "--pdk", "tsmc", "--out", str(tmp_path)]) == 2
-    assert main(command, ["asp_chip_macros", "--out", str(tmp_path)]) == 2
+    assert main(command, ["tt_amp_ctrl", "--out", str(tmp_path)]) == 2
     assert list(tmp_path.iterdir()) == []
     lines = capsys.readouterr().err.splitlines()
     assert len(lines) == 3 and "DESIGN = 'divider'" in lines[0] and "pdk = 'tsmc'" in lines[1]
-    assert "without macros" in lines[2]
+    assert "without a frame" in lines[2]
 
 
 def test_without_openroad_it_says_where_to_get_it_and_what_was_written(tmp_path, monkeypatch, capsys):

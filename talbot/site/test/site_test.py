@@ -48,7 +48,7 @@ def test_make_knows_every_target_and_variable(target, words):
     given = [word for word in variables if word.partition("=")[0] not in OF_MAKE]
     ready = [f"-o.venv/.{name}ready" for name in ("", "video-", "tests-", "layout-", "render-")]
     own = {name: value for name, value in os.environ.items() if not name.startswith(("MAKE", "MFLAGS", "TALBOT"))}
-    line = ["make", "-n", *ready, "-ohave-tools", "-ohave-coriolis", target, *given]
+    line = ["make", "-n", *ready, "-ohave-tools", target, *given]
     recipe = subprocess.run(line, cwd=ROOT, env=own, capture_output=True, text=True, check=True).stdout
     if not given:
         return

@@ -8,7 +8,7 @@ import pytest
 from talbot.base.lef.read import read_macro
 from talbot.flow.layout.geometry.abstract import abstract, ports, read_back
 from talbot.models.parameters import ParameterError
-from talbot.platforms.coriolis import coriolis_platform
+from talbot.platforms.layout import layout_platform
 
 pytestmark = pytest.mark.needs("layout")
 NETLIST = "module Two (a, q);\n  input a;\n  output [1:0] q;\nendmodule\n"
@@ -16,7 +16,7 @@ NETLIST = "module Two (a, q);\n  input a;\n  output [1:0] q;\nendmodule\n"
 
 @pytest.fixture
 def tech():
-    return replace(coriolis_platform("sky130"), row_um=5.6, site_um=0.8, rail=0)
+    return replace(layout_platform("sky130"), row_um=5.6, site_um=0.8, rail=0)
 
 
 @pytest.fixture

@@ -5,14 +5,14 @@ import pytest
 
 from talbot.flow.layout.geometry.antenna import violations
 from talbot.flow.layout.geometry.test.gate import gate
-from talbot.platforms.coriolis import coriolis_platform
+from talbot.platforms.layout import layout_platform
 
 pytestmark = pytest.mark.needs("layout")
 
 
 @pytest.mark.parametrize("length_um, bad", [(20, 0), (60, 1)])
 def test_where_areas_count_thickness_does_not(length_um, bad):
-    tech = coriolis_platform("ihp-sg13g2")
+    tech = layout_platform("ihp-sg13g2")
     layout = db.Layout()
     top = layout.create_cell("top")
     m1, m2, via = tech.metals[0], tech.metals[1], tech.vias[0]
@@ -32,7 +32,7 @@ def test_where_areas_count_thickness_does_not(length_um, bad):
     "length_um, diffusion, bad", [(5, False, 0), (60, False, 1), (60, True, 0), (300, True, 0), (500, True, 1)]
 )
 def test_a_long_wire_on_a_gate(length_um, diffusion, bad):
-    tech = coriolis_platform("sky130")
+    tech = layout_platform("sky130")
     layout = db.Layout()
     top = layout.create_cell("top")
 
@@ -57,7 +57,7 @@ def test_a_long_wire_on_a_gate(length_um, diffusion, bad):
 @pytest.mark.parametrize("cells", [1, 3])
 def test_gates_in_cells_and_the_wire_above(cells):
     """A net through a hierarchy is found as the same net drawn flat is: its metal counts for all its gates."""
-    tech = coriolis_platform("sky130")
+    tech = layout_platform("sky130")
     layout = db.Layout()
     top, cell, m1 = layout.create_cell("top"), gate(layout, tech), tech.metals[1]
     for i in range(cells):

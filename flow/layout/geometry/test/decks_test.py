@@ -9,7 +9,7 @@ from talbot.base.gds import db, write_gds
 from talbot.base.steps import StepError
 from talbot.flow.layout.geometry.decks import broken_rules, deep_and_flat, run_deck, via_rules, violations
 from talbot.flow.layout.geometry.lvs_deck import hierarchical
-from talbot.platforms.coriolis import coriolis_platform
+from talbot.platforms.layout import layout_platform
 
 DRC = """deep
 nwm = input(64, 20)
@@ -56,7 +56,7 @@ def broken_vias(folder, layout, mode):
     """Violations of the vias' rules in a layout, flat or deep."""
     write_gds(layout, folder / "top.gds")
     head = f"source('{folder}/top.gds')\nreport('vias', '{folder}/found.lyrdb')"
-    (folder / "vias.drc").write_text("\n".join([head, mode, *via_rules(coriolis_platform("sky130")), ""]))
+    (folder / "vias.drc").write_text("\n".join([head, mode, *via_rules(layout_platform("sky130")), ""]))
     run_deck(folder / "vias.drc", folder / "found.lyrdb", {})
     return violations(folder / "found.lyrdb")
 
@@ -72,7 +72,7 @@ def broken_vias(folder, layout, mode):
 @pytest.mark.parametrize("mode", ("flat", "deep"))
 def test_a_via_outside_its_metal_or_of_another_size_is_found(tmp_path, cases, found, mode):
     """Cases, side by side: height of the upper metal, and where vias begin."""
-    tech, layout = coriolis_platform("sky130"), db.Layout()
+    tech, layout = layout_platform("sky130"), db.Layout()
     top = layout.create_cell("top")
     for x, (end, vias) in enumerate(cases):
         shapes = (tech.metals[3].gds, (0, 0, 500, 800)), (tech.metals[4].gds, (0, 0, 500, end))
@@ -84,7 +84,7 @@ def test_a_via_outside_its_metal_or_of_another_size_is_found(tmp_path, cases, fo
 @pytest.mark.needs("klayout")
 @pytest.mark.parametrize("mode", ("flat", "deep"))
 def test_a_via_with_a_notch_is_of_another_size(tmp_path, mode):
-    tech, layout = coriolis_platform("sky130"), db.Layout()
+    tech, layout = layout_platform("sky130"), db.Layout()
     top, via = layout.create_cell("top"), tech.vias[3]
     shapes = top.shapes(layout.layer(*via.gds))
     for box in ((0, 0, 200, 120), (0, 120, 120, 200), (1000, 0, 1200, 200)):
@@ -112,7 +112,7 @@ def test_decks_run_at_once_and_their_violations_are_in_one_report(tmp_path):
 
 def vias_in_metal(seed):
     """A layout of vias, each in metal on one level that is one rectangle, or two that cross, by any enclosure."""
-    random, tech, layout = np.random.default_rng(seed), coriolis_platform("sky130"), db.Layout()
+    random, tech, layout = np.random.default_rng(seed), layout_platform("sky130"), db.Layout()
     top, at = layout.create_cell("top"), itertools.product(range(0, 200_000, 4000), repeat=2)
     pairs = [((66, 44), 170, metal) for metal in ((65, 20), (66, 20), (67, 20))]
     for level, via in enumerate(tech.vias):
@@ -136,7 +136,7 @@ def test_doubts_change_no_verdict_on_an_enclosure(tmp_path, seed):
     from talbot.flow.layout.pdkmaster import export_decks
     from talbot.platforms.patience import imported
 
-    tech = coriolis_platform("sky130")
+    tech = layout_platform("sky130")
     devices = imported(tech.package).prims_spiceparams
     deck = export_decks(imported(f"{tech.package}.pdkmaster"), devices)["drc"]
     write_gds(vias_in_metal(seed), tmp_path / "top.gds")

@@ -4,14 +4,14 @@ import klayout.db as db
 import pytest
 
 from talbot.flow.layout.geometry.fill import fill, peak_density
-from talbot.platforms.coriolis import coriolis_platform
+from talbot.platforms.layout import layout_platform
 
 pytestmark = pytest.mark.needs("layout")
 
 
 @pytest.fixture(params=["sky130", "ihp-sg13g2"])
 def tech(request):
-    return coriolis_platform(request.param)
+    return layout_platform(request.param)
 
 
 def drawn(tech, boxes, side=60):

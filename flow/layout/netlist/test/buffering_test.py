@@ -104,3 +104,21 @@ def test_an_output_has_a_buffer_of_its_own():
         ("inv_x0", {"i": "z_within", "nq": "n"}),
         ("buf_x1", {"i": "z_within", "q": "z"}),
     ]
+
+
+def test_a_weak_driver_alone_gets_a_buffer():
+    cells = {"a": "nor3_x1", "b": "inv_x4"}
+    made = buffer_outputs(
+        Netlist(
+            "Two",
+            (Port("i", "input", 1), *(Port(name, "output", 1) for name in cells)),
+            tuple(Instance(f"of_{name}", cell, {"i": "i", "nq": name}) for name, cell in cells.items()),
+        ),
+        BUFFER,
+        {"nor3_x1"},
+    )
+    assert [(i.cell, *i.pins.values()) for i in made.instances] == [
+        ("nor3_x1", "i", "a_within"),
+        ("inv_x4", "i", "b"),
+        ("buf_x1", "a_within", "a"),
+    ]

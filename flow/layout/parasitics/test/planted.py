@@ -2,10 +2,10 @@
 
 from talbot.base.gds import db
 from talbot.flow.layout.parasitics.shapes import Shapes, shapes
-from talbot.platforms.coriolis import coriolis_platform
 from talbot.platforms.extraction import extraction_platform
+from talbot.platforms.layout import layout_platform
 
-TECH, DEVICES = coriolis_platform("sky130"), extraction_platform("sky130")
+TECH, DEVICES = layout_platform("sky130"), extraction_platform("sky130")
 LI, M1, M2, M3 = (metal.gds for metal in TECH.metals[:4])
 VIA, VIA2 = (via.gds for via in TECH.vias[1:3])
 POLY, CONTACT = TECH.poly, TECH.contact

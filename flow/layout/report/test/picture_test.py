@@ -6,12 +6,12 @@ from PIL import Image
 
 from talbot.base.gds import db, write_gds
 from talbot.flow.layout.netlist.netlist import Instance, Netlist
-from talbot.flow.layout.report.picture import BACKGROUND, by_block, render
-from talbot.platforms.coriolis import coriolis_platform
+from talbot.flow.layout.report.picture import BACKGROUND, by_block, clock_tree, congestion, render
+from talbot.platforms.layout import layout_platform
 
 pytestmark = pytest.mark.needs("layout")
 
-TECH = coriolis_platform("sky130")
+TECH = layout_platform("sky130")
 SIDE = 100
 
 
@@ -69,3 +69,17 @@ def test_cells_by_block_are_drawn_with_all_their_labels_beside_the_pages_buttons
     ink = np.asarray(Image.open(tmp_path / "blocks.png").convert("L")) < 250
     assert ink.any() and not (ink[[0, -1]].any() or ink[:, [0, -1]].any())
     assert not ink[: len(ink) // 10, -ink.shape[1] // 10 :].any()
+
+
+def test_the_clock_tree_ends_at_registers(tmp_path):
+    """A buffer behind the port, two registers behind it; what a register drives is not followed."""
+    buffer, loop = Instance("b", "buf_x1", {"i": "clk", "q": "n"}), {"clk": "n", "i": "d", "q": "d"}
+    netlist = Netlist("top", (), (buffer, Instance("r", "dff_x1", loop), Instance("s", "dff_x1", loop)))
+    placed = [[None, "cell", x, x, "0"] for x in (10.0, 40.0, 80.0)]
+    clock_tree(tmp_path / "clock.png", netlist, placed, "clk", {"width_um": 100.0, "height_um": 100.0})
+    assert (np.asarray(Image.open(tmp_path / "clock.png").convert("L")) < 250).any()
+
+
+def test_congestion_is_drawn_where_metal_is(files, tmp_path):
+    congestion(tmp_path / "c.png", render(files[0], TECH, side=SIDE), [TECH.metals[1].name], 1.0)
+    assert len(Image.open(tmp_path / "c.png").convert("RGB").getcolors(100_000)) > 10

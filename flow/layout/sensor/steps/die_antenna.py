@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from talbot.flow.layout.steps.antenna import Antenna
-from talbot.platforms.coriolis import CoriolisPlatform
+from talbot.platforms.layout import LayoutPlatform
 
 from ..routing import BRANCH
 
@@ -18,7 +18,7 @@ class DieAntenna(Antenna):
     name = "die_antenna"
     inputs = {"gds": "die_gds.checked"}
 
-    def tech(self) -> CoriolisPlatform:
+    def tech(self) -> LayoutPlatform:
         """The process without the branches' metal and those above."""
         tech = super().tech()
         return replace(tech, metals=tech.metals[:BRANCH], vias=tech.vias[: BRANCH - 1])

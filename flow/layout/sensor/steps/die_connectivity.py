@@ -5,8 +5,8 @@ from typing import Any
 
 from talbot.base.steps import Files, Step
 from talbot.flow.layout.steps.parameters import PdkParameters
-from talbot.platforms.coriolis import coriolis_platform
 from talbot.platforms.die import top_metal
+from talbot.platforms.layout import layout_platform
 from talbot.platforms.pads import pad_process
 
 from .. import connectivity
@@ -37,7 +37,7 @@ class DieConnectivity(Step[PdkParameters]):
         ]
         at += [(plan["corner"], "", trans.disp) for trans in corners(frame)]
         ring = {(cell, disp.x, disp.y): name or "" for cell, name, disp in at}
-        tech, plate = coriolis_platform(pdk), pad_process(pdk).capacitor.plate
+        tech, plate = layout_platform(pdk), pad_process(pdk).capacitor.plate
         found = connectivity.nets(inputs["gds"], cells, ring, tech, top_metal(pdk), plate)
         opens, shorts = connectivity.compare(found, plan["nets"])
         outputs["report"].write_text(json.dumps({"open": opens, "short": shorts}, indent=1) + "\n", encoding="utf-8")

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 from talbot.base.gds import read_gds, write_gds
 from talbot.base.steps import Files, Step, StepError
-from talbot.flow.layout.route.rules import RoutingRules
-from talbot.platforms.coriolis import coriolis_platform
+from talbot.flow.layout.sensor.rules import RoutingRules
 from talbot.platforms.die import top_metal
+from talbot.platforms.layout import layout_platform
 from talbot.platforms.pads import pad_process
 
 from .. import decoupling
@@ -51,7 +51,7 @@ class DieGds(Step[DieGdsParameters]):
         import klayout.db as db
 
         plan, layout = json.loads(inputs["plan"].read_text(encoding="utf-8")), db.Layout()
-        tech = coriolis_platform(self.parameters.pdk)
+        tech = layout_platform(self.parameters.pdk)
         layout.dbu = 0.001
         top = layout.create_cell(TOP)
         cells = {name: layout.create_cell(block["cell"]) for name, block in plan["blocks"].items()}

@@ -8,8 +8,8 @@ import numpy as np
 
 from talbot.base.steps import Files, Step
 from talbot.models.parameters import ArrayParameters
-from talbot.platforms.coriolis import coriolis_platform
 from talbot.platforms.die import top_metal
+from talbot.platforms.layout import layout_platform
 
 from ..array_drop import drops, mesh
 
@@ -36,7 +36,7 @@ class DieIrDrop(Step[DieIrDropParameters]):
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         p, array = self.parameters, ArrayParameters()
-        plan, tech = json.loads(inputs["plan"].read_text(encoding="utf-8")), coriolis_platform(p.pdk)
+        plan, tech = json.loads(inputs["plan"].read_text(encoding="utf-8")), layout_platform(p.pdk)
         made = mesh(plan, array, tech, top_metal(p.pdk))
         rows = (0, array.rows // 2, array.rows - 1)
         east, both = (1e3 * drops(made, array, rows, p.sink_a, sides) for sides in (False, True))

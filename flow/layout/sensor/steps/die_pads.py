@@ -9,7 +9,7 @@ from talbot.base.steps import Files, Step, StepError
 from talbot.flow.layout.geometry.decks import check_rules, hole_rules, run_deck, via_rules, with_taps
 from talbot.flow.layout.pdkmaster import export_spice
 from talbot.flow.layout.steps.parameters import PdkParameters
-from talbot.platforms.coriolis import coriolis_platform
+from talbot.platforms.layout import layout_platform
 from talbot.platforms.pads import pad_process
 from talbot.platforms.pixel import pixel_process
 
@@ -49,7 +49,7 @@ class DiePadsDrc(Step[PdkParameters]):
     tools = ("klayout",)
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
-        tech, process = coriolis_platform(self.parameters.pdk), pad_process(self.parameters.pdk)
+        tech, process = layout_platform(self.parameters.pdk), pad_process(self.parameters.pdk)
         flat = *hole_rules(tech), process.masks.read_text(encoding="utf-8")
         deck = with_taps(inputs["deck"].read_text(encoding="utf-8"), tech.active, process.tap)
         found = check_rules(deck, via_rules(tech), flat, inputs["gds"], outputs)
@@ -68,7 +68,7 @@ class DiePadsLvs(Step[PdkParameters]):
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         process = pad_process(self.parameters.pdk)
         outputs["reports"].mkdir()
-        active = coriolis_platform(self.parameters.pdk).active
+        active = layout_platform(self.parameters.pdk).active
         outputs["deck"].write_text(
             with_taps(inputs["deck"].read_text(encoding="utf-8"), active, process.tap), encoding="utf-8"
         )

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from talbot.base.steps import Files, Step
-from talbot.platforms.coriolis import coriolis_platform
 from talbot.platforms.extraction import extraction_platform
+from talbot.platforms.layout import layout_platform
 
 from .. import coupling, elmore
 from ..plan import CORE
@@ -47,7 +47,7 @@ class DieParasitics(Step[DieParasiticsParameters]):
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         p, plan = self.parameters, json.loads(inputs["plan"].read_text(encoding="utf-8"))
-        tech = coriolis_platform(p.pdk)
+        tech = layout_platform(p.pdk)
         femtofarads = coupling.femtofarads(plan, tech, extraction_platform(p.pdk))
         nets: dict[str, dict[str, Any]] = {}
         for net, route in plan["routes"].items():

@@ -6,10 +6,10 @@ from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
 from talbot.base.steps import Files, Step
-from talbot.flow.layout.route.rules import RoutingRules
-from talbot.platforms.coriolis import coriolis_platform
+from talbot.flow.layout.sensor.rules import RoutingRules
 from talbot.platforms.die import top_metal
 from talbot.platforms.layers import Layer
+from talbot.platforms.layout import layout_platform
 from talbot.platforms.pads import pad_process
 
 from .. import arrange, decoupling, ring, routing, supplies, verilog
@@ -49,7 +49,7 @@ class DiePlan(Step[DiePlanParameters]):
     metrics = {"area_um2": "um2", **dict.fromkeys(COUNTS, ""), "wire_um": "um", "decoupling_pf": "pF"}
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
-        p, tech = self.parameters, coriolis_platform(self.parameters.pdk)
+        p, tech = self.parameters, layout_platform(self.parameters.pdk)
         rules = RoutingRules.of(tech, json.loads(inputs["rules"].read_text(encoding="utf-8")))
         layers = [tech.metals[level].lef for level in (routing.STUB, routing.BRANCH)]
         blocks = {name: Block.read(name, inputs[f"{name}.lef"].read_text(encoding="utf-8")) for name in (*BLOCKS, CORE)}

@@ -11,7 +11,7 @@ from talbot.flow.layout.sensor.analog import check, files
 from talbot.flow.layout.sensor.plan import BLOCKS
 from talbot.flow.layout.sensor.steps.drawing import DrawnCircuits, DrawnPixels
 from talbot.models.parameters import ParameterError
-from talbot.platforms.coriolis import coriolis_platform
+from talbot.platforms.layout import layout_platform
 from talbot.platforms.pads import pad_process
 
 from . import small
@@ -114,7 +114,7 @@ def test_a_pin_of_its_own_is_one_of_the_die(tmp_path):
     assert small.connectivity(given, tmp_path)["open_nets"] == 1  # its GDS does not have the pin yet
     layout = db.Layout()
     layout.read(str(given["adc_lanes.gds"]))
-    cell, wire = layout.cell("adc_lanes"), coriolis_platform("sky130").metals[4]
+    cell, wire = layout.cell("adc_lanes"), layout_platform("sky130").metals[4]
     inner = layout.create_cell("Core")  # as the chip's: two cells of one name are not one
     inner.shapes(layout.layer(*wire.gds)).insert(db.DBox(1.8, 0, 2.2, 2))
     cell.insert(db.CellInstArray(inner.cell_index(), db.Trans()))

@@ -5,16 +5,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from talbot.base.steps import StepError
-from talbot.flow.layout.route.rules import RoutingRules
 from talbot.flow.layout.sensor.channel import check_apart, free, left_edge
 from talbot.flow.layout.sensor.plan import DieParameters
 from talbot.flow.layout.sensor.routing import Branch, Tracks, trunks
+from talbot.flow.layout.sensor.rules import RoutingRules
 from talbot.flow.layout.sensor.shapes import signal
-from talbot.platforms.coriolis import coriolis_platform
+from talbot.platforms.layout import layout_platform
 
 from . import small
 
-KNOWN = coriolis_platform("sky130")
+KNOWN = layout_platform("sky130")
 ROUTING_RULES = RoutingRules.of(KNOWN, small.RULES)
 TRACKS = Tracks.of(ROUTING_RULES, DieParameters())
 SPANS = st.dictionaries(

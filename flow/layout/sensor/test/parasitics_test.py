@@ -12,8 +12,8 @@ from talbot.flow.layout.sensor.steps.die_antenna import DieAntenna
 from talbot.flow.layout.sensor.steps.die_parasitics import DieParasitics, DieParasiticsParameters
 from talbot.flow.layout.sensor.steps.die_sta import over
 from talbot.flow.layout.steps.parameters import PdkParameters
-from talbot.platforms.coriolis import coriolis_platform
 from talbot.platforms.extraction import extraction_platform
+from talbot.platforms.layout import layout_platform
 
 from . import small
 
@@ -50,7 +50,7 @@ def parasitics(tmp_path_factory):
 def test_a_net_by_hand(parasitics):
     """tap[0]: from the chip to the row driver and the column amplifiers; more than its area and edges alone."""
     _, nets, _, plan = parasitics
-    tech, tracks, route = coriolis_platform("sky130"), plan["tracks"], plan["routes"]["tap[0]"]
+    tech, tracks, route = layout_platform("sky130"), plan["tracks"], plan["routes"]["tap[0]"]
     assert len(route["branches"]) == 3 and nets["tap[0]"]["driver"] == "core"
     xs = [branch["x"] for branch in route["branches"]]
     (core,) = [branch for branch in route["branches"] if branch["block"] == "core"]
@@ -72,7 +72,7 @@ def test_a_net_by_hand(parasitics):
 
 def test_a_pad_in_the_west_has_a_stub(parasitics):
     """clk: without the resistance of its stub it is quicker."""
-    plan, tech = parasitics[3], coriolis_platform("sky130")
+    plan, tech = parasitics[3], layout_platform("sky130")
     route = plan["routes"]["clk"]
     (pad,) = [branch for branch in route["branches"] if branch["block"] == "die"]
     assert pad["side"] == "west" and pad["x"] > pad["box"][2]
@@ -86,7 +86,7 @@ def test_a_pad_in_the_west_has_a_stub(parasitics):
 
 def test_delays_follow_the_capacitance(parasitics):
     """Twice the capacitance of the segments and no pins: twice the delay."""
-    plan, tech = parasitics[3], coriolis_platform("sky130")
+    plan, tech = parasitics[3], layout_platform("sky130")
     route = plan["routes"]["tap[0]"]
     one, two = (
         elmore.net(route["branches"], route["y"], ("core", "tap[0]"), plan["tracks"], tech, 0.0, femto)
@@ -98,7 +98,7 @@ def test_delays_follow_the_capacitance(parasitics):
 @pytest.mark.parametrize("near, far", [(400, 4000)])
 def test_a_neighbour_couples(near, far):
     """Two long wires of the trunks' metal beside each other; alone one has what Wires give to the substrate."""
-    tech = coriolis_platform("sky130")
+    tech = layout_platform("sky130")
     layer = tech.metals[3].gds
     found = {}
     for apart in (near, far, 50_000):
@@ -142,7 +142,7 @@ def test_a_long_wire_at_a_gate(tmp_path, layer, violations):
     """300 um of the trunks' metal at a gate of 0.03 um2; of the branches' metal nothing is reported."""
     import klayout.db as db
 
-    tech, layout = coriolis_platform("sky130"), db.Layout()
+    tech, layout = layout_platform("sky130"), db.Layout()
     cell = layout.create_cell("gate")
 
     def draw(pair, *box):

@@ -4,10 +4,10 @@ import itertools
 import json
 import shutil
 
-from talbot.flow.layout.route.ports import LEVELS
 from talbot.flow.layout.sensor.pads import width_um
 from talbot.flow.layout.sensor.plan import BLOCKS, CORE, SIGNALS, DieParameters
 from talbot.flow.layout.sensor.ring import TOP
+from talbot.flow.layout.sensor.routing import STUB
 from talbot.flow.layout.sensor.steps.die_connectivity import DieConnectivity
 from talbot.flow.layout.sensor.steps.die_gds import DieGds, DieGdsParameters
 from talbot.flow.layout.sensor.steps.die_plan import DiePlan, DiePlanParameters
@@ -15,7 +15,7 @@ from talbot.flow.layout.steps.parameters import PdkParameters
 from talbot.models.parameters import ArrayParameters, ChipParameters
 from talbot.pixels.blocks import AnalogSizes, blocks
 from talbot.pixels.footprints import write
-from talbot.platforms.coriolis import coriolis_platform
+from talbot.platforms.layout import layout_platform
 from talbot.platforms.pads import pad_process
 from talbot.platforms.pixel import pixel_process
 
@@ -79,7 +79,7 @@ def core(folder):
             cell.shapes(layout.layer(layer, 16)).insert(db.DText(name, db.DTrans(db.DBox(*box).center() - db.DPoint())))
         lines.extend(["    END", f"  END {name}"])
 
-    metal = coriolis_platform("sky130").metals[LEVELS["west"]]
+    metal = layout_platform("sky130").metals[STUB]
     for k, (name, direction) in enumerate(core_pins().items()):
         left, bottom = (0.0 if k % 2 == 0 else WIDTH - 0.3), 5 + 4.0 * (k // 2)
         ends = (0.0, 0.13, 0.32) if k == SPLIT else (0.0, 0.32)

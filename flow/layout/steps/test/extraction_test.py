@@ -5,11 +5,11 @@ import pytest
 from talbot.flow.layout.netlist.netlist import Instance, Netlist, Port
 from talbot.flow.layout.timing.parasitics import parasitics
 from talbot.flow.layout.timing.spef import spef
-from talbot.platforms.coriolis import coriolis_platform
+from talbot.platforms.layout import layout_platform
 
 
 def test_a_wire_counts_with_its_area_both_edges_and_its_squares():
-    tech = coriolis_platform("sky130")
+    tech = layout_platform("sky130")
     m1, via = tech.metals[1], tech.vias[1]
     femtofarad, ohm = parasitics([["m1", 10.0, 0.2], ["m1_via_m2", 0, 0]], tech)
     assert femtofarad == pytest.approx(10 * (0.2 * m1.area_af_um2 + 2 * m1.fringe_af_um) / 1000)

@@ -52,10 +52,8 @@ def test_the_drop_is_that_of_the_power(inputs, tmp_path):
     measured(inputs, tmp_path)
     netlist = small.shift()
     placed = [[k, i.cell, 4.8 * k, 0.0, "0"] for k, i in enumerate(netlist.instances)]
-    (tmp_path / "placement").write_text(
-        json.dumps({"instances": placed, "straps": [["vss", 4.0, []], ["vdd", 16.0, []]]})
-    )
-    (tmp_path / "plan").write_text(json.dumps({"width_um": 20.0, "height_um": 11.2, "macros": []}))
+    (tmp_path / "placement").write_text(json.dumps({"instances": placed, "straps": [["vss", 4.0], ["vdd", 16.0]]}))
+    (tmp_path / "plan").write_text(json.dumps({"width_um": 20.0, "height_um": 11.2, "core": [0.0, 0.0, 20.0, 11.2]}))
     (tmp_path / "areas").write_text(json.dumps({"dff_x1": 5.6 * 4.8, "inv_x1": 5.6 * 1.6}))
     given = {name: tmp_path / name for name in ("placement", "plan", "areas")} | {
         "netlist": inputs["netlist"],

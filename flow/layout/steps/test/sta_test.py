@@ -74,6 +74,8 @@ def test_what_keeps_its_times_breaks_no_rule(tmp_path):
     found, rules = timed(tmp_path)
     assert found["whs_ns"] == pytest.approx(0.3 - 0.05 - 0.05, abs=0.01)  # delay, hold, uncertainty
     assert rules == []
+    files = {path.name for path in tmp_path.iterdir() if path.suffix != ".log"}
+    assert files == {"verilog", "spef", "sdc", "liberty", *Sta.outputs.values()}
 
 
 def test_on_chip_variation_takes_from_both_slacks(tmp_path):

@@ -1,0 +1,72 @@
+# What every stage needs: the design's variables, the cells at all corners, and the database of the stage before.
+source design.tcl
+
+# A stage that crashed or made no progress is run again with `careful`: without what is known to do that
+if {![info exists careful]} { set careful [expr {[info exists ::env(CAREFUL)] ? $::env(CAREFUL) : 0}] }
+
+proc read_cells {} {
+  global corners liberty
+  define_corners {*}$corners
+  foreach corner $corners {
+    read_liberty -corner $corner $liberty($corner)
+  }
+}
+
+proc open_stage {before} {
+  global constraints dont_use
+  read_cells
+  read_db $before.odb
+  read_sdc $constraints
+  wires
+  if {[llength $dont_use]} { set_dont_use $dont_use }
+}
+
+# Resistance and capacitance for estimates: the technology LEF has neither coupling nor the layers above and below.
+proc wires {} {
+  global layer_rc via_rc signal_rc clock_rc
+  foreach {layer resistance capacitance} $layer_rc {
+    set_layer_rc -layer $layer -resistance $resistance -capacitance $capacitance
+  }
+  foreach {via resistance} $via_rc {
+    set_layer_rc -via $via -resistance $resistance
+  }
+  set_wire_rc -signal -layers $signal_rc
+  set_wire_rc -clock -layers $clock_rc
+}
+
+proc routing_layers {} {
+  global signal_layers clock_layers kept_free
+  set_routing_layers -signal $signal_layers -clock $clock_layers
+  foreach {layer share} $kept_free {
+    set_global_routing_layer_adjustment $layer $share
+  }
+}
+
+# Slews and loads, with a share of each limit left.
+proc repair_loads {} {
+  global load_margin
+  repair_design -slew_margin $load_margin -cap_margin $load_margin
+}
+
+proc legalize {} {
+  global padding
+  set_placement_padding -global -left $padding -right $padding
+  detailed_placement
+  check_placement -verbose
+}
+
+# Shorter wires by swaps of neighbours and mirrored cells; releases before 2025 lack the swaps, and one of them crashes
+# when slacks are asked for after these.
+proc shorten {} {
+  global careful
+  foreach command [expr {$careful ? "optimize_mirroring" : "improve_placement optimize_mirroring"}] {
+    if {[llength [info commands $command]]} { $command }
+  }
+  check_placement -verbose
+}
+
+# One line a figure, in a form that is ours: no report of the tool has to be understood.
+proc measured {name value} {
+  puts "TALBOT $name $value"
+  flush stdout
+}

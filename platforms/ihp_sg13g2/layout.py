@@ -1,0 +1,36 @@
+"""SG13G2 for the layout flow: KLayout and the steps of flow.layout. Densities: sg13g2_tech.lef."""
+
+from talbot.platforms.layout import Fill, LayoutPlatform
+
+from . import layers, wires
+
+PLATFORM = LayoutPlatform(
+    name="ihp-sg13g2",
+    package="c4m.pdk.ihpsg13g2",
+    wheel="c4m-pdk-ihpsg13g2",
+    row_um=5.31,
+    site_um=0.885,
+    grid_um=0.005,
+    supply_v=1.2,
+    fill_cells=("tie", "decap_w0"),
+    metals=layers.METALS,
+    vias=layers.VIAS,
+    # below 1 um: along more than that, metal wider than 0.39 um must keep more distance than the router's
+    strap_um=0.95,
+    rail_um=2.24,
+    rail_overlap_um=0.9,
+    pin_pitch_um={"horizontal": 0.5, "vertical": 0.5},
+    label_datatype=layers.LABEL,
+    pin_datatype=layers.PIN,
+    outline=layers.PRBOUNDARY,
+    blockage_layer=100,
+    poly=layers.POLY.gds,
+    active=layers.ACTIVE,
+    contact=layers.CONTACT.gds,
+    # 35 to 60 % in windows of 200 um; IHP fills on its side, too
+    fill=Fill(
+        sides_um=(2.0, 1.0, 0.5), space_um=0.42, clearance_um=0.6, density=0.36, density_most=0.6, window_um=200.0
+    ),
+    wires=wires.WIRES,
+    antenna_walls=False,
+)
