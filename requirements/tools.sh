@@ -54,7 +54,7 @@ fi
 missing=()
 if [ "${1:-}" = --missing ]; then
     shift
-    [ $# -gt 0 ] || set -- iverilog verilator ngspice sta klayout
+    [ $# -gt 0 ] || set -- iverilog verilator ngspice klayout
     for command in "$@"; do
         [ -x "$folder/bin/$command" ] || command -v "$command" >/dev/null || missing+=("$command")
     done

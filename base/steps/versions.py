@@ -12,7 +12,6 @@ COMMANDS = {
     "yosys": (["yosys", "-V"], r"Yosys (\S+)"),
     "yosys-abc": (["yosys", "-V"], r"Yosys (\S+)"),
     "klayout": (["klayout", "-v"], r"KLayout (\S+)"),
-    "sta": (["sta", "-version"], r"(\S+)"),
     "ngspice": (["ngspice", "--version"], r"ngspice-(\S+)"),
     "magic": (["magic", "--version"], r"(\S+)"),
     "iverilog": (["iverilog", "-V"], r"version (\S+)"),

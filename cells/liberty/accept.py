@@ -1,10 +1,9 @@
 """Whether the tools that a library is for read it without a warning."""
 
-import shutil
 import tempfile
 from pathlib import Path
 
-from talbot.base.tools import finish, plain
+from talbot.base.tools import finish, located, plain
 
 SILENT, MISSING = "without a warning", "not installed"
 GOOD = (SILENT, MISSING)
@@ -24,7 +23,7 @@ def readers(path: str | Path) -> dict[str, str]:
 
 
 def _output(command: list[str]) -> str:
-    if not shutil.which(command[0]):
+    if not located(command[0]):
         return MISSING
     done = finish(command)
     output = (done.stdout + done.stderr).strip()

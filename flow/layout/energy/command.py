@@ -105,5 +105,7 @@ def provenance(runner: Runner, corner: str) -> dict[str, Any]:
     steps = CountingBench, Measure(PowerParameters(corner=corner))
     inputs = {name: source for step in steps for name, source in step.inputs.items()}
     known = {name: digest(runner.paths[source]) for name, source in inputs.items() if not source.endswith(".counts")}
-    tools = {k: v for record in runner.records.values() for k, v in record["tools"].items() if k in ("iverilog", "sta")}
+    tools = {
+        k: v for record in runner.records.values() for k, v in record["tools"].items() if k in ("iverilog", "openroad")
+    }
     return {"design": DESIGN, "pdk": PROCESSES[0], "inputs": known, "tools": tools}

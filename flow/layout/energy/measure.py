@@ -144,7 +144,7 @@ class Slews(CornerStep[PowerParameters]):
     inputs = {"verilog": "stream_out.verilog", "spef": "extraction.{wires}", "sdc": "sdc", "liberty": "timing.{corner}"}
     outputs = {"slews": "slews.json"}
     metrics = {"pins": ""}
-    tools = ("sta",)
+    tools = ("openroad",)
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         found = PowerStep(self.parameters).slews(inputs, {"instances": outputs["slews"]})

@@ -52,7 +52,7 @@ class BlockLiberty(CornerStep[BlockLibertyParameters]):
     inputs |= {"liberty": "timing.{corner}", "areas": "stream_out.plan"}
     outputs = {"liberty": "block.lib"}
     metrics = {"model_error_ns": "ns", "arcs": ""}
-    tools = ("sta", "yosys")
+    tools = ("openroad", "yosys")
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         clock, folder = self.parameters.clock, outputs["liberty"].parent

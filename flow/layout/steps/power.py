@@ -50,7 +50,7 @@ class Power(CornerStep[PowerParameters]):
     inputs |= {"sdc": "sdc", "liberty": "timing.{corner}", "activity": "gate_delays_{corner}.activity"}
     outputs = {"instances": "power.json"}
     metrics = {"power_uw": "uW", "by_kind": "uW", "by_block": "uW", "energy_pj_cycle": "pJ", "transitions_cycle": ""}
-    tools = ("sta",)
+    tools = ("openroad",)
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         p, netlist = self.parameters, Netlist.read(inputs["netlist"])

@@ -16,7 +16,7 @@ puts "WORST setup [worst_slack -max]"
 puts "WORST hold [worst_slack -min]"
 report_checks -path_delay max -fields {{slew capacitance net}} -digits 4
 report_checks -path_delay min -fields {{slew capacitance net}} -digits 4
-report_check_types -all_violators
+report_check_types -violators
 write_sdf -digits 4 -no_timestamp {sdf}
 """
 )
@@ -43,7 +43,7 @@ class Sta(CornerStep[StaParameters]):
     inputs = {"verilog": "stream_out.verilog", "spef": "extraction.{wires}", "sdc": "sdc", "liberty": "timing.{corner}"}
     outputs = {"report": "sta.txt", "sdf": "delays.sdf"}
     metrics = {"wns_ns": "ns", "whs_ns": "ns", "f_max_mhz": "MHz", **dict.fromkeys(LIMITS.values(), "")}
-    tools = ("sta",)
+    tools = ("openroad",)
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         script = SCRIPT.format(top=self.parameters.top, sdf=outputs["sdf"], **inputs)

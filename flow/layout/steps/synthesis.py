@@ -144,7 +144,7 @@ class TimedSynthesis(Synthesis):
     The mapping of the least area that is not too slow at the second, slowest one, else the fastest.
     """
 
-    tools = ("yosys", "sta")
+    tools = ("yosys", "openroad")
 
     def __init__(self, parameters: SynthesisParameters, corner: str, slowest: str) -> None:
         super().__init__(parameters)

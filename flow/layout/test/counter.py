@@ -3,7 +3,7 @@
 from talbot.flow.layout.steps.stage import scripts
 from talbot.flow.layout.timing.constraints import sdc
 
-NEEDS = "yosys", "klayout", "openroad", "sta", "layout"
+NEEDS = "yosys", "klayout", "openroad", "layout"
 VERILOG = """
 module Counter(input clk, input reset, input [3:0] step, output reg [7:0] count, output high);
   assign high = count > 8'd99;

@@ -1,6 +1,6 @@
 """The timing of a netlist at its ports: which input reaches what, and delays and constraints measured with OpenSTA.
 
-Debian's OpenSTA (2.0.17) has no `write_timing_model`: its slacks at a grid of slews and loads are that model here.
+OpenSTA's slacks at a grid of slews and loads are the model (2.0.17 had no `write_timing_model`).
 """
 
 import re
@@ -29,6 +29,7 @@ proc group {{name args}} {{
 proc worst {{kind}} {{ return [find_timing_paths -path_group $::groups -path_delay $kind] }}
 """
 )
+# OpenSTA 2.7.0 keeps the reduced parasitics of a net when the load of its port changes: each load reads the SPEF again.
 # A search goes over the whole netlist, and finds the worst path of each group: one for each row of the tables
 OUTPUTS = """
 set_output_delay 0 -clock {clock} [all_outputs]
@@ -37,10 +38,11 @@ set ports [get_ports {{{outputs}}}]
 foreach edge {{rise fall}} {{
   foreach port $ports {{ group "$edge [get_full_name $port]" -${{edge}}_to $port }}
 }}
-foreach slew {{{slews}}} {{
-  set_input_transition $slew [all_inputs]
-  foreach load {{{loads}}} {{
-    set_load $load [all_outputs]
+foreach load {{{loads}}} {{
+  set_load $load [all_outputs]
+  {spef}
+  foreach slew {{{slews}}} {{
+    set_input_transition $slew [all_inputs]
     foreach path [worst max] {{
       puts "DELAY {clock} [name $path endpoint] [named [$path end_transition]] $slew $load [get_property $path slack]"
     }}
@@ -57,10 +59,11 @@ foreach edge {{rise fall}} {{
     group "$edge $from $to" -from [get_ports $from] -${{edge}}_to [get_ports $to]
   }}
 }}
-foreach slew {{{slews}}} {{
-  set_input_transition $slew [all_inputs]
-  foreach load {{{loads}}} {{
-    set_load $load [all_outputs]
+foreach load {{{loads}}} {{
+  set_load $load [all_outputs]
+  {spef}
+  foreach slew {{{slews}}} {{
+    set_input_transition $slew [all_inputs]
     foreach path [worst max] {{
       set ends "[name $path startpoint] [name $path endpoint]"
       puts "DELAY $ends [named [$path end_transition]] $slew $load [get_property $path slack]"

@@ -16,7 +16,7 @@ SINK_FF, MOST = 3.0, 6
 OHM = 30.0  # of such a net
 PINS = """
 foreach pin [get_pins */*] {
-  puts "PIN [get_property $pin full_name] [get_property $pin max_rise_slack] [get_property $pin max_fall_slack]"
+  puts "PIN [get_property $pin full_name] [get_property $pin slack_max_rise] [get_property $pin slack_max_fall]"
 }
 """
 UNLOADED = "set_load 0 [all_outputs]"  # a weak driver of a port gets a buffer, too

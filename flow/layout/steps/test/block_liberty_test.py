@@ -10,7 +10,7 @@ from talbot.flow.layout.steps.block_liberty import BlockLiberty, BlockLibertyPar
 from talbot.flow.layout.timing.boundary import Sources, measure, reach
 from talbot.flow.layout.timing.spef import spef
 
-pytestmark = pytest.mark.needs("sta", "yosys")
+pytestmark = pytest.mark.needs("openroad", "yosys")
 
 
 @pytest.fixture

@@ -11,7 +11,7 @@ from talbot.flow.layout.steps.ir_drop import IrDrop, IrDropParameters
 from talbot.flow.layout.steps.power import Power, PowerParameters, wire_pf
 from talbot.flow.layout.timing.spef import spef
 
-pytestmark = pytest.mark.needs("sta")
+pytestmark = pytest.mark.needs("openroad")
 
 
 @pytest.fixture

@@ -1,10 +1,11 @@
-"""The installed OpenSTA knows every command of every script that is given to it, and a name that it does not know of
+"""OpenROAD's OpenSTA knows every command of every script that is given to it, and a name that it does not know of
 a SPEF ends a step."""
 
 import re
 
 import pytest
 
+from talbot.base import openroad
 from talbot.base.steps import StepError
 from talbot.base.tools import run
 from talbot.flow.layout.design import DESIGNS
@@ -14,7 +15,7 @@ from talbot.flow.layout.timing import boundary
 from talbot.flow.layout.timing.constraints import sdc
 from talbot.flow.layout.timing.spef import spef
 
-pytestmark = pytest.mark.needs("sta")
+pytestmark = pytest.mark.needs("openroad")
 SCRIPTS = {
     "sta": sta.SCRIPT,
     "power": power.SLEWS,
@@ -40,7 +41,7 @@ def test_every_command_is_known(tmp_path):
     (tmp_path / "ask.tcl").write_text(
         "".join(f'if {{[info commands {name}] eq ""}} {{ puts "UNKNOWN {name}" }}\n' for name in names) + "exit\n"
     )
-    assert "UNKNOWN" not in run(["sta", "-no_splash", "-no_init", "-exit", tmp_path / "ask.tcl"])
+    assert "UNKNOWN" not in run(openroad.command(tmp_path / "ask.tcl"))
 
 
 @pytest.fixture

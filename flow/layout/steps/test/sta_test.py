@@ -9,7 +9,7 @@ from talbot.flow.layout.steps.sta import Sta, StaParameters
 from talbot.flow.layout.timing.constraints import sdc
 from talbot.flow.layout.timing.spef import Tree, spef
 
-pytestmark = pytest.mark.needs("sta")
+pytestmark = pytest.mark.needs("openroad")
 
 NETLIST = Netlist(
     "Pair",
