@@ -65,8 +65,10 @@ class AnalogSizes:
 class Pin:
     """A pin on a block's edge.
 
-    direction: input, output or inout, as the block sees it. side: north, south, west or east. at_um: of its middle
-    along that side. supply: whether it is of a supply.
+    direction: input, output or inout, seen from the block.
+    side: north, south, west or east.
+    at_um: of its centre along that side.
+    supply: whether it belongs to a supply.
     """
 
     name: str

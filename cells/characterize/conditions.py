@@ -16,15 +16,23 @@ CONSTRAINT_SLEWS = (0.01e-9, 0.5e-9, 1.5e-9), (0.01e-9, 0.5e-9, 2.5e-9, 5e-9)
 
 @dataclass(frozen=True)
 class Conditions:
-    """Thresholds are fractions of the supply, times s, loads F.
+    """The conditions of a characterization; thresholds are fractions of the supply, times s, loads F.
 
-    lower, upper, middle: of slews and delays, SkyWater's 20 %, 80 %, 50 % without derating. slews: the input slews of a
-    table, shortest first; by default SkyWater's, to 5 ns where a slow process has a low supply, else to 1.5 ns. loads:
-    points of its load axis, which ends where the output's slew is the last of these. least_load: its first.
-    longest_slew: the limit (max_transition), within the table, at which an output has its largest load
-    (max_capacitance). constraint_slews: of setup and hold tables. degrade: share by which the clock-to-output delay
-    may grow at the least setup or hold time. states: most of which an input's capacitance is the mean. bend: error of
-    an interpolated value from which a point is added; extra: most points that are added.
+    corner: process, temperature and voltage.
+    models: device models, one of the process's `SETS`.
+    lower, upper: thresholds of slews, SkyWater's 20 % and 80 % without derating.
+    middle: threshold of delays.
+    slews: input slews of a table, ascending; empty: SkyWater's, to 5 ns where a slow process has a low supply, else to
+        1.5 ns.
+    loads: points of the load axis, which ends where the output's slew is the last of ``slews``.
+    least_load: first point of the load axis.
+    longest_slew: the limit (max_transition) at which an output has its largest load (max_capacitance).
+    constraint_slews: slews of setup and hold tables.
+    degrade: share by which the clock-to-output delay may grow at the least setup or hold time.
+    states: most states over which an input's capacitance is averaged.
+    bend: error of an interpolated value above which a point is added.
+    extra: most points that are added.
+    settings: tolerances of ngspice.
     """
 
     corner: Corner

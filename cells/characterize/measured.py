@@ -49,12 +49,17 @@ class Constraint(TypedDict):
 
 
 class Measured(TypedDict):
-    """Everything measured of one cell at one corner.
+    """All measurements of a cell at a corner.
 
-    longest_slew (s), largest_load (F at which an output's slew is that long): the limits of pins. interpolation_error:
-    of every output. capacitance: (rise, fall) of every input and of outputs that float. quiet_energy: of every input,
-    by edge and slew. leakage: (levels of the inputs, of the outputs, W) of every state. wall_s: by the clock; cpu_s: of
-    this process and ngspice.
+    longest_slew: s, limit of an output's slew.
+    largest_load: F at which an output has that slew.
+    interpolation_error: relative, of every output.
+    capacitance: (rise, fall) in F of every input and of outputs that float.
+    quiet_energy: of every input, by edge and slew.
+    leakage: (levels of the inputs, of the outputs, W) of every state.
+    simulations, repeated: number of transients, and of those that needed a retry.
+    wall_s: elapsed time.
+    cpu_s: CPU time of this process and of ngspice.
     """
 
     name: str

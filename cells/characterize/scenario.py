@@ -9,11 +9,13 @@ from talbot.cells.netlist.states import Output, State
 
 @dataclass(frozen=True)
 class Scenario:
-    """Inputs ``data`` and ``clock`` (numbers) toggle in ``start``, in an order that the constraint gives.
+    """Inputs ``data`` and ``clock`` (numbers) toggle in ``start``, in an order that the constraint sets.
 
-    data_to, clock_to: their levels afterwards. expected: level of the first output at the end, if the constraint is
-    kept; moves: whether it differs from that in ``start``. early: kept while data comes early enough (else late
-    enough). trigger: input number from which the output's delay counts.
+    data_to, clock_to: their levels afterwards.
+    expected: level of the first output at the end where the constraint is kept.
+    moves: whether ``expected`` differs from the level in ``start``.
+    early: the constraint is kept while data comes early enough, else late enough.
+    trigger: number of the input from which the output's delay counts.
     """
 
     start: State

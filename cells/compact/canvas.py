@@ -13,13 +13,17 @@ from talbot.platforms.sky130.layout import PLATFORM
 
 @dataclass(frozen=True)
 class Canvas:
-    """The measures of a cell in um.
+    """The dimensions of a cell in um.
 
-    height: of a row; site: of placement, of the gates, of tap contacts and of routing tracks (met1, met2). rows: y of
-    the horizontal li tracks, from below: contacts of the n transistors first, of the p transistors last; low, high:
-    rows of the gates' contacts (indices). n, p: bottom and top of the diffusions, whose difference is a transistor's
-    width. tap: half height of the taps' diffusion; implant: of their implant; rail: half width of the rails on met1,
-    li_rail: on li; well: lower edge of the n well; length: of a gate.
+    height: of a row.
+    site: pitch of placement, gates, tap contacts and routing tracks (met1, met2).
+    rows: y of the horizontal li tracks, ascending; contacts of the n transistors first, of the p transistors last.
+    low, high: indices of the rows of the gates' contacts.
+    n, p: bottom and top of the diffusions; the difference is a transistor's width.
+    tap, implant: half height of the taps' diffusion and of its implant.
+    rail, li_rail: half width of the rails on met1 and on li.
+    well: lower edge of the n well.
+    length: of a gate.
     """
 
     height: float = PLATFORM.row_um

@@ -24,10 +24,11 @@ NOISE = 0.2
 
 @dataclass
 class Task:
-    """What is to be routed in ``columns`` half-site columns of ``canvas``.
+    """The nets to route in ``columns`` half-site columns of ``canvas``.
 
-    terminals: of every net sets of vertices; the net must meet one of each set. ports: nets that need a pin. blocked:
-    vertices that belong to a net from the start (stubs of the rails).
+    terminals: sets of vertices by net; the net must meet one vertex of each set.
+    ports: nets that need a pin.
+    blocked: vertices that belong to a net from the start (stubs of the rails).
     """
 
     columns: int

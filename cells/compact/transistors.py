@@ -21,9 +21,11 @@ class Switch:
 class Schematic:
     """The transistors of a cell.
 
-    inputs, outputs: nets in order. n, p: switches in equal number, n[i] and p[i] above each other at first. functions:
-    of an output (or inner net of a gate) the expression in Liberty's syntax of the inputs. storage: '' or 'ff' or
-    'gate' (a clock gate); a flip-flop's functions hold 'next_state' and, where it has one, 'clear'.
+    inputs, outputs: nets in order.
+    n, p: equal numbers of switches; n[i] and p[i] start above each other.
+    functions: Liberty expression of the inputs by output (or inner net of a gate); a flip-flop has 'next_state' and
+        'clear'.
+    storage: '', 'ff' or 'gate' (a clock gate).
     """
 
     name: str

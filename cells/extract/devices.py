@@ -17,9 +17,13 @@ REACH = 1000  # dbu around a cell in which there is substrate
 class Device:
     """A transistor.
 
-    kind: 'n' or 'p'. width, length: um. ad, as_: um2; pd, ps: um, a shared diffusion divided among its gates. sa, sb:
-    um from the gate to the ends of its diffusion. marks: the threshold and library marks over the gate. at: middle of
-    its gate, dbu.
+    kind: 'n' or 'p'.
+    width, length: um.
+    ad, as_: um2, of drain and source; gates divide a shared diffusion.
+    pd, ps: um, perimeters of drain and source.
+    sa, sb: um from the gate to the ends of its diffusion.
+    marks: threshold and library markers over the gate.
+    at: centre of the gate, dbu.
     """
 
     kind: str
@@ -43,9 +47,14 @@ class Device:
 class CellLayout:
     """Nets and transistors of a cell; regions in dbu.
 
-    dbu: um. ports: names that labels give. active: all diffusion, gates included. shapes: conductor (LEF name or
-    DIFFUSION) -> net -> region. wells: net -> region. islands: 'n' or 'p' -> net -> sources and drains. vias: region of
-    every one of ExtractionPlatform.vias. labels: net -> (conductor, point), the highest conductor first.
+    dbu: um.
+    active: all diffusion, gates included.
+    ports: names of labels.
+    shapes: conductor (LEF name or DIFFUSION) -> net -> region.
+    wells: net -> region.
+    islands: 'n' or 'p' -> net -> sources and drains.
+    vias: region of each of ExtractionPlatform.vias.
+    labels: net -> (conductor, point), the highest conductor first.
     """
 
     dbu: float

@@ -26,9 +26,11 @@ KEYS = (("related_pin", "timing_type", "timing_sense"), ("related_pin", "timing_
 
 @dataclass(frozen=True)
 class Difference:
-    """One table of ``cell``: ours and theirs at their points (ns, pJ, pF, nW), NaN where one has no such table.
+    """A table of ``cell`` in both libraries, at the reference's points.
 
-    kind: delay, slew, energy, capacitance, leakage, setup, hold, ...; what: pin, related pin and table.
+    kind: delay, slew, energy, capacitance, leakage, setup, hold, ...
+    what: pin, related pin and table.
+    ours, theirs: values in ns, pJ, pF or nW; NaN where a library has no such table.
     """
 
     cell: str

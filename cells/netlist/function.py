@@ -38,9 +38,12 @@ class Forcing(NamedTuple):
 class Storage:
     """The storage of a flip-flop, latch or clock gate.
 
-    kind: 'ff', 'latch' or 'gate' (clock gating: a latch before an AND). clock: pin; active: its level after the active
-    edge (latch: while transparent). data: expression stored, of ``data_pins``. both: level of Q while clear and preset
-    are active, None where they cannot be.
+    kind: 'ff', 'latch' or 'gate' (clock gating: a latch before an AND).
+    clock: pin.
+    active: level of the clock after the active edge (latch: while transparent).
+    data: stored expression, of ``data_pins``.
+    clear, preset: pin and active level.
+    both: level of Q while clear and preset are active, None where they cannot be.
     """
 
     kind: str
@@ -65,11 +68,12 @@ class Storage:
 
 @dataclass(frozen=True)
 class Arc:
-    """A timing arc: an edge of ``pin`` causes one of ``output``.
+    """A timing arc: an edge of ``pin`` causes an edge of ``output``.
 
-    edge: rise or fall of the output, from the other level or high impedance; where the output is let go (type
-    three_state_disable), rise from low and fall from high. type: Liberty's timing_type. changes: every way in which it
-    happens, shortest path first.
+    edge: rise or fall of the output, from the other level or high impedance; for three_state_disable rise from low,
+        fall from high.
+    type: Liberty's timing_type.
+    changes: every state change that causes it, shortest path first.
     """
 
     pin: str

@@ -18,9 +18,10 @@ LIMIT = 20000  # states, more than any cell of a library has
 class State:
     """A settled state.
 
-    inputs, outputs: levels in the order of the machine's pins ('Z' for high impedance). kept: levels of the outputs'
-    nodes, of one that floats its charge. nodes: (node, level) of every node inside that is known. path: input vectors
-    that lead here from an unknown state, this state's own last; this one alone where the inputs decide everything.
+    inputs, outputs: levels in the order of the machine's pins ('Z' for high impedance).
+    kept: levels of the outputs' nodes, for one that floats its charge.
+    nodes: (node, level) of every inner node with a known level.
+    path: input vectors from an unknown state to this one, this state's last.
     """
 
     inputs: Vector

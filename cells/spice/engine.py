@@ -45,9 +45,12 @@ class SimulationError(ToolError):
 
 @dataclass(frozen=True)
 class Transient:
-    """One run. stimulus: sources of the inputs; loads: F at the outputs; stop, step: s, end and longest time step.
+    """A transient analysis.
 
-    nodes: (node inside the cell, V) from which the search for the first operating point starts.
+    stimulus: sources of the inputs.
+    loads: F at the outputs.
+    stop, step: s, end and longest time step.
+    nodes: (node inside the cell, V) from which the search for the operating point starts.
     """
 
     stimulus: Mapping[str, Points]

@@ -7,10 +7,12 @@ from talbot.models.parameters import ParameterError
 
 @dataclass(frozen=True)
 class Settings:
-    """How exactly ngspice solves.
+    """Accuracy of ngspice.
 
-    reltol, trtol: its tolerances of the solution and of the time step. steps: fewest time points of a transient.
-    timeout: CPU seconds that a transient may take. method: trap or gear.
+    reltol, trtol: tolerances of the solution and of the time step.
+    steps: fewest time points of a transient.
+    timeout: CPU seconds of a transient.
+    method: trap or gear.
     """
 
     reltol: float = 1e-3

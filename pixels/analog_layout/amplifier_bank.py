@@ -66,10 +66,13 @@ def units() -> dict[str, int]:
 
 @dataclass(frozen=True)
 class BankPlan:
-    """A bank that is to be drawn.
+    """A bank before it is drawn.
 
-    length_um: of a finger beside its neighbours. nets: of the capacitors' names. common: net of the common node. ends:
-    x of the tracks' west ends by net. west: of the first finger's middle.
+    length_um: of a finger next to its neighbours.
+    nets: net of each capacitor, by name.
+    common: net of the common node.
+    ends: x of the tracks' west ends, by net.
+    west: x of the first finger's centre.
     """
 
     length_um: float

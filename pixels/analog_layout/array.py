@@ -38,11 +38,14 @@ HALF_COLUMN = SIDE // 2 - 1
 
 @dataclass(frozen=True)
 class ArrayPlan:
-    """An array that is to be drawn.
+    """A capacitor array before it is drawn.
 
-    names: of the capacitor of each unit, [row, column] from the side of the bus; a half is beyond them. nets: of the
-    lower plates by name, and of half. common: net of the upper plates. edge_um, half_um: sides of a unit and of half a
-    one. left, right: ends of the bus, um.
+    names: capacitor of each unit, [row, column] from the side of the bus; the half unit is outside.
+    nets: net of each lower plate, by name, and of `half`.
+    common: net of the upper plates.
+    edge_um, half_um: side of a unit and of the half unit.
+    left, right: ends of the bus, um.
+    ground: net of the dummies.
     """
 
     names: npt.NDArray[np.str_]
@@ -83,8 +86,12 @@ class ArrayPlan:
 
 @dataclass
 class Array:
-    """A drawn array. tracks: of the bus. exit: (x, y) at which the common node leaves, on the fourth metal. taps:
-    of each capacitor in each column, on the third metal."""
+    """A drawn array.
+
+    tracks: of the bus.
+    exit: (x, y) at which the common node leaves on the fourth metal.
+    taps: of each capacitor in each column, on the third metal.
+    """
 
     plan: ArrayPlan
     tracks: list[Strap] = field(default_factory=list)

@@ -23,10 +23,16 @@ MARGIN = 2.0  # of a cell beyond its rails, um
 class Cell:
     """A drawn cell.
 
-    boxes: cells in it that LVS compares once: none. ports: in the order of its pins. devices: its transistors in
-    fingers. plates: its capacitors. terminals: of its transistors. tracks: of its nets, of a cell with one strip.
-    taps: of its capacitors, as `Array` has them, under the names of ``plates``. matched: units of ``unit`` F of
-    fringe capacitors between two nets, in the order of their names. resistors: drawn ones, and their ``ends``.
+    boxes: cells in it that LVS compares separately: none.
+    ports: in the order of its pins.
+    devices: its transistors in fingers.
+    plates: its capacitors.
+    terminals: of its transistors.
+    taps: of its capacitors, as in `Array`, under the names of ``plates``.
+    tracks: of its nets, for a cell with one strip.
+    matched: units of fringe capacitors between two nets, names in alphabetical order.
+    unit: F of such a unit.
+    resistors, ends: drawn resistors and their ends.
     """
 
     boxes: ClassVar[tuple[str, ...]] = ()

@@ -70,10 +70,13 @@ SINGLE = (*CONTROLS, *OF_TAPS, "vbp", "vcp", "level", "start", *TWICE)
 
 @dataclass(frozen=True)
 class Piece:
-    """A strip: its n and p transistors from the west; rows of the tracks of nets that leave it at a height of theirs.
+    """A strip of the column.
 
-    west, east: nets that leave it under the plates beside it. shields: quiet nets whose tracks are as long as it is.
-    over: nets whose tracks are as long as another's, between it and what it must not couple to.
+    n, p: its transistors from the west.
+    west, east: nets that leave it below the adjacent plates.
+    fixed: row of each net that leaves it at a fixed height.
+    shields: quiet nets whose tracks are as long as the strip.
+    over: nets whose tracks span another net's, as a shield.
     """
 
     n: tuple[str, ...]
@@ -86,10 +89,13 @@ class Piece:
 
 
 class Cap(NamedTuple):
-    """A capacitor beside a strip: its plates' nets; the strip that its lines come from is in the east.
+    """A capacitor next to a strip.
 
-    beside: F that the lines of both nets have already, as extracted. low, high: y of the upper plate. above: it is over
-    the one before it, not in the east of it.
+    lower, upper: nets of the plates.
+    from_east: the strip of its lines is in the east.
+    beside: F between the lines of both nets, as extracted.
+    low, high: y of the upper plate.
+    above: it is over the preceding capacitor, not east of it.
     """
 
     name: str
@@ -314,9 +320,13 @@ class Drawn(NamedTuple):
 
 @dataclass(frozen=True)
 class ColumnPlan:
-    """Where everything of a column is, um.
+    """Positions of a column's parts, um.
 
-    lines: x of what crosses all columns. joints: x of the supplies that do. plates: of the capacitors. right: its end.
+    lines: x of the lines that cross all columns.
+    joints: x of the supplies that cross all columns.
+    plates: of the capacitors.
+    right: its east end.
+    free: names of additional lines that cross all columns.
     """
 
     strips: tuple[Plan, ...]

@@ -58,8 +58,11 @@ Pair = tuple[Device | None, Device | None]
 
 @dataclass
 class Group:
-    """Strips above each other. rows: of n and p transistors, and their ends. at: x of what leaves, by net: to the north
-    (ways), to the south (pins), from strip to strip (inner), to capacitors (plates)."""
+    """Stacked strips.
+
+    rows: n and p transistors of each strip, and its east end.
+    ways, pins, inner, plates: x by net of lines to the north, to the south, between strips and to capacitors.
+    """
 
     left: float
     right: float
@@ -115,7 +118,11 @@ class Group:
 
 @dataclass(frozen=True)
 class Band:
-    """The drawn band. height: um. ways: numbers of the columns north of which a net's way is, by net."""
+    """The drawn band.
+
+    height: um.
+    ways: by net, numbers of the columns north of which its lines are.
+    """
 
     cell: Cell
     height: float

@@ -37,7 +37,12 @@ WAY, END = 0.2, 1.0  # um, width of a way; where it goes up, beyond the columns
 
 @dataclass(frozen=True)
 class Columns:
-    """The drawn columns. cell: all, lying, column k from y = k PITCH on. column: one. count: how many."""
+    """The drawn columns.
+
+    cell: all of them; column k begins at y = k PITCH.
+    column: a single one.
+    count: their number.
+    """
 
     cell: "db.Cell"
     column: Cell

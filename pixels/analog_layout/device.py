@@ -36,8 +36,12 @@ def snap(um: float) -> float:
 
 
 class Strap(NamedTuple):
-    """Where a net is on a metal: from ``left`` to ``right`` at ``y``, um. fixed: it must not be longer. end: of its
-    transistor, g, d or s; railed: it is on the rail."""
+    """A net's segment on a metal, from ``left`` to ``right`` at ``y``, um.
+
+    fixed: it must not be extended.
+    end: terminal of its transistor: g, d or s.
+    railed: it is on the rail.
+    """
 
     net: str
     left: float
@@ -50,8 +54,11 @@ class Strap(NamedTuple):
 
 @dataclass(frozen=True)
 class Device:
-    """A transistor in ``fingers``; swapped: a single finger's drain is in the west. dummies: a gate at each end that is
-    off, with its outer diffusion on the rail."""
+    """A transistor drawn in ``fingers``.
+
+    dummies: a switched-off gate at each end, with its outer diffusion on the rail.
+    swapped: a single finger's drain is in the west.
+    """
 
     transistor: Transistor
     fingers: int

@@ -67,10 +67,15 @@ GATE_OF_VDD = "vdd_gate"  # the track of what the shifters' gates have at the ch
 
 @dataclass(frozen=True)
 class RowPlan:
-    """Where everything of a row is, um from its logic's west end.
+    """Positions of a row's parts, um from its logic's west end.
 
-    lines: x of what crosses all rows; joints: of the supplies that do. jogs: of the ways of its lines to their places.
-    pins: of the block's pins in the south. right: its east edge. west: of its logic from the block's west.
+    plan, logic, thick: strips of the row, of its logic and of its level shifters.
+    lines: x of the lines that cross all rows.
+    joints: x of the supplies that cross all rows.
+    jogs: x of the jogs from the tracks to the row lines' places.
+    pins: x of the block's south pins.
+    right: its east edge.
+    west: of its logic from the block's west edge.
     """
 
     plan: Plan

@@ -48,13 +48,19 @@ class Placed:
 
 @dataclass(frozen=True)
 class Plan:
-    """A strip that is to be drawn.
+    """A strip before it is drawn.
 
-    n, p: rows. left, right: its ends, um. axis: of its symmetry, or None. split, twisted: pairs of nets that are mirror
-    images, the western one first. through: x up to which the
-    tracks of nets that meet other strips go, too. rails: nets without tracks, the lower rail's first. quiet: nets whose
-    tracks are together, away from the others. least_um: of its height. fixed: rows of nets that go on in other strips
-    at the same height; least_rows: of tracks, that there always are. track_in: um from a rail's middle to the first.
+    n, p: its rows.
+    left, right: its ends, um.
+    through: by net, x to which the tracks of nets that meet other strips reach.
+    split, twisted: pairs of nets that are mirror images, the western one first.
+    axis: of its symmetry, or None.
+    rails: nets without tracks, the lower rail's first.
+    quiet: nets whose tracks are grouped, away from the others.
+    least_um: smallest height.
+    fixed: rows of nets that continue in other strips at the same height.
+    least_rows: smallest number of tracks.
+    track_in: um from a rail's centre to the first track.
     """
 
     n: tuple[Placed, ...]
@@ -141,8 +147,13 @@ class Terminal(NamedTuple):
 
 @dataclass
 class Strip:
-    """A drawn strip. y: of its lower rail. tracks: pieces of nets' tracks. drops: (net, x, low, high).
-    terminals: of its transistors."""
+    """A drawn strip.
+
+    y: of its lower rail's centre.
+    tracks: segments of the nets' tracks.
+    drops: (net, x, low, high).
+    terminals: of its transistors.
+    """
 
     plan: Plan
     y: float

@@ -56,17 +56,44 @@ STRAY = 0.3e-12  # F at the output beside the lane's array
 
 @dataclass(frozen=True)
 class AmplifierSpec:
-    """What the amplifier must do.
+    """The amplifier's specification.
 
-    vref: V, its output's zero, and lane_b, 0.3..1.5. reset_level: V of a column without light, 0.3..1.8. swing: V of a
-    full well, 0.01..1.5. hold: s, one cycle of the chip: the time for its output. high: s, the part of a cycle in which
-    clk is high. track: s from the cycle's start until the lane's array is at the output: it decides first. settling:
-    LSB that may be left at the cycle's end. gain: relative, by which it may be off: common to all columns of a lane.
-    inl: LSB, peak, over three quarters of the range. ktc: LSB, rms, of what the reset's end leaves. ambient: LSB by
-    which a difference may change where ambient light is 100 times it. trim: steps, peak error of a step of the trim.
-    offset: LSB, rms over lanes. noise: LSB, rms, of both phases, as much as a decision may have. energy: J a sample,
-    Table 6.1's to one digit. sample: s between two samples of a lane at the table's frame rate. lanes: that share a
-    bias, 1..32.
+    Attributes
+    ----------
+    vref : float
+        V of its output's zero and of lane_b, 0.3..1.5.
+    reset_level : float
+        V of a column without light, 0.3..1.8.
+    swing : float
+        V of a full well, 0.01..1.5.
+    hold : float
+        S, a cycle of the chip: the time for its output.
+    high : float
+        S of the cycle in which clk is high.
+    track : float
+        S from the cycle's start until the lane's array, after its last decision, connects to the output.
+    settling : float
+        LSB that may remain at the cycle's end.
+    gain : float
+        Relative error, common to all columns of a lane.
+    inl : float
+        LSB, peak, over three quarters of the range.
+    ktc : float
+        LSB, rms, of the charge that the reset's end leaves.
+    ambient : float
+        LSB by which a difference may change where ambient light is 100 times it.
+    trim : float
+        Steps, peak error of a step of the trim.
+    offset : float
+        LSB, rms over lanes.
+    noise : float
+        LSB, rms, of both phases, as much as a decision may have.
+    energy : float
+        J a sample, Table 6.1's to one digit.
+    sample : float
+        S between two samples of a lane at the table's frame rate.
+    lanes : int
+        Number that share a bias, 1..32.
     """
 
     vref: float = 0.8
@@ -117,10 +144,14 @@ class AmplifierSpec:
 
 @dataclass(frozen=True)
 class OtaSizes:
-    """Currents and widths of one side.
+    """Currents and widths of a side of the operational amplifier; widths in um, 0.42..2000.
 
-    tails: parts of the tail, 1..1000, each of which carries LEG BIAS. In um, 0.42..2000: pair (all parts), tail (one
-    part), sink (all parts), cascode, top, cascode_p, leg (the diode of BIAS).
+    tails: parts of the tail, 1..1000, each with a current of LEG BIAS.
+    pair: all parts of the input pair.
+    tail: a part of the tail.
+    sink: all parts of a sink.
+    cascode, top, cascode_p: of these transistors.
+    leg: the diode of BIAS.
     """
 
     tails: int
@@ -140,7 +171,11 @@ class OtaSizes:
 
 @dataclass(frozen=True)
 class AmplifierSizes:
-    """Sizes; unit: F, of a capacitor of so many cells. gain: of a column's volts, 0.1..16."""
+    """Sizes of the amplifier.
+
+    unit: F, of a capacitor of ``cells`` cells.
+    gain: of a column's voltage, 0.1..16.
+    """
 
     ota: OtaSizes
     unit: float = UNIT

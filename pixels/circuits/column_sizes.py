@@ -193,10 +193,15 @@ class Stage:
 
 @dataclass(frozen=True)
 class ColumnSizes:
-    """Of a diode's part of a column, and of the block's bias.
+    """Sizes of a diode's part of a column, and of the block's bias.
 
-    front: the charge amplifier; back: the holder while a row is read; lane: while its column is selected, with the
-    lane's source of current. Both have one input. feedback: Cf; hold: Chold; kick: F. gain: Cin over Chold.
+    front: the charge amplifier.
+    back: the holder while a row is read.
+    lane: the holder while its column is selected, with the lane's current source.
+    feedback: F, Cf.
+    hold: F, Chold.
+    kick: F.
+    gain: Cin over Chold.
     """
 
     front: Stage

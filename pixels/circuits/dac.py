@@ -29,7 +29,14 @@ LEAST_ATTENUATION = 0.8  # below it the comparator's offset counts for too much
 
 @dataclass(frozen=True)
 class DacSizes:
-    """An array; unit: F, 1e-16..1e-12, of matching ``unit_mismatch`` (rms). kind, source: its cell. area: m2."""
+    """Sizes of an array.
+
+    unit: F, 1e-16..1e-12.
+    unit_mismatch: rms, relative.
+    kind, source: capacitor cell and the source of its figures.
+    area: m2 of a unit.
+    width_per_pf: um of each switch for a pF.
+    """
 
     unit: float
     unit_mismatch: float

@@ -15,8 +15,12 @@ GROUND = "0"
 
 
 class Transistor(NamedTuple):
-    """One transistor; role: a key of the process's ROLES; w, l: um. fingers: in which it is drawn, and modelled; 0: as
-    `instance` of the process has it."""
+    """A transistor.
+
+    role: a key of the process's ROLES.
+    w, l: um.
+    fingers: number in which it is drawn and modelled; 0: as the process's `instance` chooses.
+    """
 
     name: str
     drain: str
@@ -40,7 +44,11 @@ class Transistor(NamedTuple):
 
 
 class Capacitor(NamedTuple):
-    """One capacitor; value: F. units: matched cells in it, whose mismatch it has; 0: a parasitic."""
+    """A capacitor.
+
+    value: F.
+    units: number of matched cells, which decides its mismatch; 0: a parasitic.
+    """
 
     name: str
     a: str
@@ -50,8 +58,11 @@ class Capacitor(NamedTuple):
 
 
 class Resistor(NamedTuple):
-    """One resistor; value: ohm. drawn: the process's resistor, with its spread and
-    temperature; else ideal."""
+    """A resistor.
+
+    value: ohm.
+    drawn: the process's resistor, with its spread and temperature; else ideal.
+    """
 
     name: str
     a: str

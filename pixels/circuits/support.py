@@ -19,11 +19,13 @@ DELAYS = 4  # inverters in each loop of the switch drivers
 
 @dataclass(frozen=True)
 class SupportSpec:
-    """Limits and loads.
+    """Limits and loads of switch drivers and bias.
 
-    gap: s, least between
-    two phases. lost: s, most. switches: F, 1e-17..1e-9, of the switches on each phase. bias: relative, by which its
-    current may be off BIAS. start: s, most until it is there.
+    gap: s, least between two phases.
+    lost: s, longest gap.
+    switches: F, 1e-17..1e-9, of the switches on each phase.
+    bias: relative error of the current BIAS.
+    start: s, longest start-up.
     """
 
     gap: float = 0.1e-9

@@ -21,10 +21,13 @@ Box = tuple[int, int, int, int]  # left, bottom, right, top
 
 @dataclass(frozen=True)
 class Lines:
-    """A grating as it is drawn.
+    """A drawn grating.
 
-    normal: direction in which it modulates, rad. direction: (p, q) along its lines, p >= 0. upright: whether lines
-    follow one another along y, else along x. pitch: along that axis. width: of a line, in lengths of (p, q).
+    normal: direction of modulation, rad.
+    direction: (p, q) along its lines, p >= 0.
+    upright: lines repeat along y, else along x.
+    pitch: along that axis.
+    width: of a line, in lengths of (p, q).
     """
 
     normal: float

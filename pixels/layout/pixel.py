@@ -51,10 +51,12 @@ LEAST_PITCH = 10.0
 
 @dataclass(frozen=True)
 class PixelLayout:
-    """What a pixel is drawn from: the gratings that the optics solved, its type, how its analyzers follow from both.
+    """The input of a pixel's drawing. Raises ParameterError for a pixel that cannot be drawn.
 
-    geometry: an amplitude pixel. kind: the type. diodes: rows of `Response` for the two diodes, of 0..3 quarter periods
-    (`talbot.pixels.tabled.rows`). w_um, l_um: of the transistors. Raises ParameterError for what is not drawn.
+    geometry: an amplitude pixel.
+    kind: the type.
+    diodes: rows of `Response` for the two diodes, 0..3 quarter periods (`talbot.pixels.tabled.rows`).
+    w_um, l_um: of the transistors.
     """
 
     geometry: PixelGeometry

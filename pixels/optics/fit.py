@@ -18,12 +18,28 @@ SIGMA_MAX = 10.0  # as of models.parameters.OpticsParameters
 class Fit:
     """Eq. 3.1 for a pixel: each diode has the share  q/2 A(theta) (1 + m cos(beta theta + alpha + turn 2 pi shift)).
 
-    alpha: rad, of the diode whose analyzer is at the geometry's shift. beta: rad per rad. sigma: of the aperture A, a
-    Gaussian, rad. m: 0..1. turn: 1 or -1, whether an analyzer farther on has the greater phase. quantum_efficiency:
-    share of the light on the pixel that both diodes get, over all angles. diattenuation: (along - across) / (along +
-    across) of that; extinction_ratio: the greater over the smaller. residual_rms: of all four curves against the
-    formula, relative to the mean response. unexplained: share of the variance of the differences that the formula
-    leaves.
+    Attributes
+    ----------
+    alpha : float
+        Rad, of the diode whose analyzer is at the geometry's shift.
+    beta : float
+        Rad per rad.
+    sigma : float
+        Rad, of the aperture A, a Gaussian.
+    m : float
+        0..1.
+    turn : int
+        1 or -1: the sign of the phase of an analyzer's shift.
+    quantum_efficiency : float
+        Share of the light on the pixel that both diodes receive, over all angles.
+    diattenuation : float
+        (along - across) / (along + across) of the quantum efficiency.
+    extinction_ratio : float
+        The larger of the two polarizations over the smaller.
+    residual_rms : float
+        Of all four curves from the formula, relative to the mean response.
+    unexplained : float
+        Share of the differences' variance that the formula leaves.
     """
 
     alpha: float

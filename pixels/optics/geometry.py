@@ -12,9 +12,14 @@ QUADRATURE = 0.0, 0.25, 0.5, 0.75  # of a period: alpha = 0, pi/2, pi and 3 pi/2
 
 @dataclass(frozen=True)
 class Slab:
-    """A layer: its permittivity and thickness in um; with lines, their permittivity, share and number in a period.
+    """A layer of the stack.
 
-    spans: lines of any widths at any places, (left, right) in periods, in place of even ones.
+    medium: permittivity.
+    thickness_um: thickness.
+    line: permittivity of lines, None without lines.
+    fill: share of the period that is lines.
+    lines: number of equal lines in a period.
+    spans: lines of any width at any place instead, (left, right) in periods.
     """
 
     medium: complex
@@ -29,15 +34,29 @@ class Slab:
 class PixelGeometry:
     """Two photodiodes under gratings of a process's metal.
 
-    process, heights: see `platforms.optics.optical_stack`. kind: "amplitude", a grating over a second one of metal
-    (the analyzer) and half of the pixel for each diode, whose analyzers are half a period apart; "interleaved", where
-    fingers of the two diodes, half a period wide, take turns under one grating; or "photogate", the same with a gate
-    of polysilicon over each finger (Angle Sensitive Photogate, [Jayasuriya2017], Sec. 5.4.2). diffraction, analyzer:
-    LEF names of the upper and of the lower metal, or of the gates; an interleaved pixel has no analyzer (None).
-    period_um: of both. fill, analyzer_fill: share of metal, or of gates. shift: of the analyzer and of the first
-    diode's fingers against the lines above, -1..1 periods. pitch_um: of pixels.
-
     Raises ParameterError for what the process cannot make.
+
+    Attributes
+    ----------
+    process, heights : str
+        See `platforms.optics.optical_stack`.
+    kind : str
+        "amplitude": a grating over a second one of metal (the analyzer), half of the pixel for each diode, analyzers
+        half a period apart. "interleaved": fingers of the two diodes, half a period wide, alternate under one grating.
+        "photogate": the same with a gate of polysilicon over each finger (Angle Sensitive Photogate, [Jayasuriya2017],
+        Sec. 5.4.2).
+    diffraction : str
+        LEF name of the upper metal.
+    analyzer : str or None
+        LEF name of the lower metal, or of the gates; None for an interleaved pixel.
+    period_um : float
+        Of both gratings.
+    fill, analyzer_fill : float
+        Share of metal, or of gates.
+    shift : float
+        Of the analyzer and of the first diode's fingers relative to the lines above, -1..1 periods.
+    pitch_um : float
+        Of pixels.
     """
 
     process: str = "sky130"

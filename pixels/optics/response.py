@@ -17,10 +17,20 @@ from .solve import ORDERS, Floats, Illumination, solve
 class Response:
     """Shares of the light on a pixel that enter the silicon under a diode.
 
-    angles: (A,) in rad between the ray's projection and the normal, in the plane across the lines; across: the same in
-    the plane along the lines. wavelengths_um: (W,). shares: (W, 2, 4, A), 0..1: polarization along the lines, then
-    across them; diodes whose analyzers (or fingers) are 0, 1/4, 1/2 and 3/4 of a period on. Diodes 0 and 2 make the
-    pixel of one type, 1 and 3 that of the type in quadrature. reflected: (W, 2, 4, A).
+    Attributes
+    ----------
+    angles : Floats
+        (A,), rad between the ray's projection and the normal, in the plane across the lines.
+    across : Floats
+        (A,), the same in the plane along the lines.
+    wavelengths_um : Floats
+        (W,).
+    shares : Floats
+        (W, 2, 4, A), 0..1: polarization along the lines, then across them; diodes whose analyzers (or fingers) are
+        shifted by 0, 1/4, 1/2 and 3/4 of a period. Diodes 0 and 2 form the pixel of one type, 1 and 3 that of the type
+        in quadrature.
+    reflected : Floats
+        (W, 2, 4, A).
     """
 
     geometry: PixelGeometry

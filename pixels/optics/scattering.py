@@ -36,9 +36,10 @@ class Orders:
 
 @dataclass(frozen=True)
 class Scattering:
-    """What a part of a stack does with waves: reflection seen from above and below, transmission down and up.
+    """The scattering of a part of a stack: matrices (..., B, B) over amplitudes in the half spaces above and below.
 
-    Matrices (..., B, B) over amplitudes; above and below the part are half spaces, in which amplitudes are taken.
+    above, below: reflection of waves from above and from below.
+    down, up: transmission.
     """
 
     above: Complexes

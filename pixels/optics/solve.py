@@ -27,9 +27,10 @@ class SolverError(ArithmeticError):
 class Illumination:
     """Plane waves of one wavelength onto a stack.
 
-    wavelength_um: in vacuum. along, across: angles (A,) in rad between the ray's projections and the normal, in the
-    plane across the lines (along their period) and in that along the lines; |angle| < pi/2. top, bottom: permittivity
-    above (without loss) and below.
+    wavelength_um: in vacuum.
+    along: (A,), rad between the ray's projection and the normal in the plane across the lines, |angle| < pi/2.
+    across: (A,), the same in the plane along the lines.
+    top, bottom: permittivity above (without loss) and below.
     """
 
     wavelength_um: float
@@ -56,10 +57,12 @@ class Illumination:
 
 @dataclass(frozen=True)
 class Light:
-    """Shares of the light that falls in, (2, shifts, ..., A); polarization first: field along the lines, or across.
+    """Shares of the incident light, (2, shifts, ..., A); polarization first: field along the lines, then across.
 
-    reflected: all. transmitted: all that enters the half space below. fingers: of that, what enters through the half
-    of each period around x = shift, and through the rest, where it was asked for: (2, shifts, 2, A).
+    reflected: all reflected light.
+    transmitted: all light that enters the half space below.
+    fingers: (2, shifts, 2, A), of that through the half of each period around x = shift and through the other half, or
+        None.
     """
 
     reflected: Floats

@@ -23,9 +23,10 @@ Spans = tuple[tuple[float, float], ...]  # in um, along the cut
 
 @dataclass(frozen=True)
 class Section:
-    """What a cut meets in one period.
+    """The content of a cut in one period.
 
-    metals: spans of each metal, by its LEF name. wells: spans of each photodiode.
+    metals: spans of each metal, by its LEF name.
+    wells: spans of each photodiode.
     """
 
     period_um: float
