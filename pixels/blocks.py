@@ -195,7 +195,7 @@ def _adc_lanes(chip: ChipParameters, sizes: AnalogSizes) -> Block:
     In the east the ground is between two pins of the supply, of the lanes and of the amplifiers above these.
     """
     width = chip.lanes * sizes.lane_um
-    own = [
+    names = [
         name
         for lane in range(chip.lanes)
         for name in (
@@ -205,9 +205,9 @@ def _adc_lanes(chip: ChipParameters, sizes: AnalogSizes) -> Block:
         )
     ]
     if chip.lanes == 1:
-        own = [name.removesuffix("[0]") if name.startswith(("en", "comparator")) else name for name in own]
+        names = [name.removesuffix("[0]") if name.startswith(("en", "comparator")) else name for name in names]
     shared = bits({"clk": 1, "hold": 1, "unsigned_": 1, "balance": BALANCE_BITS})
-    pins = _spread("adc_lanes", [*shared, *own], "input", 0, width)
+    pins = _spread("adc_lanes", [*shared, *names], "input", 0, width)
     return Block(
         "adc_lanes",
         width + sizes.bias_um,

@@ -61,14 +61,14 @@ def lef(block: Block, pdk: str, supply_um: float, taken: Iterable[str] = ()) -> 
     pins = [
         lef_text.Pin(
             name,
-            [f"DIRECTION {found[0][0].direction.upper()}", f"USE {USES.get(name, 'SIGNAL')}"],
-            [lef_text.Rectangles(of, [box(pin, block, supply_um, grid_um)]) for pin, of in found],
+            [f"DIRECTION {shapes[0][0].direction.upper()}", f"USE {USES.get(name, 'SIGNAL')}"],
+            [lef_text.Rectangles(of, [box(pin, block, supply_um, grid_um)]) for pin, of in shapes],
         )
-        for name, found in pieces.items()
+        for name, shapes in pieces.items()
     ]
     deep = DEEP_UM + supply_um
     inside = [(deep, deep, block.width_um - deep, block.height_um - deep)]
-    layers = dict.fromkeys([*(of for found in pieces.values() for _, of in found), *taken])
+    layers = dict.fromkeys([*(of for shapes in pieces.values() for _, of in shapes), *taken])
     obstructions = [lef_text.Rectangles(of, inside) for of in layers]
     macro = lef_text.macro(
         block.name,
@@ -105,10 +105,10 @@ def draw_pins(layout: "db.Layout", cell: "db.Cell", block: Block, pdk: str, supp
             cell.shapes(layout.layer(*numbers)).insert(text)
 
 
-def write(out: str | Path, made: Iterable[Block], pdk: str, supply_um: float) -> None:
+def write(out: str | Path, footprints: Iterable[Block], pdk: str, supply_um: float) -> None:
     """Write <block>.lef and <block>.gds of every block into ``out``."""
     with staged(out) as part:
-        for block in made:
+        for block in footprints:
             (part / f"{block.name}.lef").write_text(lef(block, pdk, supply_um), encoding="utf-8")
             write_gds(black_box(block, pdk, supply_um), part / f"{block.name}.gds")
 
@@ -125,8 +125,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Write the footprints."""
     sizes = AnalogSizes()
-    made = blocks(ArrayParameters(options.rows, options.cols), ChipParameters(options.lanes), sizes)
-    write(options.out, made, options.pdk, sizes.supply_um)
+    footprints = blocks(ArrayParameters(options.rows, options.cols), ChipParameters(options.lanes), sizes)
+    write(options.out, footprints, options.pdk, sizes.supply_um)
     return 0
 
 

@@ -61,13 +61,13 @@ def untabled(sensor: SensorParameters) -> SensorParameters:
 
 def _source(kind: PixelType) -> str:
     """What `tabled` names as the source of a type's response; '' for any other response."""
-    found = getattr(kind.response, "source", "")
-    return found if found.startswith(SOURCE) else ""
+    source = getattr(kind.response, "source", "")
+    return source if source.startswith(SOURCE) else ""
 
 
-def rows(alpha: float, found: Fit) -> tuple[int, int]:
+def rows(alpha: float, fit: Fit) -> tuple[int, int]:
     """Diodes of a `Response` for a type: that of the phase nearest to alpha, and the one half a period on."""
-    phases = found.alpha + found.turn * np.pi / 2 * np.arange(4)
+    phases = fit.alpha + fit.turn * np.pi / 2 * np.arange(4)
     first = int(np.argmax(np.cos(phases - alpha)))
     return first, (first + 2) % 4
 
@@ -77,13 +77,13 @@ def _nearest(beta: float, pixel: str) -> float:
 
 
 def _betas(sensor: SensorParameters, pixel: str) -> list[float]:
-    wanted = {kind.beta for kind in sensor.tile.types if kind.response is None}
-    for beta in wanted:
+    betas = {kind.beta for kind in sensor.tile.types if kind.response is None}
+    for beta in betas:
         near = _nearest(beta, pixel)
         if abs(near - beta) > REACHED * near:
             known = ", ".join(f"{b:g}" for b in gratings(pixel).geometries)
             raise ParameterError(f"beta = {beta:g}: must be one of {known}, which pixel = {pixel!r} has")
-    return sorted({_nearest(beta, pixel) for beta in wanted})
+    return sorted({_nearest(beta, pixel) for beta in betas})
 
 
 def _table(pixel: str, beta: float, note: Callable[[str], None] = lambda text: None) -> Path:
@@ -125,8 +125,8 @@ def _drawn(kind: PixelType, pixel: str, along: Floats, across: Floats) -> Floats
     through the oxide, which is where the phase comes from.
     """
     chosen, beta = gratings(pixel), _nearest(kind.beta, pixel)
-    found = {(g, a): curve for (b, g, a), curve in drawn_curves().items() if b == beta}
-    angles = sorted({g for g, _ in found})
+    curves = {(g, a): curve for (b, g, a), curve in drawn_curves().items() if b == beta}
+    angles = sorted({g for g, _ in curves})
     if abs(kind.gamma_deg) not in angles:
         known = ", ".join(f"{angle:g}" for angle in angles)
         raise ParameterError(
@@ -134,9 +134,9 @@ def _drawn(kind: PixelType, pixel: str, along: Floats, across: Floats) -> Floats
             f"pixel = {pixel!r} is drawn"
         )
     # Diodes of a type half a period on are those of this one, exchanged
-    turns = [(a + half, a, half > 0) for g, a in found if g == abs(kind.gamma_deg) for half in (0.0, np.pi)]
+    turns = [(a + half, a, half > 0) for g, a in curves if g == abs(kind.gamma_deg) for half in (0.0, np.pi)]
     _, alpha, swapped = max(turns, key=lambda turn: np.cos(turn[0] - kind.alpha))
-    sines, *shares = found[abs(kind.gamma_deg), alpha]
+    sines, *shares = curves[abs(kind.gamma_deg), alpha]
     index = float(refractive_index("silica", chosen.wavelength_um).real)
     tangents = np.tan(along)[:, None], np.tan(across)
     down = 1 / np.sqrt(1 + tangents[0] ** 2 + tangents[1] ** 2)

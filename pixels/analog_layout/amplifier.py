@@ -65,27 +65,27 @@ def bank_nets(side: str) -> dict[str, str]:
     """Nets of a bank's capacitors: side m has a, feedback and rest; side p the trim and rest."""
     if side == "m":
         return {name: {"b9": "column_a", "rest": "out"}.get(name, "vref") for name in units()}
-    own = {f"b{k}": f"bottom{k}" for k in range(TRIM_BITS)}
-    return {name: own.get(name, "vref") for name in units()}
+    nets = {f"b{k}": f"bottom{k}" for k in range(TRIM_BITS)}
+    return {name: nets.get(name, "vref") for name in units()}
 
 
 def matched_units() -> dict[tuple[str, str], int]:
     """Units between each two nets of the drawn amplifier."""
-    found: dict[tuple[str, str], int] = {}
+    total: dict[tuple[str, str], int] = {}
     for side in "mp":
         nets = bank_nets(side)
         for name, count in units().items():
             key = min(f"x{side}", nets[name]), max(f"x{side}", nets[name])
-            found[key] = found.get(key, 0) + count
-    return found
+            total[key] = total.get(key, 0) + count
+    return total
 
 
 def devices(sizes: AmplifierSizes, chip: bool = False) -> dict[str, Device]:
     """All transistors by name, in fingers; dummies at the ends of rows, too. chip: see `amplifier`."""
-    found = {t.name: Device.of(t) for t in flat.transistors(amplifier(sizes, chip))}
+    by_name = {t.name: Device.of(t) for t in flat.transistors(amplifier(sizes, chip))}
     for name, like in (("pair0", "inp_0"), ("pair1", "inp_0"), ("sink0", "sink_p_0"), ("sink1", "sink_p_0")):
-        found |= dummies(name, found[f"ota.{like}"])
-    return found | dummies("tails", found["ota.tail_0"]) | dummies("load", found["ota.down_p"])
+        by_name |= dummies(name, by_name[f"ota.{like}"])
+    return by_name | dummies("tails", by_name["ota.tail_0"]) | dummies("load", by_name["ota.down_p"])
 
 
 def _order(orders: Sequence[str], names: str, capital: str) -> list[list[str]]:
@@ -122,8 +122,8 @@ def amplifier_plan(d: Mapping[str, Device], masks: AnalogMasks, sizes: Amplifier
     at, axis = places(), RIGHT / 2
 
     def plan(n: tuple[Placed, ...], p: tuple[Placed, ...]) -> Plan:
-        present = {net for one in (*n, *p) for net in one.device.transistor.nodes}
-        for row_end, first in ((one[-1].high, one[0].device.transistor.name) for one in (n, p)):
+        present = {net for placed in (*n, *p) for net in placed.device.transistor.nodes}
+        for row_end, first in ((placed_row[-1].high, placed_row[0].device.transistor.name) for placed_row in (n, p)):
             if row_end > RIGHT:
                 long = 2 * row_end - RIGHT
                 raise ParameterError(f"row of {first} = {long:.1f} um: must be {RIGHT:g} um at the most")
@@ -133,7 +133,7 @@ def amplifier_plan(d: Mapping[str, Device], masks: AnalogMasks, sizes: Amplifier
     sinks = _order(SINK_ORDER, "ota.sink_{side}_{k}", "ota.diode_{side}")
     halves = []
     for k, (pair, sink) in enumerate(zip(pairs, sinks, strict=True)):
-        n, p = ((f"{kind}{k}_west", *own, f"{kind}{k}_east") for kind, own in (("sink", sink), ("pair", pair)))
+        n, p = ((f"{kind}{k}_west", *order, f"{kind}{k}_east") for kind, order in (("sink", sink), ("pair", pair)))
         halves.append(plan(row(d, n, axis), row(d, p, axis)))
     parts = [name for name in d if name.startswith(("ota.tail_", "ota.boost_")) and "_on" not in name]
     middle = len(parts) // 2
@@ -174,28 +174,28 @@ def amplifier_cell(masks: AnalogMasks, sizes: AmplifierSizes, chip: bool = False
     plan, canvas = amplifier_plan(d, masks, sizes), new_canvas(masks, "adc_amplifier" if chip else "amplifier")
     banks = [draw_bank(canvas, plan.banks[0], masks.fringe, MARGIN)]
     y, strips = MARGIN + plan.banks[0].height_um + AWAY, []
-    for one in plan.strips:
-        strips.append(draw_strip(canvas, masks, one, y))
-        y += one.height_um + BETWEEN_STRIPS
+    for strip_plan in plan.strips:
+        strips.append(draw_strip(canvas, masks, strip_plan, y))
+        y += strip_plan.height_um + BETWEEN_STRIPS
     inner = tuple(strips)
     y += AWAY - BETWEEN_STRIPS
     banks.append(draw_bank(canvas, plan.banks[1], masks.fringe, y, upright=False))
     y += plan.banks[1].height_um + AWAY
-    for one in plan.trim:
-        strips.append(draw_strip(canvas, masks, one, y))
-        y += one.height_um + BETWEEN_STRIPS
+    for strip_plan in plan.trim:
+        strips.append(draw_strip(canvas, masks, strip_plan, y))
+        y += strip_plan.height_um + BETWEEN_STRIPS
     top = y - BETWEEN_STRIPS + MARGIN
     join_rails(canvas, strips)
     for strip in strips:
         for k, net in enumerate(strip.plan.rails):
-            _thicker(canvas, strip.y + k * strip.plan.height_um, [x for own, x, _, _ in strip.drops if own == net])
-    tracks = [track for one in (*strips, *banks) for track in one.tracks]
+            _thicker(canvas, strip.y + k * strip.plan.height_um, [x for other, x, _, _ in strip.drops if other == net])
+    tracks = [track for part in (*strips, *banks) for track in part.tracks]
     for net, x in plan.at.items():
         if net in INPUTS:
             bank = banks[INPUTS.index(net)]
             end = bank.ends[1 - INPUTS.index(net)]
             _up(canvas, x, end)
-            trunk(canvas, [track for one in inner for track in one.tracks], net, x, end)
+            trunk(canvas, [track for part in inner for track in part.tracks], net, x, end)
             continue
         edge = [top if net in NORTH else 0.0] if net in PINS else []
         trunk(canvas, tracks, net, x, *edge)
@@ -203,7 +203,7 @@ def amplifier_cell(masks: AnalogMasks, sizes: AmplifierSizes, chip: bool = False
             canvas.label(FOURTH, net, x, edge[0] - 0.3 if net in NORTH else 0.3)
     beyond = RAIL_ENDS + WELL_ENDS
     canvas.box(masks.base.outline, -beyond, 0, RIGHT + beyond, top)
-    ends = tuple(one for strip in strips for one in strip.terminals)
+    ends = tuple(terminal for strip in strips for terminal in strip.terminals)
     return Cell(
         canvas.layout, canvas.cell, PINS, tuple(d.values()), terminals=ends, matched=matched_units(), unit=sizes.unit
     )

@@ -56,12 +56,12 @@ def parts(name: str) -> tuple[tuple[str, int], ...]:
 
 def units() -> dict[str, int]:
     """Units of every capacitor."""
-    found: dict[str, int] = {}
+    counts: dict[str, int] = {}
     for row in pattern():
         for comb in row:
             for name, count in parts(comb):
-                found[name] = found.get(name, 0) + count
-    return found
+                counts[name] = counts.get(name, 0) + count
+    return counts
 
 
 @dataclass(frozen=True)
@@ -111,9 +111,9 @@ def tracks(channel: int) -> list[str]:
 
     The outermost two are beside the common fingers' ends: what evens out, and bits 9 and 8 as they have units.
     """
-    found = {part: None for row in pattern()[2 * channel : 2 * channel + 2] for comb in row for part, _ in parts(comb)}
+    names = {part: None for row in pattern()[2 * channel : 2 * channel + 2] for comb in row for part, _ in parts(comb)}
     last = "b8" if channel in (CHANNELS // 2 - 1, CHANNELS // 2) else "b9"
-    return ["rest", *sorted(found.keys() - {"rest", last}), last]
+    return ["rest", *sorted(names.keys() - {"rest", last}), last]
 
 
 @dataclass
@@ -151,7 +151,7 @@ class _Drawing:
             self.metal(level, left, low, right, high)
 
     def draw(self) -> Bank:
-        plan, made, names = self.plan, Bank(self.plan), pattern()
+        plan, bank, names = self.plan, Bank(self.plan), pattern()
         for number in range(CHANNELS + 1):
             self._spine(plan.common_um(number))
         for channel in range(CHANNELS):
@@ -165,12 +165,12 @@ class _Drawing:
             for name, v in heights.items():
                 left = plan.ends[plan.nets[name]]
                 self.metal(THIRD, left, v - TRACK / 2, reach[name], v + TRACK / 2)
-                made.tracks.append(Strap(plan.nets[name], left, reach[name], self.y(v)))
+                bank.tracks.append(Strap(plan.nets[name], left, reach[name], self.y(v)))
         ends = self.y(plan.common_um(0)), self.y(plan.common_um(CHANNELS))
-        made.ends = min(ends), max(ends)
+        bank.ends = min(ends), max(ends)
         x = plan.east_um - JOIN / 2
         self.both(x - JOIN / 2, plan.common_um(0) - COMMON / 2, x + JOIN / 2, plan.height_um)
-        return made
+        return bank
 
     def _spine(self, v: float) -> None:
         """A spine of the common node."""

@@ -75,13 +75,13 @@ class ArrayPlan:
 
     def plates(self) -> list[Plate]:
         """Every capacitor; the dummies, too."""
-        found = []
+        drawn = []
         for name, net in self.nets.items():
             count, side = (1, self.half_um) if name == OUT else (int((self.names == name).sum()), self.edge_um)
-            found.append(Plate(name, self.common, net, count * side**2, count * 4 * side))
+            drawn.append(Plate(name, self.common, net, count * side**2, count * 4 * side))
         count = (SIDE + 2) ** 2 - SIDE**2 - 1
-        found.append(Plate("dummies", self.ground, self.ground, count * self.edge_um**2, count * 4 * self.edge_um))
-        return found
+        drawn.append(Plate("dummies", self.ground, self.ground, count * self.edge_um**2, count * 4 * self.edge_um))
+        return drawn
 
 
 @dataclass
@@ -145,16 +145,16 @@ class _Drawing:
         return (self.west + AROUND + self.plan.edge_um / 2 + (column + 1) * across, first + (row + 1) * along)
 
     def draw(self) -> Array:
-        made = Array(self.plan)
+        array = Array(self.plan)
         for k, net in enumerate(self.plan.buses()):
             v = TRACK_PITCH * (k + 0.5)
-            made.tracks.append(Strap(net, self.plan.left, self.plan.right, self.y(v)))
+            array.tracks.append(Strap(net, self.plan.left, self.plan.right, self.y(v)))
             self.metal(THIRD, self.plan.left, v - TRACK / 2, self.plan.right, v + TRACK / 2)
         for column in range(SIDE):
-            self._column(column, made)
-        self._ring(made)
-        self._common(made)
-        return made
+            self._column(column, array)
+        self._ring(array)
+        self._common(array)
+        return array
 
     def _plate(self, row: int, column: int, edge: float) -> None:
         """The upper plate with its via, in the middle of a place."""
@@ -167,17 +167,17 @@ class _Drawing:
         half = edge / 2
         self.metal(THIRD, x - half - AROUND, v - half - TAB, x + half + AROUND, v + half + AROUND)
 
-    def _line(self, net: str, x: float, end: float, made: Array) -> None:
+    def _line(self, net: str, x: float, end: float, array: Array) -> None:
         """From the bus to ``end``, a distance from its far side."""
-        track = next(one.y for one in made.tracks if one.net == net)
+        track = next(row.y for row in array.tracks if row.net == net)
         start = (track - self.origin) * self.way
         self.metal(SECOND, x - LINE / 2, start, x + LINE / 2, end)
         self.canvas.stack(x, track, SECOND, THIRD)
 
-    def _column(self, column: int, made: Array) -> None:
+    def _column(self, column: int, array: Array) -> None:
         """The units of a column and their lines."""
-        own = self.plan.names[:, column]
-        kinds = [name for name in self.plan.nets if name in set(own.tolist())]
+        capacitors = self.plan.names[:, column]
+        kinds = [name for name in self.plan.nets if name in set(capacitors.tolist())]
         if column == HALF_COLUMN:
             kinds.append(OUT)
         units = {name: int((self.plan.names == name).sum()) for name in kinds}
@@ -191,30 +191,30 @@ class _Drawing:
         places = {name: x0 + (k - (len(kinds) - 1) / 2) * pitch for k, name in enumerate(kinds)}
         beyond = self.plan.edge_um / 2 + VIA_IN - LINE
         if column == HALF_COLUMN:
-            self._half(places.pop(OUT), made)
+            self._half(places.pop(OUT), array)
         for name, x in places.items():
-            last = int((own == name).nonzero()[0][-1])
-            self._line(self.plan.nets[name], x, self.middle(last, column)[1] - beyond, made)
+            last = int((capacitors == name).nonzero()[0][-1])
+            self._line(self.plan.nets[name], x, self.middle(last, column)[1] - beyond, array)
         for row in range(SIDE):
             self._plate(row, column, self.plan.edge_um)
             self._lower(row, column, self.plan.edge_um)
             v = self.middle(row, column)[1] - self.plan.edge_um / 2 - VIA_IN
-            self.canvas.stack(places[str(own[row])], self.y(v), SECOND, THIRD)
+            self.canvas.stack(places[str(capacitors[row])], self.y(v), SECOND, THIRD)
         for name, x in places.items():
-            rows = [int(row) for row in (own == name).nonzero()[0]]
+            rows = [int(row) for row in (capacitors == name).nonzero()[0]]
             v = self.middle(rows[len(rows) // 2], column)[1] - self.plan.edge_um / 2 - VIA_IN
-            made.taps.append(Tap(name, len(rows), x, self.y(v)))
+            array.taps.append(Tap(name, len(rows), x, self.y(v)))
 
-    def _half(self, line: float, made: Array) -> None:
+    def _half(self, line: float, array: Array) -> None:
         """Half a unit in the place of a dummy beside the bus, on the lower plate of a whole one; its line's x."""
         self._plate(-1, HALF_COLUMN, self.plan.half_um)
         self._lower(-1, HALF_COLUMN, self.plan.edge_um)
         at = self.middle(-1, HALF_COLUMN)[1] - self.plan.edge_um / 2 - VIA_IN
-        self._line(self.plan.nets[OUT], line, at + LINE / 2, made)
+        self._line(self.plan.nets[OUT], line, at + LINE / 2, array)
         self.canvas.stack(line, self.y(at), SECOND, THIRD)
-        made.taps.append(Tap(OUT, 0.5, line, self.y(at)))
+        array.taps.append(Tap(OUT, 0.5, line, self.y(at)))
 
-    def _ring(self, made: Array) -> None:
+    def _ring(self, array: Array) -> None:
         """The dummies: lower plates in one piece but for the half's place, upper ones joined, both on the ground."""
         p, half = self.plan, self.plan.edge_um / 2
         inner, hole = range(SIDE), HALF_COLUMN
@@ -223,7 +223,7 @@ class _Drawing:
         for x in (west, east):
             self.metal(THIRD, x - half - AROUND, bottom, x + half + AROUND, top)
             self.metal(FOURTH, x - COLUMN / 2, bottom, x + COLUMN / 2, high + COLUMN / 2)
-            self._line(p.ground, x, low - half - VIA_IN + LINE, made)
+            self._line(p.ground, x, low - half - VIA_IN + LINE, array)
             for side in (-0.4, 0.4):
                 self.canvas.stack(x + side, self.y(low - half - VIA_IN), SECOND, THIRD)
             self.metal(SECOND, x - 0.6, low - half - VIA_IN - 0.185, x + 0.6, low - half - VIA_IN + 0.185)
@@ -242,7 +242,7 @@ class _Drawing:
                 left, right = west, east
             self.metal(THIRD, left - half - AROUND, v - half - TAB, right + half + AROUND, v + half + AROUND)
 
-    def _common(self, made: Array) -> None:
+    def _common(self, array: Array) -> None:
         """The upper plates' metal: strips beside the columns, a tongue to each plate, bars at both ends, a way out."""
         half, across = self.plan.edge_um / 2, self.plan.pitch_um[0]
         first, last = self.middle(0, 0), self.middle(SIDE - 1, SIDE - 1)
@@ -262,4 +262,4 @@ class _Drawing:
         x = strips[HALF_COLUMN + 1]
         end = self.middle(SIDE, 0)[1] + half + AROUND
         self.metal(FOURTH, x - COLUMN / 2, bars[1], x + COLUMN / 2, end)
-        made.exit = (x, self.y(end))
+        array.exit = (x, self.y(end))

@@ -57,7 +57,7 @@ def bias_cell(masks: AnalogMasks, outputs: int) -> Cell:
     plans = []
     for n, p in ((fours, lower), (("stop", "start"), upper)):
         rows = row(d, n, right / 2), row(d, p, right / 2)
-        present = {net for one in (*rows[0], *rows[1]) for net in one.device.transistor.nodes}
+        present = {net for placed in (*rows[0], *rows[1]) for net in placed.device.transistor.nodes}
         plans.append(Plan(*rows, 0.0, right, {net: (x,) for net, x in at.items() if net in present}))
     canvas, y = new_canvas(masks, "bias"), MARGIN + 2 * BELOW + (len(parts) - 1) * BAR_PITCH
     strips = []
@@ -70,9 +70,9 @@ def bias_cell(masks: AnalogMasks, outputs: int) -> Cell:
     for k, part in enumerate(parts):
         places = _resistor(canvas, masks, west, high - k * BAR_PITCH, length)
         ends.append(flat.Ends(part.name, *(places[::-1] if k % 2 else places)))
-    for one, after in pairwise(ends):
-        x = one.last[0]
-        canvas.wire(FIRST, x - 0.3, after.first[1] - 0.3, x + 0.3, one.last[1] + 0.3)
+    for bar, after in pairwise(ends):
+        x = bar.last[0]
+        canvas.wire(FIRST, x - 0.3, after.first[1] - 0.3, x + 0.3, bar.last[1] + 0.3)
     x, low = ends[-1].last
     away = x - 2 * HEAD
     canvas.wire(FIRST, away - 0.3, low - 0.3, x + 0.3, low + 0.3)
@@ -87,7 +87,7 @@ def bias_cell(masks: AnalogMasks, outputs: int) -> Cell:
             canvas.label(FOURTH, net, x, 0.3)
     beside = RAIL_ENDS + WELL_ENDS
     canvas.box(masks.base.outline, -beside, 0, right + beside, y - BETWEEN_STRIPS + MARGIN)
-    terminals = tuple(one for strip in strips for one in strip.terminals)
+    terminals = tuple(terminal for strip in strips for terminal in strip.terminals)
     value = length / WIDE * masks.sheet_ohm
     return Cell(
         canvas.layout,

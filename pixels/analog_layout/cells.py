@@ -84,7 +84,7 @@ def comparator_cell(masks: AnalogMasks, sizes: ComparatorSizes) -> Cell:
     half = least_half(comparator_plans(drawn, axis, (0, 2 * axis))) + 0.6
     strips = draw_comparator(canvas, masks, comparator_plans(drawn, axis, (axis - half, axis + half)), MARGIN)
     finish(canvas, strips, circuit.ports[:4])
-    ends = tuple(one for strip in strips for one in strip.terminals)
+    ends = tuple(terminal for strip in strips for terminal in strip.terminals)
     return Cell(canvas.layout, canvas.cell, circuit.ports, tuple(drawn.values()), terminals=ends)
 
 

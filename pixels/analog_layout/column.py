@@ -121,13 +121,13 @@ def _tap_piece(t: int) -> Piece:
     """The strip of a tap of the first diode, with its part of the decoder."""
     tap, on = f"back_a.tap{t}.", f"on{t}."
     through = "back_a.x", "back_a.f", "seln", "start_a"
-    own = f"{tap}inner", f"{tap}outer"
-    rows = {"back_a.x": 5, "start_a": 6, own[0]: 7, "back_a.f": 8, own[1]: 9, "seln": 2}
+    nets = f"{tap}inner", f"{tap}outer"
+    rows = {"back_a.x": 5, "start_a": 6, nets[0]: 7, "back_a.f": 8, nets[1]: 9, "seln": 2}
     return Piece(
         (f"{on}nb", f"{on}na", f"{tap}join", f"{tap}write", f"{tap}far_n"),
         (f"{on}pb", f"{on}pa", "", f"{tap}far_p", f"{tap}rest"),
         through,
-        (*(through if t < TAPS - 1 else ()), *own),
+        (*(through if t < TAPS - 1 else ()), *nets),
         rows,
     )
 
@@ -345,10 +345,10 @@ def line_um(net: str) -> float:
 def length_um(farad: float, masks: AnalogMasks, wide: float = WIDE) -> float:
     """Of a plate ``wide`` um across. Raises ParameterError where it would be under 1 um."""
     area, edge = masks.mim_area, masks.mim_edge
-    found = snap((farad * 1e15 - 2 * edge * wide) / (area * wide + 2 * edge))
-    if found < 1:
+    length = snap((farad * 1e15 - 2 * edge * wide) / (area * wide + 2 * edge))
+    if length < 1:
         raise ParameterError(f"capacitor = {farad:g} F: must be 1 um long at the least, {wide:g} um wide")
-    return found
+    return length
 
 
 def devices(sizes: ColumnSizes) -> dict[str, Device]:
@@ -381,16 +381,16 @@ def column_plan(
             break
         piece = PIECES[number]
         left = snap(x + EXIT + (JOGS[1] - JOGS[0] + PAD_AT if group[-1].upper in WAYS or number == 1 else 0.0))
-        strip, found = _strip(piece, d, left, number, lines)
+        strip, strip_lines = _strip(piece, d, left, number, lines)
         strips.append(strip)
-        lines |= found
+        lines |= strip_lines
         joints |= {"vss": (*joints.get("vss", ()), strip.left - RAIL_AT)}
         joints |= {"vdd": (*joints.get("vdd", ()), strip.right + RAIL_AT)}
         x = strip.right + EXIT
     if lacking := {line for net in (*GROUPED, *SINGLE) for line in names(net)} - lines.keys():
         raise ParameterError(f"column: line {min(lacking)} must have a place")
     for name in extra:
-        taken = [(at, (line_um(own) + LINE) / 2 + LEAST) for own, at in lines.items()]
+        taken = [(at, (line_um(name_of_line) + LINE) / 2 + LEAST) for name_of_line, at in lines.items()]
         places = (snap(s.left + STEP * k) for s in strips for k in range(2, int((s.right - s.left) / STEP) - 1))
         free = (place for place in places if all(abs(place - at) >= apart - 1e-9 for at, apart in taken))
         lines[name] = next(free, -1.0)
@@ -411,7 +411,7 @@ def _strip(
     ends: dict[str, tuple[float, ...]] = {net: (left + (IN if net in lowest else -OUT),) for net in piece.west}
     ends |= {net: (*ends.get(net, ()), right + OUT) for net in piece.east}
     ends |= {net: (*ends.get(net, ()), left + 0.5, right - 0.5) for net in piece.shields}
-    present = {net for one in (*row_n, *row_p) for net in one.device.transistor.nodes}
+    present = {net for placed in (*row_n, *row_p) for net in placed.device.transistor.nodes}
     ends |= {net: (left + IN if net in lowest else left - jog,) for net, jog in zip(ways, JOGS, strict=False)}
     plain = Plan(row_n, row_p, left, right, ends)
     for net, other in piece.over.items():
@@ -431,11 +431,11 @@ def _strip(
 
 def _lines(plan: Plan, present: set[str], left: float, right: float, number: int) -> dict[str, float]:
     """X of the lines over a strip: those of a group together, each as near as may be to the gates on it."""
-    spans, taken, found = plan.spans(), list[tuple[float, float]](), dict[str, float]()
-    own = sorted((set(GROUPED) | set(SINGLE)) & present)
-    own.sort(key=lambda net: (-len(names(net)), spans[net][1] - spans[net][0]))
+    spans, taken, lines = plan.spans(), list[tuple[float, float]](), dict[str, float]()
+    crossing = sorted((set(GROUPED) | set(SINGLE)) & present)
+    crossing.sort(key=lambda net: (-len(names(net)), spans[net][1] - spans[net][0]))
     places = [snap(left + STEP * k) for k in range(2, int((right - left) / STEP) - 1)]
-    for net in own:
+    for net in crossing:
         half = line_um(net) / 2
         pitch, count = 2 * half + LEAST, len(names(net))
         low, high = spans[net]
@@ -451,41 +451,41 @@ def _lines(plan: Plan, present: set[str], left: float, right: float, number: int
         if place is None:
             raise ParameterError(f"column strip {number} = {right - left:.0f} um: must have room for line {net}")
         taken.append((place - half, place + pitch * (count - 1) + half))
-        found |= {line: snap(place + pitch * k) for k, line in enumerate(names(net))}
-    return found
+        lines |= {line: snap(place + pitch * k) for k, line in enumerate(names(net))}
+    return lines
 
 
-def draw_column(canvas: Canvas, masks: AnalogMasks, made: ColumnPlan) -> list[Strip]:
+def draw_column(canvas: Canvas, masks: AnalogMasks, positions: ColumnPlan) -> list[Strip]:
     """A column, its south edge at y = 0, with its part of the supplies that cross all columns, and vias to lines."""
     y, strips = BETWEEN / 2, list[Strip]()
-    for plan in made.strips:
+    for plan in positions.strips:
         strip = draw_rows(canvas, masks, plan, y)
         draw_rails(canvas, masks, plan, y)
         join_rails(canvas, [strip])
         strips.append(strip)
-    ends = made.strips[0].left, made.strips[-1].right
+    ends = positions.strips[0].left, positions.strips[-1].right
     for rail in (y, PITCH - y):  # beside the plates from strip to strip
         canvas.wire(RAILS, ends[0], rail - RAIL_HALF, ends[1], rail + RAIL_HALF)
-    for x in made.joints["vss"] + made.joints["vdd"]:
+    for x in positions.joints["vss"] + positions.joints["vdd"]:
         canvas.wire(FOURTH, x - RAIL_TRUNK / 2, 0, x + RAIL_TRUNK / 2, PITCH)
     for net in SINGLE:
         for strip in strips:
             for track in strip.tracks:
-                if track.net == net and track.left <= made.lines[net] <= track.right:
-                    canvas.stack(made.lines[net], track.y, THIRD, FOURTH)
-    for plate in made.plates:
+                if track.net == net and track.left <= positions.lines[net] <= track.right:
+                    canvas.stack(positions.lines[net], track.y, THIRD, FOURTH)
+    for plate in positions.plates:
         _plate(canvas, masks, plate)
     for number, strip in enumerate(strips):
-        _leave(canvas, made, strips, number, strip)
+        _leave(canvas, positions, strips, number, strip)
     return strips
 
 
-def draw_ground(canvas: Canvas, made: ColumnPlan, y: float, vias: Sequence[float] = ()) -> None:
+def draw_ground(canvas: Canvas, positions: ColumnPlan, y: float, vias: Sequence[float] = ()) -> None:
     """The ground's lines in the south of a column whose edge is at ``y``: the outputs of the one below would be light.
 
     vias: x of others' there, before which a line ends.
     """
-    for plan in made.strips[:2]:
+    for plan in positions.strips[:2]:
         joint = plan.left - RAIL_AT - RAIL_TRUNK / 2
         ends = [x - PAD[1] - LEAST for x in vias if joint < x < plan.right + PAD[1] + LEAST]
         canvas.wire(THIRD, joint, y, min((*ends, plan.right)), y + SHIELD)
@@ -525,14 +525,18 @@ def _patch(plate: Drawn) -> tuple[float, float]:
     return (4.8, 8.8) if plate.cap.from_east else (1.2, 8.8)
 
 
-def _leave(canvas: Canvas, made: ColumnPlan, strips: Sequence[Strip], number: int, strip: Strip) -> None:
+def _leave(canvas: Canvas, positions: ColumnPlan, strips: Sequence[Strip], number: int, strip: Strip) -> None:
     """What leaves a strip: on the fourth metal in the west, or on the second under the plates."""
     plan, half = strip.plan, UNDER / 2
     tracks = {net: track.y for track in strip.tracks for net in [track.net]}
     for net, jog in zip(("column_a", "column_b") if number == 0 else ("cin_a", "cin_b"), JOGS, strict=True):
         if number < 2:
             x, y, to = plan.left - jog, tracks[net], WAYS[net]
-            first = 0.0 if number == 0 else min(one.left for one in made.plates if one.cap.upper == net) + PATCH_IN
+            first = (
+                0.0
+                if number == 0
+                else min(drawn.left for drawn in positions.plates if drawn.cap.upper == net) + PATCH_IN
+            )
             if _lowest(y):  # passes the rail's joint on the second track
                 end, y = plan.left + IN, snap(y + TRACK_PITCH)
                 canvas.wire(THIRD, x - TRACK / 2, y - TRACK / 2, end + TRACK / 2, y + TRACK / 2)
@@ -540,7 +544,7 @@ def _leave(canvas: Canvas, made: ColumnPlan, strips: Sequence[Strip], number: in
             canvas.stack(x, y, THIRD, FOURTH)
             canvas.wire(FOURTH, x - LINE / 2, min(y, to) - LINE / 2, x + LINE / 2, max(y, to) + LINE / 2)
             canvas.wire(FOURTH, first, to - NARROW / 2, x + LINE / 2, to + NARROW / 2)
-    for plate in made.plates:
+    for plate in positions.plates:
         beside = CAPS.index(next(group for group in CAPS if plate.cap in group)) - (not plate.cap.from_east)
         if beside != number:
             continue
@@ -578,15 +582,15 @@ def _way(canvas: Canvas, track: float, x: float) -> float:
     return y
 
 
-def as_cell(canvas: Canvas, d: Mapping[str, Device], made: ColumnPlan, strips: Sequence[Strip]) -> Cell:
+def as_cell(canvas: Canvas, d: Mapping[str, Device], plan: ColumnPlan, strips: Sequence[Strip]) -> Cell:
     """The drawn column with its circuit's names."""
     plates, taps = list[Plate](), list[Tap]()
-    for cap, left, right in made.plates:
+    for cap, left, right in plan.plates:
         edges = right - left, cap.high - cap.low
         plates.append(Plate(cap.name, cap.upper, cap.lower, edges[0] * edges[1], 2 * sum(edges)))
         taps.append(Tap(cap.name, 1, (left + right) / 2, (cap.low + cap.high) / 2))
-    terminals = tuple(one for strip in strips for one in strip.terminals)
-    tracks = tuple(one for strip in strips for one in strip.tracks)
+    terminals = tuple(terminal for strip in strips for terminal in strip.terminals)
+    tracks = tuple(track for strip in strips for track in strip.tracks)
     return Cell(canvas.layout, canvas.cell, PINS, tuple(d.values()), tuple(plates), terminals, tuple(taps), tracks)
 
 
@@ -594,7 +598,7 @@ def column_cell(masks: AnalogMasks, sizes: ColumnSizes) -> Cell:
     """A column alone, its pins named where its lines are: what is checked and extracted."""
     d, canvas = devices(sizes), new_canvas(masks, "column")
     plan = column_plan(d, sizes, masks)
-    made = as_cell(canvas, d, plan, draw_column(canvas, masks, plan))
+    cell = as_cell(canvas, d, plan, draw_column(canvas, masks, plan))
     draw_ground(canvas, plan, 0.0)
     for net in PINS:
         if net in ("column_a", "column_b"):
@@ -603,8 +607,8 @@ def column_cell(masks: AnalogMasks, sizes: ColumnSizes) -> Cell:
             canvas.wire(FOURTH, plan.lines[net] - LINE / 2, 0, plan.lines[net] + LINE / 2, PITCH)
             canvas.label(FOURTH, net, plan.lines[net], 0.2)
         elif net in GROUPED:
-            name_track(canvas, next(one for one in made.tracks if one.net == net))
+            name_track(canvas, next(track for track in cell.tracks if track.net == net))
     for net, y in (("vss", BETWEEN / 2), ("vdd", PITCH - BETWEEN / 2)):
         canvas.label(RAILS, net, plan.strips[0].left, y)
     canvas.box(masks.base.outline, 0, 0, plan.right, PITCH)
-    return made
+    return cell

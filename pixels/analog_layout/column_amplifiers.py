@@ -77,9 +77,9 @@ class ColumnAmplifiers(DrawnBlock):
 
 def band_nets(ports: Iterable[str]) -> tuple[str, ...]:
     """The block's nets at the ports of the band."""
-    own = NETS | {name: chip_pin(name) for name in BANK_INPUTS} | {"ibias": SOURCE}
-    own |= {f"lane_{d}{lane}": f"lane_{d}[{lane}]" for d in "ab" for lane in range(LANES)}
-    return tuple(own.get(port, port) for port in ports)
+    nets = NETS | {name: chip_pin(name) for name in BANK_INPUTS} | {"ibias": SOURCE}
+    nets |= {f"lane_{d}{lane}": f"lane_{d}[{lane}]" for d in "ab" for lane in range(LANES)}
+    return tuple(nets.get(port, port) for port in ports)
 
 
 def draw_column_amplifiers(
@@ -99,10 +99,10 @@ def draw_column_amplifiers(
     columns = draw_columns(canvas.layout, masks, sizes, array.cols, EXTRA)
     plain = frame(array, chip, room)
     south = {pin.name: pin.at_um for pin in plain.pins if pin.side == "south"}
-    own = {name: chip_pin(name) for name in BANK_INPUTS}
-    own |= {f"lane_{d}{lane}": f"lane_{d}[{lane}]" for d in "ab" for lane in range(LANES)}
-    pins = {name: south[pin] for name, pin in own.items()}
-    lanes = [name for name in own if name.startswith("lane_")]
+    nets = {name: chip_pin(name) for name in BANK_INPUTS}
+    nets |= {f"lane_{d}{lane}": f"lane_{d}[{lane}]" for d in "ab" for lane in range(LANES)}
+    pins = {name: south[pin] for name, pin in nets.items()}
+    lanes = [name for name in nets if name.startswith("lane_")]
     band = draw_band(canvas.layout, masks, sizes, LANES, pins, (*OUTWARD, *lanes))
     height = snap(band.height - OVERLAP + END + columns.plan.right)
     block = frame(array, chip, replace(room, columns_um=height))
@@ -111,13 +111,13 @@ def draw_column_amplifiers(
     vias: dict[int, list[float]] = {}
     for net, numbers in band.ways.items():
         for k, number in enumerate(numbers):
-            found = draw_way(turned, columns, own.get(net, net), number, k if net in lanes else None)
-            vias.setdefault(number, []).extend(found)
+            xs = draw_way(turned, columns, nets.get(net, net), number, k if net in lanes else None)
+            vias.setdefault(number, []).extend(xs)
     for pin in block.pins:
         if pin.name in OUTSIDE or pin.name == SOURCE:
             number = round(pin.at_um / PITCH)
-            found = draw_way(turned, columns, "ibias" if pin.name == SOURCE else pin.name, number)
-            vias.setdefault(number, []).extend(found)
+            xs = draw_way(turned, columns, "ibias" if pin.name == SOURCE else pin.name, number)
+            vias.setdefault(number, []).extend(xs)
             canvas.wire(FOURTH, pin.at_um - TRUNK / 2, 0, pin.at_um + TRUNK / 2, band.height)
     draw_grounds(turned, columns, vias)
     for pin in block.pins:
@@ -140,7 +140,7 @@ def _join(canvas: Canvas, pin: Pin) -> None:
 
 def frame(array: ArrayParameters, chip: ChipParameters, room: AnalogSizes) -> Block:
     """The black box's frame, with pins in the south-east."""
-    block = next(one for one in blocks(array, chip, room) if one.name == NAME)
+    block = next(candidate for candidate in blocks(array, chip, room) if candidate.name == NAME)
     first = max(pin.at_um for pin in block.pins if pin.side == "south") + room.bias_um + room.lane_um
     number = round(first / PITCH)
     names = {**OUTSIDE, SOURCE: "input"}
@@ -165,9 +165,9 @@ def _supplies(canvas: Canvas, block: Block, columns: Columns, band: Band, room: 
             canvas.wire(TOP, ends[0], at - half, ends[1], at + half)
             cuts |= {x: at for x, _ in straps["vdd"] if net == "vss" and ends[0] < x < ends[1]}
     joints = {net: [height - x for x in columns.plan.joints[net]] for net in NETS}
-    for net, found in straps.items():
+    for net, spans in straps.items():
         others = sorted(x for other, xs in straps.items() if other != net for x, _ in xs)
-        for x, wide in found:
+        for x, wide in spans:
             pieces = [(1.0, height - 1.0)]
             if x in cuts:
                 pieces = [(1.0, cuts[x] - half - 2.0), (cuts[x] + half + 2.0, height - 1.0)]
@@ -183,9 +183,9 @@ def _supplies(canvas: Canvas, block: Block, columns: Columns, band: Band, room: 
                 begin = west + EDGE[0] / 2 + 1.7
             y = HEIGHTS[net]
             canvas.wire(TOP, begin, y - ACROSS / 2, east - STRAP / 2 - APART, y + ACROSS / 2)
-    for net, found in band.joints.items():
+    for net, rails in band.joints.items():
         y = HEIGHTS[net]
-        for x, low, high in found:
+        for x, low, high in rails:
             canvas.wire(FOURTH, x - 0.5, min(low, y - ACROSS / 2), x + 0.5, max(high, y + ACROSS / 2))
             canvas.wire(FOURTH, x - VIA_PAD, y - ACROSS / 2, x + VIA_PAD, y + ACROSS / 2)
             for step in (-1, 0, 1):

@@ -75,16 +75,16 @@ class Group:
 
     def of(self, net: str) -> list[float]:
         """X of a net."""
-        found = [*self.ways.get(net, ()), *self.plates.get(net, ()), self.pins.get(net), self.inner.get(net)]
-        return [x for x in found if x is not None]
+        places = [*self.ways.get(net, ()), *self.plates.get(net, ()), self.pins.get(net), self.inner.get(net)]
+        return [x for x in places if x is not None]
 
     def middles(self) -> dict[str, float]:
         """The middle of each net."""
-        found: dict[str, list[float]] = {}
+        xs: dict[str, list[float]] = {}
         for n, p, _ in self.rows:
             for net, ends in Plan(tuple(n), tuple(p), self.left, self.right, {}).spans().items():
-                found.setdefault(net, []).extend(ends)
-        return {net: (min(ends) + max(ends)) / 2 for net, ends in found.items()}
+                xs.setdefault(net, []).extend(ends)
+        return {net: (min(ends) + max(ends)) / 2 for net, ends in xs.items()}
 
     def free(self, x: float, step: float, first: float = 0.0) -> float:
         """The place nearest to ``x``, of those a step apart, that has none beside it. Raises ParameterError."""
@@ -108,7 +108,7 @@ class Group:
         """Draw the strips; returns the middle of the highest rail."""
         y = SOUTH
         for n, p, _ in self.rows:
-            present = {net for one in (*n, *p) for net in one.device.transistor.nodes}
+            present = {net for device in (*n, *p) for net in device.device.transistor.nodes}
             reach = {net: self.of(net) for net in present if self.of(net)}
             plan = Plan(tuple(n), tuple(p), self.left, self.right, reach)
             self.strips.append(draw_strip(canvas, masks, plan, snap(y)))
@@ -132,16 +132,16 @@ class Band:
 
 def bank_rows(sizes: ColumnSizes, d: Mapping[str, Device]) -> list[list[Pair]]:
     """The bank's pairs of devices, in strips of about one length."""
-    circuit = next(one.circuit for one in band(sizes, 1).instances if one.name == "bank")
+    circuit = next(instance.circuit for instance in band(sizes, 1).instances if instance.name == "bank")
     pairs: list[Pair] = []
-    for one in circuit.instances:
-        if one.name == "clear":  # in the west, below its capacitor
-            own = [pair for name in ("over", "clear_n", "clear") for pair in legs(d, f"bank.clear.{name}")]
-            pairs = [(d["bank.clear.stay"], d["bank.clear.charge"]), *own, *pairs]
-        elif one.name == "cascodes":
+    for instance in circuit.instances:
+        if instance.name == "clear":  # in the west, below its capacitor
+            legs_of_clear = [pair for name in ("over", "clear_n", "clear") for pair in legs(d, f"bank.clear.{name}")]
+            pairs = [(d["bank.clear.stay"], d["bank.clear.charge"]), *legs_of_clear, *pairs]
+        elif instance.name == "cascodes":
             pairs += [(d[f"bank.cascodes.{name}"], None) for name in ("read", "unread", "second", "none")]
         else:
-            pairs += legs(d, f"bank.{one.name}")
+            pairs += legs(d, f"bank.{instance.name}")
     share = -(-len(pairs) // STRIPS)
     return [pairs[k : k + share] for k in range(0, len(pairs), share)]
 
@@ -173,10 +173,10 @@ def draw_band(
     for group in groups:
         middles = group.middles()
         group.pins |= {net: x for net, x in pins.items() if net in middles}
-        wanted = sorted((net for net in outward if net in middles), key=lambda net: middles[net])
-        for k, net in enumerate(wanted):
+        nets_by_x = sorted((net for net in outward if net in middles), key=lambda net: middles[net])
+        for k, net in enumerate(nets_by_x):
             for _ in range(2 if net.startswith("lane_") else 1):
-                near = middles[net] if group is not bank else WEST + (k + 0.5) / len(wanted) * (BANK - WEST)
+                near = middles[net] if group is not bank else WEST + (k + 0.5) / len(nets_by_x) * (BANK - WEST)
                 group.ways.setdefault(net, []).append(group.free(near, PLATE_PITCH if group is bias else PITCH))
         for net, x in middles.items():
             if sum(net in _nets(row) for row in group.rows) > 1 and not group.of(net):
@@ -190,7 +190,7 @@ def draw_band(
     for group in groups:
         group.draw(canvas, height)
         _rails(canvas, group.strips, joints)
-    terminals = tuple(one for group in groups for strip in group.strips for one in strip.terminals)
+    terminals = tuple(terminal for group in groups for strip in group.strips for terminal in strip.terminals)
     cell = Cell(canvas.layout, canvas.cell, band(sizes, lanes).ports, tuple(d.values()), tuple(plates), terminals)
     ways = {net: [] for net in outward}
     for group in groups:
@@ -200,14 +200,14 @@ def draw_band(
 
 
 def _nets(row: tuple[Sequence[Placed], Sequence[Placed], float]) -> set[str]:
-    return {net for one in (*row[0], *row[1]) for net in one.device.transistor.nodes} - {"vdd", "vss"}
+    return {net for placed in (*row[0], *row[1]) for net in placed.device.transistor.nodes} - {"vdd", "vss"}
 
 
 def _bias(d: Mapping[str, Device], left: float) -> tuple[Sequence, Sequence, float]:
     """The bias's strip."""
-    own = [one for name, one in d.items() if name.startswith("bias.")]
-    n = [one for one in own if one.transistor.role.startswith("n")]
-    p = [one for one in own if one.transistor.role.startswith("p")]
+    devices = [device for name, device in d.items() if name.startswith("bias.")]
+    n = [device for device in devices if device.transistor.role.startswith("n")]
+    p = [device for device in devices if device.transistor.role.startswith("p")]
     count = max(len(n), len(p))
     rows = list(zip([*n, *[None] * (count - len(n))], [*p, *[None] * (count - len(p))], strict=True))
     return in_columns(rows, left, ROOM)
@@ -227,7 +227,7 @@ def _ends(d: Mapping[str, Device], lanes: int, left: float) -> tuple[Sequence, S
         n += more_n
         p += more_p
         x = snap(left + (k // 8 + 1) * 100.0) if k % 8 == 7 else end
-    return tuple(n), tuple(p), max(one.high for one in (*n, *p))
+    return tuple(n), tuple(p), max(placed.high for placed in (*n, *p))
 
 
 def _rails(canvas: Canvas, strips: Sequence[Strip], joints: dict[str, list[tuple[float, float, float]]]) -> None:
@@ -250,8 +250,8 @@ def _rails(canvas: Canvas, strips: Sequence[Strip], joints: dict[str, list[tuple
 
 def _device(t: Transistor) -> Device:
     """A transistor in fingers whose contacts are on the grid."""
-    made = Device.of(t)
-    return made if round(made.finger_um / 0.005) % 2 == 0 else Device.of(t, FINGER)
+    device = Device.of(t)
+    return device if round(device.finger_um / 0.005) % 2 == 0 else Device.of(t, FINGER)
 
 
 def _ramp(canvas: Canvas, masks: AnalogMasks, sizes: ColumnSizes, bank: Group, top: float) -> flat.Plate:
@@ -266,14 +266,14 @@ def _ramp(canvas: Canvas, masks: AnalogMasks, sizes: ColumnSizes, bank: Group, t
         canvas.square(masks.base.vias[THIRD].gds, ground, y, 0.2)
     half = PITCH / 2 - 0.8
     draw_patch(canvas, RAMP_AT - half, low + PATCH_IN, RAMP_AT + half, high - PATCH_IN)
-    track = next(one for strip in bank.strips for one in strip.tracks if one.net == RAMP)
+    track = next(piece for strip in bank.strips for piece in strip.tracks if piece.net == RAMP)
     canvas.wire(FOURTH, RAMP_AT - TRUNK / 2, track.y, RAMP_AT + TRUNK / 2, low + 1)
     return flat.Plate(RAMP, RAMP, "vss", RAMP_WIDE * (high - low), 2 * (RAMP_WIDE + high - low))
 
 
 def _decoupling(canvas: Canvas, masks: AnalogMasks, sizes: ColumnSizes, bias: Group, top: float) -> list[flat.Plate]:
     """The capacitors of the bias's lines, between the places of ways above its strip."""
-    strip, found, x = bias.strips[0], list[flat.Plate](), BIAS
+    strip, plates, x = bias.strips[0], list[flat.Plate](), BIAS
     tracks = {track.net: track.y for track in strip.tracks}
     for c in (c for c in flat.capacitors(band(sizes, 1)) if c.name.startswith("bias.c_")):
         wide, low = PLATE, top + PLATE_UP
@@ -290,5 +290,5 @@ def _decoupling(canvas: Canvas, masks: AnalogMasks, sizes: ColumnSizes, bias: Gr
             canvas.stack(at, rail, 1, SECOND)
             x += PLATE_PITCH
         count = PARTS_OF
-        found.append(flat.Plate(c.name, c.a, c.b, count * wide * (high - low), count * 2 * (wide + high - low)))
-    return found
+        plates.append(flat.Plate(c.name, c.a, c.b, count * wide * (high - low), count * 2 * (wide + high - low)))
+    return plates

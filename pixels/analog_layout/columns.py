@@ -54,19 +54,19 @@ class Columns:
         if net.startswith("lane"):
             kind, lane = net[:-1].split("[")
             return [self.plan.lines[f"{name}{lane}"] for name in (kind, kind.replace("lane", "sense"))]
-        own = net.replace("_", "") if net in LINES else net
-        return [x for name, x in self.plan.lines.items() if line(name) == own]
+        pin = net.replace("_", "") if net in LINES else net
+        return [x for name, x in self.plan.lines.items() if line(name) == pin]
 
 
 def column_nets(number: int, lanes: int = LANES) -> tuple[str, ...]:
     """The block's nets at the ports of a column."""
     lane, code = taken(number, lanes)
-    own = {f"column_{d}": f"column_{d}[{number}]" for d in "ab"}
-    own |= {f"{kind}_{d}": f"lane_{d}[{lane}]" for kind in ("lane", "sense") for d in "ab"}
-    own |= {name: f"{name}_{value}" for name, value in code.items()} | dict(
+    nets = {f"column_{d}": f"column_{d}[{number}]" for d in "ab"}
+    nets |= {f"{kind}_{d}": f"lane_{d}[{lane}]" for kind in ("lane", "sense") for d in "ab"}
+    nets |= {name: f"{name}_{value}" for name, value in code.items()} | dict(
         zip(SUPPLIES, ("vddc", "vssa"), strict=True)
     )
-    return tuple(own.get(pin, pin) for pin in map(line, PINS))
+    return tuple(nets.get(pin, pin) for pin in map(line, PINS))
 
 
 def draw_columns(
@@ -76,15 +76,15 @@ def draw_columns(
     d = devices(sizes)
     plan = column_plan(d, sizes, masks, extra)
     canvas = Canvas(layout, "column", masks.base)
-    one = as_cell(canvas, d, plan, draw_column(canvas, masks, plan))
-    for net in one.ports:
+    column = as_cell(canvas, d, plan, draw_column(canvas, masks, plan))
+    for net in column.ports:
         if net in WAYS:
             canvas.label(FOURTH, net, 0.2, WAYS[net])
         elif net not in plan.joints:
-            name_track(canvas, next(track for track in one.tracks if track.net == net))
+            name_track(canvas, next(track for track in column.tracks if track.net == net))
     whole = Canvas(layout, "columns", masks.base)
     step = db.Vector(0, whole.snap(PITCH))
-    whole.cell.insert(db.CellInstArray(one.cell.cell_index(), db.Trans(), step, db.Vector(1, 0), count, 1))
+    whole.cell.insert(db.CellInstArray(column.cell.cell_index(), db.Trans(), step, db.Vector(1, 0), count, 1))
     for net in (*GROUPED, *SINGLE, *plan.free):
         half = line_um(net) / 2
         for name in names(net):
@@ -92,24 +92,24 @@ def draw_columns(
             whole.wire(FOURTH, x - half, 0, x + half, count * PITCH)
     via = Canvas(layout, "column_code", masks.base)
     via.stack(0, 0, THIRD, FOURTH)
-    tracks = {track.net: track.y for track in one.tracks if track.net in GROUPED}
+    tracks = {track.net: track.y for track in column.tracks if track.net in GROUPED}
     for number in range(count):
         lane, code = taken(number, LANES)
-        own = {net: code.get(net, lane) for net in GROUPED}
-        for net, k in own.items():
+        codes = {net: code.get(net, lane) for net in GROUPED}
+        for net, k in codes.items():
             x, y = plan.lines[f"{net}{k}"], number * PITCH + tracks[net]
             whole.cell.insert(db.CellInstArray(via.cell.cell_index(), db.Trans(whole.snap(x), whole.snap(y))))
-    return Columns(whole.cell, one, plan, count)
+    return Columns(whole.cell, column, plan, count)
 
 
-def draw_way(canvas: Canvas, made: Columns, net: str, number: int, only: int | None = None) -> list[float]:
+def draw_way(canvas: Canvas, columns: Columns, net: str, number: int, only: int | None = None) -> list[float]:
     """From the lines of a net, or from one of them, to END beyond the columns, south of column ``number``.
 
     Returns x of its vias.
     """
-    lines, y, half = made.lines(net), number * PITCH, WAY / 2
+    lines, y, half = columns.lines(net), number * PITCH, WAY / 2
     lines = lines if only is None else lines[only : only + 1]
-    end = made.plan.right + END
+    end = columns.plan.right + END
     canvas.wire(SECOND, min(lines) - half, y - half, end + half, y + half)
     for x in (*lines, end):
         canvas.stack(x, y, SECOND, FOURTH)
@@ -117,7 +117,7 @@ def draw_way(canvas: Canvas, made: Columns, net: str, number: int, only: int | N
     return [*lines, end]
 
 
-def draw_grounds(canvas: Canvas, made: Columns, vias: Mapping[int, Sequence[float]]) -> None:
+def draw_grounds(canvas: Canvas, columns: Columns, vias: Mapping[int, Sequence[float]]) -> None:
     """The ground's lines in the south of each column, up to the first of the ways' vias there. vias: x, by column."""
-    for number in range(made.count):
-        draw_ground(canvas, made.plan, number * PITCH, vias.get(number, ()))
+    for number in range(columns.count):
+        draw_ground(canvas, columns.plan, number * PITCH, vias.get(number, ()))

@@ -26,11 +26,11 @@ Pair = tuple[Device, Device]
 
 def devices(circuit: Circuit) -> dict[str, Device]:
     """All transistors of a circuit by name, in fingers."""
-    found = {}
+    by_name = {}
     for t in flat.transistors(circuit):
         last = t.name.rsplit(".", 1)[-1]
-        found[t.name] = Device(t, 2) if last == "tail" else Device.of(t, dummies=last in WITH_DUMMIES)
-    return found
+        by_name[t.name] = Device(t, 2) if last == "tail" else Device.of(t, dummies=last in WITH_DUMMIES)
+    return by_name
 
 
 def pair(d: Mapping[str, Device], west: str, east: str) -> Pair:
@@ -73,7 +73,7 @@ def comparator_plans(
     reach = reach or {}
 
     def through(placed: Sequence[Placed]) -> dict[str, Sequence[float]]:
-        present = {net for one in placed for net in one.device.transistor.nodes}
+        present = {net for device in placed for net in device.device.transistor.nodes}
         return {net: x for net, x in (*reach.items(), *sides.items()) if net in present}
 
     arm_plan = Plan(n, p, *ends, through((*n, *p)), split, (outputs,), axis)

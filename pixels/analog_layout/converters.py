@@ -66,9 +66,9 @@ class Converters(DrawnBlock):
         """Its text for LVS."""
         ports = dict.fromkeys(pin.name for pin in self.block.pins if pin.name != "unsigned_")
         lines = [
-            f"X{cell.cell.name}{k} {' '.join(own)} {cell.cell.name}"
+            f"X{cell.cell.name}{k} {' '.join(instance_nets)} {cell.cell.name}"
             for cell, nets in self.parts
-            for k, own in enumerate(nets)
+            for k, instance_nets in enumerate(nets)
         ]
         top = [f".subckt {NAME} {' '.join(ports)}", *lines, f".ends {NAME}", ""]
         return "".join(cell.spice(masks) for cell, _ in self.parts) + "\n".join(top)
@@ -76,7 +76,7 @@ class Converters(DrawnBlock):
 
 def frame(chip: ChipParameters, sizes: AnalogSizes) -> Block:
     """The frame, with pins for the references and for what wakes the amplifiers in the south-east."""
-    block = next(one for one in blocks(chip=chip, sizes=sizes) if one.name == NAME)
+    block = next(candidate for candidate in blocks(chip=chip, sizes=sizes) if candidate.name == NAME)
     extra = (
         Pin(name, "input" if name == ON else "inout", "south", rise(name, chip, sizes)) for name in (*REFERENCES, ON)
     )
@@ -94,18 +94,18 @@ def rise(net: str, chip: ChipParameters, sizes: AnalogSizes) -> float:
 def lane_nets(lane: int, chip: ChipParameters, ports: tuple[str, ...]) -> tuple[str, ...]:
     """The block's nets at the ports of a lane."""
     index = f"[{lane}]" if chip.lanes > 1 else ""
-    own = {f"d{bit}": f"dac[{BITS * lane + bit}]" for bit in range(BITS)}
-    own |= {"en": f"en{index}", "comparator": f"comparator{index}"} | SUPPLIES
-    own |= {"lane_a": f"out_{lane}", "lane_b": "vref", "reset": f"reset_{lane}"}
-    return tuple(own.get(port, port) for port in ports)
+    nets = {f"d{bit}": f"dac[{BITS * lane + bit}]" for bit in range(BITS)}
+    nets |= {"en": f"en{index}", "comparator": f"comparator{index}"} | SUPPLIES
+    nets |= {"lane_a": f"out_{lane}", "lane_b": "vref", "reset": f"reset_{lane}"}
+    return tuple(nets.get(port, port) for port in ports)
 
 
 def amplifier_nets(lane: int, ports: tuple[str, ...]) -> tuple[str, ...]:
     """The block's nets at the ports of the amplifier of a lane."""
-    own = {f"g{bit}": f"balance[{bit}]" for bit in range(TRIM_BITS)}
-    own |= {f"column_{diode}": f"lane_{diode}[{lane}]" for diode in DIODES} | SUPPLIES
-    own |= {"out": f"out_{lane}", "reset": f"reset_{lane}", "ibias": f"ibias_{lane}", "on": ON}
-    return tuple(own.get(port, port) for port in ports)
+    nets = {f"g{bit}": f"balance[{bit}]" for bit in range(TRIM_BITS)}
+    nets |= {f"column_{diode}": f"lane_{diode}[{lane}]" for diode in DIODES} | SUPPLIES
+    nets |= {"out": f"out_{lane}", "reset": f"reset_{lane}", "ibias": f"ibias_{lane}", "on": ON}
+    return tuple(nets.get(port, port) for port in ports)
 
 
 @dataclass(frozen=True)
@@ -148,7 +148,7 @@ def draw_converters(
     amplifiers = [Placed(above, amplifier_nets(k, above.ports), _x(k, room), 0.0) for k in range(chip.lanes)]
     biased = Placed(bias, currents, east + INSIDE - bias.cell.dbbox().left, 0.0)
     channel = _middle(middle, lanes, amplifiers, biased, block, chip, room)
-    amplifiers = [replace(one, y=channel.top) for one in amplifiers]
+    amplifiers = [replace(cell_instance, y=channel.top) for cell_instance in amplifiers]
     biased = replace(biased, y=channel.top)
     need = channel.top + above.cell.dbbox().height() + NORTH + max(0.0, south.top - low)
     if need > room.lanes_um or south.top > low:
@@ -164,17 +164,20 @@ def draw_converters(
     canvas.box(masks.base.outline, 0, 0, block.width_um, block.height_um)
     parts = ((lane, lanes), (above, amplifiers), (bias, [biased]))
     return Converters(
-        block, canvas.layout, canvas.cell, tuple((cell, tuple(one.nets for one in placed)) for cell, placed in parts)
+        block,
+        canvas.layout,
+        canvas.cell,
+        tuple((cell, tuple(instance.nets for instance in placed)) for cell, placed in parts),
     )
 
 
 def _ports(cell: Cell) -> dict[str, float]:
     """X of a cell's pins, on the fourth metal."""
-    found = {}
+    xs = {}
     for index in cell.layout.layer_indexes():
         for shape in cell.cell.shapes(index).each(db.Shapes.STexts):
-            found[shape.text_string] = shape.text.x * cell.layout.dbu
-    return found
+            xs[shape.text_string] = shape.text.x * cell.layout.dbu
+    return xs
 
 
 def _x(lane: int, room: AnalogSizes) -> float:
@@ -188,15 +191,15 @@ def _gap(lane: int, room: AnalogSizes) -> float:
 
 def _south(block: Block, lanes: list[Placed], chip: ChipParameters, room: AnalogSizes) -> Channel:
     """Between the chip's pins and the lanes; what rises to the amplifiers."""
-    own = {pin.name: [pin.at_um] for pin in block.pins if pin.side == "south"}
+    pins = {pin.name: [pin.at_um] for pin in block.pins if pin.side == "south"}
     above: dict[str, list[float]] = {}
-    for number, one in enumerate(lanes):
-        for net, x in one.ends():
-            if net in own and net not in REFERENCES or net.startswith("reset_"):
+    for number, lane in enumerate(lanes):
+        for net, x in lane.ends():
+            if net in pins and net not in REFERENCES or net.startswith("reset_"):
                 above.setdefault(net, []).append(x)
         above[f"reset_{number}"].append(_gap(number, room))
-    above |= {net: [rise(net, chip, room)] for net in own if net.startswith("balance")}
-    return Channel(FIRST_TRACK, {net: xs for net, xs in own.items() if net in above}, above)
+    above |= {net: [rise(net, chip, room)] for net in pins if net.startswith("balance")}
+    return Channel(FIRST_TRACK, {net: xs for net, xs in pins.items() if net in above}, above)
 
 
 def _rising(
@@ -229,10 +232,10 @@ def _middle(
         for net in [ON, *(pin.name for pin in block.pins if pin.name.startswith("balance"))]
     }
     below |= {f"reset_{k}": [_gap(k, room)] for k in range(len(lanes))}
-    below |= {net: [x] for one in lanes for net, x in one.ends() if net.startswith("out_")}
+    below |= {net: [x] for lane in lanes for net, x in lane.ends() if net.startswith("out_")}
     above: dict[str, list[float]] = {}
-    for one in (*amplifiers, bias):
-        for net, x in one.ends():
+    for instance in (*amplifiers, bias):
+        for net, x in instance.ends():
             if net in below or net.startswith("ibias_"):
                 above.setdefault(net, []).append(x)
     return Channel(y, below, above)
@@ -241,15 +244,15 @@ def _middle(
 def _instances(canvas: Canvas, placed: list[Placed]) -> None:
     """The cells, without their pins' names."""
     copies: dict[str, db.Cell] = {}
-    for one in placed:
-        name = one.cell.cell.name
+    for instance in placed:
+        name = instance.cell.cell.name
         if name not in copies:
             copies[name] = canvas.layout.create_cell(name)
-            copies[name].copy_tree(one.cell.cell)
+            copies[name].copy_tree(instance.cell.cell)
             for index in canvas.layout.layer_indexes():
                 for shape in list(copies[name].shapes(index).each(db.Shapes.STexts)):
                     copies[name].shapes(index).erase(shape)
-        where = db.Trans(canvas.snap(one.x), canvas.snap(one.y))
+        where = db.Trans(canvas.snap(instance.x), canvas.snap(instance.y))
         canvas.cell.insert(db.CellInstArray(copies[name].cell_index(), where))
 
 
@@ -272,15 +275,15 @@ def _references(
             for aside in (-0.6, 0.0, 0.6):
                 canvas.stack(x + aside, y + step, THIRD, FOURTH)
         canvas.wire(FOURTH, x - RISE_WIDE / 2, 0.0, x + RISE_WIDE / 2, y + wide)
-    for one in lanes:
-        for net, x in one.ends():
+    for lane in lanes:
+        for net, x in lane.ends():
             if net in straps:
                 y = straps[net]
                 canvas.wire(FOURTH, x - half, bottom - 0.1, x + half, y + 1)
                 for step in (-0.6, 0.0, 0.6):
                     canvas.stack(x, y + step, THIRD, FOURTH)
-    for one in amplifiers:
-        for net, x in one.ends():
+    for amplifier in amplifiers:
+        for net, x in amplifier.ends():
             if net in straps:
                 y, high = straps[net], top - 1.2
                 canvas.wire(SECOND, x - half, y - 1, x + half, high + 0.2)
@@ -293,9 +296,9 @@ def _references(
 def _north(canvas: Canvas, block: Block, amplifiers: list[Placed]) -> None:
     """From the amplifiers' tops to the pins in the north."""
     north, half = {pin.name: pin.at_um for pin in block.pins if pin.side == "north"}, TRUNK / 2
-    for one in amplifiers:
-        y = one.y + one.cell.cell.dbbox().top
-        for net, x in one.ends():
+    for amplifier in amplifiers:
+        y = amplifier.y + amplifier.cell.cell.dbbox().top
+        for net, x in amplifier.ends():
             if net in north:
                 jog, to = y + JOGS[DIODES.index(net[len("lane_")])], north[net]
                 canvas.wire(FOURTH, x - half, y - 0.1, x + half, jog + half)
@@ -305,13 +308,13 @@ def _north(canvas: Canvas, block: Block, amplifiers: list[Placed]) -> None:
                     canvas.stack(end, jog, THIRD, FOURTH)
 
 
-def _rails(one: Placed) -> dict[str, tuple[float, float, float]]:
+def _rails(instance: Placed) -> dict[str, tuple[float, float, float]]:
     """(x, low, high) of what joins a cell's rails, by supply."""
-    box, found = one.cell.cell.dbbox(), {}
+    box, rails = instance.cell.cell.dbbox(), {}
     metals = [
         shape.dbbox()
-        for index in one.cell.layout.layer_indexes()
-        for shape in one.cell.cell.shapes(index).each(db.Shapes.SBoxes)
+        for index in instance.cell.layout.layer_indexes()
+        for shape in instance.cell.cell.shapes(index).each(db.Shapes.SBoxes)
     ]
     edge = -box.left  # the cell's ends are as far from the tracks' in the west as in the east
     for net, x in (("vss", box.left + edge - RAIL_AT), ("vdd", box.right - edge + RAIL_AT)):
@@ -319,8 +322,8 @@ def _rails(one: Placed) -> dict[str, tuple[float, float, float]]:
             (shape for shape in metals if abs(shape.center().x - x) < 0.01 and shape.width() < 1.1),
             key=lambda shape: shape.height(),
         )
-        found[net] = one.x + x, one.y + trunk.bottom, one.y + trunk.top
-    return found
+        rails[net] = instance.x + x, instance.y + trunk.bottom, instance.y + trunk.top
+    return rails
 
 
 def _supplies(canvas: Canvas, block: Block, lanes: list[Placed], upper: list[Placed], room: AnalogSizes) -> None:
@@ -328,17 +331,17 @@ def _supplies(canvas: Canvas, block: Block, lanes: list[Placed], upper: list[Pla
     via, half, width = canvas.process.vias[FOURTH].gds, STRAP / 2, block.width_um
     heights: dict[str, list[list[float]]] = {"vss": [], "vdd": []}
     for row in (lanes, upper):
-        rails = [_rails(one) for one in row]
-        low = max(bottom for found in rails[:-1] or rails for _, bottom, _ in found.values()) + STRAP_IN
-        high = min(top for found in rails[:-1] or rails for _, _, top in found.values()) - STRAP_IN
+        rails = [_rails(instance) for instance in row]
+        low = max(bottom for spans in rails[:-1] or rails for _, bottom, _ in spans.values()) + STRAP_IN
+        high = min(top for spans in rails[:-1] or rails for _, _, top in spans.values()) - STRAP_IN
         ys = [round(low + STRAP_PITCH * n, 2) for n in range(int((high - low) / STRAP_PITCH) + 1)]
         for k, net in enumerate(("vdd", "vss")):
             heights[net].append(ys[k::2])
             begin, end = (SPINE[0], width - SPINE[1] - 4) if net == "vss" else (SPINE[1] + 4, width - SPINE[0])
             for y in ys[k::2]:
                 canvas.wire(TOP, begin, y - half, end, y + half)
-            for found in rails:
-                x, bottom, top = found[net]
+            for spans in rails:
+                x, bottom, top = spans[net]
                 near = [y for y in ys[k::2] if bottom < y < top] or [min(ys[k::2], key=lambda y: abs(y - top))]
                 canvas.wire(FOURTH, x - 0.6, min(bottom, near[0] - half), x + 0.6, max(top, near[-1] + half))
                 for y in near:
@@ -347,14 +350,14 @@ def _supplies(canvas: Canvas, block: Block, lanes: list[Placed], upper: list[Pla
     pins = [(pin.name, pin.at_um) for pin in block.pins if pin.supply]
     wide = room.supply_um / 2
     for net, rows in heights.items():
-        own = [at for name, at in pins if name == SUPPLIES[net]]
+        xs = [at for name, at in pins if name == SUPPLIES[net]]
         x0, x1 = SPINE if net == "vss" else (width - SPINE[1], width - SPINE[0])
         joined = [[y for row in rows for y in row]] if net == "vss" else rows
-        for ys, at in zip(joined, own, strict=True):
+        for ys, at in zip(joined, xs, strict=True):
             canvas.wire(TOP, x0, min(*ys, at) - wide, x1, max(*ys, at) + wide)
             canvas.wire(TOP, x0, at - wide, width, at + wide)
         if net == "vdd":  # below the ground's line
-            ends = max(*rows[0], own[0]) + wide, min(*rows[1], own[1]) - wide
+            ends = max(*rows[0], xs[0]) + wide, min(*rows[1], xs[1]) - wide
             canvas.wire(FOURTH, x0 + 1, ends[0] - UNDER, x1 - 1, ends[1] + UNDER)
             for y in (ends[0] - UNDER / 2, ends[1] + UNDER / 2):
                 for across in range(-2, 3):

@@ -178,13 +178,13 @@ class _Drawn:
         if t.role in self.masks.low:
             edges = starts[0] - LOW_AROUND, starts[-1] + t.l + LOW_AROUND
             self.box(self.masks.low_threshold, edges[0], low - LOW_AROUND, edges[1], high + LOW_AROUND)
-        own = starts[1:-1] if d.dummies else starts
+        active_gates = starts[1:-1] if d.dummies else starts
         bar = high + GATE_BAR
         for start in starts:
-            top = bar if start in own else high + POLY_END
-            bottom = low - POLY_END if start in own else low - SOURCE - BAR_HALF
+            top = bar if start in active_gates else high + POLY_END
+            bottom = low - POLY_END if start in active_gates else low - SOURCE - BAR_HALF
             self.box(base.poly, start, bottom, start + t.l, top)
-        straps = [self._gates(own, bar)]
+        straps = [self._gates(active_gates, bar)]
         stripes = [self.x + BEYOND - BETWEEN / 2 + k * d.pitch_um for k in range(gates + 1)]
         if d.dummies:
             self._dummy(stripes[0], starts[0])
@@ -202,7 +202,7 @@ class _Drawn:
         if t.source == t.bulk:
             self.box(base.metals[1].gds, source.left, 0, source.right, low - SOURCE)
         source = source._replace(fixed=d.dummies, railed=t.source == t.bulk)
-        return [one._replace(end=end) for one, end in zip((*straps, source), "gds", strict=True)]
+        return [strap._replace(end=end) for strap, end in zip((*straps, source), "gds", strict=True)]
 
     def _stripe(self, x: float, bottom: float) -> None:
         """A column of contacts, under the lowest metal from ``bottom`` to the end of the finger."""

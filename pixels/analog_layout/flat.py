@@ -45,9 +45,9 @@ def transistors(circuit: Circuit, prefix: str = "", nets: Mapping[str, str] | No
         yield t._replace(
             name=prefix + t.name, drain=net(t.drain), gate=net(t.gate), source=net(t.source), bulk=net(t.bulk)
         )
-    for one in circuit.instances:
-        inner = dict(zip(one.circuit.ports, map(net, one.nodes), strict=True))
-        yield from transistors(one.circuit, f"{prefix}{one.name}.", inner)
+    for instance in circuit.instances:
+        inner = dict(zip(instance.circuit.ports, map(net, instance.nodes), strict=True))
+        yield from transistors(instance.circuit, f"{prefix}{instance.name}.", inner)
 
 
 def capacitors(circuit: Circuit, prefix: str = "", nets: Mapping[str, str] | None = None) -> Iterator[Capacitor]:
@@ -56,9 +56,9 @@ def capacitors(circuit: Circuit, prefix: str = "", nets: Mapping[str, str] | Non
     for c in circuit.capacitors:
         if c.units:
             yield c._replace(name=prefix + c.name, a=known.get(c.a, prefix + c.a), b=known.get(c.b, prefix + c.b))
-    for one in circuit.instances:
-        inner = {p: known.get(n, prefix + n) for p, n in zip(one.circuit.ports, one.nodes, strict=True)}
-        yield from capacitors(one.circuit, f"{prefix}{one.name}.", inner)
+    for instance in circuit.instances:
+        inner = {p: known.get(n, prefix + n) for p, n in zip(instance.circuit.ports, instance.nodes, strict=True)}
+        yield from capacitors(instance.circuit, f"{prefix}{instance.name}.", inner)
 
 
 def spice(

@@ -84,11 +84,11 @@ def _switch(d: dict[str, Device], prefix: str) -> list[Column]:
 
 
 def _gates(d: dict[str, Device], names: Iterable[str]) -> list[Column]:
-    found: list[Column] = []
+    columns: list[Column] = []
     for name in names:
         legs = GATES[0] if f"{name}.n" in d else GATES[1]
-        found += [(d[f"{name}.{n}"], d[f"{name}.{p}"]) for n, p in legs]
-    return found
+        columns += [(d[f"{name}.{n}"], d[f"{name}.{p}"]) for n, p in legs]
+    return columns
 
 
 def lane_plan(masks: AnalogMasks, sizes: LaneSizes, d: dict[str, Device]) -> LanePlan:
@@ -106,10 +106,10 @@ def lane_plan(masks: AnalogMasks, sizes: LaneSizes, d: dict[str, Device]) -> Lan
     switches = [_switch(d, f"dac.switch{k}.") for k in reversed(range(BITS))]
     switches += [_switch(d, "dac.switch_t."), _switch(d, "dac.switch_h.")]
     strips: list[list[Column]] = [[]]
-    for one in switches:
-        if in_columns([*strips[-1], *one], left)[2] > right:
+    for switch in switches:
+        if in_columns([*strips[-1], *switch], left)[2] > right:
             strips.append([])
-        strips[-1] += one
+        strips[-1] += switch
 
     def plan(columns: Sequence[Column]) -> Plan:
         n, p, end = in_columns(columns, left, (right - in_columns(columns, left)[2]) / len(columns) - 1e-3)
@@ -117,7 +117,7 @@ def lane_plan(masks: AnalogMasks, sizes: LaneSizes, d: dict[str, Device]) -> Lan
         reach = {net: (x,) for net, x in at.items() if net in present}
         return Plan(n, p, left, right, reach, quiet=frozenset({*nets.values(), *other.values(), "lane_a", "lane_b"}))
 
-    drivers = [_gates(d, one) for one in INTERFACE] if "fired.n" in d else []
+    drivers = [_gates(d, gates) for gates in INTERFACE] if "fired.n" in d else []
     drivers.append(
         _gates(d, ("sample_0", "sample_1", "sample_2", "sample_3", "sample_n", "sample_p", "strobe_n", "strobe_p"))
     )
@@ -126,8 +126,8 @@ def lane_plan(masks: AnalogMasks, sizes: LaneSizes, d: dict[str, Device]) -> Lan
     return LanePlan(
         left,
         right,
-        tuple(plan(one) for one in drivers),
-        tuple(plan(one) for one in strips),
+        tuple(plan(column_list) for column_list in drivers),
+        tuple(plan(column_list) for column_list in strips),
         dac,
         comparator_plans(
             d,
@@ -155,9 +155,9 @@ def lane_cell(masks: AnalogMasks, sizes: LaneSizes, chip: bool = False) -> Cell:
         d |= devices(interface())
     plan = lane_plan(masks, sizes, d)
     y, south = MARGIN, list[Strip]()
-    for one in (*plan.drivers, *plan.dac_switches):
-        south.append(draw_strip(canvas, masks, one, y))
-        y += one.height_um + BETWEEN_STRIPS
+    for strip_plan in (*plan.drivers, *plan.dac_switches):
+        south.append(draw_strip(canvas, masks, strip_plan, y))
+        y += strip_plan.height_um + BETWEEN_STRIPS
     y += AWAY - BETWEEN_STRIPS
     dac = draw_array(canvas, masks, plan.dac, y)
     y += plan.dac.size_um[1] + AWAY
@@ -181,7 +181,7 @@ def lane_cell(masks: AnalogMasks, sizes: LaneSizes, chip: bool = False) -> Cell:
         for side, array in (("dac", plan.dac), ("balance", plan.balance))
         for plate in array.plates()
     ]
-    ends = tuple(one for strip in strips for one in strip.terminals)
+    ends = tuple(terminal for strip in strips for terminal in strip.terminals)
     arrays = ("dac", dac), ("balance", balance)
     taps = [tap._replace(name=f"{side}_{tap.name}") for side, array in arrays for tap in array.taps]
     return Cell(canvas.layout, canvas.cell, ports, tuple(d.values()), tuple(plates), ends, tuple(taps))
@@ -197,7 +197,7 @@ def _meet(canvas: Canvas, array: Array, arm: Strip, net: str, aside: float) -> N
 
 def _ground(canvas: Canvas, array: Array, x: float) -> None:
     """The dummies' net to what joins the lower rails."""
-    track = next(one for one in array.tracks if one.net == array.plan.ground)
+    track = next(row for row in array.tracks if row.net == array.plan.ground)
     canvas.wire(THIRD, x - TRACK / 2, track.y - TRACK / 2, track.left, track.y + TRACK / 2)
     canvas.stack(x, track.y, THIRD, FOURTH)
 

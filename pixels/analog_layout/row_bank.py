@@ -43,9 +43,9 @@ def crossings(rows: RowPlan) -> dict[str, float]:
     taken = [*at.values()]
     for side in SIDES:
         for bit in range(ADDRESS):
-            own = at[f"{side}_row{bit}"]
-            wanted = max(own, max(rows.lines[name] for name in _codes("reset", "low")))
-            place = wanted
+            position = at[f"{side}_row{bit}"]
+            nearest = max(position, max(rows.lines[name] for name in _codes("reset", "low")))
+            place = nearest
             while any(abs(place - x) < APART for x in taken) or any(
                 abs(place - x) < BESIDE_JOINT for x in rows.joints.values()
             ):
@@ -62,7 +62,7 @@ def draw_bank(canvas: Canvas, masks: AnalogMasks, rows: RowPlan) -> tuple[Cell, 
     right = max(rows.logic.right, *(end for _, _, end in rows_of))
     y, strips = SOUTH, list[Strip]()
     for n, p, _ in rows_of:
-        present = {net for one in (*n, *p) for net in one.device.transistor.nodes}
+        present = {net for device in (*n, *p) for net in device.device.transistor.nodes}
         reach = {net: (x,) for net, x in at.items() if net in present}
         strips.append(draw_strip(canvas, masks, Plan(n, p, 0.0, right, reach), y))
         y += strips[-1].plan.height_um + BETWEEN_STRIPS
@@ -75,7 +75,7 @@ def draw_bank(canvas: Canvas, masks: AnalogMasks, rows: RowPlan) -> tuple[Cell, 
     for net in ("vss", "vdd"):
         _join(canvas, strips, net, rows.joints[net], top)
     ports = (*BANK_INPUTS, *BANK_OUTPUTS, "vdd", "vss")
-    terminals = tuple(one for strip in strips for one in strip.terminals)
+    terminals = tuple(terminal for strip in strips for terminal in strip.terminals)
     return Cell(canvas.layout, canvas.cell, ports, tuple(d.values()), terminals=terminals), top
 
 

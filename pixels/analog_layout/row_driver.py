@@ -95,15 +95,15 @@ def _lines(n: Sequence[Placed], pins: Collection[float]) -> dict[str, float]:
     pins: x of what comes from the south.
     """
     places = [k * LINE_PITCH for k in range(1, 400) if all(abs(k * LINE_PITCH - x) >= LINE_APART for x in pins)]
-    found = {}
+    lines = {}
     for control in CONTROLS:
-        (gate,) = (one for one in n if one.device.transistor.gate == control)
+        (gate,) = (placed for placed in n if placed.device.transistor.gate == control)
         middle = (gate.low + gate.high) / 2
-        found[control] = min(places, key=lambda x: abs(x - middle))
-    free = iter(x for x in places if x not in found.values())
+        lines[control] = min(places, key=lambda x: abs(x - middle))
+    free = iter(x for x in places if x not in lines.values())
     for name in (f"{side}_{group}{k}" for side in SIDES for group, count in CODES.items() for k in range(count)):
-        found[name] = next(free)
-    return {name: round(x, 3) for name, x in found.items()}
+        lines[name] = next(free)
+    return {name: round(x, 3) for name, x in lines.items()}
 
 
 def legs(d: Mapping[str, Device], name: str) -> list[tuple[Device | None, Device | None]]:
@@ -178,29 +178,29 @@ def _clear(plan: Plan, jogs: Mapping[str, float]) -> bool:
     )
 
 
-def draw_row(canvas: Canvas, masks: AnalogMasks, made: RowPlan) -> Strip:
+def draw_row(canvas: Canvas, masks: AnalogMasks, row: RowPlan) -> Strip:
     """A row, its south edge at y = 0, with its part of the controls and supplies that cross all rows."""
     y, top = BETWEEN / 2, PITCH - BETWEEN / 2
-    strip = draw_rows(canvas, masks, made.plan, y)
-    for plan in (made.logic, made.thick):
+    strip = draw_rows(canvas, masks, row.plan, y)
+    for plan in (row.logic, row.thick):
         draw_rails(canvas, masks, plan, y)
         join_rails(canvas, [Strip(plan, y)])
-    canvas.wire(1, made.logic.right, y - RAIL_HALF, made.thick.left, y + RAIL_HALF)  # one ground
-    _thick(canvas, made, y, top)
-    crossing = {name: made.lines[name] for name in CONTROLS}
-    for places_of, wide in ((crossing, LINE), (made.joints, RAIL_TRUNK)):
+    canvas.wire(1, row.logic.right, y - RAIL_HALF, row.thick.left, y + RAIL_HALF)  # one ground
+    _thick(canvas, row, y, top)
+    crossing = {name: row.lines[name] for name in CONTROLS}
+    for places_of, wide in ((crossing, LINE), (row.joints, RAIL_TRUNK)):
         for x in places_of.values():
             canvas.wire(FOURTH, x - wide / 2, 0, x + wide / 2, PITCH)
     at = places()
     for track in strip.tracks:
-        for x in [made.lines[track.net]] if track.net in CONTROLS else []:
+        for x in [row.lines[track.net]] if track.net in CONTROLS else []:
             canvas.stack(x, track.y, THIRD, FOURTH)
         if track.net == GATE_OF_VDD:
-            canvas.stack(made.joints["vdd"], track.y, THIRD, FOURTH)
-        if track.net in made.jogs:
-            x, to, half = made.jogs[track.net], at[track.net], LINE / 2
+            canvas.stack(row.joints["vdd"], track.y, THIRD, FOURTH)
+        if track.net in row.jogs:
+            x, to, half = row.jogs[track.net], at[track.net], LINE / 2
             low, high = sorted((track.y, to))
-            canvas.wire(THIRD, x - half, to - half, made.right, to + half)
+            canvas.wire(THIRD, x - half, to - half, row.right, to + half)
             if high - low < TRACK + 0.32:  # no notch between both, and no room for two vias
                 canvas.wire(THIRD, x - TRUNK / 2, low, x + TRUNK / 2, high)
                 continue
@@ -210,17 +210,17 @@ def draw_row(canvas: Canvas, masks: AnalogMasks, made: RowPlan) -> Strip:
     return strip
 
 
-def _thick(canvas: Canvas, made: RowPlan, y: float, top: float) -> None:
+def _thick(canvas: Canvas, row: RowPlan, y: float, top: float) -> None:
     """What thick oxide needs: its mask over all of the shifters, the tip implant over n, more well around p."""
-    process, plan = canvas.process, made.thick
+    process, plan = canvas.process, row.thick
     (oxide, _), (tip, _) = process.thick
     ends = RAIL_ENDS + WELL_ENDS + THICK_IN
     canvas.box(oxide, plan.left - ends, 0, plan.right + ends, PITCH)
-    low = min(top - 0.96 - one.device.finger_um for one in plan.p) - THICK_WELL
+    low = min(top - 0.96 - placed.device.finger_um for placed in plan.p) - THICK_WELL
     canvas.box(
         process.well, plan.left - ends + THICK_IN, low, plan.right + ends - THICK_IN, top + TAP_HALF + THICK_WELL
     )
-    high = max(y + 0.96 + one.device.finger_um for one in plan.n)
+    high = max(y + 0.96 + placed.device.finger_um for placed in plan.n)
     left, right = plan.n[0].x, plan.n[-1].x + plan.n[-1].device.width_um
     canvas.box(tip, left - TIP, y + 0.96 - TIP, right + TIP, high + TIP)
 
@@ -228,8 +228,8 @@ def _thick(canvas: Canvas, made: RowPlan, y: float, top: float) -> None:
 def as_cell(canvas: Canvas, d: Mapping[str, Device], strip: Strip) -> Cell:
     """The drawn row with its circuit's names."""
     terminals = tuple(
-        one._replace(strap=one.strap._replace(net="vdd")) if one.strap.net == GATE_OF_VDD else one
-        for one in strip.terminals
+        terminal._replace(strap=terminal.strap._replace(net="vdd")) if terminal.strap.net == GATE_OF_VDD else terminal
+        for terminal in strip.terminals
     )
     ports = (*ROW_INPUTS, *ROW_LINES, *SUPPLIES)
     return Cell(canvas.layout, canvas.cell, ports, tuple(d.values()), terminals=terminals, tracks=tuple(strip.tracks))

@@ -78,10 +78,10 @@ def chip_pin(name: str) -> str:
 def row_nets(number: int, rows: int) -> tuple[str, ...]:
     """The block's nets at the ports of a row."""
     codes = taken(number)
-    own = {f"{side}_{group}": f"{side}_{group}{code}" for side in SIDES for group, code in codes.items()}
-    own |= {name: f"{name}_line" for name in CONTROLS}
-    own |= {name: f"{name}[{number}]" for name in ROW_LINES} | NETS
-    return tuple(own[port] for port in (*ROW_INPUTS, *ROW_LINES, *SUPPLIES))
+    nets = {f"{side}_{group}": f"{side}_{group}{code}" for side in SIDES for group, code in codes.items()}
+    nets |= {name: f"{name}_line" for name in CONTROLS}
+    nets |= {name: f"{name}[{number}]" for name in ROW_LINES} | NETS
+    return tuple(nets[port] for port in (*ROW_INPUTS, *ROW_LINES, *SUPPLIES))
 
 
 def bank_nets() -> tuple[str, ...]:
@@ -100,16 +100,16 @@ def row_cell(masks: AnalogMasks, array: ArrayParameters, room: AnalogSizes | Non
     """A row alone, its pins named on its tracks: what is extracted and simulated."""
     d, canvas = devices(row()), new_canvas(masks, "row")
     _, plan = _plan(d, array, room or AnalogSizes())
-    made = as_cell(canvas, d, draw_row(canvas, masks, plan))
-    _names(canvas, made)
+    cell = as_cell(canvas, d, draw_row(canvas, masks, plan))
+    _names(canvas, cell)
     canvas.box(masks.base.outline, plan.logic.left - RAIL_ENDS, 0, plan.right, PITCH)
-    return made
+    return cell
 
 
-def _names(canvas: Canvas, made: Cell) -> None:
+def _names(canvas: Canvas, cell: Cell) -> None:
     """A row's ports, each on its track."""
-    for track in made.tracks:
-        if track.net in made.ports:
+    for track in cell.tracks:
+        if track.net in cell.ports:
             name_track(canvas, track)
 
 
@@ -125,26 +125,28 @@ def draw_row_drivers(masks: AnalogMasks, array: ArrayParameters, room: AnalogSiz
     canvas = new_canvas(masks, NAME)
     bank_canvas, row_canvas = (Canvas(canvas.layout, name, masks.base) for name in ("row_bank", "row"))
     bank, height = draw_bank(bank_canvas, masks, plan)
-    made = as_cell(row_canvas, d, draw_row(row_canvas, masks, plan))
-    _names(row_canvas, made)
+    row_cell_drawn = as_cell(row_canvas, d, draw_row(row_canvas, masks, plan))
+    _names(row_canvas, row_cell_drawn)
     moved = (pin if pin.side == "south" else replace(pin, at_um=pin.at_um + height) for pin in plain.pins)
     block = Block(NAME, plain.width_um, round(plain.height_um + height, 3), tuple(moved))
     x, y, pitch = canvas.snap(plan.west), canvas.snap(height), canvas.snap(PITCH)
     canvas.cell.insert(db.CellInstArray(bank.cell.cell_index(), db.Trans(x, 0)))
     step = db.Vector(0, pitch)
-    canvas.cell.insert(db.CellInstArray(made.cell.cell_index(), db.Trans(x, y), step, db.Vector(1, 0), array.rows, 1))
-    _lines(canvas, plan, made, height, array.rows)
+    canvas.cell.insert(
+        db.CellInstArray(row_cell_drawn.cell.cell_index(), db.Trans(x, y), step, db.Vector(1, 0), array.rows, 1)
+    )
+    _lines(canvas, plan, row_cell_drawn, height, array.rows)
     _supplies(canvas, block, plan, height, room)
     draw_pins(canvas.layout, canvas.cell, block, masks.base.name, room.supply_um)
     canvas.box(masks.base.outline, 0, 0, block.width_um, block.height_um)
-    return RowDrivers(block, canvas.layout, canvas.cell, made, bank, array.rows)
+    return RowDrivers(block, canvas.layout, canvas.cell, row_cell_drawn, bank, array.rows)
 
 
-def _lines(canvas: Canvas, plan: RowPlan, made: Cell, south: float, rows: int) -> None:
+def _lines(canvas: Canvas, plan: RowPlan, row: Cell, south: float, rows: int) -> None:
     """Predecoded lines across all rows, and each row's vias to its own."""
     via = Canvas(canvas.layout, "row_code", canvas.process)
     via.stack(0, 0, THIRD, FOURTH)
-    tracks = {track.net: track.y for track in made.tracks}
+    tracks = {track.net: track.y for track in row.tracks}
     for side in SIDES:
         for group, count in CODES.items():
             for code in range(count):

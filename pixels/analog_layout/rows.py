@@ -20,10 +20,10 @@ def dummies(name: str, like: Device) -> dict[str, Device]:
 
 def row(d: Mapping[str, Device], names: Iterable[str], axis: float, room: float = 0.0) -> tuple[Placed, ...]:
     """Devices beside each other about ``axis``; room: um more between them."""
-    own = [d[name] for name in names]
-    rooms = [snap(max(one.width_um + GAP, 3 * DROP_PITCH) + room) for one in own]
+    devices = [d[name] for name in names]
+    rooms = [snap(max(device.width_um + GAP, 3 * DROP_PITCH) + room) for device in devices]
     x, placed = snap(axis - sum(rooms) / 2), list[Placed]()
-    for one, wide in zip(own, rooms, strict=True):
-        placed.append(Placed(one, snap(x + (wide - one.width_um) / 2), x, x + wide))
+    for device, wide in zip(devices, rooms, strict=True):
+        placed.append(Placed(device, snap(x + (wide - device.width_um) / 2), x, x + wide))
         x = snap(x + wide)
     return tuple(placed)

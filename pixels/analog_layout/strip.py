@@ -92,18 +92,18 @@ class Plan:
 
     def spans(self) -> dict[str, tuple[float, float]]:
         """(left, right) of every net's track that there may be a drop on, um."""
-        found: dict[str, tuple[float, float]] = {}
+        by_net: dict[str, tuple[float, float]] = {}
         for placed in self.placed():
             t = placed.device.transistor
             for net in {t.drain, t.gate, t.source} - set(self.rails):
-                left, right = found.get(net, (placed.low, placed.high))
-                found[net] = min(left, placed.low), max(right, placed.high)
+                left, right = by_net.get(net, (placed.low, placed.high))
+                by_net[net] = min(left, placed.low), max(right, placed.high)
         for net, reached in self.through.items():
             ends = [x + side * TRUNK / 2 for x in reached for side in (-1, 1)]
-            found[net] = min([*found[net][:1], *ends]), max([*found[net][1:], *ends])
+            by_net[net] = min([*by_net[net][:1], *ends]), max([*by_net[net][1:], *ends])
         if self.axis is not None:
-            found = {net: (min(a, 2 * self.axis - b), max(b, 2 * self.axis - a)) for net, (a, b) in found.items()}
-        return found
+            by_net = {net: (min(a, 2 * self.axis - b), max(b, 2 * self.axis - a)) for net, (a, b) in by_net.items()}
+        return by_net
 
     def _rows(self) -> list[list[tuple[str, float, float]]]:
         """(net, left, right) of what is on each track, from the first track on."""
@@ -164,27 +164,27 @@ class Strip:
 
 def draw_strip(canvas: Canvas, masks: AnalogMasks, plan: Plan, y: float) -> Strip:
     """Draw a strip, the middle of its lower rail at ``y``. Raises ParameterError where a drop has no room."""
-    made = draw_rows(canvas, masks, plan, y)
+    strip = draw_rows(canvas, masks, plan, y)
     draw_rails(canvas, masks, plan, y)
-    return made
+    return strip
 
 
 def draw_rows(canvas: Canvas, masks: AnalogMasks, plan: Plan, y: float) -> Strip:
     """A strip's transistors and nets, without rails and well."""
-    made, top = Strip(plan, y), y + plan.height_um
-    made.tracks = [track._replace(y=y + track.y) for track in plan.tracks()]
+    strip, top = Strip(plan, y), y + plan.height_um
+    strip.tracks = [track._replace(y=y + track.y) for track in plan.tracks()]
     straps: list[tuple[Strap, Placed]] = []
     for row, rail_y, upright in ((plan.n, y, True), (plan.p, top, False)):
         for placed in row:
             drawn = draw_device(canvas, masks, placed.device, placed.x, rail_y, upright, (placed.low, placed.high))
-            made.terminals += [Terminal(placed.device.transistor.name, s) for s in drawn]
+            strip.terminals += [Terminal(placed.device.transistor.name, s) for s in drawn]
             straps += [(s, placed) for s in drawn if not s.railed]
-    _drops(canvas, made, straps)
-    for track in made.tracks:
+    _drops(canvas, strip, straps)
+    for track in strip.tracks:
         canvas.wire(THIRD, track.left, track.y - TRACK / 2, track.right, track.y + TRACK / 2)
     for pair in plan.twisted:
-        _cross(canvas, made, pair, plan.axis or 0.0)
-    return made
+        _cross(canvas, strip, pair, plan.axis or 0.0)
+    return strip
 
 
 def name_track(canvas: Canvas, track: Strap) -> None:
@@ -218,15 +218,15 @@ def _rail(canvas: Canvas, plan: Plan, y: float, implant: tuple[int, int]) -> Non
         canvas.square(base.vias[0].gds, first + k * TAP_PITCH, y, 0.17)
 
 
-def _drops(canvas: Canvas, made: Strip, straps: Sequence[tuple[Strap, Placed]]) -> None:
+def _drops(canvas: Canvas, strip: Strip, straps: Sequence[tuple[Strap, Placed]]) -> None:
     """A drop from every strap to its track; the least free straps first, and what found no room before those."""
-    groups = _groups(sorted(straps, key=lambda one: (_freedom(*one), one[0].right - one[0].left)), made.plan.axis)
+    groups = _groups(sorted(straps, key=lambda pair: (_freedom(*pair), pair[0].right - pair[0].left)), strip.plan.axis)
     for _ in range(TRIES):
-        drops, lacking = _assigned(made, groups)
+        drops, lacking = _assigned(strip, groups)
         if lacking is None:
             for strap, x, low, high in drops:
-                made.drops.append((strap.net, x, low, high))
-                _drop(canvas, made, strap, x, (low, high))
+                strip.drops.append((strap.net, x, low, high))
+                _drop(canvas, strip, strap, x, (low, high))
             return
         groups.insert(0, groups.pop(lacking))
     strap = groups[0][0][0]
@@ -250,14 +250,14 @@ def _groups(straps: Sequence[tuple[Strap, Placed]], axis: float | None) -> list[
 
 
 def _assigned(
-    made: Strip, groups: Sequence[Sequence[tuple[Strap, Placed]]]
+    strip: Strip, groups: Sequence[Sequence[tuple[Strap, Placed]]]
 ) -> tuple[list[tuple[Strap, float, float, float]], int | None]:
     """Drops (strap, x, low, high) of groups in this order; the first group without room, or None."""
-    axis, kept = made.plan.axis, list[tuple[Strap, float, float, float]]()
-    reaches = [[_reach(made, strap) for strap, _ in group] for group in groups]
+    axis, kept = strip.plan.axis, list[tuple[Strap, float, float, float]]()
+    reaches = [[_reach(strip, strap) for strap, _ in group] for group in groups]
     for index, (group, ends) in enumerate(zip(groups, reaches, strict=True)):
         central = axis is not None and len(group) == 1 and abs(group[0][0].left + group[0][0].right - 2 * axis) < 1e-6
-        track = piece(made.tracks, group[0][0].net, (group[0][0].left + group[0][0].right) / 2)
+        track = piece(strip.tracks, group[0][0].net, (group[0][0].left + group[0][0].right) / 2)
         for x in _places(*group[0]):
             if track and not track.left + TRACK / 2 <= x + 1e-9 <= track.right - TRACK / 2 + 2e-9:
                 continue
@@ -269,10 +269,10 @@ def _assigned(
             elif len(group) == 2 and axis is not None:
                 pairs.append((group[1][0], 2 * axis - x, *ends[1]))
             trial = list(kept)
-            for one in pairs:
-                if not _free(*one[1:], trial):
+            for pair in pairs:
+                if not _free(*pair[1:], trial):
                     break
-                trial.append(one)
+                trial.append(pair)
             else:
                 kept = trial
                 break
@@ -283,21 +283,21 @@ def _assigned(
 
 def piece(tracks: Iterable[Strap], net: str, x: float) -> Strap | None:
     """The piece of a net's track that reaches to ``x``, or the nearest one; None where it has none."""
-    own = [track for track in tracks if track.net == net]
-    return min(own, key=lambda track: max(track.left - x, x - track.right, 0.0), default=None)
+    segments = [track for track in tracks if track.net == net]
+    return min(segments, key=lambda track: max(track.left - x, x - track.right, 0.0), default=None)
 
 
-def _reach(made: Strip, strap: Strap) -> tuple[float, float]:
+def _reach(strip: Strip, strap: Strap) -> tuple[float, float]:
     """Ends of a drop: the strap and its track, or its rail."""
-    track = piece(made.tracks, strap.net, (strap.left + strap.right) / 2)
-    rail = made.y if strap.net == made.plan.rails[0] else made.y + made.plan.height_um
+    track = piece(strip.tracks, strap.net, (strap.left + strap.right) / 2)
+    rail = strip.y if strap.net == strip.plan.rails[0] else strip.y + strip.plan.height_um
     end = track.y if track else rail
     return min(strap.y, end), max(strap.y, end)
 
 
-def _cross(canvas: Canvas, made: Strip, pair: tuple[str, str], axis: float) -> None:
+def _cross(canvas: Canvas, strip: Strip, pair: tuple[str, str], axis: float) -> None:
     """Both nets of ``pair`` change tracks: one on the tracks' metal, the other on the metal above."""
-    low, high = (piece(made.tracks, net, axis - 2 * CROSS) for net in pair)
+    low, high = (piece(strip.tracks, net, axis - 2 * CROSS) for net in pair)
     if low is None or high is None:
         raise ParameterError(f"nets {pair}: must have tracks to cross")
     half = TRACK / 2
@@ -325,8 +325,8 @@ def _places(strap: Strap, placed: Placed) -> Iterator[float]:
     low, high = _ends(strap, placed)
     low, high = low + STRAP / 2, high - STRAP / 2
     yield middle
-    found = {_grid(low + DROP_STEP * k) for k in range(int((high - low) / DROP_STEP + 1e-6) + 1)}
-    yield from sorted(found, key=lambda x: (abs(x - middle) > inner / 2 + 1e-9, abs(x - middle)))
+    places = {_grid(low + DROP_STEP * k) for k in range(int((high - low) / DROP_STEP + 1e-6) + 1)}
+    yield from sorted(places, key=lambda x: (abs(x - middle) > inner / 2 + 1e-9, abs(x - middle)))
 
 
 def _ends(strap: Strap, placed: Placed) -> tuple[float, float]:
@@ -339,16 +339,16 @@ def _freedom(strap: Strap, placed: Placed) -> float:
     return right - left
 
 
-def _drop(canvas: Canvas, made: Strip, strap: Strap, x: float, ends: tuple[float, float]) -> None:
+def _drop(canvas: Canvas, strip: Strip, strap: Strap, x: float, ends: tuple[float, float]) -> None:
     half = STRAP / 2
     canvas.wire(1, min(x - half, strap.left), strap.y - half, max(x + half, strap.right), strap.y + half)
     canvas.stack(x, strap.y, 1, SECOND)
     canvas.wire(SECOND, x - DROP / 2, ends[0] - DROP / 2, x + DROP / 2, ends[1] + DROP / 2)
-    track = piece(made.tracks, strap.net, x)
+    track = piece(strip.tracks, strap.net, x)
     if track:
         canvas.stack(x, track.y, SECOND, THIRD)
     else:
-        canvas.stack(x, made.y if strap.net == made.plan.rails[0] else made.y + made.plan.height_um, 1, SECOND)
+        canvas.stack(x, strip.y if strap.net == strip.plan.rails[0] else strip.y + strip.plan.height_um, 1, SECOND)
 
 
 def trunk(canvas: Canvas, tracks: Iterable[Strap], net: str, x: float, *beyond: float) -> None:

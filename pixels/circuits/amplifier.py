@@ -248,7 +248,7 @@ def _p(name: str, nodes: str, w: float, kind: tuple[str, float], parts: int = 1)
 def _parts(name: str, nodes: tuple[str, ...], w: float, kind: tuple[str, float], parts: int) -> list[Transistor]:
     drain, gate, source, bulk = nodes
     names = [name] if parts == 1 else [f"{name}_{k}" for k in range(parts)]
-    return [Transistor(one, drain, gate, source, bulk, kind[0], _drawn(w), kind[1]) for one in names]
+    return [Transistor(part_name, drain, gate, source, bulk, kind[0], _drawn(w), kind[1]) for part_name in names]
 
 
 def ota(sizes: OtaSizes) -> Circuit:

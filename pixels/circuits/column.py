@@ -72,15 +72,15 @@ def _through(name: str, a: str, b: str, on: str, off: str, w: float = 0.42) -> t
 
 def charge_amplifier(sizes: ColumnSizes) -> Circuit:
     """Pins line out clear cn vbp vcp vdd vss."""
-    one = sizes.front
+    stage = sizes.front
     return Circuit(
         "charge_amplifier",
         ("line", "out", "clear", "cn", "vbp", "vcp", *SUPPLIES),
         (
-            n("in", "below line vss", one.input, FRONT),
-            n("cascode", "out cn below", one.cascode, CASCODE),
-            source("top", "above vbp vdd", one.top, TOP),
-            p("cascode_p", "out vcp above", one.cascode_p, CASCODE_P),
+            n("in", "below line vss", stage.input, FRONT),
+            n("cascode", "out cn below", stage.cascode, CASCODE),
+            source("top", "above vbp vdd", stage.top, TOP),
+            p("cascode_p", "out vcp above", stage.cascode_p, CASCODE_P),
             n("clear", "line clear out", 0.42, SWITCH),
         ),
         (Capacitor("f", "line", "out", sizes.feedback, 1),),
@@ -153,9 +153,9 @@ def column(sizes: ColumnSizes) -> Circuit:
         )
         of_taps = (name for t in range(taps) for name in (f"w{t}", f"s{t}", f"f{t}", f"fn{t}"))
         nodes = "idle", "reads", "ref", "sig", "sign", *of_taps, *biased, "level", "start"
-        own = (f"{name}_a" if d == "a" and name in SHARED else name for name in nodes)
+        pins = (f"{name}_a" if d == "a" and name in SHARED else name for name in nodes)
         ways = f"cin_{d}", f"lane_{d}", f"sense_{d}", f"go_{d}", "sel", "seln"
-        parts.append(Instance(f"back_{d}", holder(sizes, taps), (*ways, *own, *SUPPLIES)))
+        parts.append(Instance(f"back_{d}", holder(sizes, taps), (*ways, *pins, *SUPPLIES)))
     switches = [
         n("go_a", "vcn sel go_a", 0.84, SWITCH),
         n("stop_a", "go_a seln vss", 0.42, SWITCH),

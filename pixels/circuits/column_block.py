@@ -87,14 +87,14 @@ def lane_end(sizes: ColumnSizes) -> Circuit:
 
     Pins lane reference turn turnn vbl vcp vdd vss.
     """
-    one = sizes.lane
+    stage = sizes.lane
     return Circuit(
         "lane_end",
         ("lane", "reference", "turn", "turnn", "vbl", "vcp", *SUPPLIES),
         (
             p("on", "high turnn vdd", 10.4, POWER),
-            source("top", "above vbl high", one.top, LANE_TOP, PARTS),
-            source("cascode_p", "lane vcp above", one.cascode_p, CASCODE_P, PARTS),
+            source("top", "above vbl high", stage.top, LANE_TOP, PARTS),
+            source("cascode_p", "lane vcp above", stage.cascode_p, CASCODE_P, PARTS),
             n("rest_n", "lane turnn reference", 6.0, SWITCH),
             p("rest_p", "lane turn reference", 12.0, SWITCH_P),
         ),
@@ -208,9 +208,9 @@ def band(sizes: ColumnSizes, lanes: int) -> Circuit:
 
     Pins BANK_INPUTS, BANK_OUTPUTS, ibias BIASES level reference dark, lane_a0 lane_b0 and so on, vdd vss.
     """
-    made, end = bank(sizes), lane_end(sizes)
+    bank_circuit, end = bank(sizes), lane_end(sizes)
     parts = [
-        Instance("bank", made, made.ports),
+        Instance("bank", bank_circuit, bank_circuit.ports),
         Instance("bias", column_bias(sizes), ("ibias", *BIASES, "level", *SUPPLIES)),
     ]
     for lane in range(lanes):

@@ -265,14 +265,14 @@ def size(spec: ColumnSpec, process: ModuleType, hold: float = HOLD) -> ColumnSiz
     def stage(kind: tuple[str, float], name: str, top: tuple[str, float], gm: float, least: float = 0.0) -> Stage:
         amperes = gm / EFFICIENCY[name]
 
-        def width(one: tuple[str, float], role: str) -> float:
-            return amperes / process.operating(*one, EFFICIENCY[role]).density
+        def width(kind: tuple[str, float], role: str) -> float:
+            return amperes / process.operating(*kind, EFFICIENCY[role]).density
 
-        given = drawn(max(width(kind, name), least)), drawn(width(CASCODE, "cascode"))
+        widths = drawn(max(width(kind, name), least)), drawn(width(CASCODE, "cascode"))
         source, above = width(top, source_of(name)), width(CASCODE_P, "lane_p" if name == "lane" else "cascode_p")
         if name == "lane":
-            return Stage(amperes, *given, *(round(PARTS * drawn(w / PARTS), 2) for w in (source, above)))
-        return Stage(amperes, *given, alone(source), drawn(above))
+            return Stage(amperes, *widths, *(round(PARTS * drawn(w / PARTS), 2) for w in (source, above)))
+        return Stage(amperes, *widths, alone(source), drawn(above))
 
     def gain(kind: tuple[str, float], name: str, top: tuple[str, float]) -> float:
         below = process.operating(*kind, EFFICIENCY[name]).gain

@@ -84,7 +84,7 @@ def size(spec: LaneSpec, process: ModuleType, load: float) -> DacSizes:
         )
     if not fitting:
         raise ParameterError("unit_cells = none: the process must have a capacitor")
-    return min(fitting, key=lambda one: one.area)
+    return min(fitting, key=lambda sizes: sizes.area)
 
 
 def _switches(name: str, width: float, *, fixed: str = "") -> Circuit:
@@ -138,8 +138,8 @@ def dac(sizes: DacSizes) -> Circuit:
     for k in reversed(range(BITS)):
         units = 1 << k
         capacitors.append(Capacitor(f"bit{k}", "top", f"b{k}", units * sizes.unit, units))
-        one = _switches(f"switch{k}", sizes.width(units))
-        instances.append(Instance(f"switch{k}", one, (f"b{k}", *control, f"d{k}", *supplies)))
+        switches = _switches(f"switch{k}", sizes.width(units))
+        instances.append(Instance(f"switch{k}", switches, (f"b{k}", *control, f"d{k}", *supplies)))
     capacitors.append(Capacitor("terminator", "top", "bt", sizes.unit, 1))
     instances.append(
         Instance("switch_t", _switches("switch_t", sizes.width(1), fixed="refn"), ("bt", *control, *supplies))
@@ -156,8 +156,8 @@ def balance(sizes: DacSizes) -> Circuit:
     capacitors, instances = [], []
     for name in ("refp", "refn"):
         capacitors.append(Capacitor(name, "top", f"b_{name}", CODES / 2 * sizes.unit, CODES // 2))
-        one = _switches(f"balance_{name}", sizes.width(CODES / 2), fixed=name)
-        instances.append(Instance(f"switch_{name}", one, (f"b_{name}", *control, *supplies)))
+        switches = _switches(f"balance_{name}", sizes.width(CODES / 2), fixed=name)
+        instances.append(Instance(f"switch_{name}", switches, (f"b_{name}", *control, *supplies)))
     capacitors.append(Capacitor("half", "top", "refn", sizes.unit / 2, 1))
     capacitors.append(Capacitor("parasitic", "top", "vss", PARASITIC * sizes.total))
     return Circuit("balance", ("top", *control, *supplies), capacitors=tuple(capacitors), instances=tuple(instances))

@@ -92,17 +92,17 @@ class Circuit:
 
     def circuits(self) -> "dict[str, Circuit]":
         """All circuits in it by name, the innermost first, this one last."""
-        found: dict[str, Circuit] = {}
-        for one in self.instances:
-            for name, inner in one.circuit.circuits().items():
-                if found.setdefault(name, inner) != inner:
+        by_name: dict[str, Circuit] = {}
+        for instance in self.instances:
+            for name, inner in instance.circuit.circuits().items():
+                if by_name.setdefault(name, inner) != inner:
                     raise ParameterError(f"circuit = {name}: must be one circuit, there are two of this name")
-        found[self.name] = self
-        return found
+        by_name[self.name] = self
+        return by_name
 
     def sizes(self) -> set[tuple[str, float, float]]:
         """(role, w, l) of every transistor, those of inner circuits too."""
-        return {size for one in self.circuits().values() for size in one.own_sizes()}
+        return {size for circuit in self.circuits().values() for size in circuit.own_sizes()}
 
     def own_sizes(self) -> set[tuple[str, float, float]]:
         """(role, w, l) of its own transistors, as its lines have them."""
@@ -114,7 +114,7 @@ class Circuit:
         process: a module like platforms.sky130.analog. A capacitor with units is ``value * cscale``: the deck sets
         ``.param cscale=1 rscale=1``, or other factors for a corner of the capacitors and of drawn resistors.
         """
-        return [line for one in self.circuits().values() for line in one.own_lines(process)]
+        return [line for circuit in self.circuits().values() for line in circuit.own_lines(process)]
 
     def own_lines(self, process: ModuleType) -> list[str]:
         """Its own .subckt text."""
@@ -132,9 +132,9 @@ class Circuit:
 
     def check(self, process: ModuleType) -> None:
         """Raise ParameterError that names the first broken device, net or size, in this circuit or an inner one."""
-        for one in self.circuits().values():
-            for fault in one._faults(process):
-                raise ParameterError(f"circuit {one.name}: {fault}")
+        for circuit in self.circuits().values():
+            for fault in circuit._faults(process):
+                raise ParameterError(f"circuit {circuit.name}: {fault}")
 
     def _faults(self, process: ModuleType) -> Iterator[str]:
         counts = Counter([*(t.name for t in self.transistors), *(i.name for i in self.instances)])

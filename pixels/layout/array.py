@@ -81,19 +81,19 @@ class ArrayLayout:
         return Block(plain.name, width, height, tuple(pins))
 
 
-def draw_pixels(layout: "db.Layout", made: ArrayLayout) -> dict[int, "db.Cell"]:
+def draw_pixels(layout: "db.Layout", array: ArrayLayout) -> dict[int, "db.Cell"]:
     """A cell of every type, by its number; types with one drawing share it."""
     cells: dict[str, db.Cell] = {}
-    for pixel in made.pixels:
+    for pixel in array.pixels:
         if pixel.name not in cells:
             cells[pixel.name] = draw(layout, pixel).cell
-    return {number: cells[pixel.name] for number, pixel in enumerate(made.pixels)}
+    return {number: cells[pixel.name] for number, pixel in enumerate(array.pixels)}
 
 
-def draw_tile(layout: "db.Layout", made: ArrayLayout, cells: "Mapping[int, db.Cell]") -> "db.Cell":
+def draw_tile(layout: "db.Layout", array: ArrayLayout, cells: "Mapping[int, db.Cell]") -> "db.Cell":
     """One tile, row 0 in the north."""
     top = layout.create_cell("tile")
-    tile, pitch = made.tile, round(made.pitch_um / layout.dbu)
+    tile, pitch = array.tile, round(array.pitch_um / layout.dbu)
     for place, number in enumerate(tile.order):
         row, col = divmod(place, tile.cols)
         at = db.Trans(col * pitch, (tile.rows - 1 - row) * pitch)
@@ -101,36 +101,36 @@ def draw_tile(layout: "db.Layout", made: ArrayLayout, cells: "Mapping[int, db.Ce
     return top
 
 
-def draw_array(layout: "db.Layout", made: ArrayLayout, cells: "Mapping[int, db.Cell]") -> "db.Cell":
+def draw_array(layout: "db.Layout", array: ArrayLayout, cells: "Mapping[int, db.Cell]") -> "db.Cell":
     """The array, its south-west corner at the origin."""
-    block, process = made.block, made.pixels[0].process
+    block, process = array.block, array.pixels[0].process
     canvas = Canvas(layout, block.name, process)
-    _place(canvas, made, cells)
-    _rings(canvas, made)
-    _ends(canvas, made)
-    _supplies(canvas, made)
+    _place(canvas, array, cells)
+    _rings(canvas, array)
+    _ends(canvas, array)
+    _supplies(canvas, array)
     draw_pins(layout, canvas.cell, block, process.name, AnalogSizes().supply_um)
     canvas.box(process.outline, 0, 0, block.width_um, block.height_um)
     return canvas.cell
 
 
-def _place(canvas: Canvas, made: ArrayLayout, cells: "Mapping[int, db.Cell]") -> None:
+def _place(canvas: Canvas, array: ArrayLayout, cells: "Mapping[int, db.Cell]") -> None:
     """All pixels: for every position in the tile one array of instances."""
-    tile, rows, cols = made.tile, made.array.rows, made.array.cols
+    tile, rows, cols = array.tile, array.array.rows, array.array.cols
     for place, number in enumerate(tile.order):
         row, col = divmod(place, tile.cols)
         first_row, first_col = -DUMMIES + (row + DUMMIES) % tile.rows, -DUMMIES + (col + DUMMIES) % tile.cols
         down = len(range(first_row, rows + DUMMIES, tile.rows))
         across = len(range(first_col, cols + DUMMIES, tile.cols))
-        x, y = _corner(made, first_row, first_col)
-        pitch = made.pitch_um
+        x, y = _corner(array, first_row, first_col)
+        pitch = array.pitch_um
         _repeat(canvas, cells[number], (x, y), (tile.cols * pitch, across), (-tile.rows * pitch, down))
 
 
-def _corner(made: ArrayLayout, row: int, col: int) -> tuple[float, float]:
+def _corner(array: ArrayLayout, row: int, col: int) -> tuple[float, float]:
     """The south-west corner of a pixel, um; row -1 is a dummy's."""
-    pitch = made.pitch_um
-    return WEST + (col + DUMMIES) * pitch, SOUTH + (made.array.rows + DUMMIES - 1 - row) * pitch
+    pitch = array.pitch_um
+    return WEST + (col + DUMMIES) * pitch, SOUTH + (array.array.rows + DUMMIES - 1 - row) * pitch
 
 
 def _repeat(
@@ -144,50 +144,50 @@ def _repeat(
         canvas.cell.insert(db.CellInstArray(cell.cell_index(), trans, *vectors, across, up))
 
 
-def _inside(made: ArrayLayout) -> tuple[float, float, float, float]:
+def _inside(array: ArrayLayout) -> tuple[float, float, float, float]:
     """Left, bottom, right, top of all pixels, dummies among them."""
-    block = made.block
+    block = array.block
     return WEST, SOUTH, block.width_um - EAST, block.height_um - NORTH
 
 
-def _rings(canvas: Canvas, made: ArrayLayout) -> None:
+def _rings(canvas: Canvas, array: ArrayLayout) -> None:
     process = canvas.process
     local = process.metals[0].gds
     canvas_of = Canvas(canvas.layout, "ring_contact", process)
     canvas_of.square(process.contact, 0, 0, CONTACT_UM)
     for implant, (near, far) in ((process.pplus, GROUND_RING), (process.nplus, SUPPLY_RING)):
-        _ring(canvas, made, process.tap, near, far)
-        _ring(canvas, made, local, near, far)
-        _ring(canvas, made, implant, near - IMPLANT, far + IMPLANT)
+        _ring(canvas, array, process.tap, near, far)
+        _ring(canvas, array, local, near, far)
+        _ring(canvas, array, implant, near - IMPLANT, far + IMPLANT)
         middle = (near + far) / 2
-        left, bottom, right, top = _inside(made)
+        left, bottom, right, top = _inside(array)
         across, up = int((right - left) / CONTACT_PITCH), int((top - bottom) / CONTACT_PITCH)
         for y in (bottom - middle, top + middle):
             _repeat(canvas, canvas_of.cell, (left + 0.5, y), (CONTACT_PITCH, across), (CONTACT_PITCH, 1))
         for x in (left - middle, right + middle):
             _repeat(canvas, canvas_of.cell, (x, bottom + 0.5), (CONTACT_PITCH, 1), (CONTACT_PITCH, up))
-    _ring(canvas, made, process.well, *WELL_RING)
+    _ring(canvas, array, process.well, *WELL_RING)
 
 
-def _ring(canvas: Canvas, made: ArrayLayout, mask: GdsLayer, near: float, far: float) -> None:
+def _ring(canvas: Canvas, array: ArrayLayout, mask: GdsLayer, near: float, far: float) -> None:
     """A mask all around the pixels, from ``near`` to ``far`` um from them."""
-    left, bottom, right, top = _inside(made)
+    left, bottom, right, top = _inside(array)
     for low, high in ((bottom - far, bottom - near), (top + near, top + far)):
         canvas.box(mask, left - far, low, right + far, high)
     for low, high in ((left - far, left - near), (right + near, right + far)):
         canvas.box(mask, low, bottom - far, high, top + far)
 
 
-def _ends(canvas: Canvas, made: ArrayLayout) -> None:
+def _ends(canvas: Canvas, array: ArrayLayout) -> None:
     """From rows and columns to their pins; the lines of dummy rows are tied off."""
-    pitch, (rows, cols) = made.pitch_um, (made.array.rows, made.array.cols)
+    pitch, (rows, cols) = array.pitch_um, (array.array.rows, array.array.cols)
     row, dummy, column = (
         Canvas(canvas.layout, name, canvas.process) for name in ("row_end", "dummy_end", "column_end")
     )
-    own = {pin.name: pin.at_um for pin in made.block.pins}
-    _, y0 = _corner(made, 0, 0)
+    pins = {pin.name: pin.at_um for pin in array.block.pins}
+    _, y0 = _corner(array, 0, 0)
     for name, y in (("pixel_reset_row[0]", RESET_Y), ("read_row[0]", READ_Y)):
-        at = own[name] - y0
+        at = pins[name] - y0
         row.wire(PLATES, 0, at - LINE, TURN[0] + LINE, at + LINE)
         row.stack(TURN[0], at, ROWS_ON, PLATES)
         row.wire(ROWS_ON, TURN[0] - PAD, min(at, y) - LINE / 2, TURN[0] + PAD, max(at, y) + LINE / 2)
@@ -201,9 +201,9 @@ def _ends(canvas: Canvas, made: ArrayLayout) -> None:
     _repeat(canvas, row.cell, (0, SOUTH + DUMMIES * pitch), (pitch, 1), (pitch, rows))
     for y in (SOUTH, SOUTH + (rows + DUMMIES) * pitch):
         _repeat(canvas, dummy.cell, (0, y), (pitch, 1), (pitch, DUMMIES))
-    x0, _ = _corner(made, 0, 0)
+    x0, _ = _corner(array, 0, 0)
     for name, x in (("column_a[0]", pitch / 2 - COLUMN), ("column_b[0]", pitch / 2 + COLUMN)):
-        at = own[name] - x0
+        at = pins[name] - x0
         column.wire(UPPER, at - LINE, 0, at + LINE, TURN[1] + LINE)
         column.stack(at, TURN[1], COLUMNS, UPPER)
         column.square(canvas.process.metals[PLATES].gds, at, TURN[1], 0.5)  # a via's pad is below the least area
@@ -212,10 +212,10 @@ def _ends(canvas: Canvas, made: ArrayLayout) -> None:
     _repeat(canvas, column.cell, (WEST + DUMMIES * pitch, 0), (pitch, cols), (pitch, 1))
 
 
-def _supplies(canvas: Canvas, made: ArrayLayout) -> None:
+def _supplies(canvas: Canvas, array: ArrayLayout) -> None:
     """In the east: a bus of the ground over the rings, one of the supply, and the top metal from these to the pins."""
-    process, pitch = canvas.process, made.pitch_um
-    _, bottom, right, _ = _inside(made)
+    process, pitch = canvas.process, array.pitch_um
+    _, bottom, right, _ = _inside(array)
     end = Canvas(canvas.layout, "supply_end", process)
     for low, high in (GROUND_BUS, SUPPLY_BUS):
         end.wire(UPPER, low, 0, high, pitch)
@@ -227,12 +227,12 @@ def _supplies(canvas: Canvas, made: ArrayLayout) -> None:
     x, y = sum(GROUND_RING) / 2, pitch / 2 + 1
     end.stack(x, y, 0, UPPER)
     end.square(process.metals[PLATES].gds, x, y, 0.5)
-    _repeat(canvas, end.cell, (right, bottom), (pitch, 1), (pitch, made.array.rows + 2 * DUMMIES))
+    _repeat(canvas, end.cell, (right, bottom), (pitch, 1), (pitch, array.array.rows + 2 * DUMMIES))
     via, half = process.vias[UPPER], AnalogSizes().supply_um / 2
-    for pin in made.block.pins:
+    for pin in array.block.pins:
         if pin.supply:
             low, high = SUPPLY_BUS if pin.name == "vdda" else GROUND_BUS
-            canvas.wire(UPPER + 1, right + low, pin.at_um - half, made.block.width_um, pin.at_um + half)
+            canvas.wire(UPPER + 1, right + low, pin.at_um - half, array.block.width_um, pin.at_um + half)
             step = via.size_um + via.space_um
             for k in range(4):
                 for n in range(4):

@@ -57,14 +57,14 @@ def circuit(well_um: tuple[float, float], w_um: float, l_um: float) -> Circuit:
     return Circuit(tuple(transistors), tuple(diodes))
 
 
-def spice(name: str, made: Circuit, transistor: str, diode: str, bulk: str = "vssa") -> str:
+def spice(name: str, circuit: Circuit, transistor: str, diode: str, bulk: str = "vssa") -> str:
     """The subcircuit for LVS: M and D devices of these models, sizes in um and um2."""
     lines = [f".subckt {name} {' '.join(PORTS)}"]
     lines += [
         f"M{t.name} {t.drain} {t.gate} {t.source} {bulk} {transistor} W={t.w_um:g}U L={t.l_um:g}U"
-        for t in made.transistors
+        for t in circuit.transistors
     ]
-    lines += [f"D{d.name} {bulk} {d.node} {diode} A={d.area_um2:g}P P={d.perimeter_um:g}U" for d in made.diodes]
+    lines += [f"D{d.name} {bulk} {d.node} {diode} A={d.area_um2:g}P P={d.perimeter_um:g}U" for d in circuit.diodes]
     return "\n".join([*lines, f".ends {name}", ""])
 
 
@@ -82,8 +82,8 @@ def spice_array(
         across = ("pixel_reset", "read") if 0 <= row < rows else ()
         tied = " ".join(f"{line}_row[{row}]" for line in across) or f"vdda {bulk}"
         for col in range(-dummies, cols + dummies):
-            own = 0 <= col < cols
-            down = " ".join(f"column_{side}[{col}]" if own else f"open_{side}_{col + dummies}" for side in SIDES)
+            inside = 0 <= col < cols
+            down = " ".join(f"column_{side}[{col}]" if inside else f"open_{side}_{col + dummies}" for side in SIDES)
             lines.append(f"X{row + dummies}_{col + dummies} {tied} {down} vdda {bulk} {pixel}")
     if ring:
         lines.append(f"D{ring.name} {bulk} {ring.node} {diode} A={ring.area_um2:g}P P={ring.perimeter_um:g}U")

@@ -94,35 +94,35 @@ def lines(normal: float, period: float, fill: float, least_width: float, least_s
     p, q = nearest_direction(normal + pi / 2)
     unit = hypot(p, q)
     width = max(round(fill * period / unit), ceil(least_width / unit - 1e-9))
-    made = Lines(normal, (p, q), abs(p) >= abs(q), 1, width)
-    pitch = max(round(period / made.across), ceil((made.line + least_space) / made.across - 1e-9))
-    if pitch * made.across > WIDER * period:
+    grating = Lines(normal, (p, q), abs(p) >= abs(q), 1, width)
+    pitch = max(round(period / grating.across), ceil((grating.line + least_space) / grating.across - 1e-9))
+    if pitch * grating.across > WIDER * period:
         raise ParameterError(
             f"period = {period:g} steps of the grid: must have room for a line of {least_width:g} and a space of "
             f"{least_space:g} at {normal:.3f} rad"
         )
-    return replace(made, pitch=pitch)
+    return replace(grating, pitch=pitch)
 
 
-def polygons(made: Lines, window: Box, shift: float, origin: Point | None = None) -> Iterator[list[Point]]:
+def polygons(grating: Lines, window: Box, shift: float, origin: Point | None = None) -> Iterator[list[Point]]:
     """Corners of every line in ``window``, a rectangle each, of at least three widths.
 
     shift: of the middle of a line from ``origin``, in periods along the normal. origin: None: the window's middle.
     """
     left, bottom, right, top = window
-    (p, q), (side_x, side_y) = made.direction, made.side
+    (p, q), (side_x, side_y) = grating.direction, grating.side
     centre_x, centre_y = ((left + right) / 2, (bottom + top) / 2) if origin is None else origin
     middle_x, middle_y = centre_x - side_x / 2, centre_y - side_y / 2
-    at = made.along_axis(shift)
-    x0, y0 = round(middle_x + (0 if made.upright else at)), round(middle_y + (at if made.upright else 0))
+    at = grating.along_axis(shift)
+    x0, y0 = round(middle_x + (0 if grating.upright else at)), round(middle_y + (at if grating.upright else 0))
     away = abs(centre_x - left) + abs(centre_x - right) + abs(centre_y - bottom) + abs(centre_y - top)
-    reach = ceil(away / made.pitch) + 2
+    reach = ceil(away / grating.pitch) + 2
     for k in range(-reach, reach + 1):
-        x, y = (x0, y0 + k * made.pitch) if made.upright else (x0 + k * made.pitch, y0)
+        x, y = (x0, y0 + k * grating.pitch) if grating.upright else (x0 + k * grating.pitch, y0)
         spans = [_span(x, p, left - min(side_x, 0), right - max(side_x, 0))]
         spans.append(_span(y, q, bottom - min(side_y, 0), top - max(side_y, 0)))
         first, last = max(span[0] for span in spans), min(span[1] for span in spans)
-        if (last - first) * hypot(p, q) >= 3 * made.line:
+        if (last - first) * hypot(p, q) >= 3 * grating.line:
             (x1, y1), (x2, y2) = ((x + t * p, y + t * q) for t in (floor(first + 1), floor(last)))
             yield [(x1, y1), (x2, y2), (x2 + side_x, y2 + side_y), (x1 + side_x, y1 + side_y)]
 

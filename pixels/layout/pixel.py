@@ -137,9 +137,9 @@ class PixelLayout:
         def fitted(metal: Metal, fill: float) -> Lines:
             return lines(normal, g.period_um / grid, fill, metal.width_um / grid, metal.space_um / grid)
 
-        found = fitted(upper, g.fill), fitted(lower, g.analyzer_fill)
-        pitch = max(of.pitch for of in found)
-        return replace(found[0], pitch=pitch), replace(found[1], pitch=pitch)
+        fits = fitted(upper, g.fill), fitted(lower, g.analyzer_fill)
+        pitch = max(of.pitch for of in fits)
+        return replace(fits[0], pitch=pitch), replace(fits[1], pitch=pitch)
 
     @property
     def drawn(self) -> PixelGeometry:
@@ -153,46 +153,46 @@ class PixelLayout:
         )
 
 
-def pixel_layout(geometry: PixelGeometry, kind: PixelType, found: Fit) -> PixelLayout:
-    """A type on its gratings. found: Eq. 3.1 fitted to them, which says where its analyzers are."""
-    return PixelLayout(geometry, kind, rows(kind.alpha, found))
+def pixel_layout(geometry: PixelGeometry, kind: PixelType, fit: Fit) -> PixelLayout:
+    """A type on its gratings. fit: Eq. 3.1 fitted to them, which says where its analyzers are."""
+    return PixelLayout(geometry, kind, rows(kind.alpha, fit))
 
 
-def draw(layout: "db.Layout", made: PixelLayout) -> Canvas:
+def draw(layout: "db.Layout", pixel: PixelLayout) -> Canvas:
     """Draw the pixel as a cell of ``layout``, its south-west corner at the origin."""
-    canvas, half = Canvas(layout, made.name, made.process), made.geometry.pitch_um / 2
+    canvas, half = Canvas(layout, pixel.name, pixel.process), pixel.geometry.pitch_um / 2
     for axis in (None, half):
         canvas.mirrored(axis)
-        _diode(canvas, made)
-        _transistors(canvas, made)
+        _diode(canvas, pixel)
+        _transistors(canvas, pixel)
     canvas.mirrored(None)
-    _lines(canvas, made)
-    _ground(canvas, made)
-    for metal, corners in grating_polygons(made):
-        canvas.polygon(made.process.metals[metal].gds, corners)
-    pitch = made.geometry.pitch_um
-    canvas.box(made.process.outline, 0, 0, pitch, pitch)
+    _lines(canvas, pixel)
+    _ground(canvas, pixel)
+    for metal, corners in grating_polygons(pixel):
+        canvas.polygon(pixel.process.metals[metal].gds, corners)
+    pitch = pixel.geometry.pitch_um
+    canvas.box(pixel.process.outline, 0, 0, pitch, pitch)
     return canvas
 
 
-def grating_polygons(made: PixelLayout) -> Iterator[tuple[int, list[Point]]]:
+def grating_polygons(pixel: PixelLayout) -> Iterator[tuple[int, list[Point]]]:
     """(metal, corners in steps of the grid) of every line: of the upper grating, then of both halves' analyzers."""
-    for level, _, polygons_of in _gratings(made):
+    for level, _, polygons_of in _gratings(pixel):
         for corners in polygons_of:
             yield level, corners
 
 
-def openings(made: PixelLayout) -> Iterator[tuple[int, tuple[float, float, float, float]]]:
+def openings(pixel: PixelLayout) -> Iterator[tuple[int, tuple[float, float, float, float]]]:
     """(metal, box in um) of every opening that light has: between the bars, and of the frame over each well.
 
     Upright and level lines continue in the edges beside them: the space to these is that of two lines, or the least to
     wide metal.
     """
-    grid, pitch, axis = made.process.grid_um, made.geometry.pitch_um, made.axis
+    grid, pitch, axis = pixel.process.grid_um, pixel.geometry.pitch_um, pixel.axis
     left, right, bottom, top = OPENING
     nominal = [(BAR, 0.0, pitch - BAR, pitch)]
     nominal += [(x, bottom, y, top) for x, y in ((left, right), (pitch - right, pitch - left))]
-    for (level, of, polygons_of), box in zip(_gratings(made), nominal, strict=True):
+    for (level, of, polygons_of), box in zip(_gratings(pixel), nominal, strict=True):
         if level == UPPER and axis == 0 or level == ROWS_ON and axis is not None:
             places = [corner[axis] for corners in polygons_of for corner in corners]
             space = max(of.pitch - of.width, round(BESIDE_WIDE[level] / grid))  # of a direction of length 1
@@ -202,37 +202,37 @@ def openings(made: PixelLayout) -> Iterator[tuple[int, tuple[float, float, float
         yield (UPPER if level == UPPER else ROWS_ON), box
 
 
-def _gratings(made: PixelLayout) -> Iterator[tuple[int, Lines, list[list[Point]]]]:
+def _gratings(pixel: PixelLayout) -> Iterator[tuple[int, Lines, list[list[Point]]]]:
     """(metal, grating, its lines) of the upper grating and of the analyzer of each half, of one origin."""
-    g, grid = made.geometry, made.process.grid_um
-    pitch, (upper, lower) = g.pitch_um, made.gratings()
+    g, grid = pixel.geometry, pixel.process.grid_um
+    pitch, (upper, lower) = g.pitch_um, pixel.gratings()
     origin = round(pitch / 2 / grid), round(sum(GRATING) / 2 / grid)
 
     def within(of: Lines, box: tuple[float, float, float, float], shift: float) -> list[list[Point]]:
         west, south, east, north = (round(edge / grid) for edge in box)
         return [*polygons(of, (west, south, east, north), shift, origin)]
 
-    lines_apart = grid * (upper.pitch - upper.width) if made.axis == 0 else 0.0
+    lines_apart = grid * (upper.pitch - upper.width) if pixel.axis == 0 else 0.0
     beside = BAR + max(lines_apart, BESIDE_WIDE[UPPER])
     yield UPPER, upper, within(upper, (beside, GRATING[0], pitch - beside, GRATING[1]), 0.0)
-    level, least = made.process.level(g.analyzer or ""), BESIDE_WIDE[ROWS_ON]
+    level, least = pixel.process.level(g.analyzer or ""), BESIDE_WIDE[ROWS_ON]
     if level != ROWS_ON:
         left, right, bottom, top = BELOW
-    elif made.axis is not None:
+    elif pixel.axis is not None:
         space = max(grid * (lower.pitch - lower.width), least)
-        x, y = (space, 0.0) if made.axis == 0 else (0.0, space)
+        x, y = (space, 0.0) if pixel.axis == 0 else (0.0, space)
         left, right, bottom, top = REACH[0] + x, REACH[1] - x, REACH[2] + y, REACH[3] - y
     else:
         left, right, bottom, top = OPENING[0] + least, OPENING[1] - least, OPENING[2] + least, OPENING[3] - least
-    for diode, (west, east) in zip(made.diodes, ((left, right), (pitch - right, pitch - left)), strict=True):
+    for diode, (west, east) in zip(pixel.diodes, ((left, right), (pitch - right, pitch - left)), strict=True):
         yield level, lower, within(lower, (west, bottom, east, top), g.shift + QUADRATURE[diode])
 
 
-def _diode(canvas: Canvas, made: PixelLayout) -> None:
+def _diode(canvas: Canvas, pixel: PixelLayout) -> None:
     """The western well, and its tap."""
-    p, (width, height) = made.process, made.well_um
+    p, (width, height) = pixel.process, pixel.well_um
     canvas.box(p.well, BESIDE, STRIP, BESIDE + width, STRIP + height)
-    _tap(canvas, p.nplus, _contacts(made)[0], TAP_Y)
+    _tap(canvas, p.nplus, _contacts(pixel)[0], TAP_Y)
 
 
 def _tap(canvas: Canvas, implant: tuple[int, int], x: float, y: float) -> None:
@@ -242,31 +242,31 @@ def _tap(canvas: Canvas, implant: tuple[int, int], x: float, y: float) -> None:
     canvas.contact(x, y)
 
 
-def _contacts(made: PixelLayout) -> tuple[float, float, float]:
+def _contacts(pixel: PixelLayout) -> tuple[float, float, float]:
     """Middles of the contacts to the diode's node, the supply and the column, along x."""
     left, right, _ = DIFFUSION
-    return left + 0.145, left + 0.535 + made.l_um, right - 0.175
+    return left + 0.145, left + 0.535 + pixel.l_um, right - 0.175
 
 
-def _transistors(canvas: Canvas, made: PixelLayout) -> None:
+def _transistors(canvas: Canvas, pixel: PixelLayout) -> None:
     """From the west: the diode's node, reset, the supply, follower, select, the column."""
-    p, (left, right, bottom) = made.process, DIFFUSION
-    top = bottom + made.w_um
+    p, (left, right, bottom) = pixel.process, DIFFUSION
+    top = bottom + pixel.w_um
     middle = bottom + 0.5
     canvas.box(p.active, left, bottom, right, top)
     canvas.box(p.nplus, left - IMPLANT, bottom - IMPLANT, right + IMPLANT, top + IMPLANT)
     for mask, around in p.thick:
         canvas.box(mask, left - around, bottom - around, right + around, top + around)
-    node, supply, column = _contacts(made)
-    gates = made.gates_um
-    reset, follower, select = (gate + made.l_um / 2 for gate in gates)
+    node, supply, column = _contacts(pixel)
+    gates = pixel.gates_um
+    reset, follower, select = (gate + pixel.l_um / 2 for gate in gates)
     for gate, middle_x, (low, high) in zip(
         gates,
         (reset, follower, select),
         ((RESET_Y - END, top + 0.13), (bottom - 0.13, READ_Y + END), (bottom - 0.13, READ_Y + END)),
         strict=True,
     ):
-        canvas.box(p.poly, gate, low, gate + made.l_um, high)
+        canvas.box(p.poly, gate, low, gate + pixel.l_um, high)
         canvas.poly_contact(middle_x, RESET_Y if low < bottom - 0.2 else READ_Y, upright=gate != gates[1])
     canvas.stack(reset, RESET_Y, 0, ROWS_ON)
     canvas.stack(select, READ_Y, 0, ROWS_ON)
@@ -276,7 +276,7 @@ def _transistors(canvas: Canvas, made: PixelLayout) -> None:
     canvas.wire(0, node - 0.085, middle, node + 0.085, TAP_Y)
     canvas.wire(0, node - 0.085, READ_Y - 0.085, follower, READ_Y + 0.085)
     # the supply and the column: on the rows' metal to their lines between the halves
-    half = made.geometry.pitch_um / 2
+    half = pixel.geometry.pitch_um / 2
     for x, y, end in ((supply, bottom + 0.25, half), (column, bottom + 0.75, half - COLUMN)):
         canvas.wire(0, x - 0.085, min(y, middle) - 0.085, x + 0.085, max(y, middle) + 0.085)
         canvas.stack(x, y, 0, ROWS_ON)
@@ -284,9 +284,9 @@ def _transistors(canvas: Canvas, made: PixelLayout) -> None:
         canvas.stack(end, y, ROWS_ON, COLUMNS)
 
 
-def _lines(canvas: Canvas, made: PixelLayout) -> None:
+def _lines(canvas: Canvas, pixel: PixelLayout) -> None:
     """Rows, columns and the supply, from edge to edge."""
-    pitch = made.geometry.pitch_um
+    pitch = pixel.geometry.pitch_um
     half = pitch / 2
     for name, y in (("pixel_reset", RESET_Y), ("read", READ_Y)):
         canvas.wire(ROWS_ON, 0, y - LINE / 2, pitch, y + LINE / 2)
@@ -298,10 +298,10 @@ def _lines(canvas: Canvas, made: PixelLayout) -> None:
     canvas.stack(half, DIFFUSION[2] + 0.8, COLUMNS, PLATES)
 
 
-def _ground(canvas: Canvas, made: PixelLayout) -> None:
+def _ground(canvas: Canvas, pixel: PixelLayout) -> None:
     """The light shield, which is the ground's mesh, and the tap of the substrate below it."""
-    pitch = made.geometry.pitch_um
-    bars, *frame = (box for _, box in openings(made))
+    pitch = pixel.geometry.pitch_um
+    bars, *frame = (box for _, box in openings(pixel))
     for left, right in ((0, BAR), (pitch - BAR, pitch)):
         canvas.wire(UPPER, left, 0, right, pitch)
     for left, right in ((0, bars[0]), (bars[2], pitch)):
@@ -317,6 +317,6 @@ def _ground(canvas: Canvas, made: PixelLayout) -> None:
             canvas.wire(ROWS_ON, *box)
     canvas.label(UPPER, "vssa", LINE, LINE / 2)
     x = 0.25
-    _tap(canvas, made.process.pplus, x, TAP_Y)
+    _tap(canvas, pixel.process.pplus, x, TAP_Y)
     canvas.stack(x, TAP_Y, 0, UPPER)
     canvas.wire(PLATES, 0, TAP_Y - 0.25, 0.5, TAP_Y + 0.25)  # a via's pad is below the least area

@@ -36,20 +36,20 @@ class DrawnCurves:
     shares: Floats
 
 
-def drawn_curves(made: PixelLayout, wavelength_um: float, orders_a_period: int = ORDERS_A_PERIOD) -> DrawnCurves:
+def drawn_curves(pixel: PixelLayout, wavelength_um: float, orders_a_period: int = ORDERS_A_PERIOD) -> DrawnCurves:
     """Solve a drawn pixel. Raises ParameterError for a type at no angle of `DIRECTIONS`, SolverError."""
     sines, total = np.zeros(0), np.zeros(())
-    for cut, weight in sections(made):
-        orders = min(2 * int(orders_a_period * cut.period_um / made.drawn.period_um / 2) + 1, MOST_ORDERS)
+    for cut, weight in sections(pixel):
+        orders = min(2 * int(orders_a_period * cut.period_um / pixel.drawn.period_um / 2) + 1, MOST_ORDERS)
         offsets = int(np.ceil(wavelength_um / cut.period_um / STEP))
-        sines, shares, _ = section_shares(made.geometry.stack, cut, wavelength_um, orders, offsets, SINE)
+        sines, shares, _ = section_shares(pixel.geometry.stack, cut, wavelength_um, orders, offsets, SINE)
         total = total + weight * shares.mean(0)
     return DrawnCurves(sines, total)
 
 
-def sections(made: PixelLayout) -> Iterator[tuple[Section, float]]:
+def sections(pixel: PixelLayout) -> Iterator[tuple[Section, float]]:
     """Cuts across the lines of a drawn pixel among its like, and the share of the pixel that each stands for."""
-    gamma = made.kind.gamma_deg
+    gamma = pixel.kind.gamma_deg
     if abs(gamma) not in DIRECTIONS:
         known = ", ".join(f"{angle:g}" for angle in DIRECTIONS)
         raise ParameterError(f"gamma_deg = {gamma:g}: must be one of {known}, of either sign, for a cut")
@@ -57,30 +57,30 @@ def sections(made: PixelLayout) -> Iterator[tuple[Section, float]]:
     up = up if gamma < 0 else -up  # the sensor's y runs down, the layout's up
     layout = db.Layout()
     layout.dbu = 0.001
-    cell = draw(layout, made).cell
-    pitch = round(made.geometry.pitch_um / layout.dbu)
+    cell = draw(layout, pixel).cell
+    pitch = round(pixel.geometry.pitch_um / layout.dbu)
     top, reach = layout.create_cell("like"), 3
     shift = db.Trans(-reach * pitch, -reach * pitch)
     many = 2 * reach + 1
     top.insert(db.CellInstArray(cell.cell_index(), shift, db.Vector(pitch, 0), db.Vector(0, pitch), many, many))
-    names = {metal.name for metal in made.geometry.stack.metals}
-    masks = {metal.lef: metal.gds for metal in made.process.metals if metal.lef in names}
+    names = {metal.name for metal in pixel.geometry.stack.metals}
+    masks = {metal.lef: metal.gds for metal in pixel.process.metals if metal.lef in names}
     metals = {name: db.Region(top.begin_shapes_rec(layout.layer(*mask))).merged() for name, mask in masks.items()}
-    well = db.Region(cell.begin_shapes_rec(layout.layer(*made.process.well))).merged()
+    well = db.Region(cell.begin_shapes_rec(layout.layer(*pixel.process.well))).merged()
     halves = [db.Region(db.Box(side * pitch // 2, 0, (side + 1) * pitch // 2, pitch)) & well for side in (0, 1)]
     wells = [_tiled(half, pitch, reach) for half in halves]
     length = layout.dbu * pitch * float(np.hypot(across, up))
-    for x, y, weight in _starts(made, across, up):
+    for x, y, weight in _starts(pixel, across, up):
         start = db.DPoint(x, y).to_itype(layout.dbu)
         cut = db.Edge(start, start + db.Vector(across * pitch, up * pitch))
-        found = {name: _spans(cut, region, layout.dbu) for name, region in metals.items()}
-        yield Section(length, found, tuple(_spans(cut, region, layout.dbu) for region in wells)), weight
+        spans = {name: _spans(cut, region, layout.dbu) for name, region in metals.items()}
+        yield Section(length, spans, tuple(_spans(cut, region, layout.dbu) for region in wells)), weight
 
 
-def _starts(made: PixelLayout, across: int, up: int) -> Iterator[tuple[float, float, float]]:
+def _starts(pixel: PixelLayout, across: int, up: int) -> Iterator[tuple[float, float, float]]:
     """Where cuts start, in um, and their weights."""
-    pitch = made.geometry.pitch_um
-    boxes = [box for _, box in openings(made)][1:]
+    pitch = pixel.geometry.pitch_um
+    boxes = [box for _, box in openings(pixel)][1:]
     if not up:  # all cuts through the openings are alike
         low, high = (sum(box[edge] for box in boxes) / 2 for edge in (1, 3))
         yield 0.0, (low + high) / 2, (high - low) / pitch

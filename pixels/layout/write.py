@@ -49,19 +49,19 @@ def array_layout(pdk: str, rows: int, cols: int) -> ArrayLayout:
     return ArrayLayout(ArrayParameters(rows, cols), tile, drawn_pixels(pdk, tile))
 
 
-def array_lef(made: ArrayLayout) -> str:
+def array_lef(array: ArrayLayout) -> str:
     """The LEF of the array: outline, pins, all metals taken."""
-    process = made.pixels[0].process
-    return lef(made.block, process.name, AnalogSizes().supply_um, [metal.lef for metal in process.metals])
+    process = array.pixels[0].process
+    return lef(array.block, process.name, AnalogSizes().supply_um, [metal.lef for metal in process.metals])
 
 
-def write(out: str | Path, made: ArrayLayout) -> None:
+def write(out: str | Path, array: ArrayLayout) -> None:
     """Write pixel_array.lef and pixel_array.gds into ``out``."""
     layout = db.Layout()
     layout.dbu = 0.001
-    cell = draw_array(layout, made, draw_pixels(layout, made))
+    cell = draw_array(layout, array, draw_pixels(layout, array))
     with staged(out) as part:
-        (part / f"{NAME}.lef").write_text(array_lef(made), encoding="utf-8")
+        (part / f"{NAME}.lef").write_text(array_lef(array), encoding="utf-8")
         write_gds(layout, part / f"{NAME}.gds", cell)
 
 

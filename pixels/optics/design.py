@@ -42,7 +42,7 @@ def candidates(stack: OpticalStack, kinds: Sequence[str] = KINDS) -> Iterator[Pi
         for k, upper in enumerate(names):
             for lower in below[kind] if kind != "amplitude" else names[:k]:
                 for period in PERIODS_UM:
-                    made = _made(
+                    geometry = _made(
                         process=stack.process,
                         heights=stack.heights,
                         kind=kind,
@@ -51,8 +51,8 @@ def candidates(stack: OpticalStack, kinds: Sequence[str] = KINDS) -> Iterator[Pi
                         period_um=period,
                         analyzer_fill=GATES if kind == "photogate" else 0.5,
                     )
-                    if made is not None:
-                        yield made
+                    if geometry is not None:
+                        yield geometry
 
 
 def neighbours(design: Design, step: float = 1.0) -> Iterator[PixelGeometry]:
@@ -65,9 +65,9 @@ def neighbours(design: Design, step: float = 1.0) -> Iterator[PixelGeometry]:
             value = getattr(design.geometry, name) + sign * size
             if name == "period_um":
                 value = round(round(value / grid) * grid, 6)
-            made = _made(design.geometry, **{name: round(value, 6)})
-            if made is not None:
-                yield made
+            geometry = _made(design.geometry, **{name: round(value, 6)})
+            if geometry is not None:
+                yield geometry
 
 
 def measure(geometry: PixelGeometry, wavelength_um: float, orders: int = SEARCH_ORDERS) -> Design:
@@ -88,16 +88,16 @@ def phased(design: Design) -> Design:
 def front(designs: Sequence[tuple[Design, float]]) -> list[tuple[Design, float]]:
     """Designs and their bandwidths, those that no other beats in modulation depth, quantum efficiency and bandwidth."""
     figures = np.array([(design.fit.m, design.fit.quantum_efficiency, wide) for design, wide in designs]).reshape(-1, 3)
-    beaten = [bool(np.any((figures >= own).all(1) & (figures > own).any(1))) for own in figures]
-    kept = [one for one, worse in zip(designs, beaten, strict=True) if not worse]
-    return sorted(kept, key=lambda one: -one[0].fit.m)
+    beaten = [bool(np.any((figures >= figure).all(1) & (figures > figure).any(1))) for figure in figures]
+    kept = [candidate for candidate, worse in zip(designs, beaten, strict=True) if not worse]
+    return sorted(kept, key=lambda candidate: -candidate[0].fit.m)
 
 
 def _made(base: PixelGeometry | None = None, **changes: object) -> PixelGeometry | None:
     """A geometry, or None where a rule forbids it."""
     try:
-        made = PixelGeometry(**changes) if base is None else replace(base, **changes)  # pyright: ignore[reportArgumentType]
-        made.layers(WAVELENGTHS_UM[0])  # its metals lie inside one film
+        geometry = PixelGeometry(**changes) if base is None else replace(base, **changes)  # pyright: ignore[reportArgumentType]
+        geometry.layers(WAVELENGTHS_UM[0])  # its metals lie inside one film
     except ParameterError:
         return None
-    return made
+    return geometry

@@ -72,7 +72,7 @@ class Fit:
 def fit(response: Response) -> Fit:
     """Fit Eq. 3.1 to a response in the plane across the lines, the mean of its wavelengths, without polarization."""
     angles, curves = response.angles, response.unpolarized.mean(0)
-    best = min((_start(angles, curves, turn) for turn in (1, -1)), key=lambda found: found[0])
+    best = min((_start(angles, curves, turn) for turn in (1, -1)), key=lambda start: start[0])
     _, turn, beta, sigma = best
     from scipy.optimize import least_squares  # imported where it is needed: it is slow
 
@@ -117,8 +117,8 @@ def _linear(angles: Floats, curves: Floats, turn: int, beta: float, sigma: float
     phase = beta * angles + turn * 2 * np.pi * np.array(QUADRATURE)[:, None]
     basis = np.stack([np.broadcast_to(aperture, phase.shape), aperture * np.cos(phase), aperture * np.sin(phase)])
     flat = basis.reshape(3, -1)
-    found = np.linalg.solve(flat @ flat.T, flat @ curves.ravel())
-    return found, curves - np.tensordot(found, basis, 1)
+    coefficients = np.linalg.solve(flat @ flat.T, flat @ curves.ravel())
+    return coefficients, curves - np.tensordot(coefficients, basis, 1)
 
 
 def _start(angles: Floats, curves: Floats, turn: int) -> tuple[float, int, float, float]:

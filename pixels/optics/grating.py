@@ -22,9 +22,9 @@ def grating(slab: Slab, thickness: float, orders: Orders) -> Scattering:
     _, outside = admittance(slab.medium, orders)
     magnetic = spread(np.linalg.inv(outside)) @ magnetic  # as the electric field that has it outside
     through = np.exp(1j * q * thickness)[..., None, :]
-    one = np.eye(q.shape[-1])
-    even = _reflected(electric * (1 + through), magnetic * (1 - through)) - one
-    odd = _reflected(electric * (1 - through), magnetic * (1 + through)) - one
+    identity = np.eye(q.shape[-1])
+    even = _reflected(electric * (1 + through), magnetic * (1 - through)) - identity
+    odd = _reflected(electric * (1 - through), magnetic * (1 + through)) - identity
     reflected, passed = (even + odd) / 2, (even - odd) / 2
     return Scattering(reflected, passed, reflected, passed)
 

@@ -70,8 +70,8 @@ def respond(
     shares, reflected = [], []
     for wavelength in wavelengths:
         part, back = _solved(geometry, rays, float(wavelength), both, orders)
-        for out, found in ((shares, part), (reflected, back)):
-            out.append(np.where(left, found[:, rows[1]][..., which], found[:, rows[0]][..., which]))
+        for out, values in ((shares, part), (reflected, back)):
+            out.append(np.where(left, values[:, rows[1]][..., which], values[:, rows[0]][..., which]))
     return Response(geometry, angles, across, wavelengths, np.array(shares), np.array(reflected))
 
 
@@ -94,11 +94,13 @@ def _solved(
     silicon = complex(refractive_index("silicon", wavelength_um)) ** 2
     light = Illumination(wavelength_um, rays[0], rays[1], bottom=silicon)
     listed = [*map(float, shifts)]
-    found = solve(upper, lower, geometry.period_um, light, listed, orders, geometry.shared)
+    light_shares = solve(upper, lower, geometry.period_um, light, listed, orders, geometry.shared)
     # Half of the pixel lies above each diode of an amplitude pixel; fingers share all of it.
-    return (found.transmitted / 2 if found.fingers is None else found.fingers[:, :, 0]), found.reflected
+    return (
+        light_shares.transmitted / 2 if light_shares.fingers is None else light_shares.fingers[:, :, 0]
+    ), light_shares.reflected
 
 
-def _index(values: Floats, wanted: float) -> int:
-    distance = np.abs((values - wanted + 0.5) % 1 - 0.5)
+def _index(values: Floats, value: float) -> int:
+    distance = np.abs((values - value + 0.5) % 1 - 0.5)
     return int(np.argmin(distance))

@@ -49,9 +49,9 @@ class Scattering:
 
     def over(self, lower: "Scattering") -> "Scattering":
         """This part on top of ``lower`` (Redheffer's star product)."""
-        one = np.eye(self.above.shape[-1])
-        falling = np.linalg.solve(one - self.below @ lower.above, self.down)
-        rising = np.linalg.solve(one - lower.above @ self.below, lower.up)
+        identity = np.eye(self.above.shape[-1])
+        falling = np.linalg.solve(identity - self.below @ lower.above, self.down)
+        rising = np.linalg.solve(identity - lower.above @ self.below, lower.up)
         return Scattering(
             above=self.above + self.up @ (lower.above @ falling),
             down=lower.down @ falling,
@@ -100,14 +100,14 @@ def films(media: Sequence[tuple[complex, float]], orders: Orders) -> Scattering:
     is the way through it. Matrices of each order by itself: see `Scattering.spread`.
     """
     parts: list[Scattering] = []
-    one = np.eye(orders.components, dtype=complex)
+    identity = np.eye(orders.components, dtype=complex)
     before: Complexes | None = None
     for permittivity, thickness in media:
         q, y = admittance(permittivity, orders)
         if before is not None:
             r = np.linalg.solve(before + y, before - y)
-            parts.append(Scattering(r, one + r, -r, one - r))
-        passed = np.exp(1j * q * thickness).astype(np.complex128)[..., None, None] * one
+            parts.append(Scattering(r, identity + r, -r, identity - r))
+        passed = np.exp(1j * q * thickness).astype(np.complex128)[..., None, None] * identity
         nothing = np.zeros(passed.shape, complex)
         parts.append(Scattering(nothing, passed, nothing, passed))
         before = y

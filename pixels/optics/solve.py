@@ -99,10 +99,10 @@ def solve(
             for name in ("both",) if across else ("te", "tm"):
                 rows = {"te": [0], "tm": [1], "both": [0, 1]}[name]
                 try:
-                    found = _solve(upper, lower, period_um, part, shifts, orders, name, fingers)
+                    light_of_part = _solve(upper, lower, period_um, part, shifts, orders, name, fingers)
                 except np.linalg.LinAlgError as error:
                     raise SolverError(f"modes = none: must be found ({error})") from None
-                for whole, piece in zip(out, found, strict=True):
+                for whole, piece in zip(out, light_of_part, strict=True):
                     for row, values in zip(rows, piece, strict=True):
                         whole[row][..., at] = values
     _check(out[0], out[1])

@@ -38,7 +38,7 @@ def slabs(stack: OpticalStack, section: Section, wavelength_um: float) -> list[S
     """Layers of a cut from the air down to the silicon. Raises ParameterError for a metal that is not in the stack."""
     cut, out = Cutter(stack, wavelength_um), []
     metals = [stack.metal("metal", name) for name, spans in section.metals.items() if spans]
-    for metal in sorted(metals, key=lambda one: -one.bottom_um):
+    for metal in sorted(metals, key=lambda item: -item.bottom_um):
         spans = tuple((a / section.period_um, b / section.period_um) for a, b in section.metals[metal.name])
         out += cut.grating("metal", metal.name, 0.0, spans=spans)
     return out + cut.down_to(stack.surface_um)
