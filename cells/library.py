@@ -25,37 +25,43 @@ from talbot.models.parameters import ParameterError
 
 
 def characterize_library(
-    library: str, c: Conditions, wanted: list[str] | None, netlist: str, out: Path, against: Path | None, workers: int
+    library: str,
+    c: Conditions,
+    cell_names: list[str] | None,
+    netlist: str,
+    out: Path,
+    against: Path | None,
+    workers: int,
 ) -> dict[str, Any]:
     """Write <out>/<library>/<corner>.lib, <library>.lef, <library>.v and summary.json; returns the summary.
 
     summary.json: that of this corner, and under 'corners' that of every corner whose .lib is in the folder; LEF and
-    Verilog have the cells of all of them. wanted: names of cells, None for all. netlist: one of sources.NETLISTS.
+    Verilog have the cells of all of them. cell_names: names of cells, None for all. netlist: one of sources.NETLISTS.
     against: folder of SkyWater's tables, with those of other corners perhaps. workers: processes, -1 for all cores.
     """
     started, process, corner, title = time.monotonic(), sources.process(library), c.corner.name, sources.title(library)
-    if unknown := sorted(set(wanted or ()) - set(sources.names(library))):
+    if unknown := sorted(set(cell_names or ()) - set(sources.names(library))):
         raise ParameterError(f"cells = {', '.join(unknown)}: must be of {library}")
     known = reference.folder(against, corner) if against else None
-    names = sorted(wanted or sources.names(library))
-    found = [sources.source(library, name, netlist) for name in each(names, "netlists", str)]
-    cells = [cell_of(source, process) for source in each(found, "functions", lambda source: source.name)]
+    names = sorted(cell_names or sources.names(library))
+    cell_sources = [sources.source(library, name, netlist) for name in each(names, "netlists", str)]
+    cells = [cell_of(source, process) for source in each(cell_sources, "functions", lambda source: source.name)]
     for cell in cells:
         _has_models(cell, process, c)
-    folder, longest_first = out / title, sorted(found, key=lambda source: -len(source.netlist))
+    folder, longest_first = out / title, sorted(cell_sources, key=lambda source: -len(source.netlist))
     todo = [job(source, c, process) for source in longest_first]
     results = jobs.run(todo, folder / "jobs", f"{title} {corner}", workers)
     by_name = {source.name: result for source, result in zip(longest_first, results, strict=True)}
     measured: list[Measured] = [by_name[name] for name in names]
-    entries = [build.Entry(cell, m, s.area) for cell, m, s in zip(cells, measured, found, strict=True)]
-    tree = build.library(f"{title}__{corner}", c, entries, process, {} if wanted else sources.constants(library))
+    entries = [build.Entry(cell, m, s.area) for cell, m, s in zip(cells, measured, cell_sources, strict=True)]
+    tree = build.library(f"{title}__{corner}", c, entries, process, {} if cell_names else sources.constants(library))
     with staged(folder) as part:
         (part / f"{corner}.lib").write_text(text(tree), encoding="utf-8")
         summary = _summary(measured, tree) | (
             compare.summary(compare.library(tree, known), process.FITTED) if known else {}
         )
         summary |= {"wall_s": round(time.monotonic() - started, 1), "names": names}
-        summary["left_out"] = {} if wanted else sources.left_out(library)
+        summary["left_out"] = {} if cell_names else sources.left_out(library)
         summary["read_by"] = read_by = accept.readers(part / f"{corner}.lib")
         summary["problems"] += [f"{tool}: {said}" for tool, said in read_by.items() if said not in accept.GOOD]
         corners = _corners(folder) | {corner: dict(summary)}

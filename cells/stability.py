@@ -63,8 +63,8 @@ def hundred_times_the_load() -> Iterator[Case]:
         for arc in inverter.arcs:
             change, name = arc.changes[0], f"inverter {arc.edge}, 100 times the largest load"
             largest = delay.largest_load(bench, [change], "Y", TYPICAL.longest_slew)
-            one, hundred = (bench.edge(change, "Y", 10e-12, factor * largest).slew for factor in (1, 100))
-            yield _case(name, "100 times the slew, within 2 %", hundred, abs(hundred / one / 100 - 1) < 0.02)
+            single, hundred = (bench.edge(change, "Y", 10e-12, factor * largest).slew for factor in (1, 100))
+            yield _case(name, "100 times the slew, within 2 %", hundred, abs(hundred / single / 100 - 1) < 0.02)
 
 
 def metastable() -> Iterator[Case]:
@@ -77,15 +77,15 @@ def metastable() -> Iterator[Case]:
             nonlocal longest
             started, clock = time.monotonic(), Event(scenario.clock, 0.0, scenario.clock_to, 10e-12)
             events = [clock, Event(scenario.data, -offset, scenario.data_to, 10e-12)]
-            found = outcome(bench, scenario.start, events, 1e-9, scenario.trigger, scenario.expected)
+            result = outcome(bench, scenario.start, events, 1e-9, scenario.trigger, scenario.expected)
             longest = max(longest, time.monotonic() - started)
-            return found
+            return result
 
         at = bisect(run_at, 1e-9, True, 1e3, resolution=1e-15)
         lost = run_at(at - 2e-15)
     bound = f"lost 2 fs later, each run under {PATIENCE + 1:.0f} s"
-    found = f"edge at {at * 1e12:.3f} ps, longest run {longest:.2f} s"
-    yield Case("flip-flop, 1 fs from its metastable edge", bound, found, lost is None and longest < PATIENCE + 1)
+    text = f"edge at {at * 1e12:.3f} ps, longest run {longest:.2f} s"
+    yield Case("flip-flop, 1 fs from its metastable edge", bound, text, lost is None and longest < PATIENCE + 1)
 
 
 def let_go() -> Iterator[Case]:
@@ -109,9 +109,9 @@ def fit_at_corner(corner: Corner) -> Iterator[Case]:
                     edges = [bench.edge(arc.changes[0], output, 0.12e-9, 10e-15) for arc in tested.arcs]
                 seconds.append(sum(edge.delay for edge in edges))
             ratio[models] = seconds[1] / seconds[0]
-        title, found = f"{name}, {corner.name} over {TYPICAL.corner.name}", "{fitted:.3f}, binned {binned:.3f}"
+        title, text = f"{name}, {corner.name} over {TYPICAL.corner.name}", "{fitted:.3f}, binned {binned:.3f}"
         ok = (ratio["fitted"] > 1) == (corner.process == "ss") and abs(ratio["fitted"] / ratio["binned"] - 1) < 0.03
-        yield Case(title, "that of the binned models, within 3 %", found.format(**ratio), ok)
+        yield Case(title, "that of the binned models, within 3 %", text.format(**ratio), ok)
 
 
 def corner_case(corner: Corner) -> Iterator[Case]:
@@ -120,14 +120,14 @@ def corner_case(corner: Corner) -> Iterator[Case]:
     rises, longest = True, 0.0
     with Bench(nand, PROCESS, conditions) as bench:
         for arc in nand.arcs:
-            found = delay.table(bench, arc.changes[0], "Y", (0.5e-15, 10e-15, 100e-15), (10e-12, 0.3e-9, 1.5e-9))
-            rises &= all((np.diff(found.values[field], axis=1) > 0).all() for field in ("delay", "slew"))
-            longest = max(longest, float(found.values["delay"].max()))
+            slews = delay.table(bench, arc.changes[0], "Y", (0.5e-15, 10e-15, 100e-15), (10e-12, 0.3e-9, 1.5e-9))
+            rises &= all((np.diff(slews.values[field], axis=1) > 0).all() for field in ("delay", "slew"))
+            longest = max(longest, float(slews.values["delay"].max()))
     with Bench(flip_flop, PROCESS, conditions) as bench:
         stored = [bench.edge(arc.changes[0], "Q", 0.1e-9, 10e-15).delay for arc in flip_flop.arcs]
     bound, ok = "delays and slews rise with the load; 0 < clock to Q < 100 ns", min(stored) > 0 and max(stored) < 100e-9
-    found = f"longest {longest * 1e9:.2f} ns, clock to Q {max(stored) * 1e9:.2f} ns"
-    yield Case(f"NAND and flip-flop at {corner.name}", bound, found, rises and ok)
+    text = f"longest {longest * 1e9:.2f} ns, clock to Q {max(stored) * 1e9:.2f} ns"
+    yield Case(f"NAND and flip-flop at {corner.name}", bound, text, rises and ok)
 
 
 def _case(name: str, bound: str, seconds: float, ok: bool | np.bool_) -> Case:

@@ -24,5 +24,5 @@ class StandardCells:
 def standard_cells(pdk: str, store: Path) -> StandardCells:
     """The cells of ``pdk``, those of cells.compact. Raises ParameterError. store: folder of the drawn cells."""
     package(pdk, COMPACT, " with cells of cells.compact")
-    made = library(store=store)
-    return StandardCells(made, partial(export_gds, made))
+    cells_library = library(store=store)
+    return StandardCells(cells_library, partial(export_gds, cells_library))

@@ -62,16 +62,16 @@ def _fields() -> list[Case]:
     pair = CaptureOperator(sensor).forward(truth)
     dead = pair.copy()
     dead[:, :, 7::10] = 0
-    one = pair.copy()
-    one[:, 3, 4] = 0
-    wrong = np.abs((found := _amid_dead(estimator, one)).disparity - 1)[found.spread < SURE]
+    copy = pair.copy()
+    copy[:, 3, 4] = 0
+    wrong = np.abs((estimate := _amid_dead(estimator, copy)).disparity - 1)[estimate.spread < SURE]
     dimmed = CaptureOperator(flat := _sensor(0.0)).forward(truth)
     out = [
         _bounded("black", estimator.mixture(0 * pair), 0.0, known=0.0),
         _bounded("full", estimator.mixture(np.ones_like(pair)), 1.0, known=0.0),
         _bounded("a third of it full", estimator.mixture(np.minimum(pair, 0.55)), 1.0),
         _bounded("dead columns", _amid_dead(estimator, dead), 1.0, known=0.0),
-        _bounded("a dead pixel", _amid_dead(estimator, one), 1.0),
+        _bounded("a dead pixel", _amid_dead(estimator, copy), 1.0),
         _bounded("noise of 40 %", estimator.mixture(pair * (1 + 0.4 * draw.standard_normal(pair.shape))), 1.6),
         _bounded("m = 0", FieldEstimator(flat, 5, PRIOR).mixture(dimmed), 1.0, known=0.0),
     ]

@@ -157,12 +157,12 @@ class Bench:
             after, loads = ramp + tail, {output: load}
             step = after / self.conditions.settings.steps
             wave, start = self.run(change.before, edges, after, step, loads, pause=2 * tail + QUICK)
-            if found := self._measure(wave, change, output, up, start, start + ramp + tail, load):
+            if edge := self._measure(wave, change, output, up, start, start + ramp + tail, load):
                 base, rate = self._tail.get(output, Tail())
                 heavy = load > 1e-15
-                rate, base = (max(rate, 3 * found.slew / load), base) if heavy else (rate, max(base, 2 * found.slew))
+                rate, base = (max(rate, 3 * edge.slew / load), base) if heavy else (rate, max(base, 2 * edge.slew))
                 self._tail[output] = Tail(base, rate)
-                return found
+                return edge
             tail *= 2
         why = f"{self.cell.name}: {output} does not reach its level after {self.machine.inputs[change.pin]} changes"
         raise SimulationError(why, self.simulator.last)

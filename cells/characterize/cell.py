@@ -61,9 +61,9 @@ def characterize(cell: Cell, process: ModuleType, conditions: Conditions) -> Mea
         _let_go(measured, bench, process, axes, tried)
     with Bench(cell, process, conditions, leakage=True) as still:
         measured["leakage"] = tried("leakage", leakage, still) or []
-    for one in (bench, still):
-        measured["simulations"] += one.simulator.runs
-        measured["repeated"] += one.simulator.repeated
+    for simulated in (bench, still):
+        measured["simulations"] += simulated.simulator.runs
+        measured["repeated"] += simulated.simulator.repeated
     measured["wall_s"], measured["cpu_s"] = round(time.monotonic() - started, 2), round(cpu_seconds() - used, 2)
     return measured
 
@@ -114,8 +114,8 @@ def _let_go(measured: Measured, bench: Bench, process: ModuleType, axes: dict[st
         with tristate.Held(bench, output, process) as held:
             measured["capacitance"][output] = tried(f"{output}: capacitance", held.capacitance)
             for arc in arcs:
-                found = tried(f"{arc.pin} {arc.pin_edge} lets {output} go", tristate.disable, held, arc, slews, loads)
-                measured["arcs"] += [found] if found else []
+                release = tried(f"{arc.pin} {arc.pin_edge} lets {output} go", tristate.disable, held, arc, slews, loads)
+                measured["arcs"] += [release] if release else []
             measured["simulations"] += held.simulator.runs
             measured["repeated"] += held.simulator.repeated
 

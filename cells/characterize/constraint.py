@@ -47,7 +47,7 @@ def constraints(bench: Bench, tried: Tries) -> list[Constraint]:
     """Every constraint of a cell with storage."""
     scenarios = Scenarios(bench.cell)
     storage, slews = scenarios.storage, bench.conditions.constraint_slews
-    found: list[Constraint] = []
+    results: list[Constraint] = []
     edge = "rising" if bool(storage.active) != (storage.kind == "latch") else "falling"
 
     def searched(pin: str, kind: str, rise: Sequence[Scenario], fall: Sequence[Scenario]) -> None:
@@ -56,7 +56,7 @@ def constraints(bench: Bench, tried: Tries) -> list[Constraint]:
             constraint["rise"] = tried(f"{pin} rise: {kind}", _longest, bench, rise, kind)
         if fall:
             constraint["fall"] = tried(f"{pin} fall: {kind}", _longest, bench, fall, kind)
-        found.append(constraint)
+        results.append(constraint)
 
     for pin in storage.data_pins:
         searched(pin, f"setup_{edge}", scenarios.setup(pin, 1), scenarios.setup(pin, 0))
@@ -72,8 +72,8 @@ def constraints(bench: Bench, tried: Tries) -> list[Constraint]:
         for level, pulse in ((0, "fall"), (1, "rise")):
             if (pin, level) in pulses:
                 widths[pulse] = tried(f"{pin}: pulse to {level}", _widths, bench, scenarios, pin, level)
-        found.append(widths)
-    return [f for f in found if f.get("rise") is not None or f.get("fall") is not None]
+        results.append(widths)
+    return [f for f in results if f.get("rise") is not None or f.get("fall") is not None]
 
 
 def _longest(bench: Bench, scenarios: Iterable[Scenario], kind: str) -> list[list[float]]:
@@ -131,8 +131,8 @@ def _time(bench: Bench, scenario: Scenario, clock_slew: float, data_slew: float,
 def _widths(bench: Bench, scenarios: Scenarios, pin: str, level: int) -> list[float] | None:
     """Shortest pulse in s for every slew, between 50 % points: a ramp at least, and what the slower level needs."""
     cases = scenarios.pulses(pin, level)
-    found = [_shortest(bench, scenarios, pin, level, state, expected) for state, expected in cases]
-    return np.max(found, axis=0).tolist() if found else None
+    widths = [_shortest(bench, scenarios, pin, level, state, expected) for state, expected in cases]
+    return np.max(widths, axis=0).tolist() if widths else None
 
 
 def _shortest(bench: Bench, scenarios: Scenarios, pin: str, level: int, state: State, expected: Output) -> list[float]:

@@ -13,15 +13,15 @@ def quiet_energy(bench: Bench, pin: str) -> dict[str, list[float]] | None:
     inside the cell in the others belongs to the edge that brings it to an output. SkyWater's figures are of that state,
     too.
     """
-    found = {}
+    energies = {}
     for level, name in ((1, "rise"), (0, "fall")):
         changes = bench.machine.toggles(pin, level, lambda change: change.before.kept == change.after.kept)
         if not changes:
             return None
         chosen = spread(changes, MOST)
         least = min(chosen, key=lambda change: _energy(bench, change, bench.conditions.middle_slew))
-        found[name] = [_energy(bench, least, slew) for slew in bench.conditions.slews]
-    return found
+        energies[name] = [_energy(bench, least, slew) for slew in bench.conditions.slews]
+    return energies
 
 
 def _energy(bench: Bench, change: Change, slew: float) -> float:

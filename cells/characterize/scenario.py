@@ -43,8 +43,8 @@ class Scenarios:
 
     def _quiet(self, clock_level: int, but: int | None = None) -> list[State]:
         """States with the clock at a level, and set and reset idle (all but input number ``but``)."""
-        wanted = {self.clock: clock_level} | {p: level for p, level in self.idle.items() if p != but}
-        return self._at(wanted)
+        levels = {self.clock: clock_level} | {p: level for p, level in self.idle.items() if p != but}
+        return self._at(levels)
 
     def _at(self, levels: Mapping[int, int]) -> list[State]:
         """States with inputs, by number, at ``levels``."""
@@ -62,10 +62,10 @@ class Scenarios:
         return self._data(pin, to, early=False)
 
     def _data(self, pin: str, to: int, early: bool) -> list[Scenario]:
-        found: dict[Output, list[Scenario]] = {}
+        by_output: dict[Output, list[Scenario]] = {}
         for scenario in self._scenarios(self.machine.inputs.index(pin), to, early):
-            found.setdefault(scenario.expected, []).append(scenario)
-        return [next((f for f in same if f.moves), same[0]) for _, same in sorted(found.items())]
+            by_output.setdefault(scenario.expected, []).append(scenario)
+        return [next((f for f in same if f.moves), same[0]) for _, same in sorted(by_output.items())]
 
     def release(self, pin: str, early: bool) -> list[Scenario]:
         """The first scenario of set or reset ``pin`` let go before (recovery) or after (removal) the clock's edge."""
@@ -75,7 +75,7 @@ class Scenarios:
     def _scenarios(self, data: int, to: int, early: bool) -> list[Scenario]:
         """Scenarios of input number ``data`` going ``to`` a level, of every state in which the order counts."""
         active, latch, asynchronous = self.storage.active, self.storage.kind == "latch", data in self.idle
-        clock_to, found = 1 - active if latch else active, []
+        clock_to, scenarios = 1 - active if latch else active, []
         for s in self._quiet(1 - clock_to, but=data):
             moved = self.after.get((s, data))
             if s.inputs[data] == to or moved is None:
@@ -88,8 +88,8 @@ class Scenarios:
             if kept.outputs[0] != taken.outputs[0]:
                 expected = (taken if early else kept).outputs[0]
                 moves, trigger = expected != s.outputs[0], data if latch else self.clock
-                found.append(Scenario(s, data, to, self.clock, clock_to, expected, moves, early, trigger))
-        return found
+                scenarios.append(Scenario(s, data, to, self.clock, clock_to, expected, moves, early, trigger))
+        return scenarios
 
     def pulses(self, pin: str, level: int) -> list[tuple[State, Output]]:
         """States and expected outputs, one for each level that a pulse to ``level`` on ``pin`` can move the output to.
@@ -98,10 +98,10 @@ class Scenarios:
         """
         number = self.machine.inputs.index(pin)
         states = self._quiet(1 - level) if number == self.clock else self._at(self.idle)
-        found: dict[Output, State] = {}
+        by_output: dict[Output, State] = {}
         for s in states:
             first = self.after.get((s, number))
             last = first and self.after.get((first, number))
             if s.inputs[number] != level and last and last.outputs[0] != s.outputs[0]:
-                found.setdefault(last.outputs[0], s)
-        return [(state, expected) for expected, state in sorted(found.items())]
+                by_output.setdefault(last.outputs[0], s)
+        return [(state, expected) for expected, state in sorted(by_output.items())]

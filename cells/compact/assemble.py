@@ -35,33 +35,33 @@ def assemble(columns: Sequence[Column], spread: Iterable[int] = ()) -> Assembly:
     for k, column in enumerate(columns):
         gates.append((h, column))
         h += 4 if k in gaps else 2
-    made = Assembly(gates[-1][0] + 2, gates)
+    assembly = Assembly(gates[-1][0] + 2, gates)
     for kind in "np":
         for (h, column), following in zip(gates, [*gates[1:], None], strict=True):
             left, right = column.ends(kind)
-            last = made.diffusions[-1] if made.diffusions else None
+            last = assembly.diffusions[-1] if assembly.diffusions else None
             if not last or (last.kind, last.columns[-1], last.net) != (kind, h - 1, left):
-                made.diffusions.append(Diffusion(kind, left, [h - 1]))
-            made.diffusions.append(Diffusion(kind, right, [h + 1]))
+                assembly.diffusions.append(Diffusion(kind, left, [h - 1]))
+            assembly.diffusions.append(Diffusion(kind, right, [h + 1]))
             if following and following[0] == h + 4 and following[1].ends(kind)[0] == right:
-                made.diffusions[-1].columns.append(h + 3)  # runs on through the gap
-    return made
+                assembly.diffusions[-1].columns.append(h + 3)  # runs on through the gap
+    return assembly
 
 
-def task(made: Assembly, canvas: Canvas, ports: tuple[str, ...]) -> Task:
+def task(assembly: Assembly, canvas: Canvas, ports: tuple[str, ...]) -> Task:
     """Make the routing task of an assembly."""
-    count = Counter(d.net for d in made.diffusions)
-    gate_nets = {net for _, c in made.gates for net in (c.n.gate, c.p.gate)}
+    count = Counter(d.net for d in assembly.diffusions)
+    gate_nets = {net for _, c in assembly.gates for net in (c.n.gate, c.p.gate)}
     terminals: dict[str, list[set[Vertex]]] = {}
     blocked: dict[str, set[Vertex]] = {"vss": set(), "vdd": set()}
-    for d in made.diffusions:
+    for d in assembly.diffusions:
         row = 0 if d.kind == "n" else len(canvas.rows) - 1
         spots: set[Vertex] = {("li", h, row) for h in d.columns}
         if d.net in blocked:
             blocked[d.net] |= spots
         elif count[d.net] > 1 or d.net in gate_nets or d.net in ports:
             terminals.setdefault(d.net, []).append(spots)
-    for h, column in made.gates:
+    for h, column in assembly.gates:
         for switch, row in ((column.n, canvas.low), (column.p, canvas.high)):
             terminals.setdefault(switch.gate, []).append({("poly", h, row)})
-    return Task(made.columns, canvas, terminals, tuple(p for p in ports if p not in blocked), blocked)
+    return Task(assembly.columns, canvas, terminals, tuple(p for p in ports if p not in blocked), blocked)

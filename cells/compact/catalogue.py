@@ -37,8 +37,8 @@ def _simple() -> Iterator[Schematic]:
         for operator, drive in variants:
             yield Schematic(f"n{operator}{count}_x{drive}", ports, ("nq",)).gate("nq", (operator, *ports), drive)
         for operator, drive in variants:
-            made = Schematic(f"{operator}{count}_x{drive}", ports, ("q",)).gate("n", (operator, *ports))
-            yield made.gate("q", "n", drive)
+            schematic = Schematic(f"{operator}{count}_x{drive}", ports, ("q",)).gate("n", (operator, *ports))
+            yield schematic.gate("q", "n", drive)
     # One input inverted inside: nand2b = not (not i0 and i1)
     yield Schematic("nand2b_x1", ("i0", "i1"), ("nq",)).gate("n", "i0").gate("nq", ("and", "n", "i1"))
     yield Schematic("nor2b_x1", ("i0", "i1"), ("nq",)).gate("n", "i0").gate("nq", ("or", "n", "i1"))
@@ -84,29 +84,29 @@ def _arithmetic() -> Iterator[Schematic]:
 def _flip_flops() -> Iterator[Schematic]:
     """Master and slave of pass gates and clocked feedback, as SkyWater's dfxtp and dfrtp."""
     for drive in (1, 2):
-        made = _stored(Schematic(f"dff_x{drive}", ("i", "clk"), ("q",))).gate("a", "m")
-        made.inverting_tristate("m", "a", "cb", "cn").pass_gate("a", "s", "cb", "cn")
-        made.gate("b", "s").inverting_tristate("s", "b", "cn", "cb").gate("q", "b", drive)
-        yield _sequential(made, "ff", next_state="i")
-        made = _stored(Schematic(f"dffnr_x{drive}", ("i", "clk", "nrst"), ("q",))).gate("a", "m")
-        made.inverting_tristate("m", "a", "cb", "cn", reset="nrst").pass_gate("a", "s", "cb", "cn")
-        made.gate("b", ("and", "s", "nrst")).inverting_tristate("s", "b", "cn", "cb").gate("q", "b", drive)
-        yield _sequential(made, "ff", next_state="i", clear="!nrst")
+        schematic = _stored(Schematic(f"dff_x{drive}", ("i", "clk"), ("q",))).gate("a", "m")
+        schematic.inverting_tristate("m", "a", "cb", "cn").pass_gate("a", "s", "cb", "cn")
+        schematic.gate("b", "s").inverting_tristate("s", "b", "cn", "cb").gate("q", "b", drive)
+        yield _sequential(schematic, "ff", next_state="i")
+        schematic = _stored(Schematic(f"dffnr_x{drive}", ("i", "clk", "nrst"), ("q",))).gate("a", "m")
+        schematic.inverting_tristate("m", "a", "cb", "cn", reset="nrst").pass_gate("a", "s", "cb", "cn")
+        schematic.gate("b", ("and", "s", "nrst")).inverting_tristate("s", "b", "cn", "cb").gate("q", "b", drive)
+        yield _sequential(schematic, "ff", next_state="i", clear="!nrst")
 
 
 def _clock_gates() -> Iterator[Schematic]:
     """q = clk while the enable, held from before the clock rises, is high."""
     for drive in (1, 2):
-        made = _stored(Schematic(f"cg_x{drive}", ("i", "clk"), ("q",))).gate("a", "m")
-        made.inverting_tristate("m", "a", "cb", "cn").gate("n", ("and", "a", "clk")).gate("q", "n", drive)
-        yield _sequential(made, "gate")
+        schematic = _stored(Schematic(f"cg_x{drive}", ("i", "clk"), ("q",))).gate("a", "m")
+        schematic.inverting_tristate("m", "a", "cb", "cn").gate("n", ("and", "a", "clk")).gate("q", "n", drive)
+        yield _sequential(schematic, "gate")
 
 
-def _stored(made: Schematic) -> Schematic:
+def _stored(schematic: Schematic) -> Schematic:
     """Add both phases of the clock, cn = not clk and cb = clk, and m = not i while the clock is low."""
-    return made.gate("cn", "clk").gate("cb", "cn").gate("d", "i").pass_gate("d", "m", "cn", "cb")
+    return schematic.gate("cn", "clk").gate("cb", "cn").gate("d", "i").pass_gate("d", "m", "cn", "cb")
 
 
-def _sequential(made: Schematic, storage: str, **functions: str) -> Schematic:
-    made.storage, made.functions = storage, functions
-    return made
+def _sequential(schematic: Schematic, storage: str, **functions: str) -> Schematic:
+    schematic.storage, schematic.functions = storage, functions
+    return schematic

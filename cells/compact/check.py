@@ -63,11 +63,11 @@ def rules(folder: str, name: str) -> dict[str, dict[str, int]]:
     """Violations in folder/<name>.gds by cell and rule."""
     source = Path(folder, f"{name}.gds").absolute()
     report, _ = _deck(Path(folder), "drc", name, {"SOURCE_FILE": str(source)})
-    found: dict[str, dict[str, int]] = {}
+    counts: dict[str, dict[str, int]] = {}
     for item in ET.parse(report).getroot().iterfind("items/item"):
-        cell = found.setdefault(item.findtext("cell", ""), collections.Counter())
+        cell = counts.setdefault(item.findtext("cell", ""), collections.Counter())
         cell[item.findtext("category", "").strip("'")] += 1
-    return found
+    return counts
 
 
 def matches(folder: str, name: str) -> bool:

@@ -27,9 +27,9 @@ def run(options: Namespace) -> int:
     print(f"{len(names)} cells in {options.out}")
     if options.no_check:
         return 0
-    bad = {name: found for name, found in check(options.out, names).items() if found.drc or not found.lvs}
-    for name, found in bad.items():
-        rules = ", ".join(f"{rule} x {count}" for rule, count in found.drc.items())
-        print(f"  {name}: {rules or 'DRC clean'}; LVS {'matches' if found.lvs else 'does not match'}")
+    bad = {name: verdict for name, verdict in check(options.out, names).items() if verdict.drc or not verdict.lvs}
+    for name, verdict in bad.items():
+        rules = ", ".join(f"{rule} x {count}" for rule, count in verdict.drc.items())
+        print(f"  {name}: {rules or 'DRC clean'}; LVS {'matches' if verdict.lvs else 'does not match'}")
     print(f"DRC and LVS: {len(names) + 1 - len(bad)} of {len(names) + 1} clean")
     return 1 if bad else 0

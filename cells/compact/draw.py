@@ -71,9 +71,9 @@ class Pen:
 class Drawing(Pen):
     """The shapes of a placed and routed cell. reach: with pins as long as their neighbours allow."""
 
-    def __init__(self, canvas: Canvas, made: Assembly, wiring: Wiring, reach: bool = True) -> None:
-        super().__init__(canvas, (made.columns + 1) // 2)
-        self.made, self.wiring = made, wiring
+    def __init__(self, canvas: Canvas, assembly: Assembly, wiring: Wiring, reach: bool = True) -> None:
+        super().__init__(canvas, (assembly.columns + 1) // 2)
+        self.assembly, self.wiring = assembly, wiring
         frame(self)
         self._transistors()
         self._rail_stubs()
@@ -93,12 +93,12 @@ class Drawing(Pen):
 
     def _transistors(self) -> None:
         c, half = self.canvas, self.canvas.length / 2
-        for h, column in self.made.gates:
+        for h, column in self.assembly.gates:
             left, right = self.x(h) - half, self.x(h) + half
             self.box("poly", column.n.gate, left, c.n[0] - 0.13, right, c.rows[c.low] + half)
             self.box("poly", column.p.gate, left, c.rows[c.high] - half, right, c.p[1] + 0.13)
-        gates = {h for h, _ in self.made.gates}
-        for d in self.made.diffusions:
+        gates = {h for h, _ in self.assembly.gates}
+        for d in self.assembly.diffusions:
             low, high = c.n if d.kind == "n" else c.p
             start, end = min(d.columns), max(d.columns)
             left = self.x(start) - (0.26 if start - 1 in gates else 0.125)
@@ -160,7 +160,7 @@ class Drawing(Pen):
         self.box("li", net, ends[0] - WIRE / 2, away - WIRE / 2, ends[1] + WIRE / 2, away + WIRE / 2)
 
     def _diffusion_contacts(self, net: str) -> None:
-        for d in self.made.diffusions:
+        for d in self.assembly.diffusions:
             row = 0 if d.kind == "n" else len(self.canvas.rows) - 1
             for h in d.columns if d.net == net else ():
                 if ("li", h, row) in self.wiring.vertices[net]:
@@ -204,8 +204,8 @@ class Drawing(Pen):
         x, bottom, top = pin
         low, high = self.canvas.li_rail + WIRE, self.canvas.height - self.canvas.li_rail - WIRE
         for s in self.shapes:
-            own = s.net == net and s.left < x + WIRE / 2 - EPSILON and s.right > x - WIRE / 2 + EPSILON
-            if s.layer != "li" or own or s.left > x + 1.5 * WIRE - EPSILON or s.right < x - 1.5 * WIRE + EPSILON:
+            same_net = s.net == net and s.left < x + WIRE / 2 - EPSILON and s.right > x - WIRE / 2 + EPSILON
+            if s.layer != "li" or same_net or s.left > x + 1.5 * WIRE - EPSILON or s.right < x - 1.5 * WIRE + EPSILON:
                 continue
             if s.bottom > top - EPSILON:
                 high = min(high, s.bottom - WIRE)
@@ -236,7 +236,7 @@ def frame(drawing: Pen) -> None:
 
 def regions(shapes: Iterable[Shape]) -> "dict[str, db.Region]":
     """The region of every layer in ``shapes``, in nm."""
-    found = defaultdict(db.Region)
+    by_layer = defaultdict(db.Region)
     for s in shapes:
-        found[s.layer].insert(s.nm)
-    return found
+        by_layer[s.layer].insert(s.nm)
+    return by_layer

@@ -9,7 +9,7 @@ from talbot.cells.compact.transistors import Schematic
 
 def liberty(cells: Iterable[Schematic], areas: Mapping[str, float]) -> str:
     """Text for ``cells`` of ``areas`` (um2). No delays: pins have directions, functions and areas only."""
-    made = functional.library("compact", **functional.UNITS)
+    library = functional.library("compact", **functional.UNITS)
     for s in cells:
         ff = None
         functions = {pin: s.functions.get(pin, "") for pin in s.outputs}
@@ -19,7 +19,7 @@ def liberty(cells: Iterable[Schematic], areas: Mapping[str, float]) -> str:
         if s.storage == "gate":
             functions = {"q": ""}
         if s.outputs:
-            cell = functional.add_cell(made, s.name, areas[s.name], (*s.inputs, *s.outputs), functions, ff, "clk")
+            cell = functional.add_cell(library, s.name, areas[s.name], (*s.inputs, *s.outputs), functions, ff, "clk")
             if s.storage == "gate":
                 cell.attributes["clock_gating_integrated_cell"] = "latch_posedge"
-    return text(made)
+    return text(library)

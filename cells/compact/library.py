@@ -22,12 +22,12 @@ def drawn(
     canvas: Canvas | None = None, store: Path = FOLDER / "drawn", workers: int = -1
 ) -> dict[str, tuple[Schematic, Drawn]]:
     """Draw every cell, once: the jobs' results are kept in ``store``. workers: processes, -1 for all cores."""
-    canvas, wanted = canvas or Canvas(), schematics()
-    order = sorted(wanted, key=lambda name: -len(wanted[name].n))  # the widest take longest
-    arguments = {name: (wanted[name], canvas, recipe(name)) for name in order}
+    canvas, cells = canvas or Canvas(), schematics()
+    order = sorted(cells, key=lambda name: -len(cells[name].n))  # the widest take longest
+    arguments = {name: (cells[name], canvas, recipe(name)) for name in order}
     jobs = [Job(name, make, inputs, inputs) for name, inputs in arguments.items()]
-    made = dict(zip(order, run(jobs, store, "cells drawn", workers), strict=True))
-    return {name: (wanted[name], made[name]) for name in wanted} | ties(canvas) | diode(canvas)
+    drawings = dict(zip(order, run(jobs, store, "cells drawn", workers), strict=True))
+    return {name: (cells[name], drawings[name]) for name in cells} | ties(canvas) | diode(canvas)
 
 
 def library(canvas: Canvas | None = None, store: Path = FOLDER / "drawn", workers: int = -1) -> "RoutingGaugeLibrary":

@@ -57,12 +57,12 @@ def make(schematic: Schematic, canvas: Canvas, known: Recipe | None = None) -> D
 
 def choose(schematic: Schematic, canvas: Canvas, seeds: Iterable[int], below: Recipe | None = None) -> Recipe | None:
     """Choose of the narrowest recipes from ``seeds`` the one with the most `merit`; None where no placement routes."""
-    found = []
-    for one, drawing in search(schematic, canvas, seeds, below):
-        if found and (one.sites > found[0][1].sites or len(found) == CHOICES):
+    candidates = []
+    for recipe, drawing in search(schematic, canvas, seeds, below):
+        if candidates and (recipe.sites > candidates[0][1].sites or len(candidates) == CHOICES):
             break
-        found.append((merit(drawing), one))
-    return max(found, key=lambda pair: pair[0])[1] if found else None
+        candidates.append((merit(drawing), recipe))
+    return max(candidates, key=lambda pair: pair[0])[1] if candidates else None
 
 
 def merit(drawing: Drawing) -> tuple[int, int]:
@@ -92,11 +92,11 @@ def search(
 
 def _draw(schematic: Schematic, columns: Sequence[Column], recipe: Recipe, canvas: Canvas) -> Drawing | None:
     """The drawing, None where it cannot be routed or breaks a rule."""
-    made = assemble(columns, recipe.spread)
-    wiring = route(task(made, canvas, schematic.ports), recipe.met1, recipe.seed)
+    assembly = assemble(columns, recipe.spread)
+    wiring = route(task(assembly, canvas, schematic.ports), recipe.met1, recipe.seed)
     if wiring is None:
         return None
-    drawings = (Drawing(canvas, made, wiring, reach) for reach in (True, False))
+    drawings = (Drawing(canvas, assembly, wiring, reach) for reach in (True, False))
     return next((drawing for drawing in drawings if not broken(drawing)), None)
 
 

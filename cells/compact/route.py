@@ -58,12 +58,12 @@ def route(task: Task, met1: bool = True, seed: int = 0) -> Wiring | None:
     pins = {v for v in grid.vertices if v[0] in ("pin", "tap")}
     sets = [[*task.terminals[net], *([pins] if net in task.ports else [])] for net in nets]
     net_start = np.cumsum([0, *(len(s) for s in sets)])
-    flat = [sorted(grid.number[v] for v in one) for s in sets for one in s]
-    set_start = np.cumsum([0, *(len(one) for one in flat)])
-    members = np.array([v for one in flat for v in one], dtype=np.int64)
+    flat = [sorted(grid.number[v] for v in vertices) for s in sets for vertices in s]
+    set_start = np.cumsum([0, *(len(vertices) for vertices in flat)])
+    members = np.array([v for vertices in flat for v in vertices], dtype=np.int64)
     used = np.zeros((len(nets) + len(task.blocked), len(grid.vertices)), dtype=np.bool_)
-    for k, own in enumerate(task.blocked.values()):
-        used[len(nets) + k, [grid.number[v] for v in own]] = True
+    for k, stub in enumerate(task.blocked.values()):
+        used[len(nets) + k, [grid.number[v] for v in stub]] = True
     ok, edges = _negotiate((price, *arrays[1:]), (net_start, set_start, members), used)
     return _wiring(grid, [*nets, *task.blocked], used, edges) if ok else None
 
@@ -85,7 +85,7 @@ def _wiring(grid: Grid, names: Sequence[str], used: Flags, edges: Edges) -> Wiri
             pairs[net].append((("li", h, r), ("li", h, r + 1)))
     return Wiring(
         {net: {v for v in vertices if v[0] != "pin"} for net, vertices in held.items()},
-        {net: [e for e in found if "pin" not in (e[0][0], e[1][0])] for net, found in pairs.items()},
+        {net: [e for e in net_edges if "pin" not in (e[0][0], e[1][0])] for net, net_edges in pairs.items()},
         pins,
     )
 

@@ -13,8 +13,8 @@ ACCESS = (160, 145)  # nm, half of what a route needs on met1 over a pin: the pa
 
 def broken(drawing: Drawing) -> list[str]:
     """The names of the rules that a drawing breaks."""
-    found = regions(drawing.shapes)
-    whole = {layer: region.merged() for layer, region in found.items()}
+    by_layer = regions(drawing.shapes)
+    whole = {layer: region.merged() for layer, region in by_layer.items()}
     out = [f"{layer} space" for layer, space in SPACES.items() if not whole[layer].space_check(space).is_empty()]
     out += [f"{layer} width" for layer, width in WIDTHS.items() if not whole[layer].width_check(width).is_empty()]
     out += [f"{layer} area" for layer, area in AREAS.items() if not whole[layer].with_area(0, area, False).is_empty()]
@@ -23,9 +23,9 @@ def broken(drawing: Drawing) -> list[str]:
         if s.net:
             nets.setdefault((s.layer, s.net), db.Region()).insert(s.nm)
     for layer in ("li", "poly", "m1"):
-        own = [(net, region.merged()) for (name, net), region in nets.items() if name == layer]
-        for i, (a, first) in enumerate(own):
-            out += [f"{layer} short of {a} and {b}" for b, second in own[i + 1 :] if not (first & second).is_empty()]
+        parts = [(net, region.merged()) for (name, net), region in nets.items() if name == layer]
+        for i, (a, first) in enumerate(parts):
+            out += [f"{layer} short of {a} and {b}" for b, second in parts[i + 1 :] if not (first & second).is_empty()]
     if not ((whole["licon"] & whole["poly"]).sized(190) & whole["difftap"]).is_empty():
         out.append("licon on poly to difftap")
     pins, step = [s for s in drawing.shapes if s.layer == "li.pin"], round(drawing.canvas.site * 500)

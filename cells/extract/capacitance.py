@@ -60,41 +60,41 @@ class _Total:
         return [*reversed(self.names[: self.names.index(layer.lef)]), DIFFUSION]
 
 
-def capacitances(found: CellLayout, tech: ExtractionPlatform) -> dict[tuple[str, str], float]:
+def capacitances(layout: CellLayout, tech: ExtractionPlatform) -> dict[tuple[str, str], float]:
     """Capacitance in fF of every pair of nets, the names of each pair sorted."""
-    total, rectangles = _Total(tech), _Rectangles(found, tech.halo_um)
+    total, rectangles = _Total(tech), _Rectangles(layout, tech.halo_um)
     for layer in tech.conductors:
-        for net, region in found.shapes[layer.lef].items():
-            _areas(found, net, layer, region.merged(), total)
+        for net, region in layout.shapes[layer.lef].items():
+            _areas(layout, net, layer, region.merged(), total)
     for layer in tech.conductors:
-        for net, region in found.shapes[layer.lef].items():
+        for net, region in layout.shapes[layer.lef].items():
             for edge in region.merged().edges().each():
                 _edge(edge, net, layer, rectangles, total)
     return dict(total.pairs)
 
 
-def _areas(found: CellLayout, net: str, layer: Layer, rest: "db.Region", total: _Total) -> None:
-    um2 = found.dbu**2
+def _areas(layout: CellLayout, net: str, layer: Layer, rest: "db.Region", total: _Total) -> None:
+    um2 = layout.dbu**2
     for lower in total.below(layer):
         if layer.lef == "poly":
-            rest -= found.active
+            rest -= layout.active
             continue
-        for other, below in found.shapes[lower].items():
+        for other, below in layout.shapes[lower].items():
             if rest.bbox().touches(below.bbox()):
                 area = (rest & below).area() * um2
                 total.add(net, other, area * total.crossings[layer.lef, lower].overlap_af_um2)
                 rest -= below
-    for bulk, well in found.wells.items():
+    for bulk, well in layout.wells.items():
         total.add(net, bulk, (rest & well).area() * um2 * layer.area_af_um2)
 
 
 class _Rectangles:
     """The conductors, wells and active as rectangles, by layer."""
 
-    def __init__(self, found: CellLayout, halo_um: float) -> None:
-        regions = {**found.shapes, "well": found.wells, "active": {"": found.active}}
-        self.layers = {name: _split(nets, found.dbu) for name, nets in regions.items()}
-        self.dbu, self.halo_um = found.dbu, halo_um
+    def __init__(self, layout: CellLayout, halo_um: float) -> None:
+        regions = {**layout.shapes, "well": layout.wells, "active": {"": layout.active}}
+        self.layers = {name: _split(nets, layout.dbu) for name, nets in regions.items()}
+        self.dbu, self.halo_um = layout.dbu, halo_um
 
     def beside(self, rectangles: Sequence[Rectangle], edge: "db.Edge") -> Iterator[Strip]:
         """Parts of ``rectangles`` in the strip of width ``halo_um`` outside ``edge``."""
@@ -112,12 +112,12 @@ class _Rectangles:
 
 
 def _split(nets: "Mapping[str, db.Region]", dbu: float) -> list[Rectangle]:
-    found = []
+    boxes = []
     for net, region in nets.items():
         for trapezoid in region.decompose_trapezoids_to_region().each():
             box = trapezoid.bbox()
-            found.append(Rectangle(box.left * dbu, box.bottom * dbu, box.right * dbu, box.top * dbu, net))
-    return found
+            boxes.append(Rectangle(box.left * dbu, box.bottom * dbu, box.right * dbu, box.top * dbu, net))
+    return boxes
 
 
 def _edge(edge: "db.Edge", net: str, layer: Layer, rectangles: _Rectangles, total: _Total) -> None:

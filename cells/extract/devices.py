@@ -94,13 +94,13 @@ def find(gds: str | Path, name: str, tech: ExtractionPlatform) -> CellLayout:
     _connect(l2n, layers, texts, tech)
     l2n.extract_netlist()
     circuit = l2n.netlist().top_circuit()
-    found = _collect(l2n, circuit, layers, tech, layout.dbu)
+    layout_of_cell = _collect(l2n, circuit, layers, tech, layout.dbu)
     named = {mark: layout.layer(*tech.devices[mark]) for mark in MARKS if mark in tech.devices}
     marks = {mark: db.Region(cell.begin_shapes_rec(layer)) for mark, layer in named.items()}
-    found.devices = [_device(device, found, marks) for device in circuit.each_device()]
-    found.vias = [_merged(layers[via.lef]) for via in tech.vias]
-    found.labels = _labels(layout, cell, tech)
-    return found
+    layout_of_cell.devices = [_device(device, layout_of_cell, marks) for device in circuit.each_device()]
+    layout_of_cell.vias = [_merged(layers[via.lef]) for via in tech.vias]
+    layout_of_cell.labels = _labels(layout, cell, tech)
+    return layout_of_cell
 
 
 def _merged(region: "db.Region") -> "db.Region":
@@ -112,13 +112,13 @@ def _merged(region: "db.Region") -> "db.Region":
 
 
 def _labels(layout: "db.Layout", cell: "db.Cell", tech: ExtractionPlatform) -> "dict[str, list[tuple[str, db.Point]]]":
-    found = {}
+    labels = {}
     for conductor in reversed(tech.conductors):
         for layer in (conductor.pin, conductor.label):
             for shape in cell.shapes(layout.layer(*layer)).each(db.Shapes.STexts):
                 point = db.Point() + shape.text_trans.disp
-                found.setdefault(shape.text_string, []).append((conductor.lef, point))
-    return found
+                labels.setdefault(shape.text_string, []).append((conductor.lef, point))
+    return labels
 
 
 def _layers(
@@ -179,10 +179,10 @@ def _collect(
     tech: ExtractionPlatform,
     dbu: float,
 ) -> CellLayout:
-    found = CellLayout(dbu, _merged(layers["active"]))
+    layout = CellLayout(dbu, _merged(layers["active"]))
     groups = {DIFFUSION: ("nsd", "psd", "ntap", "ptap")} | {layer.lef: (layer.lef,) for layer in tech.conductors}
-    found.shapes = {conductor: {} for conductor in groups}
-    found.islands = {"n": {}, "p": {}}
+    layout.shapes = {conductor: {} for conductor in groups}
+    layout.islands = {"n": {}, "p": {}}
 
     def add(regions: "dict[str, db.Region]", net: "db.Net", *names: str) -> None:
         region = db.Region()
@@ -193,14 +193,14 @@ def _collect(
 
     for net in circuit.each_net():
         if net.name:
-            found.ports.add(node(net))
+            layout.ports.add(node(net))
         for conductor, names in groups.items():
-            add(found.shapes[conductor], net, *names)
-        for kind, islands in found.islands.items():
+            add(layout.shapes[conductor], net, *names)
+        for kind, islands in layout.islands.items():
             add(islands, net, f"{kind}sd")
         for bulk in ("nbulk", "pbulk"):
-            add(found.wells, net, bulk)
-    return found
+            add(layout.wells, net, bulk)
+    return layout
 
 
 def node(net: "db.Net") -> str:
@@ -208,28 +208,28 @@ def node(net: "db.Net") -> str:
     return net.name.split(",")[0] if net.name else f"n{net.cluster_id}"
 
 
-def _device(device: "db.Device", found: CellLayout, marks: "dict[str, db.Region]") -> Device:
+def _device(device: "db.Device", layout: CellLayout, marks: "dict[str, db.Region]") -> Device:
     net = {t.name: node(device.net_for_terminal(t.id())) for t in device.device_class().terminal_definitions()}
     value, at = device.parameter, device.trans.disp
-    point = db.Point(round(at.x / found.dbu), round(at.y / found.dbu))
+    point = db.Point(round(at.x / layout.dbu), round(at.y / layout.dbu))
     spot = db.Region(db.Box(point.x - 5, point.y - 5, point.x + 5, point.y + 5))
     drain, gate, source, bulk = (net[terminal] for terminal in "DGSB")
     width, length, *sides = (value(name) for name in ("W", "L", "AD", "AS", "PD", "PS"))
-    sa, sb = _stress(found, point, width, length)
+    sa, sb = _stress(layout, point, width, length)
     over = frozenset(mark for mark, region in marks.items() if not region.interacting(spot).is_empty())
     kind = device.device_class().name
     return Device(kind, drain, gate, source, bulk, width, length, *sides, sa=sa, sb=sb, marks=over, at=point)
 
 
-def _stress(found: CellLayout, point: "db.Point", width: float, length: float) -> tuple[float, float]:
+def _stress(layout: CellLayout, point: "db.Point", width: float, length: float) -> tuple[float, float]:
     """SA and SB (um) of a gate with its middle at ``point``: where the diffusion's end has steps, BSIM4's equivalent.
 
     1 / (SA + L / 2) is the mean over the gate's width of that of each strip (BSIM4.5 manual, 13.4, SA and SB for
     irregular shapes): most of the stress comes from the nearest edge.
     """
-    box, half = found.active.bbox(), round(width / found.dbu / 2)
+    box, half = layout.active.bbox(), round(width / layout.dbu / 2)
     gate = db.Box(point.x - 1, point.y - half, point.x + 1, point.y + half)
-    band = db.Region(db.Box(box.left, gate.bottom, box.right, gate.top)) & found.active
+    band = db.Region(db.Box(box.left, gate.bottom, box.right, gate.top)) & layout.active
     corners = {corner.y for part in band.each_merged() for corner in part.each_point_hull()}
     levels = sorted(y for y in corners | {gate.bottom, gate.top} if gate.bottom <= y <= gate.top)
     inverse, covered = [0.0, 0.0], 0
@@ -241,6 +241,6 @@ def _stress(found: CellLayout, point: "db.Point", width: float, length: float) -
             continue
         covered += high - low
         for side, dbu in enumerate((point.x - run.left, run.right - point.x)):
-            inverse[side] += (high - low) / (dbu * found.dbu)
+            inverse[side] += (high - low) / (dbu * layout.dbu)
     sa, sb = (covered / value - length / 2 for value in inverse)
     return sa, sb

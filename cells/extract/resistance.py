@@ -55,21 +55,21 @@ class Port(NamedTuple):
     users: list[tuple[int, str]]
 
 
-def resistances(found: CellLayout, tech: ExtractionPlatform) -> Resistances:
+def resistances(layout: CellLayout, tech: ExtractionPlatform) -> Resistances:
     """Resistances of a cell. Raises ParameterError for a net whose terminals no resistance connects."""
-    resistors, terminals = [], {i: {} for i in range(len(found.devices))}
+    resistors, terminals = [], {i: {} for i in range(len(layout.devices))}
     by_net: dict[str, list[Terminal]] = {}
-    for i, device in enumerate(found.devices):
-        for role, (conductor, region) in _sides(device, found).items():
+    for i, device in enumerate(layout.devices):
+        for role, (conductor, region) in _sides(device, layout).items():
             by_net.setdefault(getattr(device, role), []).append(Terminal(i, role, conductor, region))
     for net in sorted(by_net):
-        ports = _ports(net, by_net[net], found)
+        ports = _ports(net, by_net[net], layout)
         nodes = [net, *(f"{net}_r{k}" for k in range(1, len(ports)))]
         for node, port in zip(nodes, ports, strict=True):
             for i, role in port.users:
                 terminals[i][role] = node
         if len(ports) > 1:
-            every = _conductances(net, ports, found, tech)
+            every = _conductances(net, ports, layout, tech)
             kept = {pair: siemens for pair, siemens in every.items() if siemens > 1 / MOST}
             if set(range(len(ports))) - {end for pair in kept for end in pair}:
                 raise ParameterError(f"net = {net}: no resistance below {MOST:g} ohm joins its {len(ports)} terminals")
@@ -80,68 +80,68 @@ def resistances(found: CellLayout, tech: ExtractionPlatform) -> Resistances:
     return Resistances(resistors, terminals)
 
 
-def _sides(device: Device, found: CellLayout) -> "dict[str, tuple[str, db.Region]]":
+def _sides(device: Device, layout: CellLayout) -> "dict[str, tuple[str, db.Region]]":
     """Role -> (conductor, region) of a transistor: its gate's poly, the islands of its source and drain."""
-    step = round(device.length / found.dbu / 2) + 10
-    poly, gate = found.shapes["poly"][device.gate], db.Box(device.at, device.at).enlarged(5)
-    sides = {"gate": ("poly", (poly & found.active).interacting(db.Region(gate)))}
-    left, right = (_island(device, found, sign * step) for sign in (-1, 1))
+    step = round(device.length / layout.dbu / 2) + 10
+    poly, gate = layout.shapes["poly"][device.gate], db.Box(device.at, device.at).enlarged(5)
+    sides = {"gate": ("poly", (poly & layout.active).interacting(db.Region(gate)))}
+    left, right = (_island(device, layout, sign * step) for sign in (-1, 1))
     crossed = left[0] != device.source
     sides["source"], sides["drain"] = ((device.kind, side[1]) for side in ((right, left) if crossed else (left, right)))
     return sides
 
 
-def _island(device: Device, found: CellLayout, step: int) -> "tuple[str, db.Region]":
+def _island(device: Device, layout: CellLayout, step: int) -> "tuple[str, db.Region]":
     """(net, region) of the diffusion ``step`` dbu beside the middle of a gate."""
     spot = db.Region(db.Box(device.at, device.at).enlarged(2).moved(step, 0))
-    for net, islands in found.islands[device.kind].items():
+    for net, islands in layout.islands[device.kind].items():
         part = islands.merged().interacting(spot)
         if not part.is_empty():
             return net, part
     raise AssertionError(f"no diffusion beside a gate of {device.gate}")
 
 
-def _ports(net: str, terminals: Sequence[Terminal], found: CellLayout) -> list[Port]:
+def _ports(net: str, terminals: Sequence[Terminal], layout: CellLayout) -> list[Port]:
     """The ports of a net's terminals; its pin, if it has one, first."""
     by_place: dict[tuple[bool, str, str], Port] = {}
     for i, role, conductor, region in terminals:
         place = conductor != "poly", str(region.bbox()), conductor
         by_place.setdefault(place, Port(conductor, region, [])).users.append((i, role))
     ports = [port for _, port in sorted(by_place.items(), key=lambda item: item[0][:2])]
-    for conductor, point in found.labels.get(net, ()):
+    for conductor, point in layout.labels.get(net, ()):
         spot = db.Region(db.Box(point, point).enlarged(1))
-        if not found.shapes[conductor].get(net, db.Region()).interacting(spot).is_empty():
+        if not layout.shapes[conductor].get(net, db.Region()).interacting(spot).is_empty():
             return [Port(conductor, point, []), *ports]
     return ports
 
 
 def _conductances(
-    net: str, ports: Sequence[Port], found: CellLayout, tech: ExtractionPlatform
+    net: str, ports: Sequence[Port], layout: CellLayout, tech: ExtractionPlatform
 ) -> dict[tuple[int, int], float]:
     """Conductance in S of pairs of nodes of ``net``: ports, numbered in their order, and inner nodes, from there."""
     names = ["n", "p", *(layer.lef for layer in tech.conductors)]
     number = {name: k for k, name in enumerate(names)}
     rules, geometry = pex.RExtractorTech(), {}
     for name in names:
-        region = (found.islands[name] if name in found.islands else found.shapes[name]).get(net)
+        region = (layout.islands[name] if name in layout.islands else layout.shapes[name]).get(net)
         if region is not None:
             geometry[number[name]] = region.merged()
             conductor = pex.RExtractorTechConductor()
             conductor.layer = number[name]
-            conductor.resistance = IDEAL if name in found.islands else tech.conductor(name).sheet_ohm
+            conductor.resistance = IDEAL if name in layout.islands else tech.conductor(name).sheet_ohm
             rules.add_conductor(conductor)
-    for k, (region, via) in enumerate(zip(found.vias, tech.vias, strict=True)):
-        below = {*via.below, *(found.islands if DIFFUSION in via.below else ())}
+    for k, (region, via) in enumerate(zip(layout.vias, tech.vias, strict=True)):
+        below = {*via.below, *(layout.islands if DIFFUSION in via.below else ())}
         upper = number[via.above]
         for name in (name for name in names if name in below and {number[name], upper} <= geometry.keys()):
             lower = number[name]
             cut = region & geometry[lower] & geometry[upper]
             if not cut.is_empty():
                 layer = len(names) * (k + 1) + lower
-                geometry[layer], made = cut, pex.RExtractorTechVia()
-                made.cut_layer, made.bottom_conductor, made.top_conductor = layer, lower, upper
-                made.resistance = tech.contact_ohm[name] * (cut.area() / cut.count() * 1e-6)
-                rules.add_via(made)
+                geometry[layer], via_rule = cut, pex.RExtractorTechVia()
+                via_rule.cut_layer, via_rule.bottom_conductor, via_rule.top_conductor = layer, lower, upper
+                via_rule.resistance = tech.contact_ohm[name] * (cut.area() / cut.count() * 1e-6)
+                rules.add_via(via_rule)
     points: dict[int, list[db.Point]] = {}
     flat: dict[int, list[db.Polygon]] = {}
     for port in ports:
@@ -149,7 +149,7 @@ def _conductances(
             points.setdefault(number[port.conductor], []).append(port.shape)
         else:
             flat.setdefault(number[port.conductor], []).extend(port.shape.merged().each())
-    network = _network(found.dbu, rules, geometry, points, flat)
+    network = _network(layout.dbu, rules, geometry, points, flat)
     return _reduced(network, [(number[port.conductor], port.shape) for port in ports], flat)
 
 
@@ -158,7 +158,7 @@ def _network(dbu: float, rules: Any, geometry: "Mapping[int, db.Region]", points
 
     It cuts a polygon into trapezoids, sometimes one without a height (1.3e11 ohm in xor2_2), and none of the mirrored.
     """
-    found = []
+    candidates = []
     for view in (db.Trans(), db.Trans(db.Trans.M90)):  # as drawn, and mirrored
         seen = {layer: region.transformed(view) for layer, region in geometry.items()}
         spots = {layer: [view * point for point in same] for layer, same in points.items()}
@@ -167,8 +167,8 @@ def _network(dbu: float, rules: Any, geometry: "Mapping[int, db.Region]", points
         highest = max((element.resistance() for element in network.each_element()), default=0.0)
         if highest <= MOST:
             return network
-        found.append((highest, network))
-    return min(found, key=lambda view: view[0])[1]
+        candidates.append((highest, network))
+    return min(candidates, key=lambda view: view[0])[1]
 
 
 def _reduced(
@@ -192,8 +192,8 @@ def _reduced(
 
 def _join(beside: list[dict[int, float]], a: int, b: int, conductance: float) -> None:
     if a != b:
-        for one, other in ((a, b), (b, a)):
-            beside[one][other] = beside[one].get(other, 0.0) + conductance
+        for side, other in ((a, b), (b, a)):
+            beside[side][other] = beside[side].get(other, 0.0) + conductance
 
 
 def _eliminate(beside: list[dict[int, float]], node: int) -> None:

@@ -25,15 +25,15 @@ def extract(
     ports: their names in order; without it they come from the netlist beside the GDS (same name, .spice or .spi), else
     sorted. Raises ParameterError when GDS, cell or ports do not fit.
     """
-    found = find(gds, name, tech)
-    ports = tuple(ports or _schematic_ports(Path(gds), name) or sorted(found.ports))
-    if set(ports) != found.ports:
+    layout = find(gds, name, tech)
+    ports = tuple(ports or _schematic_ports(Path(gds), name) or sorted(layout.ports))
+    if set(ports) != layout.ports:
         raise ParameterError(
-            f"ports = {' '.join(ports)}: must be those labelled in {gds}, cell {name}: {' '.join(sorted(found.ports))}"
+            f"ports = {' '.join(ports)}: must be those labelled in {gds}, cell {name}: {' '.join(sorted(layout.ports))}"
         )
     lines = [f".subckt {name} {' '.join(ports)}"]
-    ohmic = resistances(found, tech) if resistors else Resistances([], {})
-    for i, d in enumerate(found.devices):
+    ohmic = resistances(layout, tech) if resistors else Resistances([], {})
+    for i, d in enumerate(layout.devices):
         at = {"drain": d.drain, "gate": d.gate, "source": d.source, **ohmic.terminals.get(i, {})}
         lines.append(
             f"X{i} {at['drain']} {at['gate']} {at['source']} {d.bulk} {tech.model(d.kind, d.width, d.marks)} "
@@ -41,7 +41,7 @@ def extract(
             f"sa={d.sa:.4g} sb={d.sb:.4g}"
         )
     if capacitors:
-        pairs = sorted(capacitances(found, tech).items())
+        pairs = sorted(capacitances(layout, tech).items())
         lines += [f"C{i} {a} {b} {value:.4f}f" for i, ((a, b), value) in enumerate(pairs) if value >= SMALLEST]
     lines += [f"R{i} {a} {b} {value:.5g}" for i, (a, b, value) in enumerate(ohmic.resistors)]
     return "\n".join([*lines, ".ends", ""])

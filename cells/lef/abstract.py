@@ -47,18 +47,18 @@ def abstract(
     of the first, and nobody routes on the second. Raises ParameterError when a pin has no metal in the cell, or the
     cell no outline.
     """
-    found = find(gds, name, tech)
+    layout = find(gds, name, tech)
     outline = _outline(gds, name, tech)
     metals = [layer.lef for layer in tech.conductors if layer.lef != "poly"]
     for via in vias:
-        found.shapes[via.lef] = _by_net(gds, name, via, found)
+        layout.shapes[via.lef] = _by_net(gds, name, via, layout)
     metals += [via.lef for via in vias]
-    others = {metal: [found.shapes[metal][net] for net in found.shapes[metal] if net not in pins] for metal in metals}
+    others = {metal: [layout.shapes[metal][net] for net in layout.shapes[metal] if net not in pins] for metal in metals}
     blocked = {metal: sum(regions, db.Region()) for metal, regions in others.items()}
     head = [f"CLASS {kind}", f"FOREIGN {name}", "ORIGIN 0.000 0.000", write.size(outline.width(), outline.height())]
     head += ["SYMMETRY X Y", f"SITE {site}"]
-    obstructions = list(_rectangles(blocked, found.dbu)) if any(others.values()) else None
-    return write.macro(name, head, [_pin(pin, kind, found, metals) for pin, kind in pins.items()], obstructions)
+    obstructions = list(_rectangles(blocked, layout.dbu)) if any(others.values()) else None
+    return write.macro(name, head, [_pin(pin, kind, layout, metals) for pin, kind in pins.items()], obstructions)
 
 
 def _by_net(gds: str | Path, name: str, via: Via, found: CellLayout) -> "dict[str, db.Region]":
@@ -78,22 +78,22 @@ def _outline(gds: str | Path, name: str, tech: ExtractionPlatform) -> "db.DBox":
     raise ParameterError(f"cell = {name!r}: must have an outline on one of the GDS layers {tech.outlines}")
 
 
-def _pin(pin: str, kind: PinKind, found: CellLayout, metals: Sequence[str]) -> write.Pin:
-    shapes = {metal: found.shapes[metal][pin] for metal in metals if pin in found.shapes[metal]}
+def _pin(pin: str, kind: PinKind, layout: CellLayout, metals: Sequence[str]) -> write.Pin:
+    shapes = {metal: layout.shapes[metal][pin] for metal in metals if pin in layout.shapes[metal]}
     if not shapes:
         raise ParameterError(f"pin = {pin!r}: must be a labelled net with metal in the cell")
     statements = []
     if kind.use in ("SIGNAL", "CLOCK"):
-        gates = sum(d.width * d.length for d in found.devices if d.gate == pin)
-        diffusion = found.shapes[DIFFUSION].get(pin)
+        gates = sum(d.width * d.length for d in layout.devices if d.gate == pin)
+        diffusion = layout.shapes[DIFFUSION].get(pin)
         if gates:
             statements.append(f"ANTENNAGATEAREA {gates:.4f}")
         if diffusion:
-            statements.append(f"ANTENNADIFFAREA {diffusion.area() * found.dbu**2:.4f}")
+            statements.append(f"ANTENNADIFFAREA {diffusion.area() * layout.dbu**2:.4f}")
     statements += [f"DIRECTION {kind.direction}", f"USE {kind.use}"]
     if kind.use in ("POWER", "GROUND"):
         statements.append("SHAPE ABUTMENT")
-    return write.Pin(pin, statements, list(_rectangles(shapes, found.dbu)))
+    return write.Pin(pin, statements, list(_rectangles(shapes, layout.dbu)))
 
 
 def _rectangles(regions: "Mapping[str, db.Region]", dbu: float) -> Iterator[Rectangles]:

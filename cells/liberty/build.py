@@ -112,10 +112,10 @@ def _leakage(group: Group, machine: Machine, states: Sequence[tuple[list[int], l
     by_inputs = {}
     for inputs, outputs, watts in states:
         by_inputs.setdefault(tuple(inputs), []).append((outputs, watts))
-    for inputs, found in sorted(by_inputs.items()):
-        for outputs, watts in found:
+    for inputs, values in sorted(by_inputs.items()):
+        for outputs, watts in values:
             names, levels = machine.inputs, inputs
-            if len(found) > 1:
+            if len(values) > 1:
                 names, levels = (*names, *machine.outputs[:1]), (*levels, *outputs[:1])
             group.add("leakage_power", value=NW * watts, when=_when(names, levels))
     group.attributes["cell_leakage_power"] = NW * float(np.mean([watts for _, _, watts in states]))
@@ -179,12 +179,12 @@ def _rails(pin: Group, cell: Cell) -> None:
                 pin.attributes[name] = rail
 
 
-def _constraint(pin: Group, found: Constraint) -> None:
-    timing = pin.add("timing", related_pin=found["related"], timing_type=found["type"])
+def _constraint(pin: Group, constraint: Constraint) -> None:
+    timing = pin.add("timing", related_pin=constraint["related"], timing_type=constraint["type"])
     for edge in ("rise", "fall"):
-        if (values := found.get(edge)) is not None:
+        if (values := constraint.get(edge)) is not None:
             template = "constraint" if np.ndim(values) == 2 else "width"
-            axes = {f"index_{k + 1}": NS * np.array(found["slews"]) for k in range(np.ndim(values))}
+            axes = {f"index_{k + 1}": NS * np.array(constraint["slews"]) for k in range(np.ndim(values))}
             timing.add(f"{edge}_constraint", template, **axes, values=NS * np.array(values))
 
 

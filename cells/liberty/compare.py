@@ -53,38 +53,38 @@ class Difference:
 
 def library(tree: Group, known: Mapping[str, Group]) -> list[Difference]:
     """Differences of every cell of the library ``tree`` that is in ``known``, by short name."""
-    found = []
+    differences_of_cells = []
     for cell in tree.all("cell"):
         name = cell.name.split("__")[-1]
         if name in known:
-            found += differences(name, cell, known[name])
-    return found
+            differences_of_cells += differences(name, cell, known[name])
+    return differences_of_cells
 
 
 def differences(name: str, ours: Group, theirs: Group) -> list[Difference]:
     """Differences of one cell."""
 
-    def number(kind: str, what: str, own: float, other: float) -> Difference:
-        return Difference(name, kind, what, np.array([own]), np.array([other]))
+    def number(kind: str, what: str, ours: float, theirs: float) -> Difference:
+        return Difference(name, kind, what, np.array([ours]), np.array([theirs]))
 
-    found = [number("leakage", "mean", *(cell.number("cell_leakage_power") for cell in (ours, theirs)))]
+    rows = [number("leakage", "mean", *(cell.number("cell_leakage_power") for cell in (ours, theirs)))]
     for state in (state for state in theirs.all("leakage_power") if "when" in state.attributes):
-        found.append(number("leakage by state", state.text("when"), _leakage(ours, state), state.number("value")))
+        rows.append(number("leakage by state", state.text("when"), _leakage(ours, state), state.number("value")))
     for pin in theirs.all("pin"):
-        own, used = ours.one("pin", pin.name) or Group("pin", (pin.name,)), set()
+        our_pin, used = ours.one("pin", pin.name) or Group("pin", (pin.name,)), set()
         for key in ("rise_capacitance", "fall_capacitance"):
             if key in pin.attributes:
-                found.append(number("capacitance", f"{pin.name} {key}", own.number(key), pin.number(key)))
+                rows.append(number("capacitance", f"{pin.name} {key}", our_pin.number(key), pin.number(key)))
         for kind in ("timing", "internal_power"):
             for group in pin.all(kind):
-                found += _tables(name, pin, own, group, used)
-            for group in own.all(kind):
+                rows += _tables(name, pin, our_pin, group, used)
+            for group in our_pin.all(kind):
                 for table in group.groups:
                     if id(table) not in used:
                         values, table_kind = table.array("values"), _kind(group, table) or table.kind
                         alone = np.full(values.shape, np.nan)
-                        found.append(Difference(name, table_kind, _what(pin, group, table), values, alone))
-    return found
+                        rows.append(Difference(name, table_kind, _what(pin, group, table), values, alone))
+    return rows
 
 
 def _kind(group: Group, table: Group) -> str | None:
@@ -101,11 +101,11 @@ def _what(pin: Group, group: Group, table: Group) -> str:
 
 def _leakage(ours: Group, state: Group) -> float:
     """The mean (nW) over our states in which the condition of ``state`` holds, for the pins that both name."""
-    wanted, values = _literals(state.text("when")), []
-    for own in ours.all("leakage_power"):
-        literals = _literals(own.text("when"))
-        if all(literals.get(pin, level) == level for pin, level in wanted.items()):
-            values.append(own.number("value"))
+    required, values = _literals(state.text("when")), []
+    for our_power in ours.all("leakage_power"):
+        literals = _literals(our_power.text("when"))
+        if all(literals.get(pin, level) == level for pin, level in required.items()):
+            values.append(our_power.number("value"))
     return float(np.mean(values)) if values else np.nan
 
 
@@ -114,25 +114,25 @@ def _literals(product: str) -> dict[str, bool]:
     return {pin: not inverted for inverted, pin in re.findall(r"(!?)\s*(\w+)", product)}
 
 
-def _tables(name: str, pin: Group, own: Group, group: Group, used: set[int]) -> Iterator[Difference]:
+def _tables(name: str, pin: Group, our_pin: Group, group: Group, used: set[int]) -> Iterator[Difference]:
     for table in group.groups:
         kind = _kind(group, table)
         if kind is None:
             continue
-        values, mine = table.array("values"), _same(own, group, table.kind, kind)
+        values, mine = table.array("values"), _same(our_pin, group, table.kind, kind)
         used.add(id(mine))
         ours = np.full(values.shape, np.nan) if mine is None else _at(mine, table)
         yield Difference(name, kind, _what(pin, group, table), ours, values)
 
 
-def _same(own: Group, group: Group, table: str, kind: str) -> Group | None:
+def _same(our_pin: Group, group: Group, table: str, kind: str) -> Group | None:
     """Our table that corresponds to ``table`` (its kind) of ``group``, or None."""
     for keys in KEYS[:2] if kind in CONSTRAINTS.values() else KEYS:
-        wanted = {k: group.attributes[k] for k in keys if k in group.attributes}
-        for mine in own.all(group.kind, **wanted):
-            found = mine.one(table)
-            if found and _kind(mine, found) == kind:
-                return found
+        attributes = {k: group.attributes[k] for k in keys if k in group.attributes}
+        for mine in our_pin.all(group.kind, **attributes):
+            our_table = mine.one(table)
+            if our_table and _kind(mine, our_table) == kind:
+                return our_table
     return None
 
 
@@ -148,27 +148,27 @@ def _at(mine: Group, theirs: Group) -> Floats:
     return np.array([[bilinear(*axes, row, column) for column in columns] for row in rows])
 
 
-def summary(found: Sequence[Difference], fitted: Container[str] = ()) -> dict[str, Any]:
+def summary(differences: Sequence[Difference], fitted: Container[str] = ()) -> dict[str, Any]:
     """The errors of cells that are not among ``fitted`` ('error') and of those ('error_of_fit'): summary.json has them.
 
     By kind: see `errors`. 'only_theirs', 'only_ours': names of tables that one alone has.
     """
     return {
-        "error": errors([d for d in found if d.cell not in fitted]),
-        "error_of_fit": errors([d for d in found if d.cell in fitted]),
-        "only_theirs": [f"{d.cell}: {d.what}" for d in found if np.isnan(d.ours).all()],
-        "only_ours": [f"{d.cell}: {d.what}" for d in found if np.isnan(d.theirs).all()],
+        "error": errors([d for d in differences if d.cell not in fitted]),
+        "error_of_fit": errors([d for d in differences if d.cell in fitted]),
+        "only_theirs": [f"{d.cell}: {d.what}" for d in differences if np.isnan(d.ours).all()],
+        "only_ours": [f"{d.cell}: {d.what}" for d in differences if np.isnan(d.theirs).all()],
     }
 
 
-def errors(found: Sequence[Difference]) -> dict[str, dict[str, Any]]:
+def errors(differences: Sequence[Difference]) -> dict[str, dict[str, Any]]:
     """Absolute errors over all entries, by kind.
 
     Of each its unit ('%', of constraints 'ps'), number of entries, of missing ones, median, 95th percentile (p95) and
     worst; of constraints 'optimistic', the most by which ours is shorter.
     """
     out: dict[str, dict[str, Any]] = {}
-    both = [d for d in found if not np.isnan(d.theirs).all()]
+    both = [d for d in differences if not np.isnan(d.theirs).all()]
     for kind in dict.fromkeys(d.kind for d in both):
         same = [d for d in both if d.kind == kind]
         if kind in CONSTRAINTS.values():

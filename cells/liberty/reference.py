@@ -13,14 +13,14 @@ def files(path: str | Path, corner: str) -> dict[str, Path]:
 
     SkyWater's (<library>__<cell>__<corner>[_ccsnoise].lib.json) name their corner, others (<cell>.lib.json) fit any.
     """
-    found: dict[str, Path] = {}
+    paths: dict[str, Path] = {}
     for file in sorted(Path(path).rglob("*.lib.json")):
         parts = file.name.removesuffix(".lib.json").split("__")
         if len(parts) < 3 or parts[2].removesuffix("_ccsnoise") == corner:
-            found[_short(file.name)] = file
-    if not found:
+            paths[_short(file.name)] = file
+    if not paths:
         raise ParameterError(f"reference = {str(path)!r}: must be a folder with <cell>.lib.json of {corner}")
-    return found
+    return paths
 
 
 def folder(path: str | Path, corner: str) -> dict[str, Group]:

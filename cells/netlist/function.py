@@ -143,9 +143,9 @@ def _fail(machine: Machine, why: str) -> NoReturn:
 
 
 def _storage(machine: Machine) -> Storage:
-    found = _gating(machine)
-    if found:
-        return found
+    storage = _gating(machine)
+    if storage:
+        return storage
     forcings, states = [], machine.states
     while hit := _constant(machine, states, {forcing.pin for forcing in forcings}):
         forcings.append(hit)

@@ -71,12 +71,12 @@ def read(path: str | Path, cell: str | None = None) -> Netlist:
 
 def parse(text: str, cell: str | None = None, origin: str = "netlist") -> Netlist:
     """As `read`, of a text; ``origin`` names it in errors. Raises ParameterError with the line that is wrong."""
-    found = _subcircuits(text, origin)
+    subcircuits = _subcircuits(text, origin)
     if cell is None:
-        return next(iter(found.values()))
-    if cell not in found:
-        raise ParameterError(f"netlist = {origin}: has no subcircuit {cell}; it has {', '.join(found)}")
-    return found[cell]
+        return next(iter(subcircuits.values()))
+    if cell not in subcircuits:
+        raise ParameterError(f"netlist = {origin}: has no subcircuit {cell}; it has {', '.join(subcircuits)}")
+    return subcircuits[cell]
 
 
 def read_all(path: str | Path) -> dict[str, Netlist]:
@@ -98,26 +98,26 @@ def source(path: str | Path) -> str:
 
 
 def _subcircuits(text: str, origin: str) -> dict[str, Netlist]:
-    found: dict[str, Netlist] = {}
+    netlists: dict[str, Netlist] = {}
     current, spelled = None, {}
     for line in _joined(text):
         words = re.sub(r"\s*=\s*", "=", line).split()
         card = words[0].lower()
         if card == ".subckt":
-            if current is not None or len(words) < 2 or words[1] in found:
+            if current is not None or len(words) < 2 or words[1] in netlists:
                 raise ParameterError(f"netlist = {origin}: {line!r} must have a name of its own and lie in no other")
             spelled = {}
             ports = tuple(_node(w, spelled) for w in words[2:] if "=" not in w and w.lower() != "params:")
-            current = found[words[1]] = Netlist(words[1], ports)
+            current = netlists[words[1]] = Netlist(words[1], ports)
         elif card == ".ends":
             current = None
         elif current is not None:
             _element(current, words, line, origin, spelled)
-    if not found:
+    if not netlists:
         raise ParameterError(f"netlist = {origin}: has no .subckt")
     if current is not None:
         raise ParameterError(f"netlist = {origin}: .subckt {current.name} has no .ends")
-    return found
+    return netlists
 
 
 def _node(name: str, spelled: dict[str, str]) -> str:

@@ -62,14 +62,14 @@ class Machine:
         n = len(self.inputs)
         vectors = list(product((0, 1), repeat=n))
         queue = [(self._settled(self.switches.unknown(), vector), vector, (vector,)) for vector in vectors]
-        found: dict[tuple, State] = {}
+        states: dict[tuple, State] = {}
         blind, raw_changes = set(), []
         while queue:
             later = []
             for nodes, vector, path in queue:
                 key = (vector, tuple(nodes[node] for node in self.switches.inner))
                 known = self._outputs(nodes)
-                if key in found or key in blind:
+                if key in states or key in blind:
                     continue
                 if known is None:
                     blind.add(key)
@@ -77,17 +77,17 @@ class Machine:
                     kept = tuple(nodes[self.switches.root[pin]] for pin in self.outputs)
                     inner = ((n, nodes[n]) for n in self.switches.inner if n not in self.netlist.ports)
                     inside = tuple((node, level) for node, level in inner if level is not None)
-                    found[key] = State(vector, known, kept, inside, path)
+                    states[key] = State(vector, known, kept, inside, path)
                 for pin in range(n):
                     after = tuple(v ^ (i == pin) for i, v in enumerate(vector))
                     settled = self._settled(nodes, after)
                     later.append((settled, after, (*path, after)))
                     raw_changes.append((key, pin, (after, tuple(settled[x] for x in self.switches.inner))))
             queue = later
-            if len(found) + len(blind) > LIMIT:
+            if len(states) + len(blind) > LIMIT:
                 raise ParameterError(f"netlist = {self.netlist.name}: has more than {LIMIT} states")
-        self.states = list(found.values())
-        self.changes = [Change(found[a], pin, found[b]) for a, pin, b in raw_changes if a in found and b in found]
+        self.states = list(states.values())
+        self.changes = [Change(states[a], pin, states[b]) for a, pin, b in raw_changes if a in states and b in states]
         known = {s.inputs for s in self.states}
         for vector in vectors:
             if vector not in known:
@@ -99,11 +99,11 @@ class Machine:
 
         One for each pair of inputs and outputs before it.
         """
-        number, found = self.inputs.index(pin), {}
+        number, states = self.inputs.index(pin), {}
         for change in sorted(self.changes, key=lambda c: len(c.before.path)):
             if change.pin == number and change.after.inputs[number] == level and keep(change):
-                found.setdefault((change.before.inputs, change.before.outputs), change)
-        return list(found.values())
+                states.setdefault((change.before.inputs, change.before.outputs), change)
+        return list(states.values())
 
     def _settled(self, nodes: Levels, vector: Vector) -> Levels:
         return self.switches.settle(nodes, dict(zip(self.inputs, vector, strict=True)))

@@ -44,9 +44,9 @@ def run(options: Namespace) -> int:
     if options.reference:
         page |= against(conditions, options)
     measured = curve.measure("sky130_hd", conditions, options.out / "jobs", options.workers)
-    found = curve.table(measured)
-    picture = pictures.error_against_time(found, curve.DEFAULT)
-    page |= {"curve": found, "curve_picture": picture, "off_grid": curve.by_cell(measured)}
+    settings = curve.table(measured)
+    picture = pictures.error_against_time(settings, curve.DEFAULT)
+    page |= {"curve": settings, "curve_picture": picture, "off_grid": curve.by_cell(measured)}
     with staged(options.out) as part:
         (part / "index.html").write_text(html(page), encoding="utf-8")
         figures = {name: page.get(name) for name in ("tables", "curve", "off_grid", "variants", "alone")}
@@ -79,8 +79,8 @@ def _text(value: object) -> str:
 def against(conditions: Conditions, options: Namespace) -> dict[str, Any]:
     """The page's values about the reference, of the cells that are not in the fit first."""
     process, folder, out = sources.process("sky130_hd"), options.reference, options.out
-    wanted = options.cells.split(",") if options.cells else sources.names("sky130_hd")
-    files = {name: file for name, file in reference.files(folder, conditions.corner.name).items() if name in wanted}
+    cell_names = options.cells.split(",") if options.cells else sources.names("sky130_hd")
+    files = {name: file for name, file in reference.files(folder, conditions.corner.name).items() if name in cell_names}
     if not files:
         raise ParameterError(f"reference = {folder}: has no cell of {options.cells or 'sky130_hd'}")
     names = sorted(files)
@@ -104,6 +104,6 @@ def against(conditions: Conditions, options: Namespace) -> dict[str, Any]:
     alone = {name: summary[name] for name in ("only_theirs", "only_ours")}
     page = {"tables": tables, "kinds": kinds, "cells": cells, "alone": alone}
     if options.netlists:
-        found = separate.separate("sky130_hd", files, conditions, out / "jobs", options.workers)
-        page["variants"] = separate.table(found, process.FITTED)
+        errors = separate.separate("sky130_hd", files, conditions, out / "jobs", options.workers)
+        page["variants"] = separate.table(errors, process.FITTED)
     return page

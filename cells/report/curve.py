@@ -39,17 +39,17 @@ class Tried(TypedDict):
 
 def settings(base: Conditions) -> dict[str, Conditions]:
     """The settings that are compared, the default among them."""
-    found = {}
+    by_name = {}
     for reltol, steps in product((1e-2, 1e-3, 1e-4, 1e-5, 1e-6), (20, 50, 200)):
         tolerance = replace(base.settings, reltol=reltol, steps=steps)
-        found[f"reltol {reltol:g}, {steps} steps"] = replace(base, settings=tolerance)
-    found["trapezoidal, reltol 0.0001, 50 steps"] = replace(base, settings=replace(base.settings, method="trap"))
+        by_name[f"reltol {reltol:g}, {steps} steps"] = replace(base, settings=tolerance)
+    by_name["trapezoidal, reltol 0.0001, 50 steps"] = replace(base, settings=replace(base.settings, method="trap"))
     for count in (4, 5, 7, 9, 13):
         slews = tuple(float(s) for s in np.geomspace(base.slews[0], base.slews[-1], count))
-        found[f"grid {count} x {count}, not refined"] = replace(base, slews=slews, loads=count, extra=0)
+        by_name[f"grid {count} x {count}, not refined"] = replace(base, slews=slews, loads=count, extra=0)
     for extra in (1, 2, 4, 12):
-        found[f"grid 7 x 7, up to {extra} more"] = replace(base, extra=extra)
-    return found
+        by_name[f"grid 7 x 7, up to {extra} more"] = replace(base, extra=extra)
+    return by_name
 
 
 def measure(library: str, conditions: Conditions, store: Path, workers: int) -> list[Tried]:
@@ -58,15 +58,15 @@ def measure(library: str, conditions: Conditions, store: Path, workers: int) -> 
     One worker measures them, for the sake of the seconds; the dense transients run in ``workers`` processes.
     """
     process, truths, todo = sources.process(library), [], []
-    found = {name: sources.source(library, name) for name in (*CELLS, *SLOW)}
-    for name in found:
-        inputs = OFF_GRID, *job(found[name], replace(conditions, settings=DENSE), process).inputs
+    cell_sources = {name: sources.source(library, name) for name in (*CELLS, *SLOW)}
+    for name in cell_sources:
+        inputs = OFF_GRID, *job(cell_sources[name], replace(conditions, settings=DENSE), process).inputs
         truths.append(jobs.Job(f"{name}.truth", truth, (library, name, conditions), inputs))
-    truths = dict(zip(found, jobs.run(truths, store, "dense transients", workers), strict=True))
-    for name in found:
+    truths = dict(zip(cell_sources, jobs.run(truths, store, "dense transients", workers), strict=True))
+    for name in cell_sources:
         for label, at in (settings(conditions) if name in CELLS else {DEFAULT: conditions}).items():
             arguments = library, name, label, at, truths[name]
-            inputs = *job(found[name], at, process).inputs, json.dumps(truths[name])
+            inputs = *job(cell_sources[name], at, process).inputs, json.dumps(truths[name])
             todo.append(jobs.Job(f"{name}.{label.replace(' ', '_')}", one, arguments, inputs))
     return jobs.run(todo, store, "error against run time", workers=1)
 
@@ -88,7 +88,7 @@ def one(library: str, name: str, label: str, conditions: Conditions, truth: Sequ
 
 def truth(library: str, name: str, base: Conditions) -> list[list[Truth]]:
     """Run dense transients at random points of every arc of a cell."""
-    rng, found, process = np.random.default_rng(1), [], sources.process(library)
+    rng, values, process = np.random.default_rng(1), [], sources.process(library)
     cell = cell_of(sources.source(library, name), process)
     with Bench(cell, process, replace(base, settings=DENSE)) as bench:
         changes = {output: [a.changes[0] for a in cell.arcs if a.output == output] for output in cell.machine.outputs}
@@ -98,21 +98,21 @@ def truth(library: str, name: str, base: Conditions) -> list[list[Truth]]:
             slews = np.exp(rng.uniform(np.log(base.slews[0]), np.log(base.slews[-1]), OFF_GRID))
             loads = np.exp(rng.uniform(np.log(base.least_load), np.log(largest[arc.output]), OFF_GRID))
             points = zip(slews.tolist(), loads.tolist(), strict=True)
-            found.append([(s, load, vars(bench.edge(arc.changes[0], arc.output, s, load))) for s, load in points])
-    return found
+            values.append([(s, load, vars(bench.edge(arc.changes[0], arc.output, s, load))) for s, load in points])
+    return values
 
 
-def table(found: Sequence[Tried]) -> list[Setting]:
+def table(tries: Sequence[Tried]) -> list[Setting]:
     """Summarize every setting over CELLS."""
-    names = dict.fromkeys(f["name"] for f in found)
-    groups = {name: [f for f in found if f["name"] == name and f["cell"] in CELLS] for name in names}
+    names = dict.fromkeys(f["name"] for f in tries)
+    groups = {name: [f for f in tries if f["name"] == name and f["cell"] in CELLS] for name in names}
     seconds = {name: sum(f["seconds"] for f in same) for name, same in groups.items()}
     return [(name, seconds[name], *spread([e for f in same for e in f["error"]])) for name, same in groups.items()]
 
 
-def by_cell(found: Sequence[Tried]) -> list[CellError]:
+def by_cell(tries: Sequence[Tried]) -> list[CellError]:
     """Summarize every cell with the default setting."""
-    return [(f["cell"], len(f["error"]), *spread(f["error"])) for f in found if f["name"] == DEFAULT]
+    return [(f["cell"], len(f["error"]), *spread(f["error"])) for f in tries if f["name"] == DEFAULT]
 
 
 def spread(errors: Sequence[float]) -> tuple[float, float]:

@@ -53,12 +53,12 @@ def errors(library: str, name: str, conditions: Conditions, netlist: str, file: 
     """Errors of one cell in one variant, against the reference's ``file``."""
     process = sources.process(library)
     cell, theirs = cell_of(sources.source(library, name, netlist), process), reference.cell(file)
-    found: Errors = {"cell": name, "models": conditions.models, "netlist": netlist, "delay": [], "slew": []}
+    record: Errors = {"cell": name, "models": conditions.models, "netlist": netlist, "delay": [], "slew": []}
     with Bench(cell, process, conditions) as bench:
         for arc in cell.arcs:
             pin = theirs.one("pin", arc.output)
-            wanted = {"related_pin": arc.pin, "timing_type": arc.type, "timing_sense": arc.sense}
-            for timing in pin.all("timing", **wanted) if pin else ():
+            attributes = {"related_pin": arc.pin, "timing_type": arc.type, "timing_sense": arc.sense}
+            for timing in pin.all("timing", **attributes) if pin else ():
                 middle = timing.one(f"cell_{arc.edge}")
                 if middle is None:
                     continue
@@ -71,13 +71,13 @@ def errors(library: str, name: str, conditions: Conditions, netlist: str, file: 
                     slews, loads = (table.array(f"index_{k}")[POINTS] for k in (1, 2))
                     edges = [[bench.edge(change, arc.output, s * 1e-9, f * 1e-12) for f in loads] for s in slews]
                     ours = [[getattr(edge, field) * 1e9 for edge in row] for row in edges]
-                    found[field] += np.ravel((np.array(ours) / values - 1) * 100).tolist()
-    return found
+                    record[field] += np.ravel((np.array(ours) / values - 1) * 100).tolist()
+    return record
 
 
-def table(found: Sequence[Errors], fitted: Container[str] = ()) -> list[Variant]:
+def table(records: Sequence[Errors], fitted: Container[str] = ()) -> list[Variant]:
     """Summarize every variant over all cells but those ``fitted``, delay and slew together."""
     errors: dict[tuple[str, str], list[float]] = {}
-    for f in (f for f in found if f["cell"] not in fitted):
+    for f in (f for f in records if f["cell"] not in fitted):
         errors.setdefault((f["models"], f["netlist"]), []).extend((*f["delay"], *f["slew"]))
     return [(*variant, len(values), *spread(values)) for variant, values in errors.items()]

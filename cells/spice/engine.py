@@ -110,10 +110,10 @@ class Simulator:
 
         settings: in place of the simulator's own, without retries after a failure. Raises SimulationError.
         """
-        wanted, run = settings or self.settings, Transient(stimulus, loads, stop, step, tuple(nodes))
-        attempts = (wanted,) if settings else (wanted, *wanted.retries)
+        requested, run = settings or self.settings, Transient(stimulus, loads, stop, step, tuple(nodes))
+        attempts = (requested,) if settings else (requested, *requested.retries)
         self.runs += 1
-        self.last = "\n".join([*self._deck(wanted, run, run.loads), f".{run.command}", ".end", ""])
+        self.last = "\n".join([*self._deck(requested, run, run.loads), f".{run.command}", ".end", ""])
         why = ""
         for k, attempt in enumerate(attempts):
             self.repeated += k == 1
@@ -151,8 +151,8 @@ class Simulator:
 
     def _started(self, settings: Settings, run: Transient) -> Popen[bytes]:
         """The process with the models, these settings and nodes loaded."""
-        wanted = replace(settings, timeout=1.0), run.nodes
-        if self._child is not None and self._current == wanted:
+        requested = replace(settings, timeout=1.0), run.nodes
+        if self._child is not None and self._current == requested:
             return self._child
         self._stop()
         file = self._folder / "deck.sp"
@@ -167,7 +167,7 @@ class Simulator:
         except FileNotFoundError as error:
             missing = "ngspice: not found; install it with: make tools (Debian: apt-get install ngspice)"
             raise ToolError(missing) from error
-        self._current = wanted
+        self._current = requested
         saved = [f"v({n.lower()})" for n in (*self.inputs, *self.outputs)]
         saved += [f"i(vin{i})" for i in range(len(self.inputs))] + [f"i(vrail{i})" for i in range(len(self.rails))]
         command = "set filetype=binary\nsave " + " ".join(saved)
@@ -237,5 +237,5 @@ def _pairs(points: Points) -> str:
 
 
 def _first_error(output: str) -> str:
-    found = _WRONG.search(output)
-    return found[0].strip() if found else "the transient did not reach its end"
+    match = _WRONG.search(output)
+    return match[0].strip() if match else "the transient did not reach its end"

@@ -118,9 +118,9 @@ def choose_views(
     mean = (np.cumsum((grid**2)[order]) + np.sum(error**2) - np.cumsum((error**2)[order])) / grid.size
     few = np.flatnonzero((mean <= goal) & (rising != np.append(rising[1:], np.inf)))
     quiet = spans <= (rising[few[-1]] if few.size else -1.0)
-    found = _rms(np.where(quiet[probe.pixels], grid, error))
+    rms = _rms(np.where(quiet[probe.pixels], grid, error))
     regions = tuple(r for r in (Region(scene.views, quiet), Region(most, ~quiet)) if r.pixels.any())
-    return Views(regions, most, found, _saved(scene, quiet, most), tuple(probe.tried))
+    return Views(regions, most, rms, _saved(scene, quiet, most), tuple(probe.tried))
 
 
 def captured(
@@ -201,7 +201,7 @@ def _rms(error: Values) -> float:
 
 def _saved(scene: Scene, quiet: npt.NDArray[np.bool_], most: int) -> tuple[LeftOut, ...]:
     """What the pixels that keep the scene's grid leave out."""
-    full, own = int(cells(most).sum()), int(cells(scene.views).sum())
+    full, default_views = int(cells(most).sum()), int(cells(scene.views).sum())
     if most == scene.views:
         full, why = int(cells(REFERENCE).sum()), "the light varies little over the pupil everywhere: in focus, or plain"
     else:
@@ -209,4 +209,6 @@ def _saved(scene: Scene, quiet: npt.NDArray[np.bool_], most: int) -> tuple[LeftO
     if not quiet.any():
         return ()
     share = 100 * quiet.mean()
-    return (LeftOut("views of quiet tiles", why, f"{full - own} of {full} views of {share:.0f} % of the pixels"),)
+    return (
+        LeftOut("views of quiet tiles", why, f"{full - default_views} of {full} views of {share:.0f} % of the pixels"),
+    )

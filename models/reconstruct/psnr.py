@@ -6,7 +6,7 @@ import numpy.typing as npt
 from talbot.models.parameters import ParameterError
 
 
-def psnr_db(found: npt.ArrayLike, truth: npt.ArrayLike, peak: float = 1.0) -> float | None:
+def psnr_db(estimate: npt.ArrayLike, truth: npt.ArrayLike, peak: float = 1.0) -> float | None:
     """Peak signal-to-noise ratio, 10 log10(peak^2 / mean squared error).
 
     Parameters
@@ -26,15 +26,15 @@ def psnr_db(found: npt.ArrayLike, truth: npt.ArrayLike, peak: float = 1.0) -> fl
     ParameterError
         For different or empty shapes.
     """
-    found, truth = np.asarray(found, float), np.asarray(truth, float)
-    if found.shape != truth.shape or not found.size:
-        raise ParameterError(f"shape = {found.shape}: must be {truth.shape}, and not empty")
-    error = float(np.mean((found - truth) ** 2))
+    estimate, truth = np.asarray(estimate, float), np.asarray(truth, float)
+    if estimate.shape != truth.shape or not estimate.size:
+        raise ParameterError(f"shape = {estimate.shape}: must be {truth.shape}, and not empty")
+    error = float(np.mean((estimate - truth) ** 2))
     return None if error == 0 else 10 * float(np.log10(peak**2 / error))
 
 
 def psnr_without_mean_db(
-    found: npt.NDArray[np.floating], truth: npt.NDArray[np.floating], peak: float = 1.0
+    estimate: npt.NDArray[np.floating], truth: npt.NDArray[np.floating], peak: float = 1.0
 ) -> float | None:
     """Peak signal-to-noise ratio after the removal of both means, for images reconstructed from differences.
 
@@ -50,4 +50,4 @@ def psnr_without_mean_db(
     float or None
         As in `psnr_db`.
     """
-    return psnr_db(found - np.mean(found), truth - np.mean(truth), peak)
+    return psnr_db(estimate - np.mean(estimate), truth - np.mean(truth), peak)

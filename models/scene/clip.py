@@ -62,8 +62,8 @@ class Clip:
         for number, frame in enumerate(self.read()):
             first = first or frame.luminance.shape
             if frame.luminance.shape != first:
-                shape, wanted = (f"{height} x {width}" for height, width in (frame.luminance.shape, first))
-                raise ParameterError(f"scene {self.name}, frame {number} = {shape}: must be as frame 0, {wanted}")
+                shape, expected = (f"{height} x {width}" for height, width in (frame.luminance.shape, first))
+                raise ParameterError(f"scene {self.name}, frame {number} = {shape}: must be as frame 0, {expected}")
             yield frame
 
 

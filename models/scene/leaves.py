@@ -55,7 +55,7 @@ def leaves(sampling: Sampling, seed: float = 0.0) -> Scene:
     image, disparity = _view(0.0, 0.0)
     depth = camera.depth(disparity, sampling)
     return Scene(
-        "leaves", sampling.views, field, image.astype(sampling.dtype), disparity, depth, render=lambda wanted: _view
+        "leaves", sampling.views, field, image.astype(sampling.dtype), disparity, depth, render=lambda mask: _view
     )
 
 

@@ -101,13 +101,13 @@ class LightField:
             raise ParameterError(f"light field = {values.dtype} array: must be of {', '.join(CODES + FLOATS)}{codes}")
         if values.dtype.name in FLOATS:
             check_values("light field", values, -RADIANCE_MAX, RADIANCE_MAX)
-        one, every = shape[2:4], shape[:4]
+        single, every = shape[2:4], shape[:4]
         for name, low, high, shapes in (
-            ("disparity", -1e4, 1e4, (one, every)),
-            ("depth", 1e-3, FOCUS_MAX, (one,)),
-            ("specular", 0, 1, (one,)),
-            ("behind", 1e-3, FOCUS_MAX, (one,)),
-            ("stokes", -RADIANCE_MAX, RADIANCE_MAX, ((2, *every), (2, *one))),
+            ("disparity", -1e4, 1e4, (single, every)),
+            ("depth", 1e-3, FOCUS_MAX, (single,)),
+            ("specular", 0, 1, (single,)),
+            ("behind", 1e-3, FOCUS_MAX, (single,)),
+            ("stokes", -RADIANCE_MAX, RADIANCE_MAX, ((2, *every), (2, *single))),
         ):
             if getattr(self, name) is not None:
                 array = native(np.asarray(getattr(self, name)))

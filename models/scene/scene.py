@@ -170,12 +170,12 @@ class Scene:
         """Whether the views may differ."""
         return self.field is None or self.field.shape[:2] != (1, 1)
 
-    def view(self, wanted: Bools) -> View:
+    def view(self, mask: Bools) -> View:
         """Any view of the scene at some pixels.
 
         Parameters
         ----------
-        wanted : bool (rows, cols)
+        mask : bool (rows, cols)
             Pixels to compute; the others are undefined.
 
         Returns
@@ -184,7 +184,7 @@ class Scene:
             A view of the light field itself where the scene has no others.
         """
         if callable(self.render):
-            return self.render(wanted)
+            return self.render(mask)
         middle = (len(self.light_field) - 1) / 2
         disparity = np.zeros(self.shape) if self.disparity is None else self.disparity
 

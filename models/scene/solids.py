@@ -133,9 +133,7 @@ def _cast(name: str, sampling: Sampling, facets: Sequence[Facet]) -> Scene:
     field = np.array([[_view(dv, du)[0] for du in steps] for dv in steps], sampling.dtype)
     image, disparity = _view(0.0, 0.0)
     depth = camera.depth(disparity, sampling)
-    return Scene(
-        name, sampling.views, field, image.astype(sampling.dtype), disparity, depth, render=lambda wanted: _view
-    )
+    return Scene(name, sampling.views, field, image.astype(sampling.dtype), disparity, depth, render=lambda mask: _view)
 
 
 def _rays(sampling: Sampling, facets: Sequence[Facet], dv: float, du: float) -> tuple[Floats, Floats]:

@@ -167,7 +167,7 @@ def tilted(sampling: Sampling) -> Scene:
     disparity = np.broadcast_to(slope * x - shift, sampling.shape)
     depth = camera.depth(disparity, sampling)
     image = _texture(y, x).astype(sampling.dtype)
-    return Scene("tilted", sampling.views, field, image, disparity, depth, render=lambda wanted: _view)
+    return Scene("tilted", sampling.views, field, image, disparity, depth, render=lambda mask: _view)
 
 
 def places(sampling: Sampling) -> tuple[Floats, Floats]:
@@ -245,4 +245,4 @@ def _on_plane(name: str, sampling: Sampling, radiance: Callable[[Floats, Floats]
 
     field = np.array([[_view(dv, du)[0] for du in steps] for dv in steps], sampling.dtype)
     image = np.broadcast_to(radiance(y, x), sampling.shape).astype(sampling.dtype)
-    return Scene(name, sampling.views, field, image, disparity, depth, render=lambda wanted: _view)
+    return Scene(name, sampling.views, field, image, disparity, depth, render=lambda mask: _view)

@@ -67,7 +67,7 @@ def view(
     du: float,
     second: Second | None = None,
     use: Bools | None = None,
-    wanted: Bools | None = None,
+    mask: Bools | None = None,
 ) -> tuple[Floats, Floats]:
     """Compute one view from the centre picture.
 
@@ -83,7 +83,7 @@ def view(
         The other picture of a pair.
     use : bool (rows, cols), optional
         Pixels of the picture that show one surface alone; None is all.
-    wanted : bool (rows, cols), optional
+    mask : bool (rows, cols), optional
         Pixels of the view to compute; None is all.
 
     Returns
@@ -96,21 +96,21 @@ def view(
     if dv == 0 and du == 0:
         return image.copy(), disparity.copy()
     use = np.ones(disparity.shape, bool) if use is None else use
-    wanted = np.ones(disparity.shape, bool) if wanted is None else wanted
+    mask = np.ones(disparity.shape, bool) if mask is None else mask
     if np.ptp(disparity):
         surface = np.full(disparity.shape, warp.NO_SURFACE)
         warp.splat(surface, disparity, use, 0.0, 0.0, dv, du)
     else:
         surface = disparity.copy()  # a plane hides nothing; its border goes on outside
-    other = np.zeros_like(wanted) if second is None else second.claim(surface, dv, du)
-    y, x, behind_y, behind_x = warp.background(surface, wanted, dv, du).T
+    other = np.zeros_like(mask) if second is None else second.claim(surface, dv, du)
+    y, x, behind_y, behind_x = warp.background(surface, mask, dv, du).T
     if y.size:
-        wanted = wanted.copy()
-        wanted[behind_y, behind_x] = True
+        mask = mask.copy()
+        mask[behind_y, behind_x] = True
     out = np.zeros(image.shape)
-    warp.fetch(out, image, surface, wanted, dv, du, 0.0, RADIANCE_MAX)
+    warp.fetch(out, image, surface, mask, dv, du, 0.0, RADIANCE_MAX)
     if second is not None:
-        warp.fetch(out, second.image, surface, wanted & other, dv, du - second.scale, -second.offset, RADIANCE_MAX)
+        warp.fetch(out, second.image, surface, mask & other, dv, du - second.scale, -second.offset, RADIANCE_MAX)
     out[y, x], surface[y, x] = out[behind_y, behind_x], surface[behind_y, behind_x]
     return out, surface
 
@@ -142,12 +142,12 @@ class Pictured:
         """Pixels whose disparity is of one surface, bool (rows + 2 margin, cols + 2 margin)."""
         return warp.unmixed(self.disparity)
 
-    def __call__(self, wanted: Bools) -> View:
+    def __call__(self, mask: Bools) -> View:
         """Views at some pixels.
 
         Parameters
         ----------
-        wanted : bool (rows, cols)
+        mask : bool (rows, cols)
             Pixels to compute; the others are undefined.
 
         Returns
@@ -156,8 +156,8 @@ class Pictured:
             Of an offset of at most views / 2 steps.
         """
         whole = np.zeros(self.image.shape, bool)
-        whole[self.inner] = wanted
-        if wanted.all():
+        whole[self.inner] = mask
+        if mask.all():
             return lambda dv, du: self._view(dv, du, np.ones_like(whole), self.use)
         # A hole is filled from at most the reach away, and a pixel is warped from as far.
         from scipy.ndimage import maximum_filter  # it imports for long
@@ -165,8 +165,8 @@ class Pictured:
         use = self.use & np.asarray(maximum_filter(whole, 4 * self.reach + 1), bool)
         return lambda dv, du: self._view(dv, du, whole, use)
 
-    def _view(self, dv: float, du: float, wanted: Bools, use: Bools) -> tuple[Floats, Floats]:
-        image, surface = view(self.image, self.disparity, dv, du, self.second, use, wanted)
+    def _view(self, dv: float, du: float, mask: Bools, use: Bools) -> tuple[Floats, Floats]:
+        image, surface = view(self.image, self.disparity, dv, du, self.second, use, mask)
         return image[self.inner], surface[self.inner]
 
 
@@ -189,12 +189,12 @@ class Shifted:
         self.surface = np.broadcast_to(disparity, image.shape)
         self._across = lru_cache(max(1, KEPT // image.nbytes))(partial(_across, image, disparity))
 
-    def __call__(self, wanted: Bools) -> View:
+    def __call__(self, mask: Bools) -> View:
         """Views at some pixels.
 
         Parameters
         ----------
-        wanted : bool (rows, cols)
+        mask : bool (rows, cols)
             Pixels to compute; the others are undefined.
 
         Returns
@@ -202,7 +202,7 @@ class Shifted:
         View
             Of any offset.
         """
-        rows = np.flatnonzero(wanted.any(1))
+        rows = np.flatnonzero(mask.any(1))
         return lambda dv, du: (self._view(dv, du, rows), self.surface)
 
     def _view(self, dv: float, du: float, rows: npt.NDArray[np.int64]) -> Floats:

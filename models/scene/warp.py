@@ -224,7 +224,7 @@ def shift_rows(out: Floats, image: Floats, places: Floats, rows: Places, high: f
 
 @njit(cache=True, nogil=True)
 def fetch(
-    out: Floats, image: Floats, surface: Floats, wanted: Bools, dv: float, du: float, right: float, high: float
+    out: Floats, image: Floats, surface: Floats, mask: Bools, dv: float, du: float, right: float, high: float
 ) -> None:
     """Sample a picture for a view with a known disparity map.
 
@@ -236,7 +236,7 @@ def fetch(
         The picture.
     surface : float64 (rows, cols)
         Disparity map of the view; NO_SURFACE is no surface.
-    wanted : bool (rows, cols)
+    mask : bool (rows, cols)
         Pixels to sample.
     dv, du : float
         From the view to the picture in view steps.
@@ -248,17 +248,17 @@ def fetch(
     for y in range(out.shape[0]):
         for x in range(out.shape[1]):
             d = surface[y, x]
-            if wanted[y, x] and d > NO_SURFACE:
+            if mask[y, x] and d > NO_SURFACE:
                 out[y, x] = min(max(cubic(image, y + dv * d, x + du * d + right), 0.0), high)
 
 
 @njit(cache=True, nogil=True)
-def claim(surface: Floats, own: Floats, last: int, right: float, offset: float) -> Bools:
+def claim(surface: Floats, disparity: Floats, last: int, right: float, offset: float) -> Bools:
     """Fill the holes of a view's disparity map in place with the surfaces of another picture.
 
     Parameters
     ----------
-    surface, own : float64 (rows, cols)
+    surface, disparity : float64 (rows, cols)
         Disparity map of the view, and the other picture's; NO_SURFACE is a hole.
     last : int
         Last column of the other picture.
@@ -273,14 +273,14 @@ def claim(surface: Floats, own: Floats, last: int, right: float, offset: float) 
     out = np.zeros(surface.shape, np.bool_)
     for y in range(surface.shape[0]):
         for x in range(surface.shape[1]):
-            d = own[y, x]
+            d = disparity[y, x]
             if d > NO_SURFACE and surface[y, x] == NO_SURFACE and 0 <= x + right * d + offset <= last:
                 surface[y, x], out[y, x] = d, True
     return out
 
 
 @njit(cache=True, nogil=True)
-def background(surface: Floats, wanted: Bools, dv: float, du: float) -> Places:
+def background(surface: Floats, mask: Bools, dv: float, du: float) -> Places:
     """For every wanted pixel without a surface the nearest pixel on the background side.
 
     The search runs both ways along the direction of the view's step; the farther of the two surfaces is taken.
@@ -289,7 +289,7 @@ def background(surface: Floats, wanted: Bools, dv: float, du: float) -> Places:
     ----------
     surface : float64 (rows, cols)
         Disparity map of the view; NO_SURFACE is no surface.
-    wanted : bool (rows, cols)
+    mask : bool (rows, cols)
         Pixels of interest.
     dv, du : float
         Offset of the view in view steps; not both 0.
@@ -302,10 +302,10 @@ def background(surface: Floats, wanted: Bools, dv: float, du: float) -> Places:
     rows, cols = surface.shape
     length = max(abs(dv), abs(du))
     sy, sx = dv / length, du / length
-    found = [(0, 0, 0, 0) for _ in range(0)]
+    places = [(0, 0, 0, 0) for _ in range(0)]
     for y in range(rows):
         for x in range(cols):
-            if not wanted[y, x] or surface[y, x] > NO_SURFACE:
+            if not mask[y, x] or surface[y, x] > NO_SURFACE:
                 continue
             best, by, bx = np.inf, y, x
             for sign in (-1, 1):
@@ -320,8 +320,8 @@ def background(surface: Floats, wanted: Bools, dv: float, du: float) -> Places:
                         break
                     i += 1
             if best < np.inf:
-                found.append((y, x, by, bx))
-    out = np.empty((len(found), 4), np.int64)
-    for i, place in enumerate(found):
+                places.append((y, x, by, bx))
+    out = np.empty((len(places), 4), np.int64)
+    for i, place in enumerate(places):
         out[i, 0], out[i, 1], out[i, 2], out[i, 3] = place
     return out

@@ -186,10 +186,10 @@ class Blocks:
     @cached_property
     def beside(self) -> Floats:
         """Every pixel from the middle of its block's window, float32 (2, rows, cols): down and across, px."""
-        own = np.indices((self.y.block, self.x.block), np.float32).reshape(2, -1)
+        offsets = np.indices((self.y.block, self.x.block), np.float32).reshape(2, -1)
         parts = [[], []]
         for group in self.groups:
-            for part, axis, side, pixels in zip(parts, (self.y, self.x), group, own, strict=True):
+            for part, axis, side, pixels in zip(parts, (self.y, self.x), group, offsets, strict=True):
                 part.append(pixels + np.float32(side.offset - (axis.window - 1) / 2))
         return np.stack([self.map(part) for part in parts])
 

@@ -83,8 +83,8 @@ class Covariances:
         shift = np.arange(1 - pupil, pupil) * step
         samples = self._planes(dy[:, None] + shift, dx[:, None] + shift) @ self._correlations
         seen = (np.arange(pupil) - (pupil - 1) / 2) * step
-        given = (np.arange(self.views) - (self.views - 1) / 2) * disparity
-        ahead = (seen - given[:, None]).ravel()
+        shifts = (np.arange(self.views) - (self.views - 1) / 2) * disparity
+        ahead = (seen - shifts[:, None]).ravel()
         field = self._planes(dy[:, None] + ahead, dx[:, None] + ahead)
         field = field.reshape(-1, self.views, pupil, self.views, pupil).transpose(0, 1, 3, 2, 4).reshape(-1, pupil**2)
         field = field @ self.weights.reshape(diodes, -1).T

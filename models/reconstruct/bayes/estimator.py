@@ -124,8 +124,10 @@ class FieldEstimator:
         out = np.zeros((self.views, self.views, *self.shape), np.float32)
         shares = self._shares(told)
         for (down, across, samples), ways in zip(groups, self._ways, strict=True):
-            own = shares[:, down.blocks, across.blocks].reshape(len(shares), -1)
-            self.blocks.place(out, ways.estimate(samples, own, LINEAR, self.views, shares[0].size), down, across)
+            block_shares = shares[:, down.blocks, across.blocks].reshape(len(shares), -1)
+            self.blocks.place(
+                out, ways.estimate(samples, block_shares, LINEAR, self.views, shares[0].size), down, across
+            )
         return out
 
     def _shares(self, groups: Windows) -> Floats:
@@ -241,13 +243,13 @@ class FieldEstimator:
 
         def residuals(number: int) -> list[Residuals]:
             known: dict[tuple[int, int], Floats] = {}  # of windows that begin at the same place in a tile
-            made = {}
+            by_pair = {}
             for group in self.blocks.groups:
                 key = kind(*group)
                 if key[:2] not in known:
                     known[key[:2]] = whitener(covariances(number, group, False)[0])
-                made[key] = Residuals.of(known[key[:2]], *self.blocks.own(*group))
-            return [made[kind(*group)] for group in self.blocks.groups]
+                by_pair[key] = Residuals.of(known[key[:2]], *self.blocks.own(*group))
+            return [by_pair[kind(*group)] for group in self.blocks.groups]
 
         def solver(number: int, group: Pair) -> Solver:
             shared, field = covariances(number, group, True)
@@ -262,8 +264,8 @@ class FieldEstimator:
         if not self.prior.slants or self.prior.width > WIDEST:
             return []
         most, window = max(abs(self.prior.far), abs(self.prior.near)), (self.blocks.y.window, self.blocks.x.window)
-        found = slants_of(disparity, spread, self.prior.slants)
-        return [one for one in found if texture_points(window, self.views, most, one) <= TEXTURE]
+        slants = slants_of(disparity, spread, self.prior.slants)
+        return [slant for slant in slants if texture_points(window, self.views, most, slant) <= TEXTURE]
 
     @cached_property
     def _any(self) -> tuple[list[Residuals], Floats]:
@@ -378,8 +380,8 @@ class FieldEstimator:
         totals = self.covariances.weights.sum((1, 2))
         for down, across, samples in groups:
             white = totals[self.blocks.diodes(down, across)[2]].astype(np.float32)
-            found = white @ samples / (white @ white)
-            rest = np.square(samples - white[:, None] * found).mean(0)
+            fit = white @ samples / (white @ white)
+            rest = np.square(samples - white[:, None] * fit).mean(0)
             part = plain[down.blocks, across.blocks]
             part[:] = (rest < self.prior.plain * self.prior.noise**2).reshape(part.shape)
         return plain
@@ -426,7 +428,7 @@ class FieldEstimator:
         """Covariance of the views of a block with the samples of its window, (pixels * views**2, samples)."""
         y, x, diode = self.blocks.diodes(down, across)
         high, wide = self.blocks.y, self.blocks.x
-        own = np.indices((high.block, wide.block)).reshape(2, -1, 1)
-        dy, dx = y - own[0] - down.offset, x - own[1] - across.offset
+        places = np.indices((high.block, wide.block)).reshape(2, -1, 1)
+        dy, dx = y - places[0] - down.offset, x - places[1] - across.offset
         out = tables.field[dy + high.window - 1, dx + wide.window - 1, :, diode]  # (pixels, samples, views)
         return out.transpose(0, 2, 1).reshape(-1, len(diode))

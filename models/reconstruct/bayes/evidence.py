@@ -52,10 +52,10 @@ class Residuals(NamedTuple):
             For this window.
         """
         precision = inverse[:, rows].T @ inverse
-        own = precision[np.arange(len(rows)), rows]
+        diagonal = precision[np.arange(len(rows)), rows]
         matrix, certain = np.zeros((pixels, len(inverse)), np.float32), np.zeros(pixels, np.float32)
-        matrix[places] = precision / np.sqrt(own)[:, None]
-        certain[places] = np.log(own)
+        matrix[places] = precision / np.sqrt(diagonal)[:, None]
+        certain[places] = np.log(diagonal)
         return cls(matrix, certain)
 
 

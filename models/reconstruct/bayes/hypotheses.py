@@ -66,7 +66,7 @@ class Hypotheses:
         float32 (disparities, rows, cols)
             By the disparity of the pixel.
         """
-        found = np.stack(
+        errors = np.stack(
             [
                 self.blocks.map(
                     np.square(residual.matrix @ samples)
@@ -75,8 +75,8 @@ class Hypotheses:
                 for residuals in self._residuals
             ]
         )
-        found = badness(self._around(found), self._certain, 4 * np.pi * self.prior.width**2)
-        return np.asarray(self.prior.trust * found, np.float32)
+        errors = badness(self._around(errors), self._certain, 4 * np.pi * self.prior.width**2)
+        return np.asarray(self.prior.trust * errors, np.float32)
 
     def solver(self, number: int, group: Pair) -> Solver:
         """From the samples of a group's windows to the views of their blocks, made where it is wanted, once.

@@ -99,16 +99,16 @@ class Window:
         tuple of float64 (samples, samples), float32 (block's pixels * views**2, samples)
             Of samples with samples, without noise, and of the views of the block with samples; None without them.
         """
-        seen, wanted, own, first, size = self.texture(plane)
+        seen, view_points, index, first, size = self.texture(plane)
         root = _root(size[0], size[1], prior)
         down, across = (_taps(s - f, n) for s, f, n in zip(seen, first, size, strict=True))
-        weights = self.weights.reshape(len(own), 1, -1).astype(np.float32)
-        samples = np.matmul(weights * down.transpose(0, 2, 1)[own], across[own]).reshape(len(own), -1) @ root
+        weights = self.weights.reshape(len(index), 1, -1).astype(np.float32)
+        samples = np.matmul(weights * down.transpose(0, 2, 1)[index], across[index]).reshape(len(index), -1) @ root
         exact = samples.astype(float)  # float32 would leave variances below 0 where noise is little
         shared = exact @ exact.T
         if not views:
             return shared, None
-        down, across = (_taps(w - f, n) for w, f, n in zip(wanted, first, size, strict=True))
+        down, across = (_taps(w - f, n) for w, f, n in zip(view_points, first, size, strict=True))
         taps = (down[..., :, None] * across[..., None, :]).reshape(-1, size[0] * size[1])
         return shared, taps @ (root @ samples.T)
 
@@ -128,16 +128,16 @@ class Window:
         """
         top, left, high, wide = self.block
         middle = (np.array(self.size)[:, None, None] - 1) / 2
-        places, own = np.unique(np.stack([self.y, self.x]), axis=1, return_inverse=True)
+        places, index = np.unique(np.stack([self.y, self.x]), axis=1, return_inverse=True)
         pupil = self.weights.shape[1]
         # From the middle for the plane, and back to the pixels' own places
         seen = plane.seen(*(places[..., None] - middle), *_steps(pupil, self.views / pupil)) + middle
         block = np.indices((high, wide)).reshape(2, -1, 1) + np.array([top, left])[:, None, None]
-        wanted = plane.seen(*(block - middle), *_steps(self.views, 1.0)) + middle
-        first = [math.floor(min(s.min(), w.min())) - 1 for s, w in zip(seen, wanted, strict=True)]
-        last = [math.floor(max(s.max(), w.max())) + 3 for s, w in zip(seen, wanted, strict=True)]
+        view_points = plane.seen(*(block - middle), *_steps(self.views, 1.0)) + middle
+        first = [math.floor(min(s.min(), w.min())) - 1 for s, w in zip(seen, view_points, strict=True)]
+        last = [math.floor(max(s.max(), w.max())) + 3 for s, w in zip(seen, view_points, strict=True)]
         size = [math.ceil((end - begin + 1) / ROUNDED) * ROUNDED for begin, end in zip(first, last, strict=True)]
-        return seen, wanted, own, first, size
+        return seen, view_points, index, first, size
 
 
 def texture_points(size: tuple[int, int], views: int, disparity: float, slant: tuple[float, float]) -> float:

@@ -126,9 +126,9 @@ class FieldPrior:
         squares = [np.square(part[LAG:] - part[:-LAG]).ravel() for part in (sums, sums.T) if len(part) > LAG]
         if not squares:
             return self.contrast
-        own = max(float(np.concatenate(squares).mean()) - noise**2, 0.0)
+        variance = max(float(np.concatenate(squares).mean()) - noise**2, 0.0)
         same, away = self.covariance(np.zeros(2), np.array([0.0, LAG]))
-        share = ABOVE * math.sqrt(own / (2 * (same - away)))
+        share = ABOVE * math.sqrt(variance / (2 * (same - away)))
         below = min(max(round(-2 * math.log2(share)), 0), STEPS) if share > 0 else STEPS
         return self.contrast * 2.0 ** (-below / 2)
 

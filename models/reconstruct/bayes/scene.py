@@ -70,10 +70,10 @@ class Ways(NamedTuple):
             The views of the blocks.
         """
         kinds = classes(shares, math.ceil(CLASSES * math.sqrt(samples.shape[1] / whole)))
-        own = [kinds == kind for kind in np.unique(kinds)]
+        masks = [kinds == kind for kind in np.unique(kinds)]
         out = np.empty((self.field.shape[1], samples.shape[1]), np.float32)
-        means = np.stack([shares[:, mine].mean(1) for mine in own])
-        for mine, solver in zip(own, self.mixed(means, parallax, views), strict=True):
+        means = np.stack([shares[:, mine].mean(1) for mine in masks])
+        for mine, solver in zip(masks, self.mixed(means, parallax, views), strict=True):
             out[:, mine] = solver(samples[:, mine])
         return out
 
@@ -96,8 +96,8 @@ class Ways(NamedTuple):
         shared, field = (
             (weights @ part.reshape(len(part), -1)).reshape(-1, *part.shape[1:]) for part in (self.shared, self.field)
         )
-        for one, other in zip(shared, raised(field, parallax, views), strict=True):
-            yield Solver(factor(one), other)
+        for view, other in zip(shared, raised(field, parallax, views), strict=True):
+            yield Solver(factor(view), other)
 
 
 class Solver(NamedTuple):
@@ -188,8 +188,8 @@ def shares_of(chance: Floats, contrast: Floats) -> Floats:
         Of sum 1, none of them 0.
     """
     weight = contrast + 1e-9 + 1e-3 * contrast.mean()
-    found = np.stack([gaussian_filter(part * weight, AROUND) for part in chance])
-    return (1 - ANY) * found / found.sum(0) + ANY / len(found)
+    pooled = np.stack([gaussian_filter(part * weight, AROUND) for part in chance])
+    return (1 - ANY) * pooled / pooled.sum(0) + ANY / len(pooled)
 
 
 def classes(shares: Floats, count: int) -> Ints:

@@ -56,8 +56,8 @@ def slants_of(disparity: Floats, spread: Floats, most: int) -> list[Slant]:
     kinds, counts = np.unique(steps, axis=1, return_counts=True)
     order = np.argsort(-counts, kind="stable")
     kept = (kinds[:, k] for k in order if counts[k] >= SHARE * disparity.size)
-    found = [(float(STEP * a), float(STEP * b)) for a, b in kept if (a or b) and max(abs(a), abs(b)) <= STEEP]
-    return found[:most]
+    slants = [(float(STEP * a), float(STEP * b)) for a, b in kept if (a or b) and max(abs(a), abs(b)) <= STEEP]
+    return slants[:most]
 
 
 def moved(values: Floats, steps: Floats | float) -> Floats:
