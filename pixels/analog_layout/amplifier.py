@@ -43,14 +43,17 @@ from .strip import (
 )
 
 # um
-RIGHT = 92.0  # length of the strips
-BANK_WEST = 15.5  # of a bank's first finger
-AWAY = 1.6  # of a bank from a rail
-FIRST, PITCH = 0.9, 1.0  # of the trunks beside the banks
-OVER, OVER_PITCH = 19.0, 4.0  # of the trunks over the strips
-PATCH = 0.35  # half the length of the third metal where a common node goes up
-RAIL_VIAS, BESIDE = 24, 0.5  # of a rail; their distance from other vias
-ROOM = 5.0  # more between transistors of the bias, for drops between those of the tails
+STRIP_LENGTH = 92.0
+BANK_WEST = 15.5  # x of a bank's first finger
+BANK_SPACE = 1.6  # from a bank to a rail
+FIRST_TRUNK = 0.9  # x of the first trunk next to the banks
+TRUNK_PITCH = 1.0
+FIRST_OVER_STRIPS = 19.0  # x of the first trunk over the strips
+OVER_STRIPS_PITCH = 4.0
+PATCH_HALF = 0.35  # half length of the third metal where a common node goes up
+RAIL_VIAS = 24  # of a rail
+RAIL_VIA_SPACE = 0.5  # from a rail's vias to other vias
+BIAS_ROOM = 5.0  # additional room between the bias's transistors, for drops between those of the tails
 # Parts in a strip, from the west: of side p or n of the pair and of the sinks; a capital steers, or is a diode
 PAIR_ORDER = "pnnPPnnp", "nppNNppn"
 SINK_ORDER = "pnNPnp", "pnnppn"
@@ -109,25 +112,25 @@ class AmplifierPlan:
 
 def places() -> dict[str, float]:
     """X of what goes from strip to strip."""
-    at = {net: FIRST + PITCH * k for k, net in enumerate(WEST)}
-    at |= {net: RIGHT - FIRST - PITCH * k for k, net in enumerate(reversed(EAST))}
+    at = {net: FIRST_TRUNK + TRUNK_PITCH * k for k, net in enumerate(WEST)}
+    at |= {net: STRIP_LENGTH - FIRST_TRUNK - TRUNK_PITCH * k for k, net in enumerate(reversed(EAST))}
     west, east = ([f"ota.{net}" for net in side] for side in INNER)
-    at |= {net: OVER + OVER_PITCH * k for k, net in enumerate((*west, "ibias"))}
-    at |= {net: RIGHT - OVER - OVER_PITCH * k for k, net in enumerate((*east, "off"))}
-    return at | {net: RIGHT / 2 + way * 1.5 for net, way in zip(INPUTS, (-1, 1), strict=True)}
+    at |= {net: FIRST_OVER_STRIPS + OVER_STRIPS_PITCH * k for k, net in enumerate((*west, "ibias"))}
+    at |= {net: STRIP_LENGTH - FIRST_OVER_STRIPS - OVER_STRIPS_PITCH * k for k, net in enumerate((*east, "off"))}
+    return at | {net: STRIP_LENGTH / 2 + way * 1.5 for net, way in zip(INPUTS, (-1, 1), strict=True)}
 
 
 def amplifier_plan(d: Mapping[str, Device], masks: AnalogMasks, sizes: AmplifierSizes) -> AmplifierPlan:
     """Where everything of an amplifier is. Raises ParameterError where a row is too long."""
-    at, axis = places(), RIGHT / 2
+    at, axis = places(), STRIP_LENGTH / 2
 
     def plan(n: tuple[Placed, ...], p: tuple[Placed, ...]) -> Plan:
         present = {net for placed in (*n, *p) for net in placed.device.transistor.nodes}
         for row_end, first in ((placed_row[-1].high, placed_row[0].device.transistor.name) for placed_row in (n, p)):
-            if row_end > RIGHT:
-                long = 2 * row_end - RIGHT
-                raise ParameterError(f"row of {first} = {long:.1f} um: must be {RIGHT:g} um at the most")
-        return Plan(n, p, 0.0, RIGHT, {net: (x,) for net, x in at.items() if net in present})
+            if row_end > STRIP_LENGTH:
+                long = 2 * row_end - STRIP_LENGTH
+                raise ParameterError(f"row of {first} = {long:.1f} um: must be {STRIP_LENGTH:g} um at the most")
+        return Plan(n, p, 0.0, STRIP_LENGTH, {net: (x,) for net, x in at.items() if net in present})
 
     pairs = _order(PAIR_ORDER, "ota.in{side}_{k}", "ota.in{side}_steer_{k}")
     sinks = _order(SINK_ORDER, "ota.sink_{side}_{k}", "ota.diode_{side}")
@@ -149,7 +152,7 @@ def amplifier_plan(d: Mapping[str, Device], masks: AnalogMasks, sizes: Amplifier
     p = (*load, *(f"{name}_p" for name in switches), *(f"{name}.p" for name in gates))
     strips = (
         halves[0],
-        plan(row(d, biases, axis, ROOM), row(d, (*tails, *rest), axis)),
+        plan(row(d, biases, axis, BIAS_ROOM), row(d, (*tails, *rest), axis)),
         halves[1],
         plan(row(d, n, axis), row(d, p, axis)),
     )
@@ -159,7 +162,7 @@ def amplifier_plan(d: Mapping[str, Device], masks: AnalogMasks, sizes: Amplifier
         for k in bits:
             columns += [(d[f"not{k}.n"], d[f"not{k}.p"]), (d[f"select{k}.n"], d[f"select{k}.p"])]
             columns.append((d[f"select{k}.r"], None))
-        room = (RIGHT - in_columns(columns, 0.0)[2]) / len(columns) - 1e-3
+        room = (STRIP_LENGTH - in_columns(columns, 0.0)[2]) / len(columns) - 1e-3
         rows = in_columns(columns, 0.0, min(room, 2.0))
         trim.append(plan(*rows[:2]))
     ends = {net: x - TRUNK / 2 for net, x in at.items()}
@@ -173,14 +176,14 @@ def amplifier_cell(masks: AnalogMasks, sizes: AmplifierSizes, chip: bool = False
     d = devices(sizes, chip)
     plan, canvas = amplifier_plan(d, masks, sizes), new_canvas(masks, "adc_amplifier" if chip else "amplifier")
     banks = [draw_bank(canvas, plan.banks[0], masks.fringe, MARGIN)]
-    y, strips = MARGIN + plan.banks[0].height_um + AWAY, []
+    y, strips = MARGIN + plan.banks[0].height_um + BANK_SPACE, []
     for strip_plan in plan.strips:
         strips.append(draw_strip(canvas, masks, strip_plan, y))
         y += strip_plan.height_um + BETWEEN_STRIPS
     inner = tuple(strips)
-    y += AWAY - BETWEEN_STRIPS
+    y += BANK_SPACE - BETWEEN_STRIPS
     banks.append(draw_bank(canvas, plan.banks[1], masks.fringe, y, upright=False))
-    y += plan.banks[1].height_um + AWAY
+    y += plan.banks[1].height_um + BANK_SPACE
     for strip_plan in plan.trim:
         strips.append(draw_strip(canvas, masks, strip_plan, y))
         y += strip_plan.height_um + BETWEEN_STRIPS
@@ -202,7 +205,7 @@ def amplifier_cell(masks: AnalogMasks, sizes: AmplifierSizes, chip: bool = False
         if edge:
             canvas.label(FOURTH, net, x, edge[0] - 0.3 if net in NORTH else 0.3)
     beyond = RAIL_ENDS + WELL_ENDS
-    canvas.box(masks.base.outline, -beyond, 0, RIGHT + beyond, top)
+    canvas.box(masks.base.outline, -beyond, 0, STRIP_LENGTH + beyond, top)
     ends = tuple(terminal for strip in strips for terminal in strip.terminals)
     return Cell(
         canvas.layout, canvas.cell, PINS, tuple(d.values()), terminals=ends, matched=matched_units(), unit=sizes.unit
@@ -211,16 +214,16 @@ def amplifier_cell(masks: AnalogMasks, sizes: AmplifierSizes, chip: bool = False
 
 def _thicker(canvas: Canvas, y: float, drops: Sequence[float]) -> None:
     """A rail on two more metals, for its current. drops: x at which it has vias."""
-    left, right = -RAIL_ENDS, RIGHT + RAIL_ENDS
+    left, right = -RAIL_ENDS, STRIP_LENGTH + RAIL_ENDS
     for level in (SECOND, THIRD):
         canvas.wire(level, left, y - RAIL_HALF, right, y + RAIL_HALF)
     for k in range(RAIL_VIAS):
         x = snap(left + (k + 0.5) * (right - left) / RAIL_VIAS)
-        if all(abs(x - drop) > BESIDE for drop in drops):
+        if all(abs(x - drop) > RAIL_VIA_SPACE for drop in drops):
             canvas.stack(x, y, 1, THIRD)
 
 
 def _up(canvas: Canvas, x: float, y: float) -> None:
     """From a common node's spine to the trunks' metal."""
     canvas.stack(x, y, SECOND, FOURTH)
-    canvas.wire(THIRD, x - PATCH, y - 0.19, x + PATCH, y + 0.19)
+    canvas.wire(THIRD, x - PATCH_HALF, y - 0.19, x + PATCH_HALF, y + 0.19)

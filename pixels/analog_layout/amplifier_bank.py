@@ -18,7 +18,9 @@ from talbot.platforms.layers import GdsLayer
 from .device import Strap, snap
 from .strip import FIRST, SECOND, THIRD, TRACK, TRACK_PITCH
 
-FINGERS, COLUMNS, CHANNELS = 8, 13, 6  # units of a comb; combs of a row; pairs of rows
+FINGERS = 8  # units of a comb
+COLUMNS = 13  # combs of a row
+CHANNELS = 6  # pairs of rows
 # Combs by channel from the south, to the middle; the others are their mirror images about the middle
 COUNTS: tuple[Mapping[str, int], ...] = (
     {"b9": 11, "b8": 5, "b7": 4, "b5": 2, "b4": 1, "rest": 3},
@@ -29,11 +31,15 @@ MIRRORED = {"b3": "low", "part": "spare"}  # what is in their places on the othe
 # Units of a comb that is shared, from the west
 PARTS = {"low": (("b2", 4), ("b1", 2), ("b0", 1), ("unit", 1)), "part": (("rest", 5), ("odd", 3))}
 # um
-FINGER, PITCH, TIP = 0.14, 0.28, 0.20  # width; from finger to finger; from a finger's end to the other spine
-COMMON, SPINE = 0.42, 0.34  # heights of spines
-MARK = 0.06, 0.04  # of a unit's mark: over its finger, from the common spine
-FIRST_TRACK = 0.45  # of a channel's first track from the spines
-JOIN, JOIN_AWAY = 0.42, 0.60  # what joins the common spines: width, its middle from the last finger
+FINGER = 0.14  # width of a finger
+PITCH = 0.28  # of fingers
+TIP = 0.20  # from a finger's end to the other spine
+COMMON = 0.42  # height of the common spine
+SPINE = 0.34  # height of the other spines
+MARK = 0.06, 0.04  # of a unit's marker: beyond its finger, from the common spine
+FIRST_TRACK = 0.45  # from the spines to a channel's first track
+JOIN = 0.42  # width of the metal that joins the common spines
+JOIN_AWAY = 0.60  # from the last finger to its centre
 
 Names = tuple[tuple[str, ...], ...]
 

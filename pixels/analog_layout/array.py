@@ -26,13 +26,17 @@ from .pattern import SIDE
 from .strip import FOURTH, SECOND, THIRD, TRACK, TRACK_PITCH
 
 # um
-AROUND, TAB, APART = 0.14, 0.45, 1.2  # lower plate around the upper one, on the side of its via; between lower plates
-VIA_IN = 0.24  # of that via's middle from the upper plate
-LINE, LINE_PITCH, LINES = 0.14, 0.64, 6  # below a column; the pitch is less where vias would leave the plate
-LANDING = 0.185  # half of a via's metal
-COLUMN = 0.4  # width of the common node's metal
-RING_AWAY = 1.0  # of the bus's first track from the dummies
-OUT = "half"
+LOWER_ENCLOSURE = 0.14  # of the upper plate by the lower one
+LOWER_TAB = 0.45  # the same on the side of the lower plate's via
+LOWER_SPACE = 1.2  # between lower plates
+VIA_INSET = 0.24  # from the upper plate to that via's centre
+LINE_WIDTH = 0.14
+LINE_PITCH = 0.64  # of the lines below a column; less where vias would leave the plate
+LINES = 6  # below a column
+VIA_PAD_HALF = 0.185  # half width of a via's metal
+COMMON_WIDTH = 0.4  # of the common node's metal
+BUS_SPACE = 1.0  # from the dummies to the bus's first track
+HALF_UNIT = "half"
 HALF_COLUMN = SIDE // 2 - 1
 
 
@@ -60,14 +64,14 @@ class ArrayPlan:
     @property
     def pitch_um(self) -> tuple[float, float]:
         """From column to column, from row to row."""
-        plate = self.edge_um + 2 * AROUND
-        return plate + APART, plate - AROUND + TAB + APART
+        plate = self.edge_um + 2 * LOWER_ENCLOSURE
+        return plate + LOWER_SPACE, plate - LOWER_ENCLOSURE + LOWER_TAB + LOWER_SPACE
 
     @property
     def size_um(self) -> tuple[float, float]:
         """Width of the capacitors with their dummies; height of these and the bus."""
         (across, along), tracks = self.pitch_um, len(self.buses())
-        return (SIDE + 2) * across - APART, (SIDE + 2) * along - APART + RING_AWAY + TRACK_PITCH * tracks
+        return (SIDE + 2) * across - LOWER_SPACE, (SIDE + 2) * along - LOWER_SPACE + BUS_SPACE + TRACK_PITCH * tracks
 
     def buses(self) -> list[str]:
         """Nets of the bus, from its far side on."""
@@ -77,7 +81,7 @@ class ArrayPlan:
         """Every capacitor; the dummies, too."""
         drawn = []
         for name, net in self.nets.items():
-            count, side = (1, self.half_um) if name == OUT else (int((self.names == name).sum()), self.edge_um)
+            count, side = (1, self.half_um) if name == HALF_UNIT else (int((self.names == name).sum()), self.edge_um)
             drawn.append(Plate(name, self.common, net, count * side**2, count * 4 * side))
         count = (SIDE + 2) ** 2 - SIDE**2 - 1
         drawn.append(Plate("dummies", self.ground, self.ground, count * self.edge_um**2, count * 4 * self.edge_um))
@@ -141,8 +145,8 @@ class _Drawing:
     def middle(self, row: int, column: int) -> tuple[float, float]:
         """Of a unit's upper plate; row and column from -1 of the dummies to SIDE."""
         across, along = self.plan.pitch_um
-        first = TRACK_PITCH * len(self.plan.buses()) + RING_AWAY + TAB + self.plan.edge_um / 2
-        return (self.west + AROUND + self.plan.edge_um / 2 + (column + 1) * across, first + (row + 1) * along)
+        first = TRACK_PITCH * len(self.plan.buses()) + BUS_SPACE + LOWER_TAB + self.plan.edge_um / 2
+        return (self.west + LOWER_ENCLOSURE + self.plan.edge_um / 2 + (column + 1) * across, first + (row + 1) * along)
 
     def draw(self) -> Array:
         array = Array(self.plan)
@@ -165,13 +169,19 @@ class _Drawing:
     def _lower(self, row: int, column: int, edge: float) -> None:
         x, v = self.middle(row, column)
         half = edge / 2
-        self.metal(THIRD, x - half - AROUND, v - half - TAB, x + half + AROUND, v + half + AROUND)
+        self.metal(
+            THIRD,
+            x - half - LOWER_ENCLOSURE,
+            v - half - LOWER_TAB,
+            x + half + LOWER_ENCLOSURE,
+            v + half + LOWER_ENCLOSURE,
+        )
 
     def _line(self, net: str, x: float, end: float, array: Array) -> None:
         """From the bus to ``end``, a distance from its far side."""
         track = next(row.y for row in array.tracks if row.net == net)
         start = (track - self.origin) * self.way
-        self.metal(SECOND, x - LINE / 2, start, x + LINE / 2, end)
+        self.metal(SECOND, x - LINE_WIDTH / 2, start, x + LINE_WIDTH / 2, end)
         self.canvas.stack(x, track, SECOND, THIRD)
 
     def _column(self, column: int, array: Array) -> None:
@@ -179,55 +189,55 @@ class _Drawing:
         capacitors = self.plan.names[:, column]
         kinds = [name for name in self.plan.nets if name in set(capacitors.tolist())]
         if column == HALF_COLUMN:
-            kinds.append(OUT)
+            kinds.append(HALF_UNIT)
         units = {name: int((self.plan.names == name).sum()) for name in kinds}
         kinds.sort(key=lambda name: units[name])
         kinds = kinds[1::2][::-1] + kinds[::2]  # those with many units outside, beside the common node's strips
         if len(kinds) > LINES:
             raise ParameterError(f"column {column} = {len(kinds)} capacitors: must be {LINES} at most")
         x0, _ = self.middle(0, column)
-        room = (self.plan.edge_um + 2 * (AROUND - LANDING)) / max(len(kinds) - 1, 1)
+        room = (self.plan.edge_um + 2 * (LOWER_ENCLOSURE - VIA_PAD_HALF)) / max(len(kinds) - 1, 1)
         pitch = min(LINE_PITCH, floor(room / (4 * GRID)) * 4 * GRID)
         places = {name: x0 + (k - (len(kinds) - 1) / 2) * pitch for k, name in enumerate(kinds)}
-        beyond = self.plan.edge_um / 2 + VIA_IN - LINE
+        beyond = self.plan.edge_um / 2 + VIA_INSET - LINE_WIDTH
         if column == HALF_COLUMN:
-            self._half(places.pop(OUT), array)
+            self._half(places.pop(HALF_UNIT), array)
         for name, x in places.items():
             last = int((capacitors == name).nonzero()[0][-1])
             self._line(self.plan.nets[name], x, self.middle(last, column)[1] - beyond, array)
         for row in range(SIDE):
             self._plate(row, column, self.plan.edge_um)
             self._lower(row, column, self.plan.edge_um)
-            v = self.middle(row, column)[1] - self.plan.edge_um / 2 - VIA_IN
+            v = self.middle(row, column)[1] - self.plan.edge_um / 2 - VIA_INSET
             self.canvas.stack(places[str(capacitors[row])], self.y(v), SECOND, THIRD)
         for name, x in places.items():
             rows = [int(row) for row in (capacitors == name).nonzero()[0]]
-            v = self.middle(rows[len(rows) // 2], column)[1] - self.plan.edge_um / 2 - VIA_IN
+            v = self.middle(rows[len(rows) // 2], column)[1] - self.plan.edge_um / 2 - VIA_INSET
             array.taps.append(Tap(name, len(rows), x, self.y(v)))
 
     def _half(self, line: float, array: Array) -> None:
         """Half a unit in the place of a dummy beside the bus, on the lower plate of a whole one; its line's x."""
         self._plate(-1, HALF_COLUMN, self.plan.half_um)
         self._lower(-1, HALF_COLUMN, self.plan.edge_um)
-        at = self.middle(-1, HALF_COLUMN)[1] - self.plan.edge_um / 2 - VIA_IN
-        self._line(self.plan.nets[OUT], line, at + LINE / 2, array)
+        at = self.middle(-1, HALF_COLUMN)[1] - self.plan.edge_um / 2 - VIA_INSET
+        self._line(self.plan.nets[HALF_UNIT], line, at + LINE_WIDTH / 2, array)
         self.canvas.stack(line, self.y(at), SECOND, THIRD)
-        array.taps.append(Tap(OUT, 0.5, line, self.y(at)))
+        array.taps.append(Tap(HALF_UNIT, 0.5, line, self.y(at)))
 
     def _ring(self, array: Array) -> None:
         """The dummies: lower plates in one piece but for the half's place, upper ones joined, both on the ground."""
         p, half = self.plan, self.plan.edge_um / 2
         inner, hole = range(SIDE), HALF_COLUMN
         (west, low), (east, high) = self.middle(-1, -1), self.middle(SIDE, SIDE)
-        bottom, top = low - half - TAB, high + half + AROUND
+        bottom, top = low - half - LOWER_TAB, high + half + LOWER_ENCLOSURE
         for x in (west, east):
-            self.metal(THIRD, x - half - AROUND, bottom, x + half + AROUND, top)
-            self.metal(FOURTH, x - COLUMN / 2, bottom, x + COLUMN / 2, high + COLUMN / 2)
-            self._line(p.ground, x, low - half - VIA_IN + LINE, array)
+            self.metal(THIRD, x - half - LOWER_ENCLOSURE, bottom, x + half + LOWER_ENCLOSURE, top)
+            self.metal(FOURTH, x - COMMON_WIDTH / 2, bottom, x + COMMON_WIDTH / 2, high + COMMON_WIDTH / 2)
+            self._line(p.ground, x, low - half - VIA_INSET + LINE_WIDTH, array)
             for side in (-0.4, 0.4):
-                self.canvas.stack(x + side, self.y(low - half - VIA_IN), SECOND, THIRD)
-            self.metal(SECOND, x - 0.6, low - half - VIA_IN - 0.185, x + 0.6, low - half - VIA_IN + 0.185)
-            self.canvas.square(self.masks.base.vias[THIRD].gds, x, self.y(low - half - VIA_IN), 0.2)
+                self.canvas.stack(x + side, self.y(low - half - VIA_INSET), SECOND, THIRD)
+            self.metal(SECOND, x - 0.6, low - half - VIA_INSET - 0.185, x + 0.6, low - half - VIA_INSET + 0.185)
+            self.canvas.square(self.masks.base.vias[THIRD].gds, x, self.y(low - half - VIA_INSET), 0.2)
             for row in range(-1, SIDE + 1):
                 self._plate(row, -1 if x == west else SIDE, p.edge_um)
         for column in inner:
@@ -237,29 +247,43 @@ class _Drawing:
         rows = [(low, west, self.middle(0, hole - 1)[0]), (low, self.middle(0, hole + 1)[0], east)]
         rows += [(high, west, self.middle(0, hole)[0]), (high, self.middle(0, hole + 1)[0], east)]
         for v, left, right in rows:
-            self.metal(FOURTH, left - COLUMN / 2, v - COLUMN / 2, right + COLUMN / 2, v + COLUMN / 2)
+            self.metal(
+                FOURTH, left - COMMON_WIDTH / 2, v - COMMON_WIDTH / 2, right + COMMON_WIDTH / 2, v + COMMON_WIDTH / 2
+            )
             if v == high:
                 left, right = west, east
-            self.metal(THIRD, left - half - AROUND, v - half - TAB, right + half + AROUND, v + half + AROUND)
+            self.metal(
+                THIRD,
+                left - half - LOWER_ENCLOSURE,
+                v - half - LOWER_TAB,
+                right + half + LOWER_ENCLOSURE,
+                v + half + LOWER_ENCLOSURE,
+            )
 
     def _common(self, array: Array) -> None:
         """The upper plates' metal: strips beside the columns, a tongue to each plate, bars at both ends, a way out."""
         half, across = self.plan.edge_um / 2, self.plan.pitch_um[0]
         first, last = self.middle(0, 0), self.middle(SIDE - 1, SIDE - 1)
-        bars = first[1] - half - TAB - APART / 2, last[1] + half + AROUND + APART / 2
+        bars = first[1] - half - LOWER_TAB - LOWER_SPACE / 2, last[1] + half + LOWER_ENCLOSURE + LOWER_SPACE / 2
         strips = [first[0] + (k - 0.5) * across for k in range(SIDE + 1)]
         for x in strips:
-            self.metal(FOURTH, x - COLUMN / 2, bars[0], x + COLUMN / 2, bars[1])
+            self.metal(FOURTH, x - COMMON_WIDTH / 2, bars[0], x + COMMON_WIDTH / 2, bars[1])
         places = [(row, column) for row in range(SIDE) for column in range(SIDE)]
         for row, column in [*places, (-1, HALF_COLUMN)]:
             x, v = self.middle(row, column)
-            self.metal(FOURTH, x - across / 2, v - COLUMN / 2, x + COLUMN / 2, v + COLUMN / 2)
+            self.metal(FOURTH, x - across / 2, v - COMMON_WIDTH / 2, x + COMMON_WIDTH / 2, v + COMMON_WIDTH / 2)
         x, v = self.middle(-1, HALF_COLUMN)
         beside = x - across / 2
-        self.metal(FOURTH, beside - COLUMN / 2, v - COLUMN / 2, beside + COLUMN / 2, bars[0])
+        self.metal(FOURTH, beside - COMMON_WIDTH / 2, v - COMMON_WIDTH / 2, beside + COMMON_WIDTH / 2, bars[0])
         for v in bars:
-            self.metal(FOURTH, strips[0] - COLUMN / 2, v - COLUMN / 2, strips[-1] + COLUMN / 2, v + COLUMN / 2)
+            self.metal(
+                FOURTH,
+                strips[0] - COMMON_WIDTH / 2,
+                v - COMMON_WIDTH / 2,
+                strips[-1] + COMMON_WIDTH / 2,
+                v + COMMON_WIDTH / 2,
+            )
         x = strips[HALF_COLUMN + 1]
-        end = self.middle(SIDE, 0)[1] + half + AROUND
-        self.metal(FOURTH, x - COLUMN / 2, bars[1], x + COLUMN / 2, end)
+        end = self.middle(SIDE, 0)[1] + half + LOWER_ENCLOSURE
+        self.metal(FOURTH, x - COMMON_WIDTH / 2, bars[1], x + COMMON_WIDTH / 2, end)
         array.exit = (x, self.y(end))

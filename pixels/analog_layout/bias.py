@@ -21,15 +21,17 @@ from .rows import dummies, row
 from .strip import FIRST, FOURTH, RAIL_ENDS, RAIL_HALF, THIRD, WELL_ENDS, Plan, draw_strip, join_rails, trunk
 
 # um
-WIDE, HEAD, BELOW = 1.0, 1.0, 2.0  # of the resistor: width, length of its ends, middle below the lowest rail
-BAR_PITCH = 2.0  # from one of the resistor's bars to the next
-ENDS = 1.5  # of the strips beyond their longest row
-PINS_IN = 4.0  # of the outputs from the strips' ends
+RESISTOR_WIDTH = 1.0
+RESISTOR_HEAD = 1.0  # length of the resistor's ends
+RESISTOR_BELOW = 2.0  # from the lowest rail down to the resistor's centre
+BAR_PITCH = 2.0  # of the resistor's bars
+STRIP_ENDS = 1.5  # of the strips beyond their longest row
+PIN_INSET = 4.0  # of the outputs from the strips' ends
 
 
 def resistor_um(ohm: float, masks: AnalogMasks) -> float:
     """Length of a bar, on the grid."""
-    return snap(ohm / masks.sheet_ohm * WIDE)
+    return snap(ohm / masks.sheet_ohm * RESISTOR_WIDTH)
 
 
 def bias_cell(masks: AnalogMasks, outputs: int) -> Cell:
@@ -47,26 +49,26 @@ def bias_cell(masks: AnalogMasks, outputs: int) -> Cell:
     fours = ("four_west", "four_0", "four_1", "one", "four_2", "four_3", "four_east")
     parts = circuit.resistors
     length = resistor_um(parts[0].value, masks)
-    long = max(sum(d[name].width_um + 0.5 for name in upper), length + 2 * HEAD) + 2 * ENDS
+    long = max(sum(d[name].width_um + 0.5 for name in upper), length + 2 * RESISTOR_HEAD) + 2 * STRIP_ENDS
     right = 2 * snap(long / 2)
     west = snap((right - length) / 2)
     at = {net: right / 2 + 5.0 * way for net, way in (("vbn", -1), ("vbp", 1))}
-    at |= {"source": west - HEAD / 2}
-    step = (right - 2 * PINS_IN) / outputs
-    at |= {pin: snap(PINS_IN + step * (k + 0.5)) for k, pin in enumerate(pins)}
+    at |= {"source": west - RESISTOR_HEAD / 2}
+    step = (right - 2 * PIN_INSET) / outputs
+    at |= {pin: snap(PIN_INSET + step * (k + 0.5)) for k, pin in enumerate(pins)}
     plans = []
     for n, p in ((fours, lower), (("stop", "start"), upper)):
         rows = row(d, n, right / 2), row(d, p, right / 2)
         present = {net for placed in (*rows[0], *rows[1]) for net in placed.device.transistor.nodes}
         plans.append(Plan(*rows, 0.0, right, {net: (x,) for net, x in at.items() if net in present}))
-    canvas, y = new_canvas(masks, "bias"), MARGIN + 2 * BELOW + (len(parts) - 1) * BAR_PITCH
+    canvas, y = new_canvas(masks, "bias"), MARGIN + 2 * RESISTOR_BELOW + (len(parts) - 1) * BAR_PITCH
     strips = []
     for plan in plans:
         strips.append(draw_strip(canvas, masks, plan, y))
         y += plan.height_um + BETWEEN_STRIPS
     join_rails(canvas, strips)
     # Bars from the uppermost, every second one from the east; an even number of them, so that the last ends in the west
-    high, ends = strips[0].y - BELOW, list[flat.Ends]()
+    high, ends = strips[0].y - RESISTOR_BELOW, list[flat.Ends]()
     for k, part in enumerate(parts):
         places = _resistor(canvas, masks, west, high - k * BAR_PITCH, length)
         ends.append(flat.Ends(part.name, *(places[::-1] if k % 2 else places)))
@@ -74,7 +76,7 @@ def bias_cell(masks: AnalogMasks, outputs: int) -> Cell:
         x = bar.last[0]
         canvas.wire(FIRST, x - 0.3, after.first[1] - 0.3, x + 0.3, bar.last[1] + 0.3)
     x, low = ends[-1].last
-    away = x - 2 * HEAD
+    away = x - 2 * RESISTOR_HEAD
     canvas.wire(FIRST, away - 0.3, low - 0.3, x + 0.3, low + 0.3)
     canvas.wire(FIRST, away - 0.3, low - 0.3, away + 0.3, strips[0].y + RAIL_HALF)
     canvas.stack(at["source"], high, FIRST, FOURTH)
@@ -88,7 +90,7 @@ def bias_cell(masks: AnalogMasks, outputs: int) -> Cell:
     beside = RAIL_ENDS + WELL_ENDS
     canvas.box(masks.base.outline, -beside, 0, right + beside, y - BETWEEN_STRIPS + MARGIN)
     terminals = tuple(terminal for strip in strips for terminal in strip.terminals)
-    value = length / WIDE * masks.sheet_ohm
+    value = length / RESISTOR_WIDTH * masks.sheet_ohm
     return Cell(
         canvas.layout,
         canvas.cell,
@@ -104,12 +106,12 @@ def _resistor(
     canvas: Canvas, masks: AnalogMasks, x: float, y: float, length: float
 ) -> tuple[tuple[float, float], tuple[float, float]]:
     """A bar of diffusion from ``x`` on, its middle at ``y``, with its ends on the first metal; returns these."""
-    base, half = masks.base, WIDE / 2
-    canvas.box(base.active, x - HEAD, y - half, x + length + HEAD, y + half)
+    base, half = masks.base, RESISTOR_WIDTH / 2
+    canvas.box(base.active, x - RESISTOR_HEAD, y - half, x + length + RESISTOR_HEAD, y + half)
     around = half + IMPLANT
-    canvas.box(base.nplus, x - HEAD - IMPLANT, y - around, x + length + HEAD + IMPLANT, y + around)
+    canvas.box(base.nplus, x - RESISTOR_HEAD - IMPLANT, y - around, x + length + RESISTOR_HEAD + IMPLANT, y + around)
     canvas.box(masks.resistor, x, y - half, x + length, y + half)
-    ends = (x - HEAD / 2, y), (x + length + HEAD / 2, y)
+    ends = (x - RESISTOR_HEAD / 2, y), (x + length + RESISTOR_HEAD / 2, y)
     for at, _ in ends:
         for dx in (-0.2, 0.2):
             for dy in (-0.2, 0.2):

@@ -16,10 +16,11 @@ from talbot.pixels.layout.canvas import Canvas
 
 from .strip import FOURTH, SECOND, THIRD, TRACK, TRACK_PITCH, TRUNK
 
-APART = 1.0  # um, between nets on a track
-DOWN = 0.3  # um, width of what leads from a track to the channel's upper edge
-OVER = 3.0  # um, of the upper edge over the last track
-UP, PAD = 1.2, 0.3  # um, of the vias from the upper edge down; half the third metal there
+NET_SPACE = 1.0  # um, between nets on a track
+RISER_WIDTH = 0.3  # um, of the segment from a track to the channel's upper edge
+TOP_MARGIN = 3.0  # um, from the last track to the upper edge
+VIA_DEPTH = 1.2  # um, of the vias below the upper edge
+PAD_HALF = 0.3  # um, half the third metal there
 Row = list[tuple[str, float, float]]
 
 
@@ -39,7 +40,9 @@ class Channel:
         rows: list[Row] = []
         for net in sorted(spans, key=lambda net: (spans[net], net)):
             left, right = spans[net]
-            row = next((row for row in rows if all(right + APART < a or b + APART < left for _, a, b in row)), None)
+            row = next(
+                (row for row in rows if all(right + NET_SPACE < a or b + NET_SPACE < left for _, a, b in row)), None
+            )
             if row is None:
                 row = []
                 rows.append(row)
@@ -49,7 +52,7 @@ class Channel:
     @property
     def top(self) -> float:
         """Y of its upper edge."""
-        return self.y + TRACK_PITCH * len(self.rows) + OVER
+        return self.y + TRACK_PITCH * len(self.rows) + TOP_MARGIN
 
     def draw(self, canvas: Canvas, bottom: float, ends: Mapping[float, float] | None = None) -> None:
         """Draw it. bottom: y at which what comes from below begins. ends: y up to which what is above leads, by x."""
@@ -62,14 +65,14 @@ class Channel:
                     canvas.wire(FOURTH, x - half, bottom, x + half, y + half)
                     canvas.stack(x, y, THIRD, FOURTH)
                 for x in self.above.get(net, ()):
-                    canvas.wire(SECOND, x - DOWN / 2, y - half, x + DOWN / 2, top - UP)
+                    canvas.wire(SECOND, x - RISER_WIDTH / 2, y - half, x + RISER_WIDTH / 2, top - VIA_DEPTH)
                     canvas.stack(x, y, SECOND, THIRD)
-                    up(canvas, x, top - UP)
+                    up(canvas, x, top - VIA_DEPTH)
                     end = (ends or {}).get(x, top + 0.1)
-                    canvas.wire(FOURTH, x - TRUNK / 2, top - UP - PAD, x + TRUNK / 2, end)
+                    canvas.wire(FOURTH, x - TRUNK / 2, top - VIA_DEPTH - PAD_HALF, x + TRUNK / 2, end)
 
 
 def up(canvas: Canvas, x: float, y: float) -> None:
     """Vias from the second to the fourth metal."""
     canvas.stack(x, y, SECOND, FOURTH)
-    canvas.wire(THIRD, x - PAD, y - PAD, x + PAD, y + PAD)
+    canvas.wire(THIRD, x - PAD_HALF, y - PAD_HALF, x + PAD_HALF, y + PAD_HALF)

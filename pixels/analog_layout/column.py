@@ -24,7 +24,7 @@ from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.analog import AnalogMasks
 
 from . import flat
-from .array import AROUND, VIA_IN
+from .array import LOWER_ENCLOSURE, VIA_INSET
 from .cells import Cell, new_canvas
 from .device import Device, snap
 from .flat import Plate, Tap
@@ -47,21 +47,31 @@ from .strip import (
 )
 
 # um
-PITCH, BETWEEN = 10.0, 1.2  # of the columns; of the rails' middles of two columns
-ROWS, ROW_IN = 13, 0.2  # of tracks in a strip; of the first from a rail's middle
-WIDE, HALVES = 8.2, 1.48  # of a plate across the column; between two that are over each other
-LINE, LANE, NARROW = 0.4, 0.6, 0.3  # widths of what crosses all columns, of the lanes' lines, of what passes plates
-STEP, LEAST = 0.2, 0.4  # of the places of these; between two
-ROOM = 0.6  # beside each pair of devices, for its drops
-FIRST = 1.5  # of the first plate from the array
-PAD_AT, PLATE_AT = 1.54, 3.08  # of an upper plate's vias from that plate; of the next plate from it (capm.2b_a)
-PATCH_IN, VIAS = 0.3, 1.0  # of the metal over an upper plate from its edges; pitch of its vias
-PAD = 0.19, 0.33  # half of the third metal at those vias: its least area
-UNDER = 0.28  # width of the lines under the plates
-OUT, EXIT, JOGS = 0.35, 3.7, (2.2, 3.0)  # from a strip's end to its lines' vias; to a plate; to what leaves above
-SHIELD = 0.3  # of a line of vss at a column's edge
-IN = 0.1  # of the first track's via: the rails are joined beside the strip
-WAYS = {"column_a": 1.7, "column_b": 8.3, "cin_b": 4.0, "cin_a": 2.0}  # y of what leaves on the fourth metal
+PITCH = 10.0  # of the columns
+RAIL_GAP = 1.2  # between the centres of adjacent columns' rails
+ROWS = 13  # tracks in a strip
+ROW_IN = 0.2  # from a rail's centre to the first track
+PLATE_WIDTH = 8.2  # of a plate across the column
+HALF_PLATE_GAP = 1.48  # between two plates above each other
+LINE_WIDTH = 0.4  # of lines that cross all columns
+LANE_WIDTH = 0.6  # of the lanes' lines
+NARROW_WIDTH = 0.3  # of lines that pass plates
+LINE_STEP = 0.2  # grid of the crossing lines' places
+LINE_SPACE = 0.4  # between crossing lines
+ROOM = 0.6  # next to each pair of devices, for its drops
+FIRST_PLATE = 1.5  # from the array to the first plate
+PLATE_VIA_AT = 1.54  # from an upper plate to its vias
+NEXT_PLATE_AT = 3.08  # from an upper plate to the next plate (capm.2b_a)
+PATCH_INSET = 0.3  # of the metal over an upper plate from its edges
+PLATE_VIA_PITCH = 1.0
+PLATE_VIA_PAD = 0.19, 0.33  # half width and height of the third metal at those vias: its least area
+UNDER_WIDTH = 0.28  # of the lines under the plates
+STRIP_TO_VIA = 0.35  # from a strip's end to its lines' vias
+STRIP_TO_PLATE = 3.7
+STRIP_TO_JOG = 2.2, 3.0  # from a strip's end to lines that leave on the fourth metal
+SHIELD = 0.3  # width of the line of vss at a column's edge
+FIRST_TRACK_VIA_INSET = 0.1  # in the strip: the rails are joined next to it
+EXIT_Y = {"column_a": 1.7, "column_b": 8.3, "cin_b": 4.0, "cin_a": 2.0}  # of lines that leave on the fourth metal
 RAILS = 1  # the metal of the rails
 LANES = 8
 GROUPED = {"group": GROUPS, "k": PLACES} | {f"{name}_{d}": LANES for name in ("lane", "sense") for d in "ab"}
@@ -103,8 +113,8 @@ class Cap(NamedTuple):
     upper: str
     from_east: bool = False
     beside: float = 0.0
-    low: float = (PITCH - WIDE) / 2
-    high: float = (PITCH + WIDE) / 2
+    low: float = (PITCH - PLATE_WIDTH) / 2
+    high: float = (PITCH + PLATE_WIDTH) / 2
     above: bool = False
 
 
@@ -284,8 +294,8 @@ PIECES = (
 # Between the strips, and at both ends of the column
 CAPS = (
     (
-        Cap("front_a.f", "out_a", "column_a", True, 0.6e-15, high=(PITCH - HALVES) / 2),
-        Cap("front_b.f", "out_b", "column_b", True, 0.6e-15, low=(PITCH + HALVES) / 2, above=True),
+        Cap("front_a.f", "out_a", "column_a", True, 0.6e-15, high=(PITCH - HALF_PLATE_GAP) / 2),
+        Cap("front_b.f", "out_b", "column_b", True, 0.6e-15, low=(PITCH + HALF_PLATE_GAP) / 2, above=True),
     ),
     (
         Cap("in_a", "out_a", "cin_a"),
@@ -339,10 +349,10 @@ class ColumnPlan:
 
 def line_um(net: str) -> float:
     """Width of the lines of a net that cross all columns."""
-    return LANE if net.startswith(("lane", "sense")) else LINE
+    return LANE_WIDTH if net.startswith(("lane", "sense")) else LINE_WIDTH
 
 
-def length_um(farad: float, masks: AnalogMasks, wide: float = WIDE) -> float:
+def length_um(farad: float, masks: AnalogMasks, wide: float = PLATE_WIDTH) -> float:
     """Of a plate ``wide`` um across. Raises ParameterError where it would be under 1 um."""
     area, edge = masks.mim_area, masks.mim_edge
     length = snap((farad * 1e15 - 2 * edge * wide) / (area * wide + 2 * edge))
@@ -369,34 +379,40 @@ def column_plan(
     Raises ParameterError where a strip has more nets than tracks, or a line no place.
     """
     farads = {c.name: c.value for c in flat.capacitors(column(sizes))}
-    x, plates, strips = FIRST, list[Drawn](), list[Plan]()
+    x, plates, strips = FIRST_PLATE, list[Drawn](), list[Plan]()
     lines, joints = dict[str, float](), dict[str, tuple[float, ...]]()
     for number, group in enumerate(CAPS):
         for k, cap in enumerate(group):
-            left = plates[-1].left if cap.above else snap(x + PLATE_AT * (k > 0))
+            left = plates[-1].left if cap.above else snap(x + NEXT_PLATE_AT * (k > 0))
             length = length_um(farads[cap.name] - cap.beside, masks, cap.high - cap.low)
             plates.append(Drawn(cap, left, snap(left + length)))
             x = max(x, plates[-1].right) if cap.above else plates[-1].right
         if number == len(PIECES):
             break
         piece = PIECES[number]
-        left = snap(x + EXIT + (JOGS[1] - JOGS[0] + PAD_AT if group[-1].upper in WAYS or number == 1 else 0.0))
+        left = snap(
+            x
+            + STRIP_TO_PLATE
+            + (STRIP_TO_JOG[1] - STRIP_TO_JOG[0] + PLATE_VIA_AT if group[-1].upper in EXIT_Y or number == 1 else 0.0)
+        )
         strip, strip_lines = _strip(piece, d, left, number, lines)
         strips.append(strip)
         lines |= strip_lines
         joints |= {"vss": (*joints.get("vss", ()), strip.left - RAIL_AT)}
         joints |= {"vdd": (*joints.get("vdd", ()), strip.right + RAIL_AT)}
-        x = strip.right + EXIT
+        x = strip.right + STRIP_TO_PLATE
     if lacking := {line for net in (*GROUPED, *SINGLE) for line in names(net)} - lines.keys():
         raise ParameterError(f"column: line {min(lacking)} must have a place")
     for name in extra:
-        taken = [(at, (line_um(name_of_line) + LINE) / 2 + LEAST) for name_of_line, at in lines.items()]
-        places = (snap(s.left + STEP * k) for s in strips for k in range(2, int((s.right - s.left) / STEP) - 1))
+        taken = [(at, (line_um(name_of_line) + LINE_WIDTH) / 2 + LINE_SPACE) for name_of_line, at in lines.items()]
+        places = (
+            snap(s.left + LINE_STEP * k) for s in strips for k in range(2, int((s.right - s.left) / LINE_STEP) - 1)
+        )
         free = (place for place in places if all(abs(place - at) >= apart - 1e-9 for at, apart in taken))
         lines[name] = next(free, -1.0)
         if lines[name] < 0:
             raise ParameterError(f"column strips: must have room for line {name}")
-    return ColumnPlan(tuple(strips), lines, joints, tuple(plates), snap(x + PAD_AT), tuple(extra))
+    return ColumnPlan(tuple(strips), lines, joints, tuple(plates), snap(x + PLATE_VIA_AT), tuple(extra))
 
 
 def _strip(
@@ -408,11 +424,16 @@ def _strip(
     ways = (("column_a", "column_b"), ("cin_a", "cin_b"))[number] if number < 2 else ()
     lowest = [net for net in (*piece.west, *ways) if piece.fixed.get(net) == 0]
     row_n, row_p, right = in_columns(list(zip(n, p, strict=True)), left + ROOM * len(lowest), ROOM)
-    ends: dict[str, tuple[float, ...]] = {net: (left + (IN if net in lowest else -OUT),) for net in piece.west}
-    ends |= {net: (*ends.get(net, ()), right + OUT) for net in piece.east}
+    ends: dict[str, tuple[float, ...]] = {
+        net: (left + (FIRST_TRACK_VIA_INSET if net in lowest else -STRIP_TO_VIA),) for net in piece.west
+    }
+    ends |= {net: (*ends.get(net, ()), right + STRIP_TO_VIA) for net in piece.east}
     ends |= {net: (*ends.get(net, ()), left + 0.5, right - 0.5) for net in piece.shields}
     present = {net for placed in (*row_n, *row_p) for net in placed.device.transistor.nodes}
-    ends |= {net: (left + IN if net in lowest else left - jog,) for net, jog in zip(ways, JOGS, strict=False)}
+    ends |= {
+        net: (left + FIRST_TRACK_VIA_INSET if net in lowest else left - jog,)
+        for net, jog in zip(ways, STRIP_TO_JOG, strict=False)
+    }
     plain = Plan(row_n, row_p, left, right, ends)
     for net, other in piece.over.items():
         ends[net] = (*ends.get(net, ()), *plain.spans()[other])
@@ -421,10 +442,10 @@ def _strip(
         if names(net)[0] in lines:
             ends[net] = (*ends.get(net, ()), lines[names(net)[0]], lines[names(net)[-1]])
     plan = Plan(
-        row_n, row_p, left, right, ends, least_um=PITCH - BETWEEN, fixed=piece.fixed, least_rows=ROWS, track_in=ROW_IN
+        row_n, row_p, left, right, ends, least_um=PITCH - RAIL_GAP, fixed=piece.fixed, least_rows=ROWS, track_in=ROW_IN
     )
-    if plan.height_um > PITCH - BETWEEN + 1e-9:
-        rows = round((plan.height_um - (PITCH - BETWEEN)) / 0.7) + ROWS
+    if plan.height_um > PITCH - RAIL_GAP + 1e-9:
+        rows = round((plan.height_um - (PITCH - RAIL_GAP)) / 0.7) + ROWS
         raise ParameterError(f"column strip {number} = {rows} tracks: must be {ROWS} at most")
     return plan, lines
 
@@ -434,17 +455,17 @@ def _lines(plan: Plan, present: set[str], left: float, right: float, number: int
     spans, taken, lines = plan.spans(), list[tuple[float, float]](), dict[str, float]()
     crossing = sorted((set(GROUPED) | set(SINGLE)) & present)
     crossing.sort(key=lambda net: (-len(names(net)), spans[net][1] - spans[net][0]))
-    places = [snap(left + STEP * k) for k in range(2, int((right - left) / STEP) - 1)]
+    places = [snap(left + LINE_STEP * k) for k in range(2, int((right - left) / LINE_STEP) - 1)]
     for net in crossing:
         half = line_um(net) / 2
-        pitch, count = 2 * half + LEAST, len(names(net))
+        pitch, count = 2 * half + LINE_SPACE, len(names(net))
         low, high = spans[net]
         middle = (low + high) / 2 - pitch * (count - 1) / 2
 
         def free(x: float, half: float = half, pitch: float = pitch, count: int = count) -> bool:
             ends = x - half, x + pitch * (count - 1) + half
             return ends[1] <= right - 0.2 and all(
-                ends[1] + LEAST <= a + 1e-9 or b + LEAST <= ends[0] + 1e-9 for a, b in taken
+                ends[1] + LINE_SPACE <= a + 1e-9 or b + LINE_SPACE <= ends[0] + 1e-9 for a, b in taken
             )
 
         place = min(filter(free, places), key=lambda x: abs(x - middle), default=None)
@@ -457,7 +478,7 @@ def _lines(plan: Plan, present: set[str], left: float, right: float, number: int
 
 def draw_column(canvas: Canvas, masks: AnalogMasks, positions: ColumnPlan) -> list[Strip]:
     """A column, its south edge at y = 0, with its part of the supplies that cross all columns, and vias to lines."""
-    y, strips = BETWEEN / 2, list[Strip]()
+    y, strips = RAIL_GAP / 2, list[Strip]()
     for plan in positions.strips:
         strip = draw_rows(canvas, masks, plan, y)
         draw_rails(canvas, masks, plan, y)
@@ -487,9 +508,11 @@ def draw_ground(canvas: Canvas, positions: ColumnPlan, y: float, vias: Sequence[
     """
     for plan in positions.strips[:2]:
         joint = plan.left - RAIL_AT - RAIL_TRUNK / 2
-        ends = [x - PAD[1] - LEAST for x in vias if joint < x < plan.right + PAD[1] + LEAST]
+        ends = [
+            x - PLATE_VIA_PAD[1] - LINE_SPACE for x in vias if joint < x < plan.right + PLATE_VIA_PAD[1] + LINE_SPACE
+        ]
         canvas.wire(THIRD, joint, y, min((*ends, plan.right)), y + SHIELD)
-        canvas.wire(THIRD, joint, y, joint + RAIL_TRUNK, y + BETWEEN / 2)
+        canvas.wire(THIRD, joint, y, joint + RAIL_TRUNK, y + RAIL_GAP / 2)
 
 
 def _plate(canvas: Canvas, masks: AnalogMasks, plate: Drawn) -> None:
@@ -497,9 +520,15 @@ def _plate(canvas: Canvas, masks: AnalogMasks, plate: Drawn) -> None:
     low, high = plate.cap.low, plate.cap.high
     canvas.box(masks.mim, plate.left, low, plate.right, high)
     # No tab at the vias' end: lines of others pass above
-    canvas.wire(THIRD, plate.left - AROUND, low - AROUND, plate.right + AROUND, high + AROUND)
+    canvas.wire(
+        THIRD,
+        plate.left - LOWER_ENCLOSURE,
+        low - LOWER_ENCLOSURE,
+        plate.right + LOWER_ENCLOSURE,
+        high + LOWER_ENCLOSURE,
+    )
     low, high = _patch(plate)
-    draw_patch(canvas, plate.left + PATCH_IN, low, plate.right - PATCH_IN, high)
+    draw_patch(canvas, plate.left + PATCH_INSET, low, plate.right - PATCH_INSET, high)
 
 
 def draw_patch(canvas: Canvas, left: float, low: float, right: float, high: float) -> None:
@@ -512,58 +541,59 @@ def draw_patch(canvas: Canvas, left: float, low: float, right: float, high: floa
 
 def steps(low: float, high: float) -> Iterator[float]:
     """Places of vias in a piece of metal."""
-    count = max(1, int((high - low - 0.4) / VIAS) + 1)
+    count = max(1, int((high - low - 0.4) / PLATE_VIA_PITCH) + 1)
     for k in range(count):
-        yield snap((low + high) / 2 + (k - (count - 1) / 2) * VIAS)
+        yield snap((low + high) / 2 + (k - (count - 1) / 2) * PLATE_VIA_PITCH)
 
 
 def _patch(plate: Drawn) -> tuple[float, float]:
     """Y of the metal over an upper plate: beside the lines of others that pass."""
-    if plate.cap.upper in WAYS:
-        y = WAYS[plate.cap.upper]
+    if plate.cap.upper in EXIT_Y:
+        y = EXIT_Y[plate.cap.upper]
         return y - 0.5, y + 0.5
     return (4.8, 8.8) if plate.cap.from_east else (1.2, 8.8)
 
 
 def _leave(canvas: Canvas, positions: ColumnPlan, strips: Sequence[Strip], number: int, strip: Strip) -> None:
     """What leaves a strip: on the fourth metal in the west, or on the second under the plates."""
-    plan, half = strip.plan, UNDER / 2
+    plan, half = strip.plan, UNDER_WIDTH / 2
     tracks = {net: track.y for track in strip.tracks for net in [track.net]}
-    for net, jog in zip(("column_a", "column_b") if number == 0 else ("cin_a", "cin_b"), JOGS, strict=True):
+    for net, jog in zip(("column_a", "column_b") if number == 0 else ("cin_a", "cin_b"), STRIP_TO_JOG, strict=True):
         if number < 2:
-            x, y, to = plan.left - jog, tracks[net], WAYS[net]
-            first = (
-                0.0
-                if number == 0
-                else min(drawn.left for drawn in positions.plates if drawn.cap.upper == net) + PATCH_IN
-            )
+            x, y, to = plan.left - jog, tracks[net], EXIT_Y[net]
+            west_ends = [drawn.left for drawn in positions.plates if drawn.cap.upper == net]
+            first = 0.0 if number == 0 else min(west_ends) + PATCH_INSET
             if _lowest(y):  # passes the rail's joint on the second track
-                end, y = plan.left + IN, snap(y + TRACK_PITCH)
+                end, y = plan.left + FIRST_TRACK_VIA_INSET, snap(y + TRACK_PITCH)
                 canvas.wire(THIRD, x - TRACK / 2, y - TRACK / 2, end + TRACK / 2, y + TRACK / 2)
                 canvas.wire(THIRD, end - TRACK / 2, tracks[net], end + TRACK / 2, y)
             canvas.stack(x, y, THIRD, FOURTH)
-            canvas.wire(FOURTH, x - LINE / 2, min(y, to) - LINE / 2, x + LINE / 2, max(y, to) + LINE / 2)
-            canvas.wire(FOURTH, first, to - NARROW / 2, x + LINE / 2, to + NARROW / 2)
+            canvas.wire(
+                FOURTH, x - LINE_WIDTH / 2, min(y, to) - LINE_WIDTH / 2, x + LINE_WIDTH / 2, max(y, to) + LINE_WIDTH / 2
+            )
+            canvas.wire(FOURTH, first, to - NARROW_WIDTH / 2, x + LINE_WIDTH / 2, to + NARROW_WIDTH / 2)
     for plate in positions.plates:
         beside = CAPS.index(next(group for group in CAPS if plate.cap in group)) - (not plate.cap.from_east)
         if beside != number:
             continue
-        for net, at in ((plate.cap.lower, VIA_IN), (plate.cap.upper, PAD_AT)):
-            if net in WAYS:
+        for net, at in ((plate.cap.lower, VIA_INSET), (plate.cap.upper, PLATE_VIA_AT)):
+            if net in EXIT_Y:
                 continue
-            west = plan.left + (IN if _lowest(tracks[net]) else -OUT)
-            start = west if plate.cap.from_east else plan.right + OUT
+            west = plan.left + (FIRST_TRACK_VIA_INSET if _lowest(tracks[net]) else -STRIP_TO_VIA)
+            start = west if plate.cap.from_east else plan.right + STRIP_TO_VIA
             x, y = plate.near + plate.way * at, _way(canvas, tracks[net], start)
             canvas.wire(SECOND, min(x, start), y - half, max(x, start), y + half)
             canvas.stack(x, y, SECOND, THIRD if net == plate.cap.lower else FOURTH)
             if net == plate.cap.upper:
-                canvas.wire(THIRD, x - PAD[0], y - PAD[1], x + PAD[0], y + PAD[1])
-                ends = x, plate.near - plate.way * PATCH_IN
-                canvas.wire(FOURTH, min(ends), y - LINE / 2, max(ends), y + LINE / 2)
+                canvas.wire(
+                    THIRD, x - PLATE_VIA_PAD[0], y - PLATE_VIA_PAD[1], x + PLATE_VIA_PAD[0], y + PLATE_VIA_PAD[1]
+                )
+                ends = x, plate.near - plate.way * PATCH_INSET
+                canvas.wire(FOURTH, min(ends), y - LINE_WIDTH / 2, max(ends), y + LINE_WIDTH / 2)
     if number + 1 < len(strips):
         after = strips[number + 1]
         for net in set(PIECES[number].east) & set(PIECES[number + 1].west):
-            y, x0, x1 = tracks[net], plan.right + OUT, after.plan.left - OUT
+            y, x0, x1 = tracks[net], plan.right + STRIP_TO_VIA, after.plan.left - STRIP_TO_VIA
             canvas.wire(SECOND, x0, y - half, x1, y + half)
             for x in (x0, x1):
                 canvas.stack(x, y, SECOND, THIRD)
@@ -571,14 +601,14 @@ def _leave(canvas: Canvas, positions: ColumnPlan, strips: Sequence[Strip], numbe
 
 def _lowest(track: float) -> bool:
     """Whether a track is the first one, beside a rail's joint in the west."""
-    return track < BETWEEN / 2 + ROW_IN + TRACK_PITCH / 2
+    return track < RAIL_GAP / 2 + ROW_IN + TRACK_PITCH / 2
 
 
 def _way(canvas: Canvas, track: float, x: float) -> float:
     """Y at which a net of ``track`` leaves a strip under the plates: of the first track the second's, for the rail."""
     y = snap(track + TRACK_PITCH) if _lowest(track) else track
     canvas.stack(x, track, SECOND, THIRD)
-    canvas.wire(SECOND, x - UNDER / 2, track, x + UNDER / 2, y + UNDER / 2)
+    canvas.wire(SECOND, x - UNDER_WIDTH / 2, track, x + UNDER_WIDTH / 2, y + UNDER_WIDTH / 2)
     return y
 
 
@@ -602,13 +632,13 @@ def column_cell(masks: AnalogMasks, sizes: ColumnSizes) -> Cell:
     draw_ground(canvas, plan, 0.0)
     for net in PINS:
         if net in ("column_a", "column_b"):
-            canvas.label(FOURTH, net, 0.2, WAYS[net])
+            canvas.label(FOURTH, net, 0.2, EXIT_Y[net])
         elif net in SINGLE:
-            canvas.wire(FOURTH, plan.lines[net] - LINE / 2, 0, plan.lines[net] + LINE / 2, PITCH)
+            canvas.wire(FOURTH, plan.lines[net] - LINE_WIDTH / 2, 0, plan.lines[net] + LINE_WIDTH / 2, PITCH)
             canvas.label(FOURTH, net, plan.lines[net], 0.2)
         elif net in GROUPED:
             name_track(canvas, next(track for track in cell.tracks if track.net == net))
-    for net, y in (("vss", BETWEEN / 2), ("vdd", PITCH - BETWEEN / 2)):
+    for net, y in (("vss", RAIL_GAP / 2), ("vdd", PITCH - RAIL_GAP / 2)):
         canvas.label(RAILS, net, plan.strips[0].left, y)
     canvas.box(masks.base.outline, 0, 0, plan.right, PITCH)
     return cell

@@ -3,7 +3,7 @@
 north     column_a, column_b of each column
           the columns, turned: their strips' lines run from west to east
           band: bank, bias, the ends of the lanes' lines
-south     the chip's pins | lane_a, lane_b of each lane | pins of OUTSIDE and SOURCE
+south     the chip's pins | lane_a, lane_b of each lane | pins of EXTERNAL_PINS and SOURCE
 
 Supplies are straps of the top metal over the columns, in turn the supply's and the ground's; between them, across the
 band. The pins in the south-east are none of the black box: the die has pins for them.
@@ -24,9 +24,9 @@ from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.analog import AnalogMasks
 
 from .cells import new_canvas
-from .column import LANES, LINE, PITCH, WAYS
+from .column import EXIT_Y, LANES, LINE_WIDTH, PITCH
 from .column_band import Band, draw_band
-from .columns import END, Columns, column_nets, draw_columns, draw_grounds, draw_way
+from .columns import WAY_END, Columns, column_nets, draw_columns, draw_grounds, draw_way
 from .device import snap
 from .drawn_block import DrawnBlock
 from .row_drivers import TOP, VIA, VIA_PAD, VIA_PITCH, chip_pin
@@ -35,17 +35,20 @@ from .strip import FOURTH, TRUNK
 NAME = "column_amplifiers"
 # Nets that a column or the band has from outside of the chip; lines across that no column is on
 INPUTS, OUTPUTS = ("dark", "reference", "start", "start_a"), (*BIASES, "level")
-OUTSIDE = {**dict.fromkeys(INPUTS, "input"), **dict.fromkeys(OUTPUTS, "output")}
+EXTERNAL_PINS = {**dict.fromkeys(INPUTS, "input"), **dict.fromkeys(OUTPUTS, "output")}
 SOURCE = "ibias_columns"
 EXTRA = ("turn", "turnn", "turnb", "turnbn", "vbl", "reference", "dark", "ibias")
 OUTWARD = (*BANK_OUTPUTS, "ibias", "vbp", "vcp", "vcn", "vbl", "level", "reference", "dark")
 NETS = {"vdd": "vddc", "vss": "vssa"}
 # um
-OVERLAP = 0.3  # of a way and what it meets in the band
-EAST = 4  # columns from the converters to the first pin in the south-east, and between these
-STRAP, STRAPS, APART = 8.0, 400.0, 6.0  # of the top metal over the columns: width, from one to the next; beside another
-EDGE = 3.0, 2.5  # of the supply's first strap in the west: width, middle
-ACROSS, HEIGHTS = 6.0, {"vss": 27.0, "vdd": 37.0}  # of the straps across the band
+OVERLAP = 0.3  # of a line and what it meets in the band
+PIN_COLUMNS = 4  # columns from the converters to the first pin in the south-east, and between pins
+STRAP = 8.0  # width of the top metal's straps over the columns
+STRAP_PITCH = 400.0
+STRAP_SPACE = 6.0  # between straps of both supplies
+EDGE_STRAP = 3.0, 2.5  # width and centre of the supply's first strap in the west
+BAND_STRAP_WIDTH = 6.0  # of the straps across the band
+BAND_STRAP_Y = {"vss": 27.0, "vdd": 37.0}
 
 
 @dataclass(frozen=True)
@@ -104,7 +107,7 @@ def draw_column_amplifiers(
     pins = {name: south[pin] for name, pin in nets.items()}
     lanes = [name for name in nets if name.startswith("lane_")]
     band = draw_band(canvas.layout, masks, sizes, LANES, pins, (*OUTWARD, *lanes))
-    height = snap(band.height - OVERLAP + END + columns.plan.right)
+    height = snap(band.height - OVERLAP + WAY_END + columns.plan.right)
     block = frame(array, chip, replace(room, columns_um=height))
     turned = Canvas(canvas.layout, "columns_and_ways", masks.base)
     turned.cell.insert(db.CellInstArray(columns.cell.cell_index(), db.Trans()))
@@ -114,7 +117,7 @@ def draw_column_amplifiers(
             xs = draw_way(turned, columns, nets.get(net, net), number, k if net in lanes else None)
             vias.setdefault(number, []).extend(xs)
     for pin in block.pins:
-        if pin.name in OUTSIDE or pin.name == SOURCE:
+        if pin.name in EXTERNAL_PINS or pin.name == SOURCE:
             number = round(pin.at_um / PITCH)
             xs = draw_way(turned, columns, "ibias" if pin.name == SOURCE else pin.name, number)
             vias.setdefault(number, []).extend(xs)
@@ -134,8 +137,8 @@ def draw_column_amplifiers(
 
 def _join(canvas: Canvas, pin: Pin) -> None:
     """A column's line, where it is in the column, and the array's pin."""
-    at = pin.at_um // PITCH * PITCH + WAYS[pin.name.split("[")[0]]
-    canvas.wire(FOURTH, 0, min(at, pin.at_um) - LINE / 2, DEEP_UM, max(at, pin.at_um) + LINE / 2)
+    at = pin.at_um // PITCH * PITCH + EXIT_Y[pin.name.split("[")[0]]
+    canvas.wire(FOURTH, 0, min(at, pin.at_um) - LINE_WIDTH / 2, DEEP_UM, max(at, pin.at_um) + LINE_WIDTH / 2)
 
 
 def frame(array: ArrayParameters, chip: ChipParameters, room: AnalogSizes) -> Block:
@@ -143,24 +146,26 @@ def frame(array: ArrayParameters, chip: ChipParameters, room: AnalogSizes) -> Bl
     block = next(candidate for candidate in blocks(array, chip, room) if candidate.name == NAME)
     first = max(pin.at_um for pin in block.pins if pin.side == "south") + room.bias_um + room.lane_um
     number = round(first / PITCH)
-    names = {**OUTSIDE, SOURCE: "input"}
-    extra = (Pin(name, way, "south", PITCH * (number + EAST * k)) for k, (name, way) in enumerate(names.items(), 1))
+    names = {**EXTERNAL_PINS, SOURCE: "input"}
+    extra = (
+        Pin(name, way, "south", PITCH * (number + PIN_COLUMNS * k)) for k, (name, way) in enumerate(names.items(), 1)
+    )
     return replace(block, pins=(*block.pins, *extra))
 
 
 def _supplies(canvas: Canvas, block: Block, columns: Columns, band: Band, room: AnalogSizes) -> None:
     """Straps over the columns, in turn; between them across the band; pins to the nearest."""
     width, height, half = block.width_um, block.height_um, room.supply_um / 2
-    last = int((width - STRAPS / 2) / STRAPS)
+    last = int((width - STRAP_PITCH / 2) / STRAP_PITCH)
     straps = {
-        "vdd": [(EDGE[1], EDGE[0]), *((20.0 + STRAPS * k, STRAP) for k in range(1, last + 1))],
-        "vss": [(20.0 + STRAPS * (k + 0.5), STRAP) for k in range(last)],
+        "vdd": [(EDGE_STRAP[1], EDGE_STRAP[0]), *((20.0 + STRAP_PITCH * k, STRAP) for k in range(1, last + 1))],
+        "vss": [(20.0 + STRAP_PITCH * (k + 0.5), STRAP) for k in range(last)],
     }
     pins = {(pin.name, pin.side): pin.at_um for pin in block.pins if pin.supply}
     cuts: dict[float, float] = {}
     for net, supply in NETS.items():
         first, final = straps[net][0][0], straps[net][-1][0]
-        for side, ends in (("west", (0.0, first + EDGE[0] / 2)), ("east", (final - EDGE[0] / 2, width))):
+        for side, ends in (("west", (0.0, first + EDGE_STRAP[0] / 2)), ("east", (final - EDGE_STRAP[0] / 2, width))):
             at = pins[supply, side]
             canvas.wire(TOP, ends[0], at - half, ends[1], at + half)
             cuts |= {x: at for x, _ in straps["vdd"] if net == "vss" and ends[0] < x < ends[1]}
@@ -178,16 +183,18 @@ def _supplies(canvas: Canvas, block: Block, columns: Columns, band: Band, room: 
                     _vias(canvas, x, y, wide)
             west = max((other for other in others if other < x), default=None)
             east = min((other for other in others if other > x), default=width - 1.0)
-            begin = x - wide / 2 if west is None else west + STRAP / 2 + APART
-            if west is not None and west == EDGE[1]:
-                begin = west + EDGE[0] / 2 + 1.7
-            y = HEIGHTS[net]
-            canvas.wire(TOP, begin, y - ACROSS / 2, east - STRAP / 2 - APART, y + ACROSS / 2)
+            begin = x - wide / 2 if west is None else west + STRAP / 2 + STRAP_SPACE
+            if west is not None and west == EDGE_STRAP[1]:
+                begin = west + EDGE_STRAP[0] / 2 + 1.7
+            y = BAND_STRAP_Y[net]
+            canvas.wire(TOP, begin, y - BAND_STRAP_WIDTH / 2, east - STRAP / 2 - STRAP_SPACE, y + BAND_STRAP_WIDTH / 2)
     for net, rails in band.joints.items():
-        y = HEIGHTS[net]
+        y = BAND_STRAP_Y[net]
         for x, low, high in rails:
-            canvas.wire(FOURTH, x - 0.5, min(low, y - ACROSS / 2), x + 0.5, max(high, y + ACROSS / 2))
-            canvas.wire(FOURTH, x - VIA_PAD, y - ACROSS / 2, x + VIA_PAD, y + ACROSS / 2)
+            canvas.wire(
+                FOURTH, x - 0.5, min(low, y - BAND_STRAP_WIDTH / 2), x + 0.5, max(high, y + BAND_STRAP_WIDTH / 2)
+            )
+            canvas.wire(FOURTH, x - VIA_PAD, y - BAND_STRAP_WIDTH / 2, x + VIA_PAD, y + BAND_STRAP_WIDTH / 2)
             for step in (-1, 0, 1):
                 canvas.square(canvas.process.vias[FOURTH].gds, x, y + VIA_PITCH * step, VIA)
 

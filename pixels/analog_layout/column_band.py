@@ -20,9 +20,9 @@ from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.analog import AnalogMasks
 
 from . import flat
-from .array import AROUND, TAB, VIA_IN
+from .array import LOWER_ENCLOSURE, LOWER_TAB, VIA_INSET
 from .cells import Cell
-from .column import PATCH_IN, PITCH, draw_patch, length_um, steps
+from .column import PATCH_INSET, PITCH, draw_patch, length_um, steps
 from .comparator import BETWEEN_STRIPS
 from .device import Device, snap
 from .row_driver import legs
@@ -43,15 +43,23 @@ from .strip import (
 )
 
 # um
-SOUTH, NORTH = 4.0, 3.0  # from the block's edge to the lowest rail; from the highest to the columns
+SOUTH = 4.0  # from the block's edge to the lowest rail
+NORTH = 3.0  # from the highest rail to the columns
 WEST = 8.0  # of the bank's strips
-ROOM = 0.6  # beside each pair of devices
-APART = 0.95  # least between middles of what crosses strips
-BIAS, PARTS_OF = 540.0, 3  # of the capacitors of the bias's lines: x of the first, parts of each
-PLATE, PLATE_PITCH, PLATE_UP = 28.0, 30.0, 1.9  # of a part: width, pitch, from the rail
+ROOM = 0.6  # next to each pair of devices
+CROSSING_SPACE = 0.95  # least, between centres of lines that cross strips
+BIAS_WEST = 540.0  # x of the first capacitor of the bias's lines
+PARTS_OF = 3  # parts of each of these capacitors
+PLATE = 28.0  # width of a part
+PLATE_PITCH = 30.0
+PLATE_RISE = 1.9  # from the rail to a part
 RAMP = "bank.clear.ramp"  # the pulse's capacitor, and its net
-RAMP_AT, RAMP_WIDE, RAMP_UP = 15.0, 40.0, 1.5  # of it: x of its net, width, from the rail
-STRIPS, BANK, ASIDE = 2, 500.0, 20.0  # of the bank: strips, its east end; of the bias from there
+RAMP_AT = 15.0  # x of its net
+RAMP_WIDTH = 40.0
+RAMP_RISE = 1.5  # from the rail
+STRIPS = 2  # of the bank
+BANK = 500.0  # east end of the bank
+BIAS_OFFSET = 20.0  # of the bias from there
 
 Pair = tuple[Device | None, Device | None]
 
@@ -91,7 +99,7 @@ class Group:
         taken = [*(at for xs in self.ways.values() for at in xs), *self.pins.values(), *self.inner.values()]
         taken += [at for xs in self.plates.values() for at in xs]
         places = (snap(first + step * k) for k in range(int(self.right / step) + 1))
-        free = [at for at in places if at > self.left and all(abs(at - other) >= APART for other in taken)]
+        free = [at for at in places if at > self.left and all(abs(at - other) >= CROSSING_SPACE for other in taken)]
         if not free:
             raise ParameterError(f"column band from {self.left:.0f} um: must have room for its lines")
         return min(free, key=lambda at: abs(at - x))
@@ -163,9 +171,11 @@ def draw_band(
     canvas = Canvas(layout, "column_band", masks.base)
     bank = Group(WEST, BANK, [in_columns(row, WEST, ROOM) for row in bank_rows(sizes, d)])
     bank.inner[RAMP] = RAMP_AT
-    bias = Group(BANK + ASIDE, BIAS + PLATE_PITCH * PARTS_OF * len(BIASES) + 5.0, [_bias(d, BANK + ASIDE)])
+    bias = Group(
+        BANK + BIAS_OFFSET, BIAS_WEST + PLATE_PITCH * PARTS_OF * len(BIASES) + 5.0, [_bias(d, BANK + BIAS_OFFSET)]
+    )
     for k, net in enumerate(net for net in BIASES for _ in range(PARTS_OF)):
-        bias.plates.setdefault(net, []).append(BIAS + (k + 0.5) * PLATE_PITCH)
+        bias.plates.setdefault(net, []).append(BIAS_WEST + (k + 0.5) * PLATE_PITCH)
     first = snap(min(x for net, x in pins.items() if net.startswith("lane_")) - 2 * PITCH)
     ends = Group(first, 0.0, [_ends(d, lanes, first)])
     ends.right = snap(ends.rows[0][2] + 2 * PITCH)
@@ -184,7 +194,7 @@ def draw_band(
     tops = [group.place(canvas, masks) for group in groups]
     plates = [_ramp(canvas, masks, sizes, bank, tops[0])]
     plates += _decoupling(canvas, masks, sizes, bias, tops[1])
-    ups = RAMP_UP + plates[0].area / RAMP_WIDE, PLATE_UP + plates[1].area / PLATE / PARTS_OF
+    ups = RAMP_RISE + plates[0].area / RAMP_WIDTH, PLATE_RISE + plates[1].area / PLATE / PARTS_OF
     height = snap(max(top + up for top, up in zip(tops, ups, strict=False)) + NORTH)
     joints: dict[str, list[tuple[float, float, float]]] = {"vss": [], "vdd": []}
     for group in groups:
@@ -257,36 +267,38 @@ def _device(t: Transistor) -> Device:
 def _ramp(canvas: Canvas, masks: AnalogMasks, sizes: ColumnSizes, bank: Group, top: float) -> flat.Plate:
     """The pulse's capacitor, above the bank's west: its upper plate's metal between two ways, the lower at ground."""
     pulse = next(c for c in flat.capacitors(band(sizes, 1)) if c.name == RAMP)
-    left, low, high = WEST + 1.0, top + RAMP_UP, snap(top + RAMP_UP + length_um(pulse.value, masks, RAMP_WIDE))
-    canvas.box(masks.mim, left, low, left + RAMP_WIDE, high)
+    left, low, high = WEST + 1.0, top + RAMP_RISE, snap(top + RAMP_RISE + length_um(pulse.value, masks, RAMP_WIDTH))
+    canvas.box(masks.mim, left, low, left + RAMP_WIDTH, high)
     ground = WEST - RAIL_AT
-    canvas.wire(THIRD, ground - 0.5, low - AROUND, left + RAMP_WIDE + AROUND, high + AROUND)
+    canvas.wire(THIRD, ground - 0.5, low - LOWER_ENCLOSURE, left + RAMP_WIDTH + LOWER_ENCLOSURE, high + LOWER_ENCLOSURE)
     canvas.wire(FOURTH, ground - 0.5, SOUTH, ground + 0.5, high)
     for y in steps(low, high):
         canvas.square(masks.base.vias[THIRD].gds, ground, y, 0.2)
     half = PITCH / 2 - 0.8
-    draw_patch(canvas, RAMP_AT - half, low + PATCH_IN, RAMP_AT + half, high - PATCH_IN)
+    draw_patch(canvas, RAMP_AT - half, low + PATCH_INSET, RAMP_AT + half, high - PATCH_INSET)
     track = next(piece for strip in bank.strips for piece in strip.tracks if piece.net == RAMP)
     canvas.wire(FOURTH, RAMP_AT - TRUNK / 2, track.y, RAMP_AT + TRUNK / 2, low + 1)
-    return flat.Plate(RAMP, RAMP, "vss", RAMP_WIDE * (high - low), 2 * (RAMP_WIDE + high - low))
+    return flat.Plate(RAMP, RAMP, "vss", RAMP_WIDTH * (high - low), 2 * (RAMP_WIDTH + high - low))
 
 
 def _decoupling(canvas: Canvas, masks: AnalogMasks, sizes: ColumnSizes, bias: Group, top: float) -> list[flat.Plate]:
     """The capacitors of the bias's lines, between the places of ways above its strip."""
-    strip, plates, x = bias.strips[0], list[flat.Plate](), BIAS
+    strip, plates, x = bias.strips[0], list[flat.Plate](), BIAS_WEST
     tracks = {track.net: track.y for track in strip.tracks}
     for c in (c for c in flat.capacitors(band(sizes, 1)) if c.name.startswith("bias.c_")):
-        wide, low = PLATE, top + PLATE_UP
+        wide, low = PLATE, top + PLATE_RISE
         high = snap(low + length_um(c.value / PARTS_OF, masks, wide))
         for _ in range(PARTS_OF):
             left, middle = x + (PLATE_PITCH - PLATE) / 2, x + PLATE_PITCH / 2
             canvas.box(masks.mim, left, low, left + wide, high)
-            canvas.wire(THIRD, left - AROUND, low - TAB, left + wide + AROUND, high + AROUND)
-            draw_patch(canvas, left + PATCH_IN, low + PATCH_IN, left + wide - PATCH_IN, high - PATCH_IN)
+            canvas.wire(
+                THIRD, left - LOWER_ENCLOSURE, low - LOWER_TAB, left + wide + LOWER_ENCLOSURE, high + LOWER_ENCLOSURE
+            )
+            draw_patch(canvas, left + PATCH_INSET, low + PATCH_INSET, left + wide - PATCH_INSET, high - PATCH_INSET)
             canvas.wire(FOURTH, middle - TRUNK / 2, tracks[c.a] - TRUNK / 2, middle + TRUNK / 2, low + 1)
             rail, at = (top if c.b == "vdd" else strip.y), middle + 3.0
-            canvas.stack(at, low - VIA_IN, SECOND, THIRD)
-            canvas.wire(SECOND, at - 0.19, rail - 0.19, at + 0.19, low - VIA_IN + 0.19)
+            canvas.stack(at, low - VIA_INSET, SECOND, THIRD)
+            canvas.wire(SECOND, at - 0.19, rail - 0.19, at + 0.19, low - VIA_INSET + 0.19)
             canvas.stack(at, rail, 1, SECOND)
             x += PLATE_PITCH
         count = PARTS_OF

@@ -15,12 +15,12 @@ from talbot.platforms.analog import AnalogMasks
 
 from .cells import Cell
 from .column import (
+    EXIT_Y,
     GROUPED,
     LANES,
-    PAD,
     PITCH,
+    PLATE_VIA_PAD,
     SINGLE,
-    WAYS,
     ColumnPlan,
     as_cell,
     column_plan,
@@ -32,7 +32,8 @@ from .column import (
 )
 from .strip import FOURTH, SECOND, THIRD, name_track
 
-WAY, END = 0.2, 1.0  # um, width of a way; where it goes up, beyond the columns
+WAY_WIDTH = 0.2  # um, of a line to the south
+WAY_END = 1.0  # um, beyond the columns, where it goes up
 
 
 @dataclass(frozen=True)
@@ -78,8 +79,8 @@ def draw_columns(
     canvas = Canvas(layout, "column", masks.base)
     column = as_cell(canvas, d, plan, draw_column(canvas, masks, plan))
     for net in column.ports:
-        if net in WAYS:
-            canvas.label(FOURTH, net, 0.2, WAYS[net])
+        if net in EXIT_Y:
+            canvas.label(FOURTH, net, 0.2, EXIT_Y[net])
         elif net not in plan.joints:
             name_track(canvas, next(track for track in column.tracks if track.net == net))
     whole = Canvas(layout, "columns", masks.base)
@@ -103,17 +104,17 @@ def draw_columns(
 
 
 def draw_way(canvas: Canvas, columns: Columns, net: str, number: int, only: int | None = None) -> list[float]:
-    """From the lines of a net, or from one of them, to END beyond the columns, south of column ``number``.
+    """From the lines of a net, or from one of them, to WAY_END beyond the columns, south of column ``number``.
 
     Returns x of its vias.
     """
-    lines, y, half = columns.lines(net), number * PITCH, WAY / 2
+    lines, y, half = columns.lines(net), number * PITCH, WAY_WIDTH / 2
     lines = lines if only is None else lines[only : only + 1]
-    end = columns.plan.right + END
+    end = columns.plan.right + WAY_END
     canvas.wire(SECOND, min(lines) - half, y - half, end + half, y + half)
     for x in (*lines, end):
         canvas.stack(x, y, SECOND, FOURTH)
-        canvas.wire(THIRD, x - PAD[1], y - PAD[0], x + PAD[1], y + PAD[0])
+        canvas.wire(THIRD, x - PLATE_VIA_PAD[1], y - PLATE_VIA_PAD[0], x + PLATE_VIA_PAD[1], y + PLATE_VIA_PAD[0])
     return [*lines, end]
 
 

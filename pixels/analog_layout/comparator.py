@@ -17,7 +17,8 @@ from .device import Device, swapped
 from .strip import Placed, Plan, Strip, draw_strip, mirrored, trunk
 
 WITH_DUMMIES = "inp", "inn", "latch_np", "latch_nn"
-ROOM, HOLD_ROOM = 0.6, 1.2  # um beside each device, for its drops
+ROOM = 0.6  # um next to each device, for its drops
+HOLD_ROOM = 1.2  # the same in the latch that holds the decision
 BETWEEN_STRIPS = 1.5  # middles of rails, um
 CROSSING = 3.0  # of what joins the strips from the axis, um
 

@@ -36,18 +36,26 @@ from .strip import FOURTH, RAIL_AT, SECOND, THIRD, TRUNK
 
 NAME = "adc_lanes"
 TOP = 5
-REFERENCES, ON = ("refp", "refn", "vcm", "vref"), "amp_on"
+REFERENCES, AMPLIFIER_ON = ("refp", "refn", "vcm", "vref"), "amp_on"
 # um
-INSIDE = 4.0  # of a cell from its place's west end
+CELL_INSET = 4.0  # of a cell from its place's west end
 FIRST_TRACK = 5.0  # of the lower channel from the south
-RISE_FIRST, RISE, BALANCE_FIRST, BALANCE = 8.0, 5.0, 36.0, 2.0  # of what rises in the east: references, balance
-RISE_WIDE = 2.0  # of a reference there
-REFERENCE_WIDE, REFERENCE_PITCH, REFERENCE_AWAY = 4.0, 6.0, 8.0
+FIRST_REFERENCE_RISER = 8.0  # lines to the amplifiers in the east
+REFERENCE_RISER_PITCH = 5.0
+FIRST_BALANCE_RISER = 36.0
+BALANCE_RISER_PITCH = 2.0
+REFERENCE_RISER_WIDTH = 2.0
+REFERENCE_WIDTH = 4.0
+REFERENCE_PITCH = 6.0
+REFERENCE_SPACE = 8.0
 JOGS = 2.0, 3.5  # of lane_a and lane_b above the amplifiers
 NORTH = 6.0  # from the amplifiers to the block's north
-STRAP, STRAP_PITCH, SPINE = 4.0, 30.0, (2.0, 13.0)  # of the supplies; of what joins straps from the edge
-STRAP_IN = 2.5  # of a strap from its rails' ends
-VIA_PITCH, UNDER = 1.6, 9.0  # of the supplies' vias; of the lines that pass below another, over their vias
+STRAP = 4.0  # width of the supplies' straps
+STRAP_PITCH = 30.0
+SPINE = 2.0, 13.0  # of the metal that joins straps, from the edge
+STRAP_INSET = 2.5  # of a strap from its rails' ends
+VIA_PITCH = 1.6  # of the supplies' vias
+UNDERPASS = 9.0  # of lines that pass below another, over their vias
 SUPPLIES = {"vdd": "vddc", "vss": "vssa"}
 
 
@@ -78,7 +86,8 @@ def frame(chip: ChipParameters, sizes: AnalogSizes) -> Block:
     """The frame, with pins for the references and for what wakes the amplifiers in the south-east."""
     block = next(candidate for candidate in blocks(chip=chip, sizes=sizes) if candidate.name == NAME)
     extra = (
-        Pin(name, "input" if name == ON else "inout", "south", rise(name, chip, sizes)) for name in (*REFERENCES, ON)
+        Pin(name, "input" if name == AMPLIFIER_ON else "inout", "south", rise(name, chip, sizes))
+        for name in (*REFERENCES, AMPLIFIER_ON)
     )
     return replace(block, pins=(*block.pins, *extra))
 
@@ -86,9 +95,9 @@ def frame(chip: ChipParameters, sizes: AnalogSizes) -> Block:
 def rise(net: str, chip: ChipParameters, sizes: AnalogSizes) -> float:
     """X at which a net rises east of the lanes."""
     east = chip.lanes * sizes.lane_um
-    if net in (*REFERENCES, ON):
-        return east + RISE_FIRST + RISE * (*REFERENCES, ON).index(net)
-    return east + BALANCE_FIRST + BALANCE * int(net.removeprefix("balance[").removesuffix("]"))
+    if net in (*REFERENCES, AMPLIFIER_ON):
+        return east + FIRST_REFERENCE_RISER + REFERENCE_RISER_PITCH * (*REFERENCES, AMPLIFIER_ON).index(net)
+    return east + FIRST_BALANCE_RISER + BALANCE_RISER_PITCH * int(net.removeprefix("balance[").removesuffix("]"))
 
 
 def lane_nets(lane: int, chip: ChipParameters, ports: tuple[str, ...]) -> tuple[str, ...]:
@@ -104,7 +113,7 @@ def amplifier_nets(lane: int, ports: tuple[str, ...]) -> tuple[str, ...]:
     """The block's nets at the ports of the amplifier of a lane."""
     nets = {f"g{bit}": f"balance[{bit}]" for bit in range(TRIM_BITS)}
     nets |= {f"column_{diode}": f"lane_{diode}[{lane}]" for diode in DIODES} | SUPPLIES
-    nets |= {"out": f"out_{lane}", "reset": f"reset_{lane}", "ibias": f"ibias_{lane}", "on": ON}
+    nets |= {"out": f"out_{lane}", "reset": f"reset_{lane}", "ibias": f"ibias_{lane}", "on": AMPLIFIER_ON}
     return tuple(nets.get(port, port) for port in ports)
 
 
@@ -137,16 +146,16 @@ def draw_converters(
             raise ParameterError(f"{name}_um = {most:g}: must be {need:.2f} at the least, the drawn {cell.cell.name}")
     canvas = new_canvas(masks, NAME)
     ground = next(pin.at_um for pin in block.pins if pin.name == "vssa")
-    top = ground - REFERENCE_AWAY  # of the lanes
+    top = ground - REFERENCE_SPACE  # of the lanes
     low = top - lane.cell.dbbox().height()
     lanes = [Placed(lane, lane_nets(k, chip, lane.ports), _x(k, room), low) for k in range(chip.lanes)]
-    straps = {net: top + REFERENCE_AWAY + REFERENCE_PITCH * k for k, net in enumerate(REFERENCES)}
+    straps = {net: top + REFERENCE_SPACE + REFERENCE_PITCH * k for k, net in enumerate(REFERENCES)}
     south = _south(block, lanes, chip, room)
-    middle = top + REFERENCE_AWAY + REFERENCE_PITCH * len(REFERENCES)
+    middle = top + REFERENCE_SPACE + REFERENCE_PITCH * len(REFERENCES)
     east = chip.lanes * room.lane_um
     currents = tuple(f"ibias_{k}" for k in range(chip.lanes)) + tuple(SUPPLIES.values())
     amplifiers = [Placed(above, amplifier_nets(k, above.ports), _x(k, room), 0.0) for k in range(chip.lanes)]
-    biased = Placed(bias, currents, east + INSIDE - bias.cell.dbbox().left, 0.0)
+    biased = Placed(bias, currents, east + CELL_INSET - bias.cell.dbbox().left, 0.0)
     channel = _middle(middle, lanes, amplifiers, biased, block, chip, room)
     amplifiers = [replace(cell_instance, y=channel.top) for cell_instance in amplifiers]
     biased = replace(biased, y=channel.top)
@@ -157,7 +166,7 @@ def draw_converters(
     south.draw(canvas, 0.0, _rising(south, lanes, low, middle, block, chip, room))
     channel.draw(canvas, top - 0.1)
     _references(canvas, lanes, amplifiers, straps, top, channel.top, chip, room)
-    canvas.wire(FOURTH, (x := rise(ON, chip, room)) - WIDE_UM / 2, 0, x + WIDE_UM / 2, middle + 0.1)
+    canvas.wire(FOURTH, (x := rise(AMPLIFIER_ON, chip, room)) - WIDE_UM / 2, 0, x + WIDE_UM / 2, middle + 0.1)
     _north(canvas, block, amplifiers)
     _supplies(canvas, block, lanes, [*amplifiers, biased], room)
     draw_pins(canvas.layout, canvas.cell, block, masks.base.name, room.supply_um)
@@ -181,7 +190,7 @@ def _ports(cell: Cell) -> dict[str, float]:
 
 
 def _x(lane: int, room: AnalogSizes) -> float:
-    return lane * room.lane_um + INSIDE
+    return lane * room.lane_um + CELL_INSET
 
 
 def _gap(lane: int, room: AnalogSizes) -> float:
@@ -229,7 +238,7 @@ def _middle(
     """Between the lanes and the amplifiers."""
     below: dict[str, list[float]] = {
         net: [rise(net, chip, room)]
-        for net in [ON, *(pin.name for pin in block.pins if pin.name.startswith("balance"))]
+        for net in [AMPLIFIER_ON, *(pin.name for pin in block.pins if pin.name.startswith("balance"))]
     }
     below |= {f"reset_{k}": [_gap(k, room)] for k in range(len(lanes))}
     below |= {net: [x] for lane in lanes for net, x in lane.ends() if net.startswith("out_")}
@@ -269,12 +278,12 @@ def _references(
     """Straps across all lanes from what rises in the east; the lanes below, the amplifiers' vref above."""
     half = TRUNK / 2
     for net, y in straps.items():
-        x, wide = rise(net, chip, room), REFERENCE_WIDE / 2
+        x, wide = rise(net, chip, room), REFERENCE_WIDTH / 2
         canvas.wire(THIRD, 3.0, y - wide, x + wide, y + wide)
         for step in (-1.2, -0.6, 0.0, 0.6, 1.2):
             for aside in (-0.6, 0.0, 0.6):
                 canvas.stack(x + aside, y + step, THIRD, FOURTH)
-        canvas.wire(FOURTH, x - RISE_WIDE / 2, 0.0, x + RISE_WIDE / 2, y + wide)
+        canvas.wire(FOURTH, x - REFERENCE_RISER_WIDTH / 2, 0.0, x + REFERENCE_RISER_WIDTH / 2, y + wide)
     for lane in lanes:
         for net, x in lane.ends():
             if net in straps:
@@ -332,8 +341,8 @@ def _supplies(canvas: Canvas, block: Block, lanes: list[Placed], upper: list[Pla
     heights: dict[str, list[list[float]]] = {"vss": [], "vdd": []}
     for row in (lanes, upper):
         rails = [_rails(instance) for instance in row]
-        low = max(bottom for spans in rails[:-1] or rails for _, bottom, _ in spans.values()) + STRAP_IN
-        high = min(top for spans in rails[:-1] or rails for _, _, top in spans.values()) - STRAP_IN
+        low = max(bottom for spans in rails[:-1] or rails for _, bottom, _ in spans.values()) + STRAP_INSET
+        high = min(top for spans in rails[:-1] or rails for _, _, top in spans.values()) - STRAP_INSET
         ys = [round(low + STRAP_PITCH * n, 2) for n in range(int((high - low) / STRAP_PITCH) + 1)]
         for k, net in enumerate(("vdd", "vss")):
             heights[net].append(ys[k::2])
@@ -358,8 +367,8 @@ def _supplies(canvas: Canvas, block: Block, lanes: list[Placed], upper: list[Pla
             canvas.wire(TOP, x0, at - wide, width, at + wide)
         if net == "vdd":  # below the ground's line
             ends = max(*rows[0], xs[0]) + wide, min(*rows[1], xs[1]) - wide
-            canvas.wire(FOURTH, x0 + 1, ends[0] - UNDER, x1 - 1, ends[1] + UNDER)
-            for y in (ends[0] - UNDER / 2, ends[1] + UNDER / 2):
+            canvas.wire(FOURTH, x0 + 1, ends[0] - UNDERPASS, x1 - 1, ends[1] + UNDERPASS)
+            for y in (ends[0] - UNDERPASS / 2, ends[1] + UNDERPASS / 2):
                 for across in range(-2, 3):
                     for step in range(-2, 3):
                         canvas.square(via, (x0 + x1) / 2 + VIA_PITCH * across, y + VIA_PITCH * step, 0.8)

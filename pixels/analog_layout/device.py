@@ -19,14 +19,22 @@ from talbot.pixels.layout.canvas import CONTACT_UM, Canvas
 from talbot.platforms.analog import AnalogMasks
 
 # um
-BETWEEN, BEYOND = 0.28, 0.265  # diffusion between two gates and beyond the last, both with a contact
-POLY_END, GATE_BAR, SOURCE = 0.13, 0.33, 0.34  # poly beyond the gate; middles of the straps from the diffusion
-RAIL = 0.96  # from the middle of the rail to the diffusion
-STRAP, BAR_HALF, PAD = 0.32, 0.135, 0.165  # width of a strap; half the width of the bar of poly; half of a pad of poly
-CONTACT_PITCH, CONTACT_IN = 0.34, 0.12  # of contacts along a finger; diffusion around one
-IMPLANT, WELL_AROUND, LOW_AROUND = 0.125, 0.20, 0.20
+GATE_SPACE = 0.28  # diffusion between two gates, with a contact
+DIFFUSION_END = 0.265  # diffusion beyond the last gate, with a contact
+POLY_END = 0.13  # poly beyond the gate
+GATE_BAR = 0.33  # from the diffusion to the centre of the gates' bar
+SOURCE = 0.34  # from the diffusion to the centre of the source's strap
+RAIL = 0.96  # from the rail's centre to the diffusion
+STRAP = 0.32  # width of a strap
+BAR_HALF = 0.135  # half width of the bar of poly
+PAD = 0.165  # half width of a pad of poly
+CONTACT_PITCH = 0.34  # along a finger
+CONTACT_IN = 0.12  # diffusion around a contact
+IMPLANT = 0.125
+WELL_AROUND = 0.20
+LOW_AROUND = 0.20
 NITRIDE = 0.10
-TALLEST = 5.0  # of a finger that is chosen here
+MAX_FINGER = 5.0  # height of a finger that is chosen here
 GRID = 0.005
 
 
@@ -76,7 +84,7 @@ class Device:
             )
 
     @classmethod
-    def of(cls, transistor: Transistor, tallest: float = TALLEST, dummies: bool = False) -> Self:
+    def of(cls, transistor: Transistor, tallest: float = MAX_FINGER, dummies: bool = False) -> Self:
         """With its own fingers, else the fewest that are no taller; one below 2 um, as the circuits' models have it."""
         if transistor.fingers:
             return cls(transistor, transistor.fingers, dummies)
@@ -98,13 +106,13 @@ class Device:
     @property
     def pitch_um(self) -> float:
         """From gate to gate."""
-        return self.transistor.l + BETWEEN
+        return self.transistor.l + GATE_SPACE
 
     @property
     def width_um(self) -> float:
         """Of its diffusion."""
         gates = self.fingers + 2 * self.dummies
-        return gates * self.transistor.l + (gates - 1) * BETWEEN + 2 * BEYOND
+        return gates * self.transistor.l + (gates - 1) * GATE_SPACE + 2 * DIFFUSION_END
 
     @property
     def off(self) -> list[Transistor]:
@@ -121,15 +129,15 @@ class Device:
     @property
     def junctions_um(self) -> tuple[float, float, float, float]:
         """Areas (um2) of source and drain and their perimeters (um) as they are drawn, without the gates' edges."""
-        w, end = self.finger_um, BETWEEN if self.dummies else BEYOND
+        w, end = self.finger_um, GATE_SPACE if self.dummies else DIFFUSION_END
         share = 0.5 if self.dummies else 1.0  # a dummy has the other half
         if self.fingers == 1:
             area, edge = share * end * w, share * 2 * end + (0 if self.dummies else w)
             return area, area, edge, edge
         inner, drains = self.fingers // 2 - 1, self.fingers // 2
-        source = w * (inner * BETWEEN + 2 * share * end)
-        around = inner * 2 * BETWEEN + 2 * (share * 2 * end + (0 if self.dummies else w))
-        return source, w * drains * BETWEEN, around, drains * 2 * BETWEEN
+        source = w * (inner * GATE_SPACE + 2 * share * end)
+        around = inner * 2 * GATE_SPACE + 2 * (share * 2 * end + (0 if self.dummies else w))
+        return source, w * drains * GATE_SPACE, around, drains * 2 * GATE_SPACE
 
 
 def draw_device(
@@ -174,7 +182,7 @@ class _Drawn:
         implant = base.nplus if t.role.startswith("n") else base.pplus
         self.box(implant, self.room[0], low - IMPLANT, self.room[1], high + IMPLANT)
         gates = d.fingers + 2 * d.dummies
-        starts = [self.x + BEYOND + k * d.pitch_um for k in range(gates)]
+        starts = [self.x + DIFFUSION_END + k * d.pitch_um for k in range(gates)]
         if t.role in self.masks.low:
             edges = starts[0] - LOW_AROUND, starts[-1] + t.l + LOW_AROUND
             self.box(self.masks.low_threshold, edges[0], low - LOW_AROUND, edges[1], high + LOW_AROUND)
@@ -185,7 +193,7 @@ class _Drawn:
             bottom = low - POLY_END if start in active_gates else low - SOURCE - BAR_HALF
             self.box(base.poly, start, bottom, start + t.l, top)
         straps = [self._gates(active_gates, bar)]
-        stripes = [self.x + BEYOND - BETWEEN / 2 + k * d.pitch_um for k in range(gates + 1)]
+        stripes = [self.x + DIFFUSION_END - GATE_SPACE / 2 + k * d.pitch_um for k in range(gates + 1)]
         if d.dummies:
             self._dummy(stripes[0], starts[0])
             self._dummy(stripes[-1], starts[-1])

@@ -42,12 +42,14 @@ from .strip import (
 from .switch import ORDER
 
 # um
-CHANNEL, CHANNEL_FIRST, CHANNEL_PITCH = 9.0, 0.9, 1.6  # beside the arrays, for what passes them
-AWAY = 1.6  # of an array from a rail
+CHANNEL = 9.0  # width next to the arrays, for lines that pass them
+CHANNEL_FIRST = 0.9
+CHANNEL_PITCH = 1.6
+ARRAY_SPACE = 1.6  # from an array to a rail
 WEST, EAST = ("lane_a", "refn", "bottoms", "refp", "bottoms_n"), ("vcm", "sample_1", "sample_2", "comparator", "fire")
 GATES = (("n", "p"),), (("na", "pa"), ("nb", "pb"))  # of an inverter, of a gate of two inputs
 NORTH = "lane_a", "lane_b", "refp", "refn", "vcm"  # pins there
-STEP = 2.8  # of the nets over the strips
+NET_PITCH = 2.8  # of the nets over the strips
 JOG = 5.0  # of the common nodes' ways into the comparator from its axis
 Column = tuple[Device | None, Device | None]
 
@@ -158,13 +160,13 @@ def lane_cell(masks: AnalogMasks, sizes: LaneSizes, chip: bool = False) -> Cell:
     for strip_plan in (*plan.drivers, *plan.dac_switches):
         south.append(draw_strip(canvas, masks, strip_plan, y))
         y += strip_plan.height_um + BETWEEN_STRIPS
-    y += AWAY - BETWEEN_STRIPS
+    y += ARRAY_SPACE - BETWEEN_STRIPS
     dac = draw_array(canvas, masks, plan.dac, y)
-    y += plan.dac.size_um[1] + AWAY
+    y += plan.dac.size_um[1] + ARRAY_SPACE
     middle = draw_comparator(canvas, masks, plan.comparator, y)
-    y = middle[-1].y + middle[-1].plan.height_um + AWAY
+    y = middle[-1].y + middle[-1].plan.height_um + ARRAY_SPACE
     balance = draw_array(canvas, masks, plan.balance, y, bus_south=False)
-    y += plan.balance.size_um[1] + AWAY
+    y += plan.balance.size_um[1] + ARRAY_SPACE
     north = draw_strip(canvas, masks, plan.balance_switches, y)
     top = y + plan.balance_switches.height_um + MARGIN
     strips = [*south, *middle, north]
@@ -209,10 +211,10 @@ def _places(left: float, right: float, nets: Mapping[str, str], other: Mapping[s
     bits = [f"d{k}" for k in reversed(range(BITS))]
     over = [*nets.values(), *bits]
     over += ["sample", "strobe", *CHIP]
-    first = (left + right) / 2 - STEP * (len(over) - 1) / 2
-    places |= {net: first + STEP * k for k, net in enumerate(["track", *over, "reset"], -1)}
+    first = (left + right) / 2 - NET_PITCH * (len(over) - 1) / 2
+    places |= {net: first + NET_PITCH * k for k, net in enumerate(["track", *over, "reset"], -1)}
     beside = [*other.values(), "lane_b"]
-    return places | {net: first + STEP * (3 * k + 1) for k, net in enumerate(beside) if net not in places}
+    return places | {net: first + NET_PITCH * (3 * k + 1) for k, net in enumerate(beside) if net not in places}
 
 
 def _nets(canvas: Canvas, plan: LanePlan, tracks: Sequence[Strap], top: float, ports: Sequence[str]) -> None:

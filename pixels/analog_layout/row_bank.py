@@ -14,9 +14,10 @@ from .comparator import BETWEEN_STRIPS, devices
 from .row_driver import LINE_PITCH, ROOM, RowPlan, legs
 from .strip import FOURTH, RAIL_HALF, SECOND, THIRD, Plan, Strip, draw_strip, in_columns, trunk
 
-NORTH, SOUTH = 2.0, 3.0  # um, of the strips
-APART = 0.95  # um, least between middles of what crosses strips
-BESIDE_JOINT = 1.2  # um, of the middle of what joins rails
+NORTH = 2.0  # um, of the strips
+SOUTH = 3.0  # um, of the strips
+CROSSING_SPACE = 0.95  # um, least, between centres of lines that cross strips
+JOINT_SPACE = 1.2  # um, from such a line to the centre of the metal that joins rails
 
 
 def _strips() -> Iterator[list[str]]:
@@ -46,8 +47,8 @@ def crossings(rows: RowPlan) -> dict[str, float]:
             position = at[f"{side}_row{bit}"]
             nearest = max(position, max(rows.lines[name] for name in _codes("reset", "low")))
             place = nearest
-            while any(abs(place - x) < APART for x in taken) or any(
-                abs(place - x) < BESIDE_JOINT for x in rows.joints.values()
+            while any(abs(place - x) < CROSSING_SPACE for x in taken) or any(
+                abs(place - x) < JOINT_SPACE for x in rows.joints.values()
             ):
                 place = round(place + LINE_PITCH / 4, 3)
             at[f"{side}_row{bit}n"] = place

@@ -39,14 +39,22 @@ from .strip import (
 )
 
 # um
-PITCH, BETWEEN = 10.0, 1.2  # of the rows; of the rails' middles of two rows
-LINE, LINE_PITCH, LINE_APART = 0.4, 0.8, 0.9  # of what crosses all rows; from pins
-JOINT_APART, SHIFT = 1.1, 0.1  # of what joins rails from pins; steps by which the rows are farther west for it
+PITCH = 10.0  # of the rows
+RAIL_GAP = 1.2  # between the centres of adjacent rows' rails
+LINE_WIDTH = 0.4  # of lines that cross all rows
+LINE_PITCH = 0.8
+LINE_SPACE = 0.9  # from these lines to pins
+JOINT_SPACE = 1.1  # from the metal that joins rails to pins
+WEST_STEP = 0.1  # steps by which the rows move west for it
 LEAST_WEST = 3.0  # of the rows in their block
-ROOM = 0.6  # beside each device, for its drops
-APART = 8.0  # of the level shifters from the logic's tracks: wells of two levels, rails and their joints
-THICK_WELL, THICK_IN, TIP = 0.33, 0.33, 0.185  # hvi well around diffusion and taps; hvi beyond the well; hvntm
-JOG, JOG_FIRST, PIN_END = 0.8, 2.2, 1.5  # of the ways to the lines' places; east of the last
+ROOM = 0.6  # next to each device, for its drops
+SHIFTER_SPACE = 8.0  # from the logic's tracks to the level shifters: wells of two levels, rails and their joints
+THICK_WELL = 0.33  # of the hvi well around diffusion and taps
+THICK_MARGIN = 0.33  # of hvi beyond the well
+TIP = 0.185  # of hvntm
+JOG_PITCH = 0.8  # of the lines to their places
+JOG_FIRST = 2.2
+PIN_END = 1.5  # east of the last jog
 LOGIC = (
     "amp_n",
     "amp_s",
@@ -94,7 +102,7 @@ def _lines(n: Sequence[Placed], pins: Collection[float]) -> dict[str, float]:
 
     pins: x of what comes from the south.
     """
-    places = [k * LINE_PITCH for k in range(1, 400) if all(abs(k * LINE_PITCH - x) >= LINE_APART for x in pins)]
+    places = [k * LINE_PITCH for k in range(1, 400) if all(abs(k * LINE_PITCH - x) >= LINE_SPACE for x in pins)]
     lines = {}
     for control in CONTROLS:
         (gate,) = (placed for placed in n if placed.device.transistor.gate == control)
@@ -128,13 +136,13 @@ def row_plan(d: Mapping[str, Device], width: float, pins: Mapping[str, float]) -
     """
     n, p, end = in_columns([leg for name in LOGIC for leg in legs(d, name)], 0.0, ROOM)
     thick = [(_renamed(a), _renamed(b)) for name in SHIFTERS for a, b in legs(d, f"{name}_l") if a and b]
-    begin = round(end + APART, 2)
+    begin = round(end + SHIFTER_SPACE, 2)
     tn, tp, right = in_columns(thick, begin, ROOM)
     first = right + RAIL_AT + JOG_FIRST
     joints = {"vss": -RAIL_AT, "vdd": end + RAIL_AT, "vss_thick": begin - RAIL_AT, "vddr": right + RAIL_AT}
-    whole = round(first + JOG * len(ROW_LINES) + PIN_END, 2)
-    while any(abs(x - (width - whole) - at) < JOINT_APART for x in pins.values() for at in joints.values()):
-        whole = round(whole + SHIFT, 2)
+    whole = round(first + JOG_PITCH * len(ROW_LINES) + PIN_END, 2)
+    while any(abs(x - (width - whole) - at) < JOINT_SPACE for x in pins.values() for at in joints.values()):
+        whole = round(whole + WEST_STEP, 2)
     west = round(width - whole, 3)
     if west < LEAST_WEST:
         raise ParameterError(f"row_driver_um = {width:g}: must be {whole + LEAST_WEST:g} at the least, the drawn row")
@@ -145,12 +153,12 @@ def row_plan(d: Mapping[str, Device], width: float, pins: Mapping[str, float]) -
         for group, count in CODES.items():
             reach[f"{side}_{group}"] = lines[f"{side}_{group}0"], lines[f"{side}_{group}{count - 1}"]
     reach[GATE_OF_VDD] = (joints["vdd"],)
-    least = PITCH - BETWEEN
+    least = PITCH - RAIL_GAP
     for order in permutations(ROW_LINES):
-        jogs = {net: round(first + JOG * k, 3) for k, net in enumerate(order)}
+        jogs = {net: round(first + JOG_PITCH * k, 3) for k, net in enumerate(order)}
         through = reach | {net: (at,) for net, at in jogs.items()}
         plan = Plan((*n, *tn), (*p, *tp), 0.0, right, through, rails=("vss", "vdd", "vddr"), least_um=least)
-        if plan.height_um > PITCH - BETWEEN + 1e-9:
+        if plan.height_um > PITCH - RAIL_GAP + 1e-9:
             raise ParameterError(f"row = {len(plan.tracks())} nets: must have tracks in {PITCH:g} um")
         if _clear(plan, jogs):
             break
@@ -169,7 +177,7 @@ def places() -> dict[str, float]:
 def _clear(plan: Plan, jogs: Mapping[str, float]) -> bool:
     """Whether no line's way from its jog to its place is beside the track of one that goes farther."""
     at = places()
-    tracks = {track.net: BETWEEN / 2 + track.y for track in plan.tracks() if track.net in jogs}
+    tracks = {track.net: RAIL_GAP / 2 + track.y for track in plan.tracks() if track.net in jogs}
     return not any(
         jogs[far] > jogs[near] and abs(tracks[far] - at[near]) < TRACK + 0.32
         for near in jogs
@@ -180,7 +188,7 @@ def _clear(plan: Plan, jogs: Mapping[str, float]) -> bool:
 
 def draw_row(canvas: Canvas, masks: AnalogMasks, row: RowPlan) -> Strip:
     """A row, its south edge at y = 0, with its part of the controls and supplies that cross all rows."""
-    y, top = BETWEEN / 2, PITCH - BETWEEN / 2
+    y, top = RAIL_GAP / 2, PITCH - RAIL_GAP / 2
     strip = draw_rows(canvas, masks, row.plan, y)
     for plan in (row.logic, row.thick):
         draw_rails(canvas, masks, plan, y)
@@ -188,7 +196,7 @@ def draw_row(canvas: Canvas, masks: AnalogMasks, row: RowPlan) -> Strip:
     canvas.wire(1, row.logic.right, y - RAIL_HALF, row.thick.left, y + RAIL_HALF)  # one ground
     _thick(canvas, row, y, top)
     crossing = {name: row.lines[name] for name in CONTROLS}
-    for places_of, wide in ((crossing, LINE), (row.joints, RAIL_TRUNK)):
+    for places_of, wide in ((crossing, LINE_WIDTH), (row.joints, RAIL_TRUNK)):
         for x in places_of.values():
             canvas.wire(FOURTH, x - wide / 2, 0, x + wide / 2, PITCH)
     at = places()
@@ -198,7 +206,7 @@ def draw_row(canvas: Canvas, masks: AnalogMasks, row: RowPlan) -> Strip:
         if track.net == GATE_OF_VDD:
             canvas.stack(row.joints["vdd"], track.y, THIRD, FOURTH)
         if track.net in row.jogs:
-            x, to, half = row.jogs[track.net], at[track.net], LINE / 2
+            x, to, half = row.jogs[track.net], at[track.net], LINE_WIDTH / 2
             low, high = sorted((track.y, to))
             canvas.wire(THIRD, x - half, to - half, row.right, to + half)
             if high - low < TRACK + 0.32:  # no notch between both, and no room for two vias
@@ -214,11 +222,15 @@ def _thick(canvas: Canvas, row: RowPlan, y: float, top: float) -> None:
     """What thick oxide needs: its mask over all of the shifters, the tip implant over n, more well around p."""
     process, plan = canvas.process, row.thick
     (oxide, _), (tip, _) = process.thick
-    ends = RAIL_ENDS + WELL_ENDS + THICK_IN
+    ends = RAIL_ENDS + WELL_ENDS + THICK_MARGIN
     canvas.box(oxide, plan.left - ends, 0, plan.right + ends, PITCH)
     low = min(top - 0.96 - placed.device.finger_um for placed in plan.p) - THICK_WELL
     canvas.box(
-        process.well, plan.left - ends + THICK_IN, low, plan.right + ends - THICK_IN, top + TAP_HALF + THICK_WELL
+        process.well,
+        plan.left - ends + THICK_MARGIN,
+        low,
+        plan.right + ends - THICK_MARGIN,
+        top + TAP_HALF + THICK_WELL,
     )
     high = max(y + 0.96 + placed.device.finger_um for placed in plan.n)
     left, right = plan.n[0].x, plan.n[-1].x + plan.n[-1].device.width_um

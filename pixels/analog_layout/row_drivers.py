@@ -36,14 +36,16 @@ from .comparator import devices
 from .device import Device
 from .drawn_block import DrawnBlock
 from .row_bank import draw_bank
-from .row_driver import LINE, PITCH, RowPlan, as_cell, draw_row, row_plan
+from .row_driver import LINE_WIDTH, PITCH, RowPlan, as_cell, draw_row, row_plan
 from .strip import FOURTH, RAIL_ENDS, THIRD, name_track
 
 NAME = "row_driver"
 TOP = 5
 NETS = {"vdd": "vddc", "vddr": "vddr", "vss": "vssa"}
 JOINTS = {"vddc": ("vdd",), "vddr": ("vddr",), "vssa": ("vss", "vss_thick")}
-VIA, VIA_PITCH, VIA_PAD = 0.8, 1.6, 0.59  # um: of the top metal's vias; half of their pad below
+VIA = 0.8  # um, the top metal's via
+VIA_PITCH = 1.6  # um
+VIA_PAD = 0.59  # um, half of its pad below
 
 
 @dataclass(frozen=True)
@@ -151,7 +153,7 @@ def _lines(canvas: Canvas, plan: RowPlan, row: Cell, south: float, rows: int) ->
         for group, count in CODES.items():
             for code in range(count):
                 x = plan.west + plan.lines[f"{side}_{group}{code}"]
-                canvas.wire(FOURTH, x - LINE / 2, south, x + LINE / 2, south + rows * PITCH)
+                canvas.wire(FOURTH, x - LINE_WIDTH / 2, south, x + LINE_WIDTH / 2, south + rows * PITCH)
     for number in range(rows):
         for group, code in taken(number).items():
             for side in SIDES:

@@ -22,16 +22,26 @@ from talbot.platforms.analog import AnalogMasks
 from .device import IMPLANT, RAIL, STRAP, WELL_AROUND, Device, Strap, draw_device
 
 # um
-GAP = 0.40  # of diffusions beside each other
-MIDDLE = 1.5  # between the diffusions of the two rows
-TRACK, TRACK_PITCH, TRACK_IN = 0.38, 0.70, 0.85  # of the tracks; from a rail's middle to the first
-DROP, DROP_PITCH, DROP_STEP, DROP_ENDS = 0.37, 0.52, 0.02, 0.55
-RAIL_HALF, TAP_HALF, TAP_PITCH = 0.245, 0.21, 0.68
+GAP = 0.40  # between adjacent diffusions
+ROW_SPACE = 1.5  # between the diffusions of the two rows
+TRACK = 0.38  # width of a track
+TRACK_PITCH = 0.70
+TRACK_IN = 0.85  # from a rail's centre to the first track
+DROP = 0.37  # width of a drop
+DROP_PITCH = 0.52
+DROP_STEP = 0.02  # grid of the drops' places
+DROP_ENDS = 0.55
+RAIL_HALF = 0.245
+TAP_HALF = 0.21
+TAP_PITCH = 0.68
 OPEN_ENDS = 0.72  # beyond a single row's gates
 WELL_ENDS = 0.50  # of the well beyond its taps
-RAIL_ENDS, RAIL_AT, RAIL_TRUNK = 1.7, 1.0, 1.0  # of a rail beyond the tracks; what joins rails: from there, its width
-TRUNK = 0.5  # um, of a net from strip to strip
-SPLIT, CROSS = 0.2, 0.9  # of the axis from the halves of tracks
+RAIL_ENDS = 1.7  # of a rail beyond the tracks
+RAIL_AT = 1.0  # from a strip's end to the metal that joins rails
+RAIL_TRUNK = 1.0  # its width
+TRUNK = 0.5  # um, width of a net from strip to strip
+SPLIT = 0.2  # from the axis to the halves of tracks
+CROSS = 0.9  # from the axis to their crossing
 FIRST, SECOND, THIRD, FOURTH = 1, 2, 3, 4
 TRIES = 60
 
@@ -82,7 +92,7 @@ class Plan:
     def height_um(self) -> float:
         """From the middle of the lower rail to that of the upper one."""
         heights = [max((placed.device.finger_um for placed in row), default=0.0) for row in (self.n, self.p)]
-        between = MIDDLE if self.n and self.p else OPEN_ENDS
+        between = ROW_SPACE if self.n and self.p else OPEN_ENDS
         devices = 2 * RAIL + sum(heights) + between
         return max(devices, 2 * self.track_in + TRACK_PITCH * (len(self._rows()) - 1), self.least_um)
 

@@ -11,7 +11,7 @@ from talbot.pixels.analog_layout import flat
 from talbot.pixels.analog_layout.column import (
     CAPS,
     GROUPED,
-    LINE,
+    LINE_WIDTH,
     PIECES,
     column_cell,
     column_plan,
@@ -19,7 +19,7 @@ from talbot.pixels.analog_layout.column import (
     length_um,
     names,
 )
-from talbot.pixels.analog_layout.column_amplifiers import NAME, OUTSIDE, SOURCE, band_nets, draw_column_amplifiers
+from talbot.pixels.analog_layout.column_amplifiers import EXTERNAL_PINS, NAME, SOURCE, band_nets, draw_column_amplifiers
 from talbot.pixels.analog_layout.columns import column_nets, draw_columns
 from talbot.pixels.blocks import AnalogSizes, blocks
 from talbot.pixels.circuits.column import PINS, column
@@ -70,8 +70,8 @@ def test_plates_have_the_circuits_capacitance(cell):
 
 def test_no_two_lines_are_nearer_than_their_rule():
     plan = column_plan(devices(SIZES), SIZES, MASKS, ("one", "two"))
-    wide = {name: 0.6 if net[:4] in ("lane", "sens") else LINE for net in GROUPED for name in names(net)}
-    ordered = sorted((x, wide.get(name, LINE)) for name, x in plan.lines.items())
+    wide = {name: 0.6 if net[:4] in ("lane", "sens") else LINE_WIDTH for net in GROUPED for name in names(net)}
+    ordered = sorted((x, wide.get(name, LINE_WIDTH)) for name, x in plan.lines.items())
     assert all(b - a - (one + two) / 2 >= 0.4 - 1e-6 for (a, one), (b, two) in pairwise(ordered))
     assert {"one", "two"} < set(plan.lines)
 
@@ -99,7 +99,7 @@ def test_pins_are_those_of_the_black_box_and_what_is_outside(block):
     plain = next(one for one in blocks(sizes=AnalogSizes(columns_um=block.block.height_um)) if one.name == NAME)
     own = {(pin.name, pin.side, round(pin.at_um, 3)) for pin in block.block.pins}
     wanted = {(pin.name, pin.side, round(pin.at_um, 3)) for pin in plain.pins}
-    assert wanted < own and {name for name, *_ in own - wanted} == {*OUTSIDE, SOURCE}
+    assert wanted < own and {name for name, *_ in own - wanted} == {*EXTERNAL_PINS, SOURCE}
     assert any(pin.name == "hold" for pin in plain.pins)
     assert block.count == 384 * len(sizes(column(SIZES))) + len(sizes(band(SIZES, 8)))
     nets = band_nets(block.band.cell.ports)
