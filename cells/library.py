@@ -74,7 +74,7 @@ def characterize_library(
 
 
 def _keep_failed(folder: Path, measured: Sequence[Measured]) -> None:
-    """Write the netlists of the simulations that failed in place of those of an earlier run."""
+    """Write the netlists of the failed simulations, and delete those of an earlier run."""
     shutil.rmtree(folder, ignore_errors=True)
     for measure in measured:
         for k, failure in enumerate(measure["failed"]):

@@ -99,7 +99,7 @@ def let_go() -> Iterator[Case]:
 
 
 def fit_at_corner(corner: Corner) -> Iterator[Case]:
-    """How much slower or faster than typical a corner is, with the fitted models and with the binned ones."""
+    """Compare a corner's delays with typical ones, with the fitted and with the binned models."""
     for name, output in (("nand2_1", "Y"), ("dfxtp_1", "Q")):
         tested, ratio = cell(name), {}
         for models in ("binned", "fitted"):

@@ -62,7 +62,7 @@ class GoldenFrame:
         return self.samples - self.made
 
     def digital_events(self, cycles: int) -> DigitalEvents:
-        """What the frame made the digital part do.
+        """Count the events of the digital part in a frame.
 
         Parameters
         ----------

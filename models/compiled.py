@@ -44,7 +44,7 @@ class Compiled:
 
     @property
     def _numba_type_(self) -> Any:
-        """What Numba takes this for in functions that call it."""
+        """The Numba type of this in functions that call it."""
         return self.compiled._numba_type_
 
 

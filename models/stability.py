@@ -227,7 +227,7 @@ def _adjoint() -> Case:
 
 
 def _one_view() -> Case:
-    """One view in place of 25 equal ones, in single precision."""
+    """One view compared with 25 equal ones, in single precision."""
     sensor = SensorParameters(array=ArrayParameters(12, 18))
     image = np.random.default_rng(0).random((12, 18), np.float32)
     few = CaptureOperator(sensor, "float32", angular=False).forward(image[None, None])

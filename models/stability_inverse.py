@@ -94,7 +94,7 @@ def _fields() -> list[Case]:
 
 
 def _amid_dead(estimator: FieldEstimator, pair: Floats) -> Estimate:
-    """The estimate with dead pixels found, repaired, and no disparity beside them."""
+    """Return the estimate with dead pixels detected and repaired, without disparity next to them."""
     dead = dead_pixels(pair)
     estimate = estimator.mixture(repaired(pair, dead))
     return estimate._replace(spread=np.where(estimator.told_by(dead), np.inf, estimate.spread))

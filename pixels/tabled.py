@@ -1,4 +1,4 @@
-"""A sensor whose pixels respond as a process's gratings do, in place of Eq. 3.1."""
+"""A sensor whose pixels have the response of a process's gratings instead of Eq. 3.1."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -60,7 +60,7 @@ def untabled(sensor: SensorParameters) -> SensorParameters:
 
 
 def _source(kind: PixelType) -> str:
-    """What `tabled` names as the source of a type's response; '' for any other response."""
+    """Return the source of a response set by `tabled`; '' for any other response."""
     source = getattr(kind.response, "source", "")
     return source if source.startswith(SOURCE) else ""
 

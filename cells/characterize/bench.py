@@ -23,12 +23,12 @@ T = TypeVar("T")
 
 
 def spread(items: Sequence[T], most: int) -> list[T]:
-    """At most ``most`` of ``items``, spread over all."""
+    """Return at most ``most`` of ``items``, evenly spread."""
     return [items[round(i)] for i in np.linspace(0, len(items) - 1, min(len(items), most))]
 
 
 class Tail(NamedTuple):
-    """How long an output takes: s without load, and s a farad; the slowest so far."""
+    """The slowest settling of an output: s without load, and s a farad."""
 
     base: float = 0.3e-9
     rate: float = 2e4

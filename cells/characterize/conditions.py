@@ -71,7 +71,7 @@ class Conditions:
 
     @property
     def fastest(self) -> bool:
-        """Whether an arc's table is that of its fastest state, as in SkyWater's tables of ff; else of its slowest."""
+        """Whether a table is that of the arc's fastest state (ff, as SkyWater's) instead of its slowest."""
         return self.corner.process == "ff"
 
     @property

@@ -25,7 +25,7 @@ HELD = 0.5  # of the supply, at which the output is held
 
 
 class Held:
-    """A context manager around the cell of ``bench`` with a source at ``output`` in place of a load."""
+    """A context manager around the cell of ``bench`` with a source instead of a load at ``output``."""
 
     def __init__(self, bench: Bench, output: str, process: ModuleType) -> None:
         self.bench, self.output = bench, output

@@ -45,7 +45,7 @@ def _simple() -> Iterator[Schematic]:
 
 
 def _complex() -> Iterator[Schematic]:
-    """Of a name each digit is a group of inputs, joined by the first operator; the second one joins the groups."""
+    """Yield complex gates: digits of a name are groups of inputs under its first operator; the second joins them."""
     functions: dict[str, Function] = {}
     for digits in ("21", "22", "211", "31", "221"):
         for inner, outer in (("and", "or"), ("or", "and")):

@@ -1,4 +1,4 @@
-"""The library: every cell of the catalogue, drawn once and kept, and as PDKMaster's objects for its exporters."""
+"""The library: every cell of the catalogue, drawn and cached, and as PDKMaster's objects for its exporters."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -21,7 +21,7 @@ FOLDER = Path("build/cells/compact")
 def drawn(
     canvas: Canvas | None = None, store: Path = FOLDER / "drawn", workers: int = -1
 ) -> dict[str, tuple[Schematic, Drawn]]:
-    """Draw every cell, once: the jobs' results are kept in ``store``. workers: processes, -1 for all cores."""
+    """Draw every cell; ``store`` caches the results. workers: processes, -1 for all cores."""
     canvas, cells = canvas or Canvas(), schematics()
     order = sorted(cells, key=lambda name: -len(cells[name].n))  # the widest take longest
     arguments = {name: (cells[name], canvas, recipe(name)) for name in order}

@@ -92,13 +92,13 @@ def _sides(device: Device, layout: CellLayout) -> "dict[str, tuple[str, db.Regio
 
 
 def _island(device: Device, layout: CellLayout, step: int) -> "tuple[str, db.Region]":
-    """(net, region) of the diffusion ``step`` dbu beside the middle of a gate."""
+    """Return (net, region) of the diffusion ``step`` dbu from the centre of a gate."""
     spot = db.Region(db.Box(device.at, device.at).enlarged(2).moved(step, 0))
     for net, islands in layout.islands[device.kind].items():
         part = islands.merged().interacting(spot)
         if not part.is_empty():
             return net, part
-    raise AssertionError(f"no diffusion beside a gate of {device.gate}")
+    raise AssertionError(f"no diffusion next to a gate of {device.gate}")
 
 
 def _ports(net: str, terminals: Sequence[Terminal], layout: CellLayout) -> list[Port]:
@@ -207,7 +207,7 @@ def _eliminate(beside: list[dict[int, float]], node: int) -> None:
 
 
 def _is(node: Any, shape: "db.Region | db.Point", polygons: "Sequence[db.Polygon]") -> bool:
-    """Whether a network's node is the port ``shape``."""
+    """Return whether a network's node is the port ``shape``."""
     if isinstance(shape, db.Point):
         return node.type() == pex.RNode.VertexPort
     if node.type() != pex.RNode.PolygonPort:

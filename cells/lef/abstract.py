@@ -1,4 +1,4 @@
-"""What place and route needs of a laid-out cell, as a LEF macro: outline, pins, obstructions, antenna areas.
+"""A laid-out cell as a LEF macro for place and route: outline, pins, obstructions, antenna areas.
 
 A pin is all metal of its net, as SkyWater's abstracts have it; every other net's metal is an obstruction. Antenna:
 the gate area on an input (W x L), the diffusion area on any signal (LEF 5.8: ANTENNAGATEAREA, ANTENNADIFFAREA).
@@ -22,7 +22,7 @@ USES = ("SIGNAL", "CLOCK", "POWER", "GROUND")
 
 @dataclass(frozen=True)
 class PinKind:
-    """What a pin is; direction: INPUT, OUTPUT or INOUT; use: SIGNAL, CLOCK, POWER or GROUND."""
+    """The kind of a pin; direction: INPUT, OUTPUT or INOUT; use: SIGNAL, CLOCK, POWER or GROUND."""
 
     direction: str
     use: str = "SIGNAL"

@@ -1,4 +1,4 @@
-"""Whether the tools that a library is for read it without a warning."""
+"""Check that Yosys and OpenSTA read a library without a warning."""
 
 import tempfile
 from pathlib import Path
@@ -10,7 +10,7 @@ GOOD = (SILENT, MISSING)
 
 
 def readers(path: str | Path) -> dict[str, str]:
-    """What Yosys and OpenSTA print when they read the Liberty file ``path``: SILENT, MISSING, or their output."""
+    """Return what Yosys and OpenSTA print on reading the Liberty file ``path``: SILENT, MISSING, or their output."""
     path = plain(Path(path).absolute())
     with tempfile.TemporaryDirectory() as folder:
         script = Path(folder) / "read.tcl"

@@ -70,7 +70,7 @@ def read(path: str | Path, cell: str | None = None) -> Netlist:
 
 
 def parse(text: str, cell: str | None = None, origin: str = "netlist") -> Netlist:
-    """As `read`, of a text; ``origin`` names it in errors. Raises ParameterError with the line that is wrong."""
+    """The same as `read` for a text; ``origin`` names it in errors. Raises ParameterError with the wrong line."""
     subcircuits = _subcircuits(text, origin)
     if cell is None:
         return next(iter(subcircuits.values()))

@@ -129,7 +129,7 @@ def directions(netlist: Netlist, rails: Mapping[str, int]) -> tuple[tuple[str, .
 
 
 def _complementary(netlist: Netlist, root: Mapping[str, str], port: str, rails: Mapping[str, int]) -> bool:
-    """Whether transistors join ``port`` to both rails without passing another port."""
+    """Return whether transistors join ``port`` to both rails without passing another port."""
     ends = {root[p] for p in netlist.ports} - {root[port]}
     reached, queue, levels = {root[port]}, [root[port]], set()
     levels_of = {root[n]: level for n, level in rails.items() if n in root}

@@ -100,7 +100,7 @@ class Switches:
 
 
 def floating(switches: Switches, state: Levels, node: str) -> bool:
-    """Whether ``node`` has high impedance in ``state``: no path to a rail conducts."""
+    """Return whether ``node`` has high impedance in ``state``: no path to a rail conducts."""
     reached, queue = {switches.root[node]}, [switches.root[node]]
     while queue:
         for neighbour, gate, on, _ in switches.edges.get(queue.pop(), ()):

@@ -1,1 +1,1 @@
-"""The characterizer held against a foundry's own tables, on one page."""
+"""The page that compares the characterizer with a foundry's tables."""

@@ -1,4 +1,4 @@
-"""One ngspice process that loads the models once and then runs one transient after another.
+"""An ngspice process that loads the models when it starts and then runs one transient after another.
 
 `ngspice -p` reads commands from a pipe; sources and loads change by `alter`, results come back in its binary file.
 A run that hangs is killed at its timeout, a failed one is repeated with `Settings.retries` in a new process, and what
@@ -198,7 +198,7 @@ class _Failed(Exception):
 
 
 def _command(child: Popen[bytes], text: str, timeout: float) -> str:
-    """What ngspice prints in answer. Raises _Failed when it ends, or uses ``timeout`` s of CPU without an answer.
+    """Return ngspice's answer to a command. Raises _Failed when it ends or uses ``timeout`` s of CPU.
 
     CPU time counts, not the clock's: on a busy machine a run is slow through no fault of its own.
     """

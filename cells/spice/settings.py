@@ -43,7 +43,7 @@ class Settings:
 
     @property
     def retries(self) -> "tuple[Settings, ...]":
-        """What to try after these, in order.
+        """The settings of the retries, in order.
 
         Looser tolerances where these are tight; Gear's method; then the usual tolerances and more time, too.
         """

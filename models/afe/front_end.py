@@ -1,4 +1,4 @@
-"""From diode pairs to held values and codes, for a whole frame: the NumPy twin of pixels/afe.sv."""
+"""The analog front end for a whole frame, diode pairs to held values and codes: the NumPy twin of pixels/afe.sv."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""What a calibration knows, and the sensor that it describes; a JSON file."""
+"""A calibration, the sensor that it describes, and its JSON file."""
 
 import json
 from dataclasses import dataclass, replace
@@ -50,7 +50,7 @@ class Calibration:
         check_real("pupil_power", self.pupil_power, 0, 1e4)
 
     def applied(self, sensor: SensorParameters) -> SensorParameters:
-        """The sensor with what was measured in place of its own pixel types, aperture, vignetting and exit pupil.
+        """Return the sensor with the measured pixel types, aperture, vignetting and exit pupil.
 
         Parameters
         ----------

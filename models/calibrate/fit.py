@@ -1,4 +1,4 @@
-"""From a sweep to pixel types, aperture and chief ray, by least squares; no true optics are read.
+"""Fit pixel types, aperture and chief ray to a sweep by least squares, without access to the true optics.
 
 The sum of a pair is 2 A(theta) omega and tells the ray's angle by its Gaussian; the ratio of difference and sum is
 q = m cos(beta (theta_x cos gamma + theta_y sin gamma) + alpha), and the light, A and omega fall out of it.
@@ -224,7 +224,7 @@ def _fit_type(sweep: Sweep, pupil: Pupil, number: int) -> TypeFit:
 
 
 def _unlike(y: float, x: float, alpha: float) -> float:
-    """How far the name of a wave is from those of the thesis's types: alpha of 0 or pi/2, gamma of -67.5 to 90."""
+    """Return the distance of a wave's name from the thesis's types: alpha of 0 or pi/2, gamma of -67.5 to 90."""
     return float(-np.cos(alpha - np.pi / 4) - 0.5 * np.cos(np.arctan2(y, x) - np.deg2rad(11.25)))
 
 

@@ -1,4 +1,4 @@
-"""What a bench measures: frames of a white screen through a small hole that moves across the lens's pupil.
+"""A bench's measurement: frames of a white screen through a small hole that moves across the lens's pupil.
 
 A hole at the tangents nu lights the pixel at X with one ray alone, of the tangents nu + chief ray (X): one sweep shows
 the angular response of every type, the aperture, and how the chief ray turns over the array.

@@ -27,7 +27,7 @@ SOURCE = "CALIBRATION"
 
 
 class Samples(NamedTuple):
-    """What a bench measures of a type.
+    """The measurements of a type.
 
     Attributes
     ----------
@@ -45,7 +45,7 @@ class Samples(NamedTuple):
 
 
 def tables(kinds: Sequence[PixelType], samples: Sequence[Samples], sigma: float) -> tuple[PixelType, ...]:
-    """Pixel types with the table of each in place of Eq. 3.1.
+    """Return pixel types with a table each instead of Eq. 3.1.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""From the light field to the samples that the analog front end converts."""
+"""Capture: the light field becomes the samples that the analog front end converts."""
 
 from .expose import Exposure, expose
 from .frame import capture, currents, exposed

@@ -1,4 +1,4 @@
-"""From photocurrent to the samples of the analog front end, in SI units, with noise."""
+"""Exposure: photocurrent becomes the samples of the analog front end, in SI units, with noise."""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -77,7 +77,7 @@ class Exposure:
 
 
 class _Pattern(NamedTuple):
-    """What is the same in every exposure of a chip: the diodes, and the offsets of the columns in electrons."""
+    """The fixed pattern of a chip: the diodes, and the offsets of the columns in electrons."""
 
     pixels: Pixels
     columns: npt.NDArray[np.float64]

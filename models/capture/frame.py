@@ -134,7 +134,7 @@ def currents(
 
 
 def _by_view(scene: Scene, plan: Plan) -> bool:
-    """Whether each view has a polarization of its own; the taps of time of flight take that of the centre view."""
+    """Return whether polarization differs between views; the taps of time of flight take that of the centre view."""
     return plan.polarized and plan.taps == 1 and scene.polarization is not None and scene.polarization.ndim == 5
 
 
@@ -177,7 +177,7 @@ def _taps(scene: Scene, sensor: SensorParameters, plan: Plan, region: Region, dt
 
 
 def _returned(scene: Scene, correlation: Correlation) -> Wave:
-    """What a correlation makes of the light of a view, straight or not."""
+    """Return the correlation of the light of a view, direct or with echoes."""
     assert scene.depth is not None
     depth = depth_of_surface(scene.depth, scene.disparity)
     if scene.echo is None:

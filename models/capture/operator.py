@@ -100,7 +100,7 @@ class CaptureOperator:
 
     @cached_property
     def _irregular(self) -> bool:
-        """Whether rows at one position in the tile differ in their columns, so that `_forward_some` computes more."""
+        """Return whether rows at one position in the tile differ in their columns (more work for `_forward_some`)."""
         lines, _, counts, _ = self._some
         return bool(counts[lines % len(counts)].sum() != self._pixels.sum())
 

@@ -104,7 +104,7 @@ def collect(wells: Floats, pair: Floats, pixels: Pixels, seconds: Any, z: Floats
 def read(
     out: Floats, wells: Floats, pixels: Pixels, z: Floats, pink: Floats, rms: float, columns: Floats, noise: float
 ) -> None:
-    """What the pixels and the columns' amplifiers make of the electrons.
+    """Read the electrons through the pixels and the columns' amplifiers.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""How many views a capture needs, measured before it is made on tile rows spread evenly over the array."""
+"""The number of views that a capture needs, measured in advance on tile rows spread evenly over the array."""
 
 from time import perf_counter
 from typing import NamedTuple
@@ -200,7 +200,7 @@ def _rms(error: Values) -> float:
 
 
 def _saved(scene: Scene, quiet: npt.NDArray[np.bool_], most: int) -> tuple[LeftOut, ...]:
-    """What the pixels that keep the scene's grid leave out."""
+    """Return the views that pixels on the scene's grid leave out."""
     full, default_views = int(cells(most).sum()), int(cells(scene.views).sum())
     if most == scene.views:
         full, why = int(cells(REFERENCE).sum()), "the light varies little over the pupil everywhere: in focus, or plain"

@@ -35,7 +35,7 @@ Waveform = Generator[AmpPins, bool, None]
 
 @dataclass(frozen=True)
 class Slot:
-    """What one run of AmpCtrl does; its duration is the same in any case.
+    """The actions of one run of AmpCtrl; its duration does not depend on them.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""How long a row integrates, in cycles: the one place of this formula.
+"""The integration time of a row in cycles; this formula is nowhere else.
 
 A slot is one run of AmpCtrl. A row is reset in a slot and read `exposure` slots later; it integrates from the first
 cycle of the slot's first integration to the end of that in the slot of its read. Common-mode resets are of the slot of

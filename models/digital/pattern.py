@@ -1,4 +1,4 @@
-"""Test pattern of the chip: a digital image in place of the analog front end, for bring-up.
+"""Test pattern of the chip: a digital image instead of the analog front end, for bring-up.
 
 A ramp over rows, tiles, types and sub-samples contains every code. In a checkerboard of quiet areas only its two
 lowest bits remain, around mid-scale, so that the window comparison leaves out some conversions.

@@ -1,4 +1,4 @@
-"""Every parameter once: frozen, validated, with unit, range and source."""
+"""All parameters: frozen, validated, with unit, range and source."""
 
 from .array import COLS_MAX, ROWS_MAX, ArrayParameters
 from .camera import FOCUS_MAX, LIFE_SIZE, CameraParameters

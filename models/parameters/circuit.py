@@ -1,4 +1,4 @@
-"""What ngspice says of converter lane and columns in transistors: circuit.json, written by `make analog TABLE=`."""
+"""ngspice's results of converter lane and columns: circuit.json, written by `make analog TABLE=`."""
 
 import json
 from dataclasses import dataclass
@@ -44,7 +44,7 @@ def circuit_converter(table: Path = TABLE) -> ConverterParameters:
 
 @dataclass(frozen=True)
 class ColumnCurves:
-    """Of the column amplifiers, common to all columns.
+    """Curves of the column amplifiers, common to all columns.
 
     Attributes
     ----------
@@ -85,7 +85,7 @@ class ColumnCurves:
         check_real("spread", self.spread, 0, 16)
 
     def delivered(self, diodes: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-        """What the lanes have of both diodes.
+        """Return the values of both diodes at the lanes.
 
         Parameters
         ----------
@@ -100,7 +100,7 @@ class ColumnCurves:
         return self._along(diodes, self.a, self.b) + self._along(diodes[..., ::-1], self.a_other, self.b_other)
 
     def summed(self, diodes: npt.NDArray[np.float64], later: bool = False) -> npt.NDArray[np.float64]:
-        """What both diodes have in a sum.
+        """Return each diode's part of a sum.
 
         Parameters
         ----------
@@ -123,7 +123,7 @@ class ColumnCurves:
         return np.stack([PchipInterpolator(self.fills, curve)(diodes[..., d]) for d, curve in enumerate(curves)], -1)
 
     def samples(self, diodes: npt.NDArray[np.float64], mode: str) -> npt.NDArray[np.float64]:
-        """What a front end has of charges, without `spread`: lanes of each diode, or parts of a sum.
+        """Return a front end's samples of charges, without `spread`: lanes of each diode, or parts of a sum.
 
         Parameters
         ----------

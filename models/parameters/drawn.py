@@ -89,7 +89,7 @@ def drawn_electrical(electrical: ElectricalParameters, table: Path = PIXEL) -> E
 
 
 def drawn_sources(electrical: ElectricalParameters, table: Path = PIXEL) -> dict[str, str]:
-    """Where the parameters of a sensor come from that has the drawn pixel's.
+    """Return the sources of the parameters of a sensor with the drawn pixel.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""From photocurrent to 8-bit code, in SI units, and where the noise enters."""
+"""The electrical chain, photocurrent to 8-bit code, in SI units, with its noise sources."""
 
 from dataclasses import dataclass
 from math import sqrt

@@ -14,7 +14,7 @@ WINDOW = 2  # of the window comparison
 
 
 class DigitalEvents(NamedTuple):
-    """What a frame made the digital part do.
+    """Events of the digital part in a frame.
 
     Attributes
     ----------
@@ -41,7 +41,7 @@ class DigitalEvents(NamedTuple):
 
 
 class Events(NamedTuple):
-    """What a frame did.
+    """Events of a frame.
 
     Attributes
     ----------
@@ -224,7 +224,7 @@ class LightParameters:
 
     @property
     def responsivity(self) -> float:
-        """Of a diode under its gratings, A/W."""
+        """Return the responsivity of a diode under its gratings, A/W."""
         return self.quantum_efficiency * self.gratings * ELEMENTARY_CHARGE * self.wavelength / PHOTON
 
     def field(self, white_current: float, pitch: float, nu_max: float) -> float:
@@ -249,7 +249,7 @@ class LightParameters:
         return sensor * (1 + nu_max**2) / (self.transmission * nu_max**2)
 
     def power(self, white_current: float, pitch: float, pixels: int, nu_max: float, magnification: float) -> float:
-        """Electrical power of a source that lights a white field in the focal plane, and nothing beside it.
+        """Return the electrical power of a source that lights exactly a white field in the focal plane.
 
         Parameters
         ----------

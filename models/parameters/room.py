@@ -1,4 +1,4 @@
-"""From the light in a room to the photocurrent of a diode: lux, W/m^2, electrons."""
+"""The light in a room and the photocurrent that it gives a diode: lux, W/m^2, electrons."""
 
 from dataclasses import dataclass, replace
 from typing import NamedTuple

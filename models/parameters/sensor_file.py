@@ -128,7 +128,7 @@ def keys(kind: type[Any] = SensorParameters, prefix: str = "") -> dict[str, str]
 
 
 def nearest(key: str, known: Iterable[str], cutoff: float = 0.7) -> str:
-    """What an error says to do in place of an unknown key.
+    """Return the hint of an error for an unknown key.
 
     Parameters
     ----------
@@ -219,7 +219,7 @@ def _type(table: Any, where: str) -> PixelType:
 
 
 def _checked(make: Callable[[], Any], kind: type[Any], where: str) -> Any:
-    """What ``make`` gives; its error has the full name, and what that means."""
+    """Return the result of ``make``; its error has the full name and its meaning."""
     try:
         return make()
     except ParameterError as error:

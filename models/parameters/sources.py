@@ -1,4 +1,4 @@
-"""Where each default comes from: kept with the field, shown in the report."""
+"""The source of each default: stored with the field, shown in the report."""
 
 from dataclasses import field, fields
 from typing import Any, NamedTuple

@@ -1,4 +1,4 @@
-"""A computed response in place of Eq. 3.1: a table over the angles to a pixel's lines."""
+"""A computed response instead of Eq. 3.1: a table over the angles to a pixel's lines."""
 
 from dataclasses import dataclass
 from functools import cached_property

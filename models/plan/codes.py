@@ -1,4 +1,4 @@
-"""From photocurrents to codes."""
+"""Conversion of photocurrents to codes."""
 
 from talbot.models.digital.exposure import integration_cycles
 from talbot.models.parameters import ELEMENTARY_CHARGE, AmpTiming, SensorParameters

@@ -29,7 +29,7 @@ AFTER = (1, 8, 1)  # channels of the convolutions behind
 CHANNELS = (3, 8, 8, 8, 8, 1)  # of the other branch; the thesis has 32 and 16
 KINDS = "autoencoder", "convolutions", "both"
 STRETCH = 4.0  # of the differences that the autoencoder sees: they are smaller than the sums
-UNLIKE = 0.2  # greatest rms of what other optics weigh the views with, relative to those that it was taught with
+UNLIKE = 0.2  # greatest rms of what other optics weigh the views with, relative to those of the training
 
 
 def shapes() -> dict[str, tuple[int, ...]]:
@@ -49,7 +49,7 @@ def shapes() -> dict[str, tuple[int, ...]]:
 
 
 class Seen:
-    """What both branches see of a frame.
+    """The input of both branches.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ class Seen:
 
     @cached_property
     def back(self) -> Floats:
-        """What the convolutions see.
+        """The input of the convolutions.
 
         Returns
         -------
@@ -117,7 +117,7 @@ class Branches:
     ----------
     weights : mapping of str to array
         ``<kind>/<name>`` of `KINDS` and `shapes`, each branch as it was taught alone and both as they were together;
-        ``phi``, the weights of all diodes over the views (types, 2, 5, 5) that it was taught with.
+        ``phi``, the weights of all diodes over the views (types, 2, 5, 5) in the training.
     """
 
     def __init__(self, weights: Mapping[str, Floats]) -> None:
@@ -142,7 +142,7 @@ class Branches:
             return cls(dict(weights))
 
     def knows(self, sensor: SensorParameters) -> bool:
-        """Whether it was taught with such a sensor.
+        """Return whether it was trained with such a sensor.
 
         Parameters
         ----------
@@ -184,7 +184,7 @@ class Branches:
         if pair.shape != (2, *sensor.shape):
             raise ParameterError(f"pair shape = {pair.shape}: must be {(2, *sensor.shape)}")
         if not self.knows(sensor):
-            raise ParameterError("sensor = another tile, optics or number of views: must be what this was taught with")
+            raise ParameterError("sensor = another tile, optics or number of views: must be those of the training")
         seen, parts = Seen(pair, sensor, noise), []
         if kind != "convolutions":
             parts.append(self._encoded(pair, sensor, noise, kind))
@@ -196,7 +196,7 @@ class Branches:
         return seen.total + sum(parts[1:], parts[0]) / np.float32(len(parts))
 
     def _encoded(self, pair: Floats, sensor: SensorParameters, noise: float, kind: str) -> Floats:
-        """What the autoencoder and the convolutions behind it add, (5, 5, rows, cols)."""
+        """Return the output of the autoencoder and of the convolutions after it, (5, 5, rows, cols)."""
         tile, (rows, cols) = sensor.tile, sensor.shape
         firsts, places = [], []
         for length, period in ((rows, tile.rows), (cols, tile.cols)):

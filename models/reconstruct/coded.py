@@ -1,4 +1,4 @@
-"""Depth from taps of coded light: what lies before the first tap and behind the last one is not seen.
+"""Depth from taps of coded light; surfaces before the first tap and behind the last one are not seen.
 
 A tap is  B + A R(z - z_k)  with the triangle R of two chips: around a tap and the next their difference tells where
 between the two the light is from, and their sum how much. Light from elsewhere adds the same to all four.

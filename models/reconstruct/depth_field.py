@@ -107,7 +107,7 @@ def depth_field(estimator: FieldEstimator, pairs: Floats) -> DepthField:
 
 
 def still(pairs: Floats, noise: float) -> bool:
-    """Whether nothing moves between four taps, as far as they tell: opposite ones have the same sum.
+    """Return whether nothing moves between four taps: opposite ones have the same sum.
 
     Parameters
     ----------

@@ -123,7 +123,7 @@ def deep_pixels(opened: Callable[[], Image.Image]) -> Pixels | None:
 
 
 def _rawmode(picture: Image.Image) -> str:
-    """How the bytes of the first tile are laid out, '' where that is not said."""
+    """Return the layout of the first tile's bytes, '' where it is unknown."""
     tile = getattr(picture, "tile", None)
     args = tile[0].args if tile else ""
     first = args[0] if isinstance(args, tuple) and args else args

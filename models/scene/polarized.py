@@ -105,7 +105,7 @@ def kirsch(y: Floats, x: Floats, radius: float) -> tuple[Floats, Floats]:
 
 
 def specular(sampling: Sampling) -> Scene:
-    """Glossy balls with highlights of lamps beside them, on a cloth with a sunlit card.
+    """Glossy balls with highlights of lamps next to them, on a cloth with a sunlit card.
 
     A highlight is Fresnel's reflection, polarized across the plane of incidence, and brighter than what is diffuse
     around it. The card is diffuse and fills the pixels' wells.

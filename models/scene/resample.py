@@ -1,4 +1,4 @@
-"""From pictures of any size to the array's size: the largest centred crop of its shape, anti-aliased."""
+"""Resampling of pictures to the array's size: the largest centred crop of its shape, anti-aliased."""
 
 from typing import Any
 

@@ -135,7 +135,7 @@ class Scene:
         check_values("light_field", field, 0, RADIANCE_MAX)
 
     def __getstate__(self) -> dict[str, Any]:
-        """What is copied: the light field in place of the functions that render it."""
+        """Return the state to copy: the light field instead of the functions that render it."""
         state = {item.name: getattr(self, item.name) for item in fields(self)}
         if self.render is not None:
             state |= {"field": self.light_field, "render": Kept(), "moved": None}
@@ -167,7 +167,7 @@ class Scene:
 
     @property
     def angular(self) -> bool:
-        """Whether the views may differ."""
+        """Return whether the views may differ."""
         return self.field is None or self.field.shape[:2] != (1, 1)
 
     def view(self, mask: Bools) -> View:

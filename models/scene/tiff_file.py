@@ -80,7 +80,7 @@ def tiff_shape(page: TiffPage) -> tuple[int, int]:
 
 
 def tiff_orientation(page: TiffPage) -> int:
-    """How a page is turned.
+    """Return the orientation of a page.
 
     Parameters
     ----------
@@ -170,7 +170,7 @@ def _check(path: Path, field: str, page: TiffPage) -> None:
 
 
 def _samples(path: Path, field: str, page: TiffPage) -> npt.NDArray[Any] | None:
-    """As stored; None where Pillow must decode them."""
+    """Return the samples as stored; None where Pillow must decode them."""
     bits = page.bitspersample
     if page.compression == 1 and bits not in (8, 16, 32, 64) and not page.is_tiled and page.planarconfig == 1:
         return _packed(page)
@@ -225,7 +225,7 @@ def _unsigned(samples: npt.NDArray[Any], path: Path, field: str, page: TiffPage)
 
 
 def _white(samples: npt.NDArray[Any], page: TiffPage) -> float:
-    """Code of white: the largest of so many bits, 65535 of more than 16; 1 of floating point."""
+    """Return the code of white: the largest of the bits, 65535 above 16 bits, 1 for floating point."""
     if int(page.sampleformat) == 3:
         return 1.0
     bits = min(int(page.bitspersample), 17) - (int(page.sampleformat) == 2)
@@ -241,7 +241,7 @@ def _needs_codecs(path: Path, field: str, page: TiffPage) -> ParameterError:
 
 
 def _by_pillow(path: Path, field: str, number: int, page: TiffPage) -> Pixels:
-    """By libtiff. Pillow turns a TIFF upright itself."""
+    """Decode by libtiff. Pillow turns a TIFF upright itself."""
 
     def opened() -> Image.Image:
         try:

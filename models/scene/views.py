@@ -1,4 +1,4 @@
-"""From a picture with disparity to the whole light field l[v, u, y, x], with occlusion."""
+"""The light field l[v, u, y, x] of a picture with disparity, with occlusion."""
 
 from functools import cached_property, lru_cache, partial
 

@@ -1,4 +1,4 @@
-"""From a picture with disparity to the views around it: forward warp with a z-buffer, then sub-pixel sampling.
+"""Views around a picture with disparity: forward warp with a z-buffer, then sub-pixel sampling.
 
 Only the disparity is warped forward (to the nearest pixels, the nearest surface wins). The radiance is then fetched
 at the exact sub-pixel position of that surface in the source, so that splatting blurs no surface.
@@ -281,7 +281,7 @@ def claim(surface: Floats, disparity: Floats, last: int, right: float, offset: f
 
 @njit(cache=True, nogil=True)
 def background(surface: Floats, mask: Bools, dv: float, du: float) -> Places:
-    """For every wanted pixel without a surface the nearest pixel on the background side.
+    """Return, for every pixel of the mask without a surface, the nearest pixel on the background side.
 
     The search runs both ways along the direction of the view's step; the farther of the two surfaces is taken.
 

@@ -111,7 +111,7 @@ class AmplifierPlan:
 
 
 def places() -> dict[str, float]:
-    """X of what goes from strip to strip."""
+    """Return x of the nets between strips."""
     at = {net: FIRST_TRUNK + TRUNK_PITCH * k for k, net in enumerate(WEST)}
     at |= {net: STRIP_LENGTH - FIRST_TRUNK - TRUNK_PITCH * k for k, net in enumerate(reversed(EAST))}
     west, east = ([f"ota.{net}" for net in side] for side in INNER)
@@ -121,7 +121,7 @@ def places() -> dict[str, float]:
 
 
 def amplifier_plan(d: Mapping[str, Device], masks: AnalogMasks, sizes: AmplifierSizes) -> AmplifierPlan:
-    """Where everything of an amplifier is. Raises ParameterError where a row is too long."""
+    """Plan an amplifier. Raises ParameterError where a row is too long."""
     at, axis = places(), STRIP_LENGTH / 2
 
     def plan(n: tuple[Placed, ...], p: tuple[Placed, ...]) -> Plan:
@@ -224,6 +224,6 @@ def _thicker(canvas: Canvas, y: float, drops: Sequence[float]) -> None:
 
 
 def _up(canvas: Canvas, x: float, y: float) -> None:
-    """From a common node's spine to the trunks' metal."""
+    """Draw the vias from a common node's spine to the trunks' metal."""
     canvas.stack(x, y, SECOND, FOURTH)
     canvas.wire(THIRD, x - PATCH_HALF, y - 0.19, x + PATCH_HALF, y + 0.19)

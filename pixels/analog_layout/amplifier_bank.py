@@ -89,12 +89,12 @@ class BankPlan:
 
     @property
     def east_um(self) -> float:
-        """X of the bank's east end."""
+        """Return x of the bank's east end."""
         return self.west + 2 * PITCH * FINGERS * COLUMNS + JOIN_AWAY + JOIN / 2
 
     @property
     def height_um(self) -> float:
-        """From the lowest common spine's edge to that of the uppermost."""
+        """Return the height from the lowest common spine's edge to the uppermost's."""
         return self._common(CHANNELS) + COMMON / 2
 
     def _row(self) -> float:
@@ -113,7 +113,7 @@ class BankPlan:
 
 
 def tracks(channel: int) -> list[str]:
-    """Capacitors that have a track in a channel, from the south.
+    """Return the capacitors with a track in a channel, from the south.
 
     The outermost two are beside the common fingers' ends: what evens out, and bits 9 and 8 as they have units.
     """
@@ -152,7 +152,7 @@ class _Drawing:
         self.canvas.wire(level, left, min(a, b), right, max(a, b))
 
     def both(self, left: float, low: float, right: float, high: float) -> None:
-        """On both metals of the capacitors."""
+        """Draw a box on both metals of the capacitors."""
         for level in (FIRST, SECOND):
             self.metal(level, left, low, right, high)
 

@@ -63,7 +63,7 @@ class ArrayPlan:
 
     @property
     def pitch_um(self) -> tuple[float, float]:
-        """From column to column, from row to row."""
+        """Return the pitch of columns and of rows."""
         plate = self.edge_um + 2 * LOWER_ENCLOSURE
         return plate + LOWER_SPACE, plate - LOWER_ENCLOSURE + LOWER_TAB + LOWER_SPACE
 
@@ -132,7 +132,7 @@ class _Drawing:
     way: int
 
     def y(self, v: float) -> float:
-        """Of a distance from the bus's far side."""
+        """Return y of a distance from the bus's far side."""
         return self.origin + self.way * v
 
     def box(self, mask: tuple[int, int], left: float, low: float, right: float, high: float) -> None:
@@ -143,7 +143,7 @@ class _Drawing:
         self.box(self.masks.base.metals[level].gds, left, low, right, high)
 
     def middle(self, row: int, column: int) -> tuple[float, float]:
-        """Of a unit's upper plate; row and column from -1 of the dummies to SIDE."""
+        """Return the centre of a unit's upper plate; rows and columns from -1 (dummies) to SIDE."""
         across, along = self.plan.pitch_um
         first = TRACK_PITCH * len(self.plan.buses()) + BUS_SPACE + LOWER_TAB + self.plan.edge_um / 2
         return (self.west + LOWER_ENCLOSURE + self.plan.edge_um / 2 + (column + 1) * across, first + (row + 1) * along)
@@ -178,7 +178,7 @@ class _Drawing:
         )
 
     def _line(self, net: str, x: float, end: float, array: Array) -> None:
-        """From the bus to ``end``, a distance from its far side."""
+        """Draw a line from the bus to ``end``, a distance from its far side."""
         track = next(row.y for row in array.tracks if row.net == net)
         start = (track - self.origin) * self.way
         self.metal(SECOND, x - LINE_WIDTH / 2, start, x + LINE_WIDTH / 2, end)
@@ -216,7 +216,7 @@ class _Drawing:
             array.taps.append(Tap(name, len(rows), x, self.y(v)))
 
     def _half(self, line: float, array: Array) -> None:
-        """Half a unit in the place of a dummy beside the bus, on the lower plate of a whole one; its line's x."""
+        """Draw half a unit instead of a dummy next to the bus, on a whole lower plate; ``line``: x of its line."""
         self._plate(-1, HALF_COLUMN, self.plan.half_um)
         self._lower(-1, HALF_COLUMN, self.plan.edge_um)
         at = self.middle(-1, HALF_COLUMN)[1] - self.plan.edge_um / 2 - VIA_INSET
@@ -261,7 +261,7 @@ class _Drawing:
             )
 
     def _common(self, array: Array) -> None:
-        """The upper plates' metal: strips beside the columns, a tongue to each plate, bars at both ends, a way out."""
+        """Draw the upper plates' metal: strips next to the columns, tabs to the plates, bars at both ends, the exit."""
         half, across = self.plan.edge_um / 2, self.plan.pitch_um[0]
         first, last = self.middle(0, 0), self.middle(SIDE - 1, SIDE - 1)
         bars = first[1] - half - LOWER_TAB - LOWER_SPACE / 2, last[1] + half + LOWER_ENCLOSURE + LOWER_SPACE / 2

@@ -35,7 +35,7 @@ def resistor_um(ohm: float, masks: AnalogMasks) -> float:
 
 
 def bias_cell(masks: AnalogMasks, outputs: int) -> Cell:
-    """Draw a bias with so many outputs, whose pins are in the south."""
+    """Draw a bias with ``outputs`` outputs, whose pins are in the south."""
     circuit = bias(outputs)
     d = {t.name: Device.of(t) for t in flat.transistors(circuit)}
     for name, like in (("four", "one"), ("lower", "mirror_one"), ("upper", "mirror_four")):

@@ -1,4 +1,4 @@
-"""Whole cells: strips joined by their rails, with pins and an outline, beside the circuit that they are."""
+"""Whole cells: strips joined by their rails, with pins, an outline and their circuit."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -71,7 +71,7 @@ class Cell:
 
 
 def new_canvas(masks: AnalogMasks, name: str) -> Canvas:
-    """An empty cell in a layout of its own."""
+    """Return an empty cell in a new layout."""
     layout = db.Layout()
     layout.dbu = 0.001
     return Canvas(layout, name, masks.base)

@@ -1,4 +1,4 @@
-"""A channel: nets on tracks of the third metal, between what comes from below and what leads on above it.
+"""A channel: nets on tracks of the third metal, between terminals below and above it.
 
     above    the fourth metal again, from the second by vias in the channel's upper edge
              ... | ... second metal
@@ -51,7 +51,7 @@ class Channel:
 
     @property
     def top(self) -> float:
-        """Y of its upper edge."""
+        """Return y of its upper edge."""
         return self.y + TRACK_PITCH * len(self.rows) + TOP_MARGIN
 
     def draw(self, canvas: Canvas, bottom: float, ends: Mapping[float, float] | None = None) -> None:

@@ -319,12 +319,12 @@ class Drawn(NamedTuple):
 
     @property
     def near(self) -> float:
-        """X of the end that its lines come from."""
+        """Return x of the end at which its lines arrive."""
         return self.right if self.cap.from_east else self.left
 
     @property
     def way(self) -> int:
-        """From there away from the plate."""
+        """Return the direction from there away from the plate."""
         return 1 if self.cap.from_east else -1
 
 
@@ -353,7 +353,7 @@ def line_um(net: str) -> float:
 
 
 def length_um(farad: float, masks: AnalogMasks, wide: float = PLATE_WIDTH) -> float:
-    """Of a plate ``wide`` um across. Raises ParameterError where it would be under 1 um."""
+    """Return the length of a plate ``wide`` um across. Raises ParameterError below 1 um."""
     area, edge = masks.mim_area, masks.mim_edge
     length = snap((farad * 1e15 - 2 * edge * wide) / (area * wide + 2 * edge))
     if length < 1:
@@ -374,7 +374,7 @@ def names(net: str) -> tuple[str, ...]:
 def column_plan(
     d: Mapping[str, Device], sizes: ColumnSizes, masks: AnalogMasks, extra: Iterable[str] = ()
 ) -> ColumnPlan:
-    """Plan a column. extra: names of lines across, beside those of its nets.
+    """Plan a column. extra: names of additional lines across.
 
     Raises ParameterError where a strip has more nets than tracks, or a line no place.
     """
@@ -451,7 +451,7 @@ def _strip(
 
 
 def _lines(plan: Plan, present: set[str], left: float, right: float, number: int) -> dict[str, float]:
-    """X of the lines over a strip: those of a group together, each as near as may be to the gates on it."""
+    """Return x of the lines over a strip: a group's lines together, each as near as possible to its gates."""
     spans, taken, lines = plan.spans(), list[tuple[float, float]](), dict[str, float]()
     crossing = sorted((set(GROUPED) | set(SINGLE)) & present)
     crossing.sort(key=lambda net: (-len(names(net)), spans[net][1] - spans[net][0]))
@@ -547,7 +547,7 @@ def steps(low: float, high: float) -> Iterator[float]:
 
 
 def _patch(plate: Drawn) -> tuple[float, float]:
-    """Y of the metal over an upper plate: beside the lines of others that pass."""
+    """Return y of the metal over an upper plate, next to the passing lines of other plates."""
     if plate.cap.upper in EXIT_Y:
         y = EXIT_Y[plate.cap.upper]
         return y - 0.5, y + 0.5
@@ -555,7 +555,7 @@ def _patch(plate: Drawn) -> tuple[float, float]:
 
 
 def _leave(canvas: Canvas, positions: ColumnPlan, strips: Sequence[Strip], number: int, strip: Strip) -> None:
-    """What leaves a strip: on the fourth metal in the west, or on the second under the plates."""
+    """Draw the lines that leave a strip: on the fourth metal in the west, or on the second under the plates."""
     plan, half = strip.plan, UNDER_WIDTH / 2
     tracks = {net: track.y for track in strip.tracks for net in [track.net]}
     for net, jog in zip(("column_a", "column_b") if number == 0 else ("cin_a", "cin_b"), STRIP_TO_JOG, strict=True):
@@ -600,7 +600,7 @@ def _leave(canvas: Canvas, positions: ColumnPlan, strips: Sequence[Strip], numbe
 
 
 def _lowest(track: float) -> bool:
-    """Whether a track is the first one, beside a rail's joint in the west."""
+    """Return whether a track is the first one, next to a rail's joint in the west."""
     return track < RAIL_GAP / 2 + ROW_IN + TRACK_PITCH / 2
 
 

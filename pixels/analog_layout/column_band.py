@@ -1,4 +1,4 @@
-"""South of all columns: what drives their lines, their bias, the ends of the lanes' lines.
+"""The band south of all columns: line drivers, bias, ends of the lanes' lines.
 
 north    ways between the columns, at multiples of their pitch
          the bank's strips          | the bias | its lines' capacitors | the lanes' ends, one strip
@@ -82,7 +82,7 @@ class Group:
     strips: list[Strip] = field(default_factory=list)
 
     def of(self, net: str) -> list[float]:
-        """X of a net."""
+        """Return every x of a net."""
         places = [*self.ways.get(net, ()), *self.plates.get(net, ()), self.pins.get(net), self.inner.get(net)]
         return [x for x in places if x is not None]
 
@@ -95,7 +95,7 @@ class Group:
         return {net: (min(ends) + max(ends)) / 2 for net, ends in xs.items()}
 
     def free(self, x: float, step: float, first: float = 0.0) -> float:
-        """The place nearest to ``x``, of those a step apart, that has none beside it. Raises ParameterError."""
+        """Return the free place nearest to ``x`` on a grid of ``step``. Raises ParameterError."""
         taken = [*(at for xs in self.ways.values() for at in xs), *self.pins.values(), *self.inner.values()]
         taken += [at for xs in self.plates.values() for at in xs]
         places = (snap(first + step * k) for k in range(int(self.right / step) + 1))
@@ -105,7 +105,7 @@ class Group:
         return min(free, key=lambda at: abs(at - x))
 
     def draw(self, canvas: Canvas, height: float) -> None:
-        """What joins its strips' nets, to the south edge and to ``height``."""
+        """Draw the nets between its strips, to the south edge and to ``height``."""
         tracks = [track for strip in self.strips for track in strip.tracks]
         for net in dict.fromkeys(track.net for track in tracks):
             for x in self.of(net):

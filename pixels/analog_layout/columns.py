@@ -1,4 +1,4 @@
-"""All columns side by side, lying: what crosses them, each one's vias to its own of the lanes', groups' and places'.
+"""All columns, lying: crossing lines, and each column's vias to the lines of its lane, group and place.
 
 What goes on to the south is on the second metal between two columns, at a multiple of their pitch: a `way`.
 """
@@ -51,7 +51,7 @@ class Columns:
     count: int
 
     def lines(self, net: str) -> list[float]:
-        """X of the lines of one of the block's nets: of a lane's both, to the columns and back."""
+        """Return x of a block net's lines; a lane has two, to the columns and back."""
         if net.startswith("lane"):
             kind, lane = net[:-1].split("[")
             return [self.plan.lines[f"{name}{lane}"] for name in (kind, kind.replace("lane", "sense"))]
@@ -104,7 +104,7 @@ def draw_columns(
 
 
 def draw_way(canvas: Canvas, columns: Columns, net: str, number: int, only: int | None = None) -> list[float]:
-    """From the lines of a net, or from one of them, to WAY_END beyond the columns, south of column ``number``.
+    """Draw lines from a net's lines, or from one, to WAY_END beyond the columns, south of column ``number``.
 
     Returns x of its vias.
     """

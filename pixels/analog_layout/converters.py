@@ -181,7 +181,7 @@ def draw_converters(
 
 
 def _ports(cell: Cell) -> dict[str, float]:
-    """X of a cell's pins, on the fourth metal."""
+    """Return x of a cell's pins, on the fourth metal."""
     xs = {}
     for index in cell.layout.layer_indexes():
         for shape in cell.cell.shapes(index).each(db.Shapes.STexts):
@@ -199,7 +199,7 @@ def _gap(lane: int, room: AnalogSizes) -> float:
 
 
 def _south(block: Block, lanes: list[Placed], chip: ChipParameters, room: AnalogSizes) -> Channel:
-    """Between the chip's pins and the lanes; what rises to the amplifiers."""
+    """Return the channel between the chip's pins and the lanes, with the lines to the amplifiers."""
     pins = {pin.name: [pin.at_um] for pin in block.pins if pin.side == "south"}
     above: dict[str, list[float]] = {}
     for number, lane in enumerate(lanes):
@@ -235,7 +235,7 @@ def _middle(
     chip: ChipParameters,
     room: AnalogSizes,
 ) -> Channel:
-    """Between the lanes and the amplifiers."""
+    """Return the channel between the lanes and the amplifiers."""
     below: dict[str, list[float]] = {
         net: [rise(net, chip, room)]
         for net in [AMPLIFIER_ON, *(pin.name for pin in block.pins if pin.name.startswith("balance"))]
@@ -303,7 +303,7 @@ def _references(
 
 
 def _north(canvas: Canvas, block: Block, amplifiers: list[Placed]) -> None:
-    """From the amplifiers' tops to the pins in the north."""
+    """Draw the lines from the amplifiers to the pins in the north."""
     north, half = {pin.name: pin.at_um for pin in block.pins if pin.side == "north"}, TRUNK / 2
     for amplifier in amplifiers:
         y = amplifier.y + amplifier.cell.cell.dbbox().top

@@ -85,7 +85,7 @@ class Device:
 
     @classmethod
     def of(cls, transistor: Transistor, tallest: float = MAX_FINGER, dummies: bool = False) -> Self:
-        """With its own fingers, else the fewest that are no taller; one below 2 um, as the circuits' models have it."""
+        """Return the device with its fingers, else with the fewest that are low enough; one below 2 um."""
         if transistor.fingers:
             return cls(transistor, transistor.fingers, dummies)
         if transistor.w < 2:
@@ -105,12 +105,12 @@ class Device:
 
     @property
     def pitch_um(self) -> float:
-        """From gate to gate."""
+        """Return the pitch of the gates."""
         return self.transistor.l + GATE_SPACE
 
     @property
     def width_um(self) -> float:
-        """Of its diffusion."""
+        """Return the width of its diffusion."""
         gates = self.fingers + 2 * self.dummies
         return gates * self.transistor.l + (gates - 1) * GATE_SPACE + 2 * DIFFUSION_END
 

@@ -1,4 +1,4 @@
-"""A block of the die that is drawn: what LVS, the die and `make analog-layout` ask of each."""
+"""A drawn block of the die: the interface for LVS, the die and `make analog-layout`."""
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ from talbot.platforms.analog import AnalogMasks
 
 @dataclass(frozen=True)
 class DrawnBlock(ABC):
-    """The drawn block. boxes: cells that LVS compares once, and their instances by their pins."""
+    """The drawn block. boxes: cells that LVS compares separately; instances are compared by pins."""
 
     boxes: ClassVar[tuple[str, ...]] = ()
 

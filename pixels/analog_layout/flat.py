@@ -18,7 +18,7 @@ class Plate(NamedTuple):
 
 
 class Tap(NamedTuple):
-    """Where some units of a capacitor meet their net, um."""
+    """The point where some units of a capacitor meet their net, um."""
 
     name: str
     units: float
@@ -27,7 +27,7 @@ class Tap(NamedTuple):
 
 
 class Ends(NamedTuple):
-    """Where a resistor's two ends meet the first metal, um."""
+    """The points where a resistor's two ends meet the first metal, um."""
 
     name: str
     first: tuple[float, float]

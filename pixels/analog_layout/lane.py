@@ -94,7 +94,7 @@ def _gates(d: dict[str, Device], names: Iterable[str]) -> list[Column]:
 
 
 def lane_plan(masks: AnalogMasks, sizes: LaneSizes, d: dict[str, Device]) -> LanePlan:
-    """Where everything of a lane is. Raises ParameterError where it does not fit."""
+    """Plan a lane. Raises ParameterError where it does not fit."""
     edge, half = edges(sizes.dac, masks)
     nets = {f"bit{k}": f"dac.b{k}" for k in reversed(range(BITS))} | {"terminator": "dac.bt", "half": "dac.bh"}
     probe = ArrayPlan(binary(), nets, "top", edge, half, 0, 0)
@@ -205,7 +205,7 @@ def _ground(canvas: Canvas, array: Array, x: float) -> None:
 
 
 def _places(left: float, right: float, nets: Mapping[str, str], other: Mapping[str, str]) -> dict[str, float]:
-    """X of what goes from strip to strip: beside the arrays, or over the strips on one side of them."""
+    """Return x of the nets between strips: next to the arrays, or over the strips on one side of them."""
     places: dict[str, float] = {net: left + CHANNEL_FIRST + CHANNEL_PITCH * k for k, net in enumerate(WEST)}
     places |= {net: right - CHANNEL_FIRST - CHANNEL_PITCH * k for k, net in enumerate(EAST)}
     bits = [f"d{k}" for k in reversed(range(BITS))]
@@ -218,7 +218,7 @@ def _places(left: float, right: float, nets: Mapping[str, str], other: Mapping[s
 
 
 def _nets(canvas: Canvas, plan: LanePlan, tracks: Sequence[Strap], top: float, ports: Sequence[str]) -> None:
-    """What goes from strip to strip, up to the pins."""
+    """Draw the nets between strips, up to the pins."""
     present = {track.net for track in tracks}
     for net, x in plan.at.items():
         edge = top if net in NORTH else 0.0

@@ -1,4 +1,4 @@
-"""South of all rows: predecoders of both addresses and buffers, in strips; what crosses the rows begins here.
+"""The bank south of all rows: predecoders of both addresses and buffers, in strips.
 
 All nets between strips, and from the pins in the south, are on the fourth metal, each at an x of its own.
 """
@@ -37,7 +37,7 @@ def _codes(side: str, group: str) -> list[str]:
 
 
 def crossings(rows: RowPlan) -> dict[str, float]:
-    """X of every net between strips."""
+    """Return x of every net between strips."""
     at = dict(rows.pins)
     for name, x in rows.lines.items():
         at[f"{name}_line" if name in CONTROLS else name] = x

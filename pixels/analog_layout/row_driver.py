@@ -98,7 +98,7 @@ class RowPlan:
 
 
 def _lines(n: Sequence[Placed], pins: Collection[float]) -> dict[str, float]:
-    """X of what crosses all rows: a control over its gate, predecoded lines from the west on, where there is room.
+    """Return x of the crossing lines: a control over its gate, predecoded lines in free places from the west.
 
     pins: x of what comes from the south.
     """
@@ -170,12 +170,12 @@ def row_plan(d: Mapping[str, Device], width: float, pins: Mapping[str, float]) -
 
 
 def places() -> dict[str, float]:
-    """Y of each line in its row, from the row's south edge."""
+    """Return y of each line in its row, from the row's south edge."""
     return {net: (k + 0.5) / len(ROW_LINES) * PITCH for k, net in enumerate(ROW_LINES)}
 
 
 def _clear(plan: Plan, jogs: Mapping[str, float]) -> bool:
-    """Whether no line's way from its jog to its place is beside the track of one that goes farther."""
+    """Return whether no line from its jog to its place is next to the track of a longer one."""
     at = places()
     tracks = {track.net: RAIL_GAP / 2 + track.y for track in plan.tracks() if track.net in jogs}
     return not any(
@@ -219,7 +219,7 @@ def draw_row(canvas: Canvas, masks: AnalogMasks, row: RowPlan) -> Strip:
 
 
 def _thick(canvas: Canvas, row: RowPlan, y: float, top: float) -> None:
-    """What thick oxide needs: its mask over all of the shifters, the tip implant over n, more well around p."""
+    """Draw the thick oxide's masks: over all shifters, the tip implant over n, more well around p."""
     process, plan = canvas.process, row.thick
     (oxide, _), (tip, _) = process.thick
     ends = RAIL_ENDS + WELL_ENDS + THICK_MARGIN

@@ -164,7 +164,7 @@ def _lines(canvas: Canvas, plan: RowPlan, row: Cell, south: float, rows: int) ->
 
 
 def _supplies(canvas: Canvas, block: Block, plan: RowPlan, south: float, room: AnalogSizes) -> None:
-    """From each pin in the west to what joins the rows' rails, and this across the bank where that has none."""
+    """Draw the supplies from each west pin to the joints of the rows' rails, across the bank where it has none."""
     via, half = canvas.process.vias[FOURTH].gds, room.supply_um / 2
     for pin in (pin for pin in block.pins if pin.supply):
         ends = [plan.west + plan.joints[name] for name in JOINTS[pin.name]]

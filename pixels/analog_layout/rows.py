@@ -1,4 +1,4 @@
-"""Rows of transistors beside each other, with transistors at their ends that are off."""
+"""Rows of adjacent transistors, with switched-off transistors at their ends."""
 
 from collections.abc import Iterable, Mapping
 
@@ -19,7 +19,7 @@ def dummies(name: str, like: Device) -> dict[str, Device]:
 
 
 def row(d: Mapping[str, Device], names: Iterable[str], axis: float, room: float = 0.0) -> tuple[Placed, ...]:
-    """Devices beside each other about ``axis``; room: um more between them."""
+    """Place adjacent devices about ``axis``; room: additional um between them."""
     devices = [d[name] for name in names]
     rooms = [snap(max(device.width_um + GAP, 3 * DROP_PITCH) + room) for device in devices]
     x, placed = snap(axis - sum(rooms) / 2), list[Placed]()

@@ -90,7 +90,7 @@ class Plan:
 
     @property
     def height_um(self) -> float:
-        """From the middle of the lower rail to that of the upper one."""
+        """Return the distance between the rails' centres."""
         heights = [max((placed.device.finger_um for placed in row), default=0.0) for row in (self.n, self.p)]
         between = ROW_SPACE if self.n and self.p else OPEN_ENDS
         devices = 2 * RAIL + sum(heights) + between
@@ -149,7 +149,7 @@ class Plan:
 
 
 class Terminal(NamedTuple):
-    """Where a transistor meets the first metal."""
+    """The point where a transistor meets the first metal."""
 
     device: str
     strap: Strap
@@ -329,7 +329,7 @@ def _free(x: float, low: float, high: float, others: Sequence[tuple[Strap, float
 
 
 def _places(strap: Strap, placed: Placed) -> Iterator[float]:
-    """Where a drop may be: over the strap, from its middle on, then beside it up to the device's room."""
+    """Yield x of a drop: over the strap from its centre, then next to it within the device's room."""
     middle = (strap.left + strap.right) / 2
     inner = strap.right - strap.left - STRAP
     low, high = _ends(strap, placed)
@@ -340,7 +340,7 @@ def _places(strap: Strap, placed: Placed) -> Iterator[float]:
 
 
 def _ends(strap: Strap, placed: Placed) -> tuple[float, float]:
-    """How far a strap may go."""
+    """Return the ends to which a strap may extend."""
     return (strap.left, strap.right) if strap.fixed else (placed.low, placed.high)
 
 

@@ -44,7 +44,7 @@ PINS += ("vbp", "vcp", "level", "start", *TWICE, *SUPPLIES)
 
 
 def line(pin: str) -> str:
-    """What is on a pin: `reads` on `reads_a`."""
+    """Return the line on a pin: `reads` on `reads_a`."""
     return pin.removesuffix("_a") if pin in TWICE and pin != "start_a" else pin
 
 
@@ -61,7 +61,7 @@ def p(name: str, nodes: str, w: float, kind: tuple[str, float]) -> Transistor:
 
 
 def source(name: str, nodes: str, w: float, kind: tuple[str, float], parts: int = 1) -> Transistor:
-    """A p transistor that is a source of current, of so many of the bias's."""
+    """Return a p transistor as a current source of ``parts`` times the bias's."""
     return p(name, nodes, w, kind)._replace(fingers=parts)
 
 

@@ -1,4 +1,4 @@
-"""What a block of columns has beside them: bias, what drives the lines to all columns, the ends of the lanes' lines."""
+"""The shared circuits of a block of columns: bias, drivers of the lines to all columns, ends of the lanes' lines."""
 
 from itertools import pairwise
 
@@ -83,7 +83,7 @@ def cascode_lines() -> Circuit:
 
 
 def lane_end(sizes: ColumnSizes) -> Circuit:
-    """What a lane's line has beside its columns: its source of current in a turn, else its reference.
+    """The end of a lane's line: its current source in a turn, else its reference.
 
     Pins lane reference turn turnn vbl vcp vdd vss.
     """
@@ -143,7 +143,7 @@ def clear_pulse(sizes: ColumnSizes) -> Circuit:
 
 
 def bank(sizes: ColumnSizes) -> Circuit:
-    """What drives the lines that cross all columns. Pins BANK_INPUTS, BANK_OUTPUTS, vbp vcn vdd vss.
+    """The drivers of the lines that cross all columns. Pins BANK_INPUTS, BANK_OUTPUTS, vbp vcn vdd vss.
 
     A group's line is high in a turn alone. `clear` ends by itself: a current charges a capacitor from the row's start
     on. The holder's reset ends before the signal half begins, and its capacitors part from x before all else. While a
@@ -204,7 +204,7 @@ def bank(sizes: ColumnSizes) -> Circuit:
 
 
 def band(sizes: ColumnSizes, lanes: int) -> Circuit:
-    """All that a block has beside its columns: bank, bias, the ends of the lanes' lines.
+    """The shared circuits of a block: bank, bias, the ends of the lanes' lines.
 
     Pins BANK_INPUTS, BANK_OUTPUTS, ibias BIASES level reference dark, lane_a0 lane_b0 and so on, vdd vss.
     """

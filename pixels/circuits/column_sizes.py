@@ -1,4 +1,4 @@
-"""What a column must do, from the sensor, the chip's timing and Table 6.1, and its sizes: see column.py."""
+"""Specification and sizes of a column, from the sensor, the chip's timing and Table 6.1: see column.py."""
 
 from dataclasses import dataclass, replace
 from math import ceil, log
@@ -42,7 +42,7 @@ UNLIKE = 0.5  # of the offset's limit that is left to the charge amplifiers' inp
 
 @dataclass(frozen=True)
 class ColumnSpec:
-    """What a column must do, in LSB of the lane's converter where nothing else is said.
+    """The specification of a column, in LSB of the lane's converter unless stated otherwise.
 
     Attributes
     ----------
@@ -142,7 +142,7 @@ class ColumnSpec:
         energy: EnergyParameters | None = None,
         timing: AmpTiming | None = None,
     ) -> Self:
-        """Of a sensor: its array's lines and full well, the chip's clock and lanes, Table 6.1."""
+        """Return the specification for a sensor: its lines and full well, the chip's clock and lanes, Table 6.1."""
         sensor, energy, timing = sensor or SensorParameters(), energy or EnergyParameters(), timing or AmpTiming()
         drawn, array, chip = drawn_lines(), sensor.array, sensor.chip
         columns = ceil(array.cols / chip.lanes)

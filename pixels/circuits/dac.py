@@ -60,7 +60,7 @@ class DacSizes:
         return CODES * self.unit / (self.total * (1 + PARASITIC) + load)
 
     def width(self, units: float) -> float:
-        """Of a switch (um) for so many units."""
+        """Return the width (um) of a switch for ``units`` units."""
         return max(0.65, round(units * self.unit * 1e12 * self.width_per_pf / 0.05) * 0.05)
 
 

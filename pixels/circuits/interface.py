@@ -1,4 +1,4 @@
-"""Between the chip and a lane with its amplifier: the chip's `hold`, `en` and `clk` become phases of both.
+"""The interface of the chip and a lane with its amplifier: the chip's `hold`, `en` and `clk` become phases of both.
 
     clk        |‾|______|‾|______|‾|______|      high for 12 ns
     hold       |________|‾‾‾‾‾‾‾‾|________

@@ -105,7 +105,7 @@ class Circuit:
         return {size for circuit in self.circuits().values() for size in circuit.own_sizes()}
 
     def own_sizes(self) -> set[tuple[str, float, float]]:
-        """(role, w, l) of its own transistors, as its lines have them."""
+        """Return (role, w, l) of its transistors, without those of instances."""
         return {(t.role, t.finger_um, t.l) for t in self.transistors}
 
     def lines(self, process: ModuleType) -> list[str]:
@@ -127,7 +127,7 @@ class Circuit:
         return [*text, f".ends {self.name}"]
 
     def devices(self, process: ModuleType) -> list[str]:
-        """Lines of its own transistors."""
+        """Return the lines of its transistors, without those of instances."""
         return [process.instance(t.name, t.nodes, t.role, t.w, t.l, t.fingers) for t in self.transistors]
 
     def check(self, process: ModuleType) -> None:
@@ -188,7 +188,7 @@ class Circuit:
         return replace(self, capacitors=tuple(c._replace(value=values.get(c.name, c.value)) for c in self.capacitors))
 
     def replaced(self, changed: "Circuit") -> Self:
-        """The same circuit with ``changed`` in place of every circuit of that name in it."""
+        """Return the circuit with ``changed`` instead of every circuit of that name in it."""
         inner = (
             i._replace(circuit=changed if i.circuit.name == changed.name else i.circuit.replaced(changed))
             for i in self.instances
@@ -196,7 +196,7 @@ class Circuit:
         return replace(self, instances=tuple(inner))
 
     def without(self, device: str) -> Self:
-        """The same circuit without one of its own devices: a fault that is planted."""
+        """Return the circuit without one of its devices: a planted fault."""
         kinds = ("transistors", "capacitors", "resistors", "instances")
         kept = {kind: tuple(d for d in getattr(self, kind) if d.name != device) for kind in kinds}
         if all(len(kept[kind]) == len(getattr(self, kind)) for kind in kinds):

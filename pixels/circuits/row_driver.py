@@ -37,7 +37,7 @@ DRIVE = 3.0, 6.0  # um, n and p of what drives a line
 
 @dataclass(frozen=True)
 class RowDriverSpec:
-    """What a row's driver must do.
+    """The specification of a row's driver.
 
     Attributes
     ----------
@@ -76,7 +76,7 @@ class RowDriverSpec:
 
     @classmethod
     def of(cls, sensor: SensorParameters | None = None) -> Self:
-        """Of a sensor: the columns of its array, the cycle of its chip."""
+        """Return the specification for a sensor: the columns of its array, the cycle of its chip."""
         sensor = sensor or SensorParameters()
         return cls(cols=sensor.array.cols, settle=1 / sensor.chip.f_clk, slew=0.5 / sensor.chip.f_clk)
 
@@ -167,7 +167,7 @@ BANK_OUTPUTS = (
 
 
 def bank() -> Circuit:
-    """What drives the lines that cross all rows: predecoders of both addresses, buffers of the controls.
+    """The drivers of the lines that cross all rows: predecoders of both addresses, buffers of the controls.
 
     Pins BANK_INPUTS, BANK_OUTPUTS, vdd vss. `<side>_<group><code>` is high where the group's bits are the code.
     `read_line` waits for the end of `ref_ctl`: until then the columns are reset, and what a well gave is lost.

@@ -1,4 +1,4 @@
-"""What each circuit must do, from the sensor's parameters, the chip's timing and Table 6.1's power."""
+"""Specifications of the circuits, from the sensor's parameters, the chip's timing and Table 6.1's power."""
 
 from dataclasses import dataclass
 from typing import Self

@@ -1,4 +1,4 @@
-"""What the lanes stand on: non-overlapping switch drivers, bias with start-up. Rows have `row_driver`.
+"""Support circuits of the lanes: non-overlapping switch drivers, bias with start-up. Rows have `row_driver`.
 
 `non_overlap`: clk phi1 phi2 vdd vss; phi2 follows clk, phi1 is high while it is low, and both are low in between.
 `bias`: ibias vdd vss; BIAS amperes and 8 % leave ibias (the amplifier's pin) at the typical corner. With several

@@ -44,7 +44,7 @@ CONTACT_PITCH = 1.0
 
 @dataclass(frozen=True)
 class ArrayLayout:
-    """What an array is drawn from. pixels: by the tile's types, in their order; all of one pitch and process."""
+    """The input of an array's drawing. pixels: the tile's types, in order; all of one pitch and process."""
 
     array: ArrayParameters
     tile: TileParameters
@@ -179,7 +179,7 @@ def _ring(canvas: Canvas, array: ArrayLayout, mask: GdsLayer, near: float, far: 
 
 
 def _ends(canvas: Canvas, array: ArrayLayout) -> None:
-    """From rows and columns to their pins; the lines of dummy rows are tied off."""
+    """Draw the lines from rows and columns to their pins; the lines of dummy rows are tied off."""
     pitch, (rows, cols) = array.pitch_um, (array.array.rows, array.array.cols)
     row, dummy, column = (
         Canvas(canvas.layout, name, canvas.process) for name in ("row_end", "dummy_end", "column_end")
@@ -213,7 +213,7 @@ def _ends(canvas: Canvas, array: ArrayLayout) -> None:
 
 
 def _supplies(canvas: Canvas, array: ArrayLayout) -> None:
-    """In the east: a bus of the ground over the rings, one of the supply, and the top metal from these to the pins."""
+    """Draw the supplies in the east: buses of ground and supply over the rings, top metal from these to the pins."""
     process, pitch = canvas.process, array.pitch_um
     _, bottom, right, _ = _inside(array)
     end = Canvas(canvas.layout, "supply_end", process)

@@ -19,7 +19,7 @@ class Canvas:
         self.axis_um: float | None = None
 
     def mirrored(self, axis_um: float | None) -> None:
-        """From here on draw everything at its mirror image about x = ``axis_um``; None: as it is given."""
+        """Mirror everything drawn from here on about x = ``axis_um``; None: no mirroring."""
         self.axis_um = axis_um
 
     def box(self, mask: GdsLayer, left: float, bottom: float, right: float, top: float) -> None:

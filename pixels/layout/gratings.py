@@ -44,7 +44,7 @@ class Lines:
 
     @property
     def side(self) -> Point:
-        """From one long side of a line to the other."""
+        """Return the vector from one long side of a line to the other."""
         p, q = self.direction
         return -q * self.width, p * self.width
 
@@ -128,7 +128,7 @@ def polygons(grating: Lines, window: Box, shift: float, origin: Point | None = N
 
 
 def _span(start: int, step: int, low: float, high: float) -> tuple[float, float]:
-    """Where start + t step is between low and high: more than the first t, up to the second."""
+    """Return the range of t in which start + t step is between low and high: above the first, up to the second."""
     if not step:
         return (-inf, inf) if low <= start <= high else (inf, -inf)
     ends = sorted(((low - start) / step, (high - start) / step))

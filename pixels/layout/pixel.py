@@ -92,7 +92,7 @@ class PixelLayout:
 
     @property
     def axis(self) -> int | None:
-        """Of the modulation: 0 where the lines are upright, 1 where they are level, None of oblique ones."""
+        """The axis of modulation: 0 for vertical lines, 1 for horizontal ones, None for oblique ones."""
         return next((axis for axis, of in enumerate((np.sin, np.cos)) if abs(of(self.kind.gamma)) < 1e-9), None)
 
     @property
@@ -183,7 +183,7 @@ def grating_polygons(pixel: PixelLayout) -> Iterator[tuple[int, list[Point]]]:
 
 
 def openings(pixel: PixelLayout) -> Iterator[tuple[int, tuple[float, float, float, float]]]:
-    """(metal, box in um) of every opening that light has: between the bars, and of the frame over each well.
+    """(metal, box in um) of every opening for light: between the bars, and in the frame over each well.
 
     Upright and level lines continue in the edges beside them: the space to these is that of two lines, or the least to
     wide metal.
@@ -249,7 +249,7 @@ def _contacts(pixel: PixelLayout) -> tuple[float, float, float]:
 
 
 def _transistors(canvas: Canvas, pixel: PixelLayout) -> None:
-    """From the west: the diode's node, reset, the supply, follower, select, the column."""
+    """Draw, from the west: the diode's node, reset, supply, follower, select, column."""
     p, (left, right, bottom) = pixel.process, DIFFUSION
     top = bottom + pixel.w_um
     middle = bottom + 0.5

@@ -78,7 +78,7 @@ def sections(pixel: PixelLayout) -> Iterator[tuple[Section, float]]:
 
 
 def _starts(pixel: PixelLayout, across: int, up: int) -> Iterator[tuple[float, float, float]]:
-    """Where cuts start, in um, and their weights."""
+    """Yield the cuts' starts in um and their weights."""
     pitch = pixel.geometry.pitch_um
     boxes = [box for _, box in openings(pixel)][1:]
     if not up:  # all cuts through the openings are alike
@@ -102,7 +102,7 @@ def _tiled(region: "db.Region", pitch: int, reach: int) -> "db.Region":
 
 
 def _spans(cut: "db.Edge", region: "db.Region", dbu: float) -> Spans:
-    """Where a cut is inside of a region, from its start, in um."""
+    """Return the spans of a cut inside a region, from its start, in um."""
     parts = db.Edges([cut]).inside_part(region)
     length, ends = cut.length(), []
     for part in parts.each():

@@ -1,4 +1,4 @@
-"""Closed forms that the rigorous solution is held against [Jayasuriya2017, Sec. 2.2]."""
+"""Closed forms, for comparison with the rigorous solution [Jayasuriya2017, Sec. 2.2]."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""What a process can make: candidates under its rules, their neighbours, and what each of them measures."""
+"""Designs that a process can make: candidates under its rules, their neighbours and their figures."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -30,7 +30,7 @@ class Design:
     fit: Fit
 
     def off(self, beta: float) -> float:
-        """By how much of ``beta`` its own is beside it."""
+        """Return the deviation of its beta relative to ``beta``."""
         return abs(self.fit.beta / beta - 1)
 
 
@@ -56,7 +56,7 @@ def candidates(stack: OpticalStack, kinds: Sequence[str] = KINDS) -> Iterator[Pi
 
 
 def neighbours(design: Design, step: float = 1.0) -> Iterator[PixelGeometry]:
-    """Geometries a step beside ``design`` in one of `STEPS`, those that the rules allow."""
+    """Yield geometries a step from ``design`` in one of `STEPS` that the rules allow."""
     grid = design.geometry.stack.grid_um
     for sign in (-step, step):
         for name, size in STEPS.items():

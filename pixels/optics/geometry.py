@@ -102,7 +102,7 @@ class PixelGeometry:
 
     @property
     def shared(self) -> bool:
-        """Whether fingers of the two diodes share the light of the whole pixel."""
+        """Return whether fingers of the two diodes share the light of the whole pixel."""
         return self.kind != "amplitude"
 
     @property
@@ -112,7 +112,7 @@ class PixelGeometry:
 
     @property
     def gap_um(self) -> float:
-        """From the lower face of the upper lines to the upper face of the analyzer, or to the silicon."""
+        """Return the distance from the upper lines' lower face to the analyzer's upper face, or to the silicon."""
         stack = self.stack
         upper = stack.metal("diffraction", self.diffraction).bottom_um
         return upper - (stack.metal("analyzer", self.analyzer).top_um if self.analyzer else stack.surface_um)

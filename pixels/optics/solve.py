@@ -1,4 +1,4 @@
-"""From layers to the light in each photodiode: over angles, polarizations and shifts of the analyzer."""
+"""The light in each photodiode under a stack of layers, over angles, polarizations and analyzer shifts."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -130,7 +130,7 @@ def _solve(
     polarization: str,
     fingers: bool,
 ) -> list[Floats]:
-    """Of one set of components: (P, shifts, A), (P, shifts, A), and with fingers (P, shifts, 2, A)."""
+    """Solve one set of components: (P, shifts, A), (P, shifts, A), and with fingers (P, shifts, 2, A)."""
     wave = 2 * np.pi / light.wavelength_um
     x, y, _ = light.directions() * np.sqrt(light.top).real
     kx = x[:, None] + (np.arange(count) - count // 2) * light.wavelength_um / period_um

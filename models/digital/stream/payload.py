@@ -497,7 +497,7 @@ def decode_rows(
 
 @njit(cache=True)
 def counts_fit(data: Bytes, at: int, stop: int) -> bool:
-    """Whether the trailer's counts and their mark are at a position.
+    """Return whether the trailer's counts and their mark are at a position.
 
     Parameters
     ----------
@@ -518,7 +518,7 @@ def counts_fit(data: Bytes, at: int, stop: int) -> bool:
 
 @njit(cache=True)
 def frame_ends(data: Bytes, at: int, stop: int) -> bool:
-    """Whether the bytes end at a position, or a header seems to start there.
+    """Return whether the bytes end at a position, or a header seems to start there.
 
     Parameters
     ----------
@@ -554,7 +554,7 @@ def segment_fits(
     where: Ints,
     value: Codes,
 ) -> bool:
-    """Whether a segment, or the trailer after the last, is at a position.
+    """Return whether a segment, or the trailer after the last, is at a position.
 
     Parameters
     ----------

@@ -40,7 +40,7 @@ class Blocks:
 
     @property
     def shape(self) -> tuple[int, int]:
-        """Of the array."""
+        """The shape of the array."""
         return self.y.length, self.x.length
 
     @cached_property
@@ -86,7 +86,7 @@ class Blocks:
         return y[used], x[used], diode[used]
 
     def own(self, down: Group, across: Group) -> tuple[Ints, Ints, int]:
-        """Which samples are differences of the block's pixels, these pixels' numbers in it, and how many it has.
+        """Return samples that are differences of the block's pixels, these pixels' numbers in it, and their count.
 
         Parameters
         ----------
@@ -195,7 +195,7 @@ class Blocks:
 
 
 def kind(down: Group, across: Group) -> Kind:
-    """What windows are alike in.
+    """Return the key of similar windows.
 
     Parameters
     ----------

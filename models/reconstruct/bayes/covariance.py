@@ -92,7 +92,7 @@ class Covariances:
         return Tables(samples.reshape(*shape, diodes, diodes), field.reshape(*shape, self.views**2, diodes))
 
     def _planes(self, y: Floats, x: Floats) -> Floats:
-        """Covariance at all places y (n, a) by x (m, b): (n * m, a * b); once for all of the same distances."""
+        """Covariance at all places y (n, a) by x (m, b): (n * m, a * b); equal distances are computed together."""
         (down, row), (across, col) = (np.unique(np.abs(place), return_inverse=True) for place in (y, x))
         out = self.prior.covariance(down[:, None], across)
         return out[row.reshape(y.shape)[:, None, :, None], col.reshape(x.shape)[None, :, None]].reshape(

@@ -39,7 +39,7 @@ UNLIKELY = 1e-3  # probability below which a disparity is left out of a mixture
 
 
 class Estimate(NamedTuple):
-    """What a frame shows, by the mixture.
+    """The result of `mixture` for a frame.
 
     Attributes
     ----------
@@ -155,11 +155,11 @@ class FieldEstimator:
 
     @cached_property
     def _ways(self) -> list[Ways]:
-        """What every group is at each disparity of the grid, made once a sensor."""
+        """Ways of every group at each disparity of the grid, cached for the sensor."""
         return self._ways_at(self.prior.grid)
 
     def _ways_at(self, disparities: Floats) -> list[Ways]:
-        """What every group is at each of the disparities, one or more."""
+        """Return the ways of every group at each of the disparities."""
         kinds = {kind(*group): group for group in self.blocks.groups}
         count = len(disparities)
         stacks: dict[tuple[int, int], Floats] = {}
@@ -195,7 +195,7 @@ class FieldEstimator:
 
     @threadpool_limits.wrap(limits=1, user_api="blas")
     def prepare(self, mixture: bool = False) -> None:
-        """Make what `linear` needs once a sensor, or `mixture`; they do so themselves where it has not been done.
+        """Compute the tables of `linear` or `mixture` for the sensor in advance; they do so on demand otherwise.
 
         Parameters
         ----------
@@ -269,7 +269,7 @@ class FieldEstimator:
 
     @cached_property
     def _any(self) -> tuple[list[Residuals], Floats]:
-        """Of any disparity: residuals of every group, and their `certain` around each pixel."""
+        """Return, for any disparity, the residuals of every group and their `certain` around each pixel."""
         means = {kind(*group)[:2]: ways.mean for group, ways in zip(self.blocks.groups, self._ways, strict=True)}
         known = {phase: whitener(mean) for phase, mean in means.items()}
         residuals = [Residuals.of(known[kind(*g)[:2]], *self.blocks.own(*g)) for g in self.blocks.groups]
@@ -282,7 +282,7 @@ class FieldEstimator:
         return np.maximum(pooled(self.blocks.measured[kinds].astype(np.float32), self.prior.width), np.float32(1e-6))
 
     def told_by(self, pixels: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
-        """Where the mixture's disparity is from any of some pixels.
+        """Return where the mixture's disparity depends on any of some pixels.
 
         Parameters
         ----------
@@ -375,7 +375,7 @@ class FieldEstimator:
         return mean.astype(np.float32), np.sqrt(np.maximum(spread, 0)).astype(np.float32)
 
     def _plain(self, groups: Windows) -> npt.NDArray[np.bool_]:
-        """Whether noise explains what each window has beside the nearest uniform scene, (block rows, block cols)."""
+        """Whether noise explains each window's difference from the nearest uniform scene, (block rows, block cols)."""
         plain = np.zeros((len(self.blocks.y.blocks), len(self.blocks.x.blocks)), bool)
         totals = self.covariances.weights.sum((1, 2))
         for down, across, samples in groups:
@@ -387,7 +387,7 @@ class FieldEstimator:
         return plain
 
     def _score(self, groups: Windows) -> Floats:
-        """What trust leaves of -2 log p of any disparity, float32 (rows, cols)."""
+        """Return -2 log p of any disparity, times trust, float32 (rows, cols)."""
         (residuals, certain), pool = self._any, self.prior.width
         errors = (residual.matrix @ samples for (*_, samples), residual in zip(groups, residuals, strict=True))
         squares = pooled(self.blocks.map(np.square(e) for e in errors), pool) / self._read

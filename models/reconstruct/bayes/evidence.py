@@ -1,4 +1,4 @@
-"""How well a disparity predicts each pixel's difference from all other samples of its window, pooled around the pixel.
+"""Evidence of a disparity: its prediction of each pixel's difference from the window's other samples, pooled.
 
 A sample of a Gaussian window of precision P is predicted from the others with the error (P i)_j / P_jj, of variance
 1 / P_jj. Errors of single pixels know where a surface ends, and their pool is as small as the noise lets it be.
@@ -18,7 +18,7 @@ FLOOR = 0.05  # of a sample's variance, below which disparities count as equally
 
 
 class Residuals(NamedTuple):
-    """From the samples of a window to the errors of its block's differences, each over its standard deviation.
+    """The map of a window's samples to the errors of its block's differences, each over its standard deviation.
 
     Attributes
     ----------

@@ -20,7 +20,7 @@ Make = Callable[[int, Pair], Solver]
 
 
 class Hypotheses:
-    """Of one slant.
+    """The hypotheses of a slant.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ class Hypotheses:
         self._solvers: dict[tuple[int, Kind], Solver] = {}
 
     def scores(self, groups: Windows) -> Floats:
-        """What trust leaves of -2 log p of every disparity.
+        """Return -2 log p of every disparity, times trust.
 
         Parameters
         ----------
@@ -79,7 +79,7 @@ class Hypotheses:
         return np.asarray(self.prior.trust * errors, np.float32)
 
     def solver(self, number: int, group: Pair) -> Solver:
-        """From the samples of a group's windows to the views of their blocks, made where it is wanted, once.
+        """Return the map of a group's samples to the views of its blocks, cached.
 
         Parameters
         ----------

@@ -83,7 +83,7 @@ class Window:
     def covariances(
         self, plane: Plane, prior: FieldPrior, views: bool = True
     ) -> tuple[npt.NDArray[np.float64], Floats | None]:
-        """Of a plane.
+        """Return the covariances of a plane.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""What is known of a light field before it is measured: planes of random texture, each at one disparity."""
+"""The prior of a light field: planes of random texture, each at one disparity."""
 
 import math
 from dataclasses import dataclass
@@ -100,7 +100,7 @@ class FieldPrior:
 
     @property
     def fine_step(self) -> float:
-        """Between two of these; 1 where there is one alone."""
+        """The step between two of these; 1 for a single one."""
         return (self.near - self.far) / (len(self.fine) - 1) if len(self.fine) > 1 else 1.0
 
     @property

@@ -26,7 +26,7 @@ ROUNDING = 1e-6  # of a sample's variance: what float32 leaves, so that no covar
 
 
 class Ways(NamedTuple):
-    """What a group of windows is at every disparity.
+    """Covariances of a group of windows at every disparity.
 
     Attributes
     ----------

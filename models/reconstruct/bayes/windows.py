@@ -1,4 +1,4 @@
-"""Where blocks of pixels and the windows around them are: a window at the border is moved inside."""
+"""Positions of blocks of pixels and of the windows around them; a window at the border is moved inside."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass

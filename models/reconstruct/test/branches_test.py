@@ -107,7 +107,7 @@ def test_it_knows_what_it_was_taught_with():
 def test_bad_arguments(pair):
     with pytest.raises(ParameterError, match="pair shape"):
         Branches(_weights()).estimate(pair[:, 1:], _sensor(), 0.01)
-    with pytest.raises(ParameterError, match="must be what this was taught with"):
+    with pytest.raises(ParameterError, match="must be those of the training"):
         Branches(_weights()).estimate(pair, replace(_sensor(), optics=replace(_sensor().optics, m=0.05)), 0.01)
     with pytest.raises(ParameterError, match="both/dense_2 = weights of shape"):
         Branches(_weights() | {"both/dense_2": np.zeros((3, 3))})

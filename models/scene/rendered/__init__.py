@@ -20,7 +20,7 @@ MANIFEST = "rendered.json"
 
 
 class Rendered(NamedTuple):
-    """What a scene is rendered for.
+    """The lens and size that a scene is rendered for.
 
     Attributes
     ----------
@@ -44,7 +44,7 @@ RENDERED = {
 
 
 def manifest() -> dict[str, Any]:
-    """How each file was made, and its SHA-256, by name.
+    """Return each file's command and SHA-256, by name.
 
     Returns
     -------
