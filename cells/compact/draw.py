@@ -13,7 +13,7 @@ from talbot.cells.compact.route import Wiring
 CUT, WIRE = 0.17, 0.17  # um: licon and mcon; li
 PAD = (0.27, 0.33)  # um: poly around its contact
 PATCH = 0.33  # um: li around a contact, along one direction
-SHIFT = 0.08  # um: a 'tap' contact beside its gate (route)
+SHIFT = 0.08  # um: from a gate to its 'tap' contact (route)
 EPSILON = 1e-6
 VIA_PAD = (0.29, 0.23)  # um: met1 around mcon
 
@@ -136,14 +136,14 @@ class Drawing(Pen):
     def _segment(self, net: str, a: Vertex, b: Vertex, contacts: set[Vertex]) -> None:
         layer, width = {"li": ("li", WIRE), "poly": ("poly", self.canvas.length), "met1": ("m1", 0.14)}[a[0]]
         half = width / 2
-        # A pad beside a gate: no notch between the two
+        # A pad next to a gate: no notch between the two
         tall = PAD[1] / 2 if a[0] == "poly" and a[2] == b[2] and {a, b} & contacts else half
         x = sorted((self.x(a[1]), self.x(b[1])))
         y = sorted((self.canvas.rows[a[2]], self.canvas.rows[b[2]]))
         self.box(layer, net, x[0] - half, y[0] - tall, x[1] + half, y[1] + tall)
 
     def _beside(self, net: str, h: int, side: int, row: int) -> float:
-        """Draw a gate's contact and its poly pad, SHIFT beside the gate's middle; returns its x."""
+        """Draw a gate's contact and its poly pad, SHIFT from the gate's centre; returns its x."""
         x, y = self.x(h) + side * SHIFT, self.canvas.rows[row]
         self.at("poly", net, x, y, *PAD)
         self.box("poly", net, min(x, self.x(h)), y - PAD[1] / 2, max(x, self.x(h)), y + PAD[1] / 2)
@@ -200,7 +200,7 @@ class Drawing(Pen):
         return Reach(x, bottom, top)
 
     def _reach(self, net: str, pin: Reach) -> Reach:
-        """The pin drawn out to where li of another net, or of its own beside it, begins."""
+        """Extend the pin to where li of another net, or another piece of its net, begins."""
         x, bottom, top = pin
         low, high = self.canvas.li_rail + WIRE, self.canvas.height - self.canvas.li_rail - WIRE
         for s in self.shapes:

@@ -6,7 +6,7 @@ to each other for different nets. Besides:
 
 - ('pin', h, r): a pin on li from row r to r + 1; it holds these two vertices.
 - ('tap', h, side, r): a gate's contact in row r, low or high, with its pin to the other of these rows, both 0.08 um
-  beside the gate's middle (side -1 or 1), so that li of another net fits on the other side of it.
+  next to the gate's centre (side -1 or 1), so that li of another net fits on the other side of it.
 - ('tip', h, side, r): such a contact in row r, low or high, with li from it away from the other row, which joins
   column h + side there.
 """
@@ -31,7 +31,7 @@ class Grid:
     """The grid of ``columns`` half sites on ``canvas``, with or without met1.
 
     number: index of each of ``vertices``. Of a vertex, next: its neighbours; excludes: vertices that no other net may
-    hold beside it; needs: the vertices that it holds; crowds: those that the same net may not hold beside it.
+    hold with it; needs: the vertices that it holds; crowds: those that the same net may not hold with it.
     """
 
     def __init__(self, columns: int, canvas: Canvas, met1: bool) -> None:

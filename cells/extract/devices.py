@@ -237,7 +237,7 @@ def _stress(layout: CellLayout, point: "db.Point", width: float, length: float) 
         strip = db.Region(db.Box(box.left, low, box.right, high)) & band
         runs = (part.bbox() for part in strip.each_merged())
         run = next((run for run in runs if run.contains(db.Point(point.x, low))), None)
-        if run is None:  # half a database unit beside a gate of an odd width
+        if run is None:  # half a database unit off, for a gate of an odd width
             continue
         covered += high - low
         for side, dbu in enumerate((point.x - run.left, run.right - point.x)):

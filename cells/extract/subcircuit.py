@@ -22,7 +22,7 @@ def extract(
 ) -> str:
     """SPICE text of cell ``name`` in the file ``gds``: transistors in um and um2, capacitors in fF, resistors in ohm.
 
-    ports: their names in order; without it they come from the netlist beside the GDS (same name, .spice or .spi), else
+    ports: their names in order; without it they come from the netlist next to the GDS (same name, .spice or .spi), else
     sorted. Raises ParameterError when GDS, cell or ports do not fit.
     """
     layout = find(gds, name, tech)

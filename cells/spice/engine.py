@@ -108,7 +108,7 @@ class Simulator:
     ) -> Wave:
         """Run a `Transient`; other ``nodes`` than in the run before cost a new process.
 
-        settings: in place of the simulator's own, without retries after a failure. Raises SimulationError.
+        settings: instead of the simulator's, without retries after a failure. Raises SimulationError.
         """
         requested, run = settings or self.settings, Transient(stimulus, loads, stop, step, tuple(nodes))
         attempts = (requested,) if settings else (requested, *requested.retries)

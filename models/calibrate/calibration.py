@@ -28,7 +28,7 @@ class Calibration:
     gains : tuple of float
         Capacitor ratio of every type, 0..64.
     sigma : float
-        Of the aperture in rad, 0.01..10, beside cos**4 of the lens.
+        Of the aperture in rad, 0.01..10, in addition to cos**4 of the lens.
     pupil_power : float
         Inverse distance of the exit pupil from the sensor in 1/m, 0..1e4; 0 is telecentric.
     centre : tuple of float or None

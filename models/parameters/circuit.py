@@ -1,4 +1,4 @@
-"""ngspice's results of converter lane and columns: circuit.json, written by `make analog TABLE=`."""
+"""Results of ngspice for converter lane and columns: circuit.json, written by `make analog TABLE=`."""
 
 import json
 from dataclasses import dataclass

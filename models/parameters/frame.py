@@ -83,7 +83,7 @@ class FrameParameters:
     decimation : int
         Log2 of the tile step, 0..3 (every 1, 2, 4 or 8 tiles, from the window's corner).
     phase : bool
-        In tof mode, send (phase, amplitude) from the divider in place of the taps.
+        In tof mode, send (phase, amplitude) from the divider instead of the taps.
     noise_floor : int
         Amplitude below which the divider's phase is not valid, 0..255.
     overlap : bool

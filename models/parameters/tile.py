@@ -30,7 +30,7 @@ class PixelType:
     m : float or None
         Modulation depth, 0..1; None is the sensor's own (OpticsParameters.m).
     response : callable or None
-        A response of one's own in place of Eq. 3.1: see `Response`. ``beta`` then is the fastest angular frequency in
+        A response instead of Eq. 3.1: see `Response`. ``beta`` then is the fastest angular frequency in
         it, alpha, gamma_deg and m are labels.
     """
 

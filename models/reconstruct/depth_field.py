@@ -164,7 +164,7 @@ def unwrap(phase: Floats, coarse: Floats, doubt: Floats) -> Unwrapped:
 
     References
     ----------
-    [Jayasuriya2017], Sec. 5.6.2, without a line that is marked by hand.
+    [Jayasuriya2017], Sec. 5.6.2, without a manually marked line.
     """
     known = np.isfinite(phase)
     fine = np.where(known, phase, 0) / (2 * np.pi) % 1

@@ -145,7 +145,7 @@ def _balls(sampling: Sampling, dv: float, du: float) -> tuple[Floats, Floats, Fl
         ny, nx = ny[inside], nx[inside]
         nz = np.sqrt(1 - ny**2 - nx**2)
         diffuse = albedo * (0.35 + 0.45 * nz - 0.2 * ny) * (1 + 0.25 * np.sin(14 * ny + 9 * nx))
-        # The mirrored ray leaves along 2 nz n - z; lamps are beside the balls, across the line of sight.
+        # The mirrored ray leaves along 2 nz n - z; lamps are next to the balls, across the line of sight.
         to_lamp = 2 * nz * (ny * np.sin(lamp) + nx * np.cos(lamp))
         disc = np.clip((np.arccos(np.clip(to_lamp, -1, 1)) - LAMP_RADIUS) / -np.deg2rad(3) + 0.5, 0, 1)
         across, along = _fresnel(nz)

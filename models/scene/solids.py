@@ -25,7 +25,7 @@ Texture = Callable[[Floats, Floats], Floats]  # radiance at metres along both si
 
 NEAR, FAR = 2.2, 4.6  # m of the scene, ends of the box
 GRAIN = 0.08  # of the near end's width: shortest wave of the textures
-BARS = 12.0  # px, of a bar of the fence and the gap beside it
+BARS = 12.0  # px, of a bar of the fence and the gap next to it
 CRACK = 1e-9  # of a side: rounding must leave none between two facets
 WALL = 1.55, 1.9  # depth of the wall's left and right end, of the fence's
 

@@ -241,7 +241,7 @@ def fetch(
     dv, du : float
         From the view to the picture in view steps.
     right : float
-        Px to the right in the picture beside it.
+        Px to the right in the adjacent picture.
     high : float
         Largest value; the smallest is 0.
     """

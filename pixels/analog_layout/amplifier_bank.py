@@ -115,7 +115,7 @@ class BankPlan:
 def tracks(channel: int) -> list[str]:
     """Return the capacitors with a track in a channel, from the south.
 
-    The outermost two are beside the common fingers' ends: what evens out, and bits 9 and 8 as they have units.
+    The outermost two are next to the common fingers' ends: the remainder, and bits 9 and 8 as they have units.
     """
     names = {part: None for row in pattern()[2 * channel : 2 * channel + 2] for comb in row for part, _ in parts(comb)}
     last = "b8" if channel in (CHANNELS // 2 - 1, CHANNELS // 2) else "b9"
@@ -220,7 +220,7 @@ class _Drawing:
                 self.both(xs[0] - FINGER / 2, min(spine, far), xs[-1] + FINGER / 2, max(spine, far))
                 for x in xs[:: 2 if count > 2 else 1]:
                     self.canvas.stack(x, self.y((spine + far) / 2), FIRST, SECOND)
-                # Stubs of facing combs beside each other
+                # Adjacent stubs of facing combs
                 aside = -2 * up if count == FINGERS else 3 if 2 * count > FINGERS else 0
                 x = snap((xs[0] + xs[-1]) / 2 + PITCH * aside)
                 v = heights[name]

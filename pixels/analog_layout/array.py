@@ -192,7 +192,7 @@ class _Drawing:
             kinds.append(HALF_UNIT)
         units = {name: int((self.plan.names == name).sum()) for name in kinds}
         kinds.sort(key=lambda name: units[name])
-        kinds = kinds[1::2][::-1] + kinds[::2]  # those with many units outside, beside the common node's strips
+        kinds = kinds[1::2][::-1] + kinds[::2]  # those with many units outside, next to the common node's strips
         if len(kinds) > LINES:
             raise ParameterError(f"column {column} = {len(kinds)} capacitors: must be {LINES} at most")
         x0, _ = self.middle(0, column)

@@ -2,7 +2,7 @@
 
     above    the fourth metal again, from the second by vias in the channel's upper edge
              ... | ... second metal
-             ----+----- a track: a net each, or several beside each other
+             ----+----- a track: one net, or several side by side
                  ... | ... fourth metal
     below    the fourth metal
 

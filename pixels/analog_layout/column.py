@@ -485,7 +485,7 @@ def draw_column(canvas: Canvas, masks: AnalogMasks, positions: ColumnPlan) -> li
         join_rails(canvas, [strip])
         strips.append(strip)
     ends = positions.strips[0].left, positions.strips[-1].right
-    for rail in (y, PITCH - y):  # beside the plates from strip to strip
+    for rail in (y, PITCH - y):  # next to the plates from strip to strip
         canvas.wire(RAILS, ends[0], rail - RAIL_HALF, ends[1], rail + RAIL_HALF)
     for x in positions.joints["vss"] + positions.joints["vdd"]:
         canvas.wire(FOURTH, x - RAIL_TRUNK / 2, 0, x + RAIL_TRUNK / 2, PITCH)

@@ -7,7 +7,7 @@
     DAC switches
     drivers                 south: bits, sample, strobe, comparator
 
-Between strips and arrays nets run on the fourth metal: what passes an array beside it, the rest over the strips.
+Between strips and arrays nets run on the fourth metal: next to an array or over the strips.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -149,7 +149,7 @@ def lane_plan(masks: AnalogMasks, sizes: LaneSizes, d: dict[str, Device]) -> Lan
 def lane_cell(masks: AnalogMasks, sizes: LaneSizes, chip: bool = False) -> Cell:
     """Draw the lane; its south-west corner is at the origin, its pins are in the south and in the north.
 
-    chip: with the `interface` between the chip and the amplifier, in place of pins sample and strobe.
+    chip: with the `interface` between the chip and the amplifier, instead of pins sample and strobe.
     """
     ports, d = CHIP_PINS if chip else PINS, devices(sar_lane(sizes))
     canvas = new_canvas(masks, "adc_lane" if chip else "sar_lane")

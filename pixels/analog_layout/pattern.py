@@ -2,7 +2,7 @@
 
 Every unit but two has its partner of the same capacitor on the other side of the array's middle, at the same distance:
 what changes along a line across the array cancels. The two that are alone, the lowest bit and the terminator, are
-beside each other at the middle. A column has 8 units of the highest bit in a checkerboard, 4 of the next, 2, 1, and 1
+side by side at the middle. A column has 8 units of the highest bit in a checkerboard, 4 of the next, 2, 1, and 1
 of a small one.
 """
 

@@ -51,7 +51,7 @@ UNIT, CELLS, GAIN = 2.3499e-15, 3, 2.4  # F, of so many fringe cells; a column's
 EFFICIENCY = {"pair": 13.6, "tail": 9.0, "sink": 15.3, "cascode": 18.7, "top": 12.0, "cascode_p": 12.0, "leg": 12.0}
 SLEW = 10e-9  # s of the signal's time in which the output's current is at its limit
 LEFT = 0.03  # of the specification's rest, at the typical corner: others are slower
-STRAY = 0.3e-12  # F at the output beside the lane's array
+STRAY = 0.3e-12  # F at the output in addition to the lane's array
 
 
 @dataclass(frozen=True)

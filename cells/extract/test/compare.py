@@ -1,4 +1,4 @@
-"""Are two netlists the same circuit? For cells: a second opinion beside KLayout's LVS, and one for foundry GDS."""
+"""Are two netlists the same circuit? For cells: a second opinion to KLayout's LVS, and one for foundry GDS."""
 
 from collections import Counter
 

@@ -1,4 +1,4 @@
-"""Extraction against SkyWater's own netlists of the same cells, and capacitances against figures computed by hand."""
+"""Extraction against SkyWater's own netlists of the same cells, and capacitances against figures computed manually."""
 
 import subprocess
 import sys

@@ -4,7 +4,7 @@ from talbot.models.afe import KTC_DECISION, NOISE_SCALE, noise_counts
 
 
 def test_known_words():
-    """Worked through by hand from the definition, in Python's unbounded integers."""
+    """Worked out from the definition, in Python's unbounded integers."""
 
     def mix(x):
         for shift, factor in ((16, 0x7FEB352D), (15, 0x846CA68B), (16, 1)):

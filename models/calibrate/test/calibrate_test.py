@@ -102,7 +102,7 @@ def test_files(tmp_path):
 
 
 def own(kind):
-    """A response that is none of Eq. 3.1: a sharp resonance beside the wave, a level of its own."""
+    """A response that is none of Eq. 3.1: a sharp resonance added to the wave, another level."""
     level = 1.3 if kind.beta < 15 else 0.8
 
     def rho(theta_x, theta_y):

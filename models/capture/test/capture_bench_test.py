@@ -1,4 +1,4 @@
-"""Speed of the capture operator beside a copy of its light field, and of what the plan leaves out (make bench)."""
+"""Speed of the capture operator relative to a copy of its light field, and of the plan's omissions (make bench)."""
 
 import numpy as np
 import pytest

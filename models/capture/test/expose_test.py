@@ -1,4 +1,4 @@
-"""Exposure: SI units by hand, noise by its statistics, wells, seeds."""
+"""Exposure: SI units computed manually, noise by its statistics, wells, seeds."""
 
 from dataclasses import replace
 

@@ -42,7 +42,7 @@ def test_every_value_of_the_drawing_has_a_source():
 def test_the_circuit_is_what_it_was_sized_for():
     """Offset, noise and sampled noise within the limits of its specification; steps by its capacitors alone.
 
-    The comparator's and the lane's are TYPICAL_CONVERTER's, the amplifier has 1 LSB and 0.25 LSB beside these.
+    The comparator's and the lane's are TYPICAL_CONVERTER's, the amplifier has 1 LSB and 0.25 LSB in addition.
     """
     found = circuit_converter()
     assert 0 < found.noise <= TYPICAL_CONVERTER.noise and 0 < found.ktc <= hypot(TYPICAL_CONVERTER.ktc, 0.25)

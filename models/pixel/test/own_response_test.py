@@ -1,4 +1,4 @@
-"""Responses by type: a modulation depth of one's own, and functions in place of Eq. 3.1."""
+"""Responses by type: a modulation depth for each, and functions instead of Eq. 3.1."""
 
 from dataclasses import replace
 

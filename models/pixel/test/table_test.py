@@ -1,4 +1,4 @@
-"""A table in place of the formula."""
+"""A table instead of the formula."""
 
 from dataclasses import replace
 

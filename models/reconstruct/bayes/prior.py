@@ -38,7 +38,7 @@ class FieldPrior:
     between : int
         More that the mixture tries between each two of these, 0..3.
     slants : int
-        Slants of planes that the mixture tries at most, 0..32, beside planes that face the camera.
+        Slants of planes that the mixture tries at most, 0..32, in addition to planes that face the camera.
     margin : int
         Pixels around a block that its estimate uses, 0..16.
     trust : float

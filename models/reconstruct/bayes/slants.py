@@ -1,6 +1,6 @@
 """Slanted planes of a scene: which slants its disparity has, and values that follow a plane.
 
-A hypothesis of a slant is a plane's disparity at the middle of each block. A pixel beside the middle sees another
+A hypothesis of a slant is a plane's disparity at the middle of each block. A pixel off the middle sees another
 disparity, and a neighbour with the same plane has a third: values move between hypotheses, linearly.
 """
 
@@ -19,7 +19,7 @@ STEP = 0.04  # of a slant down or across: over a window it is half a disparity
 STEEP = 6  # steps at most
 SHARE = 0.02  # of the pixels that a slant must have
 RIDGE = 1e-3  # px^2, of arrays of one row or column
-ROUGH = 0.1  # px, root of the mean square beside the plane, from which on pixels tell none
+ROUGH = 0.1  # px, rms distance from the plane above which pixels give none
 
 
 def slants_of(disparity: Floats, spread: Floats, most: int) -> list[Slant]:

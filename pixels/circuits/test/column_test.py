@@ -119,7 +119,7 @@ def test_all_are_whole_and_what_is_broken_is_named():
 
 
 def test_of_a_sum_each_diode_has_a_quarter_of_the_firsts_capacitors():
-    """The rest is at no output then: half an LSB of the lane for each of a diode, in place of two."""
+    """The rest is at no output then: half an LSB of the lane for each of a diode, instead of two."""
     parts = {one.name: one.value for one in COLUMN.capacitors}
     assert parts["in_a"] == parts["in_quarter"] == parts["in_half"] / 2 == parts["in_b"] / 4
     assert parts["in_b"] == pytest.approx(SIZES.gain * SIZES.hold)

@@ -47,7 +47,7 @@ def test_analyzers_are_where_the_optics_has_them(number):
 
 @pytest.mark.parametrize("number", range(len(TYPES)))
 def test_light_reaches_a_well_through_its_analyzer_alone(number):
-    """Openings lie inside the wells' rows and columns; lines beside an opening's edge leave at most a period open."""
+    """Openings lie inside the wells' rows and columns; lines next to an opening's edge leave at most a period open."""
     made = pixel(number)
     _, *frame = openings(made)
     lines = [np.array(corners) * made.process.grid_um for metal, corners in grating_polygons(made) if metal != UPPER]

@@ -34,7 +34,7 @@ def test_a_cut_meets_what_is_drawn(kind):
     width, _ = pixel.well_um
     tall = [box[3] - box[1] for _, box in openings(pixel)][1]
     if kind[1] in (0.0, 90.0):
-        # shares of a pixel: of what is above a well's rows, or beside it in its columns
+        # shares of a pixel: of what is above a well's rows, or next to it in its columns
         assert sum(wells) / period < pixel.fill_factor
     else:
         assert sum(wells) / period == pytest.approx(pixel.fill_factor, rel=0.06)
