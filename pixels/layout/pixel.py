@@ -185,8 +185,8 @@ def grating_polygons(pixel: PixelLayout) -> Iterator[tuple[int, list[Point]]]:
 def openings(pixel: PixelLayout) -> Iterator[tuple[int, tuple[float, float, float, float]]]:
     """(metal, box in um) of every opening for light: between the bars, and in the frame over each well.
 
-    Vertical and horizontal lines continue in the adjacent edges: the space to these is that of two lines, or the least to
-    wide metal.
+    Vertical and horizontal lines continue in the adjacent edges: the space to these is that of two lines, or the least
+    space to wide metal.
     """
     grid, pitch, axis = pixel.process.grid_um, pixel.geometry.pitch_um, pixel.axis
     left, right, bottom, top = OPENING
