@@ -54,7 +54,7 @@ class Schematic:
         """
         self.functions[output] = f"!{self._expression(function)}"
         for k in range(fingers):
-            # Every second finger the other way round, so that neighbours share what lies between them
+            # Every second finger the other way round, so that neighbours share the diffusion between them
             for kind, rail, out in (("n", "vss", self.n), ("p", "vdd", self.p)):
                 self._network(kind, function, *(rail, output) if k % 2 else (output, rail), out)
         return self

@@ -200,7 +200,7 @@ class _Failed(Exception):
 def _command(child: Popen[bytes], text: str, timeout: float) -> str:
     """Return ngspice's answer to a command. Raises _Failed when it ends or uses ``timeout`` s of CPU.
 
-    CPU time counts, not the clock's: on a busy machine a run is slow through no fault of its own.
+    CPU time counts, not elapsed time: a busy machine slows a run.
     """
     assert child.stdin and child.stdout
     started, latest = _cpu_seconds(child.pid), time.monotonic() + STALLED * timeout

@@ -39,7 +39,7 @@ class Exposure:
     seed : int
         Seed of the fixed pattern and of the temporal noise, 0..2**32-1; the two use separate random streams.
     number : int
-        Of the exposure in a sequence, 0..2**32-1: each has temporal noise of its own.
+        Of the exposure in a sequence, 0..2**32-1: each has independent temporal noise.
     """
 
     electrical: ElectricalParameters

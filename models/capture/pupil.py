@@ -73,7 +73,7 @@ def integrate(
     region : Region
         Views and pixels.
     waves : sequence of callable or None
-        Factors of the light, each an integral of its own; None is 1.
+        Factors of the light, each a separate integral; None is 1.
     dtype : str
         'float32' or 'float64'.
 

@@ -20,7 +20,7 @@ def capture_ratio(sensor: SensorParameters | None = None, dtype: str = "float64"
     dtype : str
         'float32' or 'float64'.
     repeats : int
-        Both times are the best of so many.
+        Number of repetitions; both times are the best of these.
 
     Returns
     -------

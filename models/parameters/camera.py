@@ -36,7 +36,7 @@ class CameraParameters:
     focus : float
         Depth of the focal plane from the entrance pupil, focal_length..1000 m.
     scale : float
-        The scene is a model, 1:scale of its own metres, 0.001..1e4.
+        The scene is a model at 1:scale, 0.001..1e4.
     exit_pupil : float or None
         Distance of the exit pupil from the sensor, 4 focal_length**2 / focus..1000 m; None is telecentric.
 

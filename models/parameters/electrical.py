@@ -97,7 +97,7 @@ class ElectricalParameters:
 
     @property
     def ambient(self) -> float:
-        """Unmodulated light of time of flight, of its own light."""
+        """Unmodulated share of the light of time of flight."""
         return self.ambient_current / self.white_current
 
     @property

@@ -97,7 +97,7 @@ def sensor_text(sensor: SensorParameters = STANDARD) -> str:
     Raises
     ------
     ParameterError
-        For a pixel type with a response of its own that does not name its source: a function has no text.
+        For a pixel type with a response that does not name its source: a function has no text.
     """
     return "# A sensor of Talbot. Any key may be left out: it has the value of `talbot sensor` then.\n" + "".join(
         line + "\n" for line in _lines(sensor, "")

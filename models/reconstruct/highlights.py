@@ -13,7 +13,7 @@ SPREAD_MIN = 0.05  # px per view step: no disparity is surer
 
 
 def without_highlights(disparity: Floats, spread: Floats, tags: Bools, sure: float = 0.5) -> tuple[Floats, Floats]:
-    """Replace the disparity of tagged pixels by that of the sure ones around them.
+    """Replace the disparity of tagged pixels by that of the reliable ones around them.
 
     Parameters
     ----------
@@ -29,7 +29,7 @@ def without_highlights(disparity: Floats, spread: Floats, tags: Bools, sure: flo
     Returns
     -------
     tuple of array (rows, cols)
-        Disparity and spread; the others are as they were. Where no sure pixel is around, the disparity stays and its
+        Disparity and spread; the others are as they were. Where no reliable pixel is around, the disparity stays and its
         spread is infinite.
 
     Raises

@@ -98,7 +98,7 @@ ANY_TYPES = "direct", "linear", "mixture"  # know what to do where some pixel ty
 
 
 def applicable(operator: CaptureOperator) -> list[str]:
-    """Methods for frames of this size and light fields of as many views; what is learned has a size of its own.
+    """Methods for frames of this size and light fields of as many views; learned methods have a fixed size.
 
     Parameters
     ----------

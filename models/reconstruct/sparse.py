@@ -167,7 +167,7 @@ class Dictionary(NamedTuple):
             return cls(atoms, file["sizes"])
 
     def save(self, path: Path) -> None:
-        """Write it as int8, each atom with a scale of its own, which its norm tells again.
+        """Write it as int8, each atom with its scale, which its norm restores.
 
         Parameters
         ----------

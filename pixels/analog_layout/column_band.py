@@ -4,7 +4,7 @@ north    ways between the columns, at multiples of their pitch
          the bank's strips          | the bias | its lines' capacitors | the lanes' ends, one strip
 south    the chip's pins            | ibias                            | lane_a, lane_b of each lane
 
-All nets between strips, pins and ways are on the fourth metal, each at places of its own.
+All nets between strips, pins and ways are on the fourth metal, each at separate places.
 """
 
 from collections.abc import Mapping, Sequence

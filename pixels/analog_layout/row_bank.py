@@ -1,6 +1,6 @@
 """The bank south of all rows: predecoders of both addresses and buffers, in strips.
 
-All nets between strips, and from the pins in the south, are on the fourth metal, each at an x of its own.
+All nets between strips, and from the pins in the south, are on the fourth metal, each at a separate x.
 """
 
 from collections.abc import Iterator, Sequence

@@ -46,7 +46,7 @@ PAIR, TAIL, SINK, LEGS = ("p_lvt", 0.5), ("p", 0.5), ("n_lvt", 0.5), ("n_lvt", 1
 CASCODE, CASCODE_P, TOP = ("n_lvt", 0.5), ("p_lvt", 0.5), ("p", 0.5)
 STACK, TRIODE = 3.0, 8.0  # cascode's gate: parts of the sinks' and cascodes' widths; the lower is in triode
 STACK_P = (3.0, ("p_lvt", 2.0))  # the diode that makes the p cascodes' gate
-UNIT, CELLS, GAIN = 2.3499e-15, 3, 2.4  # F, of so many fringe cells; a column's volts to the lane's
+UNIT, CELLS, GAIN = 2.3499e-15, 3, 2.4  # F, of CELLS fringe cells; gain from a column's volts to the lane's
 # Transconductance over current, 1/V: high where it is what is wanted, low where matching or a drain's level is
 EFFICIENCY = {"pair": 13.6, "tail": 9.0, "sink": 15.3, "cascode": 18.7, "top": 12.0, "cascode_p": 12.0, "leg": 12.0}
 SLEW = 10e-9  # s of the signal's time in which the output's current is at its limit

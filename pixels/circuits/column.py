@@ -14,7 +14,7 @@
 
 The charge amplifier raises its output by what the well had lost, Cf being the well's size. The holder falls by twice
 that; reset noise, charge and offset of what was before the signal half are taken off. What Chold has as it ends stays
-until the column's turn. Then the holder's transistor drives the lane through a cascode of its own, with the lane's
+until the column's turn. Then the holder's transistor drives the lane through a separate cascode, with the lane's
 source of current (`lane_end`) and Chold alone as its feedback: lane = dark - 2 (the well's fall). It is the transistor
 that the holder was reset to: its threshold is in no sample. Its gate is higher then, by a hundred times the current: a
 capacitor from x to what rises to start (`kick`) brings that, or the holder would have to reach below ground. start and
@@ -36,7 +36,7 @@ SUPPLIES = "vdd", "vss"
 BIASES = "vbp", "vcp", "vcn", "vbl"  # lines of the bias
 CONTROLS = ("clear", "reads", "cn", "ref", "sig", "sign", "edge", "edgen", "idle", "vcn", "vcnb")
 OF_TAPS = tuple(f"{name}{t}" for name in ("w", "f", "fn", "unasked") for t in range(TAPS))
-# Of those the first diode's second stage has lines of its own: on all but start_a is the same, `reads` on `reads_a`
+# Of those the first diode's second stage has separate lines: on all but start_a is the same, `reads` on `reads_a`
 SHARED = ("reads", "cn", "ref", "sig", "sign", "idle", "vbp", "vcp", "level", "start", "w0", "f0", "fn0")
 TWICE = tuple(f"{name}_a" for name in SHARED)
 PINS = ("column_a", "column_b", "lane_a", "sense_a", "lane_b", "sense_b", "group", "k", *CONTROLS, *OF_TAPS)

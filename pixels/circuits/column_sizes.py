@@ -83,7 +83,7 @@ class ColumnSpec:
     droop : float
         LSB that may be lost until then: the same of every row, and at 125 degrees alone.
     energy : float
-        J a pixel that is read: Table 6.1's pixel array, which takes no current of its own here.
+        J a pixel that is read: Table 6.1's pixel array, which takes no other current here.
     pixel : float
         S a pixel at the table's frame rate: the bias's share.
     """

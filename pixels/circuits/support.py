@@ -2,7 +2,7 @@
 
 `non_overlap`: clk phi1 phi2 vdd vss; phi2 follows clk, phi1 is high while it is low, and both are low in between.
 `bias`: ibias vdd vss; BIAS amperes and 8 % leave ibias (the amplifier's pin) at the typical corner. With several
-outputs its pins are ibias_0, ibias_1 and so on: lanes convert side by side, each amplifier has a current of its own.
+outputs its pins are ibias_0, ibias_1 and so on: lanes convert side by side, each amplifier has a separate current.
 """
 
 from dataclasses import dataclass

@@ -1,6 +1,6 @@
 """One pixel drawn: two photodiodes under the gratings of its type, and the transistors that read them.
 
-    +------------------+------------------+   One grating lies over both halves: light that walks from one into the
+    +------------------+------------------+   One grating is over both halves: light that walks from one into the
     |b    g r a t      | i n g           b|   other meets there what an endless grating would give. Each half has an
     |a  analyzer  fr-  | -ame  analyzer  a|   n well as photodiode under an analyzer, which is half a period farther
     |r  well a         |       well b    r|   on in the other half. A frame on the rows' metal passes to a well only

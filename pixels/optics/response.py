@@ -95,7 +95,7 @@ def _solved(
     light = Illumination(wavelength_um, rays[0], rays[1], bottom=silicon)
     listed = [*map(float, shifts)]
     light_shares = solve(upper, lower, geometry.period_um, light, listed, orders, geometry.shared)
-    # Half of the pixel lies above each diode of an amplitude pixel; fingers share all of it.
+    # Half of the pixel is above each diode of an amplitude pixel; fingers share all of it.
     return (
         light_shares.transmitted / 2 if light_shares.fingers is None else light_shares.fingers[:, :, 0]
     ), light_shares.reflected

@@ -47,7 +47,7 @@ def test_its_own_gate_lets_go_before_one_behind_an_inverter(single):
 def test_behind_a_slow_ramp_the_same_level_counts(single):
     """Where nothing but the gate's level matters, the time is a fixed share of the ramp: a transistor whose gate has
 
-    half the supply drives a tenth, so that it lies near the ramp's middle.
+    half the supply drives a tenth, so that it is near the ramp's middle.
     """
     arcs, at = single
     short, long = (at.let_go(arcs["rise"].changes[0], slew) / slew for slew in (2e-9, 8e-9))

@@ -195,7 +195,7 @@ def without_imagecodecs(monkeypatch):
     inverted=st.booleans(),
 )
 def test_tiff_of_any_number_of_bits(tmp_path_factory, bits, samples, order, strips, inverted):
-    """Packed samples, as cameras of 10, 12 and 14 bits write them: white is the largest code of so many bits."""
+    """Packed samples, as cameras of 10, 12 and 14 bits write them: white is the largest code of these bits."""
     path = tmp_path_factory.mktemp("bits") / "p.tif"
     top = (1 << bits) - 1
     values = colours(bits) if samples == 3 else codes(bits)[..., None]

@@ -46,7 +46,7 @@ def test_pins_are_those_of_the_black_box(made):
     for line in ROW_LINES:
         at = next(pin.at_um for pin in made.block.pins if pin.name == f"{line}[3]")
         west = db.Region(db.DBox(198.5, at - 0.01, 199.5, at + 0.01).to_itype(0.001))
-        assert not (west - drawn).count()  # its wire comes to its place
+        assert not (west - drawn).count()  # its line reaches its place
 
 
 def test_each_row_has_a_via_at_one_line_of_each_group(made):

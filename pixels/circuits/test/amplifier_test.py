@@ -50,7 +50,7 @@ def test_a_size_out_of_range_is_refused_by_name(changes):
 
 @pytest.mark.parametrize("gain", [1.0, 2.4, 7.3])
 def test_both_inputs_have_the_same_capacitance(gain):
-    """Else (Ca a - Cb b) / Cf has a gain of its own for b."""
+    """Else (Ca a - Cb b) / Cf has another gain for b."""
     total = {"xm": 0.0, "xp": 0.0}
     for one in amplifier(replace(SIZES, gain=gain)).capacitors:
         total[one.a] += one.value
