@@ -29,7 +29,7 @@ def without_highlights(disparity: Floats, spread: Floats, tags: Bools, sure: flo
     Returns
     -------
     tuple of array (rows, cols)
-        Disparity and spread; the others are as they were. Where no reliable pixel is around, the disparity stays and its
+        Disparity and spread; others are unchanged. Where no reliable pixel is around, the disparity stays and its
         spread is infinite.
 
     Raises
