@@ -41,14 +41,14 @@ def run(options: Namespace) -> int:
         raise ParameterError(f"cells = {unknown[0]!r}: must be one of {', '.join(schematics())}")
     first, last, scratch = int(span[1]), int(span[2]), options.from_scratch
     suffix = f"{span[1]}-{span[2]}{'.from_scratch' if scratch else ''}"
-    rest = first, last, not scratch
-    todo = [jobs.Job(f"{name}.{suffix}", best, (name, *rest), (recipe(name), Canvas())) for name in names]
+    search_arguments = first, last, not scratch
+    todo = [jobs.Job(f"{name}.{suffix}", best, (name, *search_arguments), (recipe(name), Canvas())) for name in names]
     recipes = jobs.run(todo, "build/cells/compact/search", "cells searched", options.workers)
-    kept = json.loads(RECIPES.read_text(encoding="utf-8"))
+    recipes_on_disk = json.loads(RECIPES.read_text(encoding="utf-8"))
     better = {name: result for name, result in zip(names, recipes, strict=True) if result}
     for name, (sites, met1, seed, _) in better.items():
-        was = kept.get(name, ["none"])[0]
+        was = recipes_on_disk.get(name, ["none"])[0]
         print(f"{name}: {sites} sites{' with met1' if met1 else ''} (seed {seed}); it was {was}")
-    lines = (f'"{name}": {json.dumps(result)}' for name, result in sorted({**kept, **better}.items()))
+    lines = (f'"{name}": {json.dumps(result)}' for name, result in sorted({**recipes_on_disk, **better}.items()))
     write(RECIPES, "{\n" + ",\n".join(lines) + "\n}\n")
     return 0

@@ -73,19 +73,19 @@ def capacitances(layout: CellLayout, tech: ExtractionPlatform) -> dict[tuple[str
     return dict(total.pairs)
 
 
-def _areas(layout: CellLayout, net: str, layer: Layer, rest: "db.Region", total: _Total) -> None:
+def _areas(layout: CellLayout, net: str, layer: Layer, exposed: "db.Region", total: _Total) -> None:
     um2 = layout.dbu**2
     for lower in total.below(layer):
         if layer.lef == "poly":
-            rest -= layout.active
+            exposed -= layout.active
             continue
         for other, below in layout.shapes[lower].items():
-            if rest.bbox().touches(below.bbox()):
-                area = (rest & below).area() * um2
+            if exposed.bbox().touches(below.bbox()):
+                area = (exposed & below).area() * um2
                 total.add(net, other, area * total.crossings[layer.lef, lower].overlap_af_um2)
-                rest -= below
+                exposed -= below
     for bulk, well in layout.wells.items():
-        total.add(net, bulk, (rest & well).area() * um2 * layer.area_af_um2)
+        total.add(net, bulk, (exposed & well).area() * um2 * layer.area_af_um2)
 
 
 class _Rectangles:
@@ -182,6 +182,6 @@ def _pieces(free: Sequence[Span], intervals: Intervals) -> Iterator[tuple[float,
 
 def _without(free: list[Span], intervals: Iterable[tuple[float, float, str]]) -> list[Span]:
     for near, far, _ in intervals:
-        rest = [part for a, b in free for part in ((a, min(b, near)), (max(a, far), b))]
-        free = [(a, b) for a, b in rest if b - a > EPSILON]
+        parts = [part for a, b in free for part in ((a, min(b, near)), (max(a, far), b))]
+        free = [(a, b) for a, b in parts if b - a > EPSILON]
     return free

@@ -182,9 +182,9 @@ def _gating(machine: Machine) -> Storage | None:
         return None
     for clock in range(len(machine.inputs)):
         for active in (0, 1):
-            rest = {s.outputs[0] for s in machine.states if s.inputs[clock] != active}
+            idle_outputs = {s.outputs[0] for s in machine.states if s.inputs[clock] != active}
             others = [c for c in machine.changes if c.pin != clock and c.before.inputs[clock] == active]
-            if rest == {1 - active} and all(c.before.outputs == c.after.outputs for c in others):
+            if idle_outputs == {1 - active} and all(c.before.outputs == c.after.outputs for c in others):
                 data = tuple(i for i in range(len(machine.inputs)) if i != clock)
                 edges = [c for c in machine.changes if c.pin == clock and c.after.inputs[clock] == active]
                 samples = [(c.before, c.after) for c in edges]

@@ -251,12 +251,12 @@ def _nearest_wave(q: Floats, theta: Floats, weight: Floats) -> Floats:
     return chosen
 
 
-def _errors(jacobian: Floats, rest: Floats) -> tuple[Floats, float]:
+def _errors(jacobian: Floats, residual: Floats) -> tuple[Floats, float]:
     """Standard deviations of a fit's parameters, and the condition of its normal equations, columns of length 1."""
     length = np.linalg.norm(jacobian, axis=0)
     length = np.where(length > 0, length, 1)
     u = np.linalg.svd(jacobian / length, full_matrices=False)
     values = np.maximum(u.S, 1e-9 * u.S.max())
     spread = np.sqrt(((u.Vh / values[:, None]) ** 2).sum(0))
-    noise = np.sqrt((rest**2).sum() / max(len(rest) - len(length), 1))
+    noise = np.sqrt((residual**2).sum() / max(len(residual) - len(length), 1))
     return noise * spread / length, float((values[0] / values[-1]) ** 2)

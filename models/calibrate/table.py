@@ -74,11 +74,11 @@ def tables(kinds: Sequence[PixelType], samples: Sequence[Samples], sigma: float)
 def _response(kind: PixelType, part: Samples, sigma: float, reach: float) -> TableResponse:
     turned = _turned(part.theta, kind.gamma)
     wave, level = _wave(kind, turned), part.diodes.mean()
-    rest = part.diodes - level * wave
+    residual = part.diodes - level * wave
     axes = np.linspace(-reach, reach, GRID[0]), np.linspace(0, reach, GRID[1])
     along, across = (grid.ravel() for grid in np.meshgrid(*axes, indexing="ij"))
     points = np.stack([along, across], 1)
-    rho = level * _wave(kind, points) + _interpolated(turned, rest, part.weight, points)
+    rho = level * _wave(kind, points) + _interpolated(turned, residual, part.weight, points)
     tangents = np.tan(points)
     x, y = (
         np.arctan(tangents[:, 0] * np.cos(kind.gamma) - tangents[:, 1] * np.sin(kind.gamma)),
@@ -101,17 +101,17 @@ def _wave(kind: PixelType, turned: Floats) -> Floats:
     return np.stack([1 + q, 1 - q], 1)
 
 
-def _interpolated(at: Floats, rest: Floats, weight: Floats, points: Floats) -> Floats:
-    """What is left at ``points``, (m, 2), from ``rest`` (n, 2) at ``at``; its likeliest lengths and strength."""
+def _interpolated(at: Floats, residual: Floats, weight: Floats, points: Floats) -> Floats:
+    """The residual at ``points``, (m, 2), from ``residual`` (n, 2) at ``at``, with likeliest lengths and strength."""
     scale = weight / weight.mean()  # with which all samples have one noise
-    best, chosen = -np.inf, np.zeros((len(points), rest.shape[1]))
+    best, chosen = -np.inf, np.zeros((len(points), residual.shape[1]))
     for lengths in product(ALONG, ACROSS):
         values, vectors = np.linalg.eigh(scale[:, None] * _like(at, at, lengths) * scale)
-        turned = vectors.T @ (scale[:, None] * rest)
+        turned = vectors.T @ (scale[:, None] * residual)
         for strength in STRENGTHS:
             total = 1 + strength * np.maximum(values, 0)
             spread = max(float((turned**2 / total[:, None]).mean()), 1e-300)
-            evidence = -rest.shape[1] / 2 * np.log(total).sum() - rest.size / 2 * np.log(spread)
+            evidence = -residual.shape[1] / 2 * np.log(total).sum() - residual.size / 2 * np.log(spread)
             if evidence > best:
                 solved = scale[:, None] * (vectors @ (turned / total[:, None]))
                 best, chosen = evidence, strength * _like(points, at, lengths) @ solved

@@ -83,6 +83,6 @@ def coded_depth(taps: Floats, electrical: ElectricalParameters, noise: Floats | 
         score[part] = np.take_along_axis(fits, best[None, part], 0)[0]
     shape, inner = np.shape(taps)[1:], (best > 0) & (best < len(depths) - 1)
     score = np.maximum(score, 0).reshape(shape)
-    rest = np.sqrt(np.maximum(np.sum(flat**2, 0).reshape(shape) - score**2, 0))
-    sure = inner.reshape(shape) & (score > SURE * np.maximum(noise, rest / np.sqrt(2)))
+    residual = np.sqrt(np.maximum(np.sum(flat**2, 0).reshape(shape) - score**2, 0))
+    sure = inner.reshape(shape) & (score > SURE * np.maximum(noise, residual / np.sqrt(2)))
     return Coded(depths[best].reshape(shape), score / size[best].reshape(shape), sure)

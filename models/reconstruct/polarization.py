@@ -213,10 +213,10 @@ def _fits(
     normal += (RIDGE * weight)[..., None, None] * np.eye(5)
     inverse = np.linalg.inv(normal)
     fit = np.einsum("yxij,yxj->yxi", inverse, right)
-    rest = np.maximum(squares - np.einsum("yxi,yxi->yx", fit, right), 0)
+    residual = np.maximum(squares - np.einsum("yxi,yxi->yx", fit, right), 0)
     free = np.maximum(1 - 5 / weight, 0.2)  # weights are at most 1: there are at least as many samples
     worst = np.maximum(inverse[..., 3, 3], inverse[..., 4, 4])
-    spread = np.sqrt(np.maximum(known, rest / free) / weight * worst)
+    spread = np.sqrt(np.maximum(known, residual / free) / weight * worst)
     return fit[..., 0], fit[..., 3], fit[..., 4], np.where(seen, spread, np.inf)
 
 

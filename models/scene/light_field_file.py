@@ -103,14 +103,14 @@ def read_light_field(path: str | Path, views: Any = None) -> LightField:
         check_int("views", count, 1, 31)
     if len(grid) != 2:
         raise ParameterError(f"views = {views!r}: must be an integer, or rows and columns of views")
-    (down, across), (height, width), rest = map(int, grid), picture.shape[:2], picture.shape[2:]
+    (down, across), (height, width), channels = map(int, grid), picture.shape[:2], picture.shape[2:]
     if height % down or width % across:
         said = str(down) if down == across else f"{down} x {across}"
         raise ParameterError(f"views = {said}: must divide the image's height and width, {height} x {width}")
     if lenslets:
-        values = picture.reshape(height // down, down, width // across, across, *rest)
+        values = picture.reshape(height // down, down, width // across, across, *channels)
         return LightField(values.transpose(1, 3, 0, 2, *range(4, values.ndim)), name=path.stem)
-    tiles = picture.reshape(down, height // down, across, width // across, *rest)
+    tiles = picture.reshape(down, height // down, across, width // across, *channels)
     return LightField(tiles.swapaxes(1, 2), name=path.stem)
 
 

@@ -218,8 +218,8 @@ def read_pixels(path: str | Path, field: str, size: tuple[int, int] | None = Non
         count = len(pages) if pages is not None else _frames_of(picture)
         if count > 1:
             what = f"is a TIFF stack of {count} pages" if pages is not None else f"has {count} frames"
-            rest = "; talbot sequence takes all" if field == "scene" else ""
-            raise ParameterError(f"{field} = {str(path)!r}: {what}: must be one picture{rest}")
+            hint = "; talbot sequence takes all" if field == "scene" else ""
+            raise ParameterError(f"{field} = {str(path)!r}: {what}: must be one picture{hint}")
         if pages is not None:
             from .tiff_file import tiff_pixels
 

@@ -256,8 +256,8 @@ def size(spec: ColumnSpec, process: ModuleType, hold: float = HOLD) -> ColumnSiz
     lane_gm, gate = 0.0, 0.0
     load = 2 * spec.wire + spec.input + spec.columns * JUNCTIONS
     for _ in range(20):
-        rest = log(spec.swing / (LEFT * spec.settling * spec.lsb))
-        lane_gm = load * (hold * (1 + KICK) + gate) / hold * rest / (spec.ready - WAKE)
+        time_constants = log(spec.swing / (LEFT * spec.settling * spec.lsb))
+        lane_gm = load * (hold * (1 + KICK) + gate) / hold * time_constants / (spec.ready - WAKE)
         gate = lane_gm / EFFICIENCY["lane"] / drive.density * drive.gate
     back_beta = hold / (hold * (1 + KICK) + cin + gate)
     back_gm = HOLDER * constants / half * hold / back_beta

@@ -161,13 +161,13 @@ def _solve(
 
 def scatter(slabs: Sequence[Slab], above: complex, below: complex, orders: Orders, wave: float) -> Scattering:
     """Scattering of layers between two media. wave: 2 pi / wavelength in 1/um."""
-    whole: Scattering | None = None
+    stack: Scattering | None = None
     run: list[tuple[complex, float]] = [(above, 0.0)]
 
     def close(medium: complex) -> None:
-        nonlocal whole
+        nonlocal stack
         part = films([*run, (medium, 0.0)], orders).spread()
-        whole = part if whole is None else whole.over(part)
+        stack = part if stack is None else stack.over(part)
 
     for slab in slabs:
         check_real("thickness_um", slab.thickness_um, 0, THICKEST)
@@ -175,12 +175,12 @@ def scatter(slabs: Sequence[Slab], above: complex, below: complex, orders: Order
             run.append((slab.medium, wave * slab.thickness_um))
             continue
         close(slab.medium)
-        assert whole is not None
-        whole = whole.over(grating(slab, wave * slab.thickness_um, orders))
+        assert stack is not None
+        stack = stack.over(grating(slab, wave * slab.thickness_um, orders))
         run = [(slab.medium, 0.0)]
     close(below)
-    assert whole is not None
-    return whole
+    assert stack is not None
+    return stack
 
 
 def _incident(orders: Orders, light: Illumination) -> Complexes:

@@ -381,9 +381,9 @@ class FieldEstimator:
         for down, across, samples in groups:
             white = totals[self.blocks.diodes(down, across)[2]].astype(np.float32)
             fit = white @ samples / (white @ white)
-            rest = np.square(samples - white[:, None] * fit).mean(0)
+            residual = np.square(samples - white[:, None] * fit).mean(0)
             part = plain[down.blocks, across.blocks]
-            part[:] = (rest < self.prior.plain * self.prior.noise**2).reshape(part.shape)
+            part[:] = (residual < self.prior.plain * self.prior.noise**2).reshape(part.shape)
         return plain
 
     def _score(self, groups: Windows) -> Floats:

@@ -50,8 +50,8 @@ def slants_of(disparity: Floats, spread: Floats, most: int) -> list[Slant]:
     yy, xx = yy + RIDGE, xx + RIDGE
     over = yy * xx - yx**2
     down, across = (yd * xx - xd * yx) / over, (xd * yy - yd * yx) / over
-    rest = dd - down * yd - across * xd
-    told = rest < ROUGH**2
+    residual = dd - down * yd - across * xd
+    told = residual < ROUGH**2
     steps = np.rint(np.stack([down, across])[:, told] / STEP).astype(int)
     kinds, counts = np.unique(steps, axis=1, return_counts=True)
     order = np.argsort(-counts, kind="stable")
