@@ -143,6 +143,15 @@ module Bench #(
     end
   endtask
 
+  // ---- state of the host, below, which waits at the link for the frame's end ----
+  localparam [1:0] FETCH = 0, SHIFT = 1, WAIT = 2, GAP = 3;
+  reg [1:0] state;
+  reg [7:0] left, divider;
+  reg [7:0] out, in;
+  reg [3:0] bits;
+  integer code;
+  wire waiting = state == WAIT;
+
   // ---- link ----
   reg [31:0] lfsr;
   reg was_sync, ended;
@@ -162,14 +171,6 @@ module Bench #(
   end
 
   // ---- host ----
-  localparam [1:0] FETCH = 0, SHIFT = 1, WAIT = 2, GAP = 3;
-  reg [1:0] state;
-  reg [7:0] left, divider;
-  reg [7:0] out, in;
-  reg [3:0] bits;
-  integer code;
-  wire waiting = state == WAIT;
-
   always @(posedge clk) begin
     if (reset) begin
       state <= FETCH;

@@ -19,8 +19,9 @@ case "$*" in
     "-m pip config list") echo "${CONF:-}" ;;
     "-m venv "*) mkdir -p "$3/bin" && cp "$0" "$3/bin/python" ;;
     "-m pip --version") exit 0 ;;
-    "-m pip install "*) env | grep -E '^(PIP_|PYTHON)' | sort >>"$LOG"; echo "umask $(umask)" >>"$LOG"
-        echo "$*" >>"$LOG.pip"; sleep 0.3 ;;
+    "-m pip install "*uv.lock) env | grep -E '^(PIP_|PYTHON)' | sort >>"$LOG"; [ "${UV:-}" ] || cp "$0" "${0%/*}/uv" ;;
+    *"pip install "*) env | grep -E '^(UV_|SSL_CERT_FILE|HTTPS_PROXY)' | sort >>"$LOG.uv"; echo "umask $(umask)" >>"$LOG"
+        echo "${0##*/} $*" >>"$LOG.pip"; sleep 0.3 ;;
     *version_info*) exit "${UNFIT:-0}" ;;
     *) echo "Python 3.12.1 at fake" ;;
 esac
@@ -88,6 +89,27 @@ def test_of_a_pip_conf_only_the_registry_counts_and_the_environment_counts_more(
         "PIP_INDEX_URL=https://install",
         "PIP_USER=0",
     }
+
+
+def test_uv_gets_the_registry_of_pip_and_no_other_setting(checkout):
+    own = {"UV_TARGET": "/t", "UV_DEFAULT_INDEX": "https://own", "PIP_FIND_LINKS": "/a /b", "CONF": PIP_CONF}
+    assert start(checkout, **own).communicate()[1] == ""
+    assert Path(checkout[1]["LOG"] + ".uv").read_text(encoding="utf-8").splitlines() == [
+        "SSL_CERT_FILE=/all.pem",
+        "UV_DEFAULT_INDEX=https://install",
+        "UV_FIND_LINKS=/a,/b",
+        "UV_INDEX=https://a https://b",
+        "UV_INDEX_STRATEGY=unsafe-best-match",
+        "UV_NATIVE_TLS=1",
+        "UV_NO_CONFIG=1",
+    ]
+
+
+@pytest.mark.parametrize("missing, program", [("", "uv pip"), ("1", "python -m pip")])
+def test_pip_installs_where_uv_cannot(checkout, missing, program):
+    assert start(checkout, UV=missing).communicate()[1] == ""
+    (call,) = Path(checkout[1]["LOG"] + ".pip").read_text(encoding="utf-8").splitlines()
+    assert call.startswith(f"{program} install --quiet ") and call.endswith(" --require-hashes -r a.lock")
 
 
 def test_two_at_once_install_once(checkout):
