@@ -1,6 +1,6 @@
 """Clock-domain crossings: an asynchronous pin passes two flip-flops before anything else reads it.
 
-Read by Yosys and followed bit by bit: the pin leads, without logic, to one flip-flop, which only a second one reads.
+Yosys reads the design; bit by bit, the pin must lead without logic to one flip-flop, read only by a second one.
 """
 
 import json
@@ -27,7 +27,7 @@ class Reader(NamedTuple):
 
 
 class Netlist:
-    """The flat netlist of a module, by bits: who reads each one, and its names."""
+    """The flat netlist of a module: readers and names of each bit."""
 
     def __init__(self, path: Path, top: str, prepare: str) -> None:
         """Read the module ``top`` of the Verilog file ``path``; prepare: commands of Yosys. Raises ToolError."""
@@ -54,16 +54,16 @@ class Netlist:
         return [(r.kind, r.port) for bit in first.out for r in self.readers.get(bit, [])] == [(FLIP_FLOP, "D")]
 
     def raw(self, bit: int, gates: set[int]) -> set[str]:
-        """The registers and pins that ``bit`` reaches through logic; it ends at the bits ``gates``."""
-        found, seen, rest = set(), {bit}, [bit]
-        while rest:
-            for reader in self.readers.get(rest.pop(), []):
+        """Return the registers and pins that ``bit`` reaches through logic; the search ends at the bits ``gates``."""
+        reached, visited, pending = set(), {bit}, [bit]
+        while pending:
+            for reader in self.readers.get(pending.pop(), []):
                 if reader.kind == "pin" or "DFF" in reader.kind or "$mem" in reader.kind:
-                    found.add(reader.cell if reader.kind == "pin" else self.names.get(reader.out[0], reader.cell))
+                    reached.add(reader.cell if reader.kind == "pin" else self.names.get(reader.out[0], reader.cell))
                 else:
-                    rest += set(reader.out) - seen - gates
-                    seen.update(reader.out)
-        return found
+                    pending += set(reader.out) - visited - gates
+                    visited.update(reader.out)
+        return reached
 
 
 def crossings(path: Path, top: str, prepare: str = "proc; flatten -noscopeinfo") -> list[str]:

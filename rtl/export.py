@@ -27,16 +27,16 @@ BY_NAME = *PARTS, *WRAPPERS
 
 
 def translate(name: str, sensor: SensorParameters) -> str:
-    """The Verilog of top, part or wrapper ``name`` for ``sensor``, as text. Raises ParameterError."""
+    """Return the Verilog of top, part or wrapper ``name`` for ``sensor``. Raises ParameterError."""
     if name in WRAPPERS:
-        own = (WRAPPER / f"{name}.v").read_text(encoding="utf-8")
-        bus = [(WRAPPER / f"{BUS}.v").read_text(encoding="utf-8")] if BUS in own else []
-        return "\n".join((own, *bus, translate(WRAPPERS[name], sensor)))
+        wrapper = (WRAPPER / f"{name}.v").read_text(encoding="utf-8")
+        bus = [(WRAPPER / f"{BUS}.v").read_text(encoding="utf-8")] if BUS in wrapper else []
+        return "\n".join((wrapper, *bus, translate(WRAPPERS[name], sensor)))
     return translate_component(build_top(name, sensor), name)
 
 
 def core(name: str) -> str:
-    """The FuseSoC core (CAPI 2) of the file of top ``name``, which holds all modules: to use it, and to lint it."""
+    """Return the FuseSoC core (CAPI 2) of the file of top ``name``, which holds all modules, with a target for lint."""
     return f"""CAPI=2:
 name: talbot:asp:{name}:{version("talbot")}
 description: "Talbot's {name}, an angle-sensitive-pixel image sensor's digital side: generated from PyMTL3"
@@ -60,7 +60,7 @@ targets:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Options of `talbot verilog`."""
+    """Add the options of `talbot verilog`."""
     sensor = SensorParameters()
     parser.add_argument(
         "--top",
@@ -86,7 +86,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def sensor_of(options: argparse.Namespace) -> SensorParameters:
-    """The sensor of the command line's options. Raises ParameterError."""
+    """Return the sensor of the command line's options. Raises ParameterError."""
     return SensorParameters(
         tile=_tile(options),
         array=ArrayParameters(options.rows, options.cols),

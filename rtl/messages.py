@@ -13,7 +13,7 @@ DivReq = mk_bitstruct("DivReq", {"x": Bits9, "y": Bits9})
 
 @cache
 def step_msg(lanes: int) -> type:
-    """StepMsg for a bank of ``lanes`` converters."""
+    """Return the type StepMsg for a bank of ``lanes`` converters."""
     return mk_bitstruct(
         f"StepMsg_{lanes}",
         {"kind": Bits2, "row": Bits10, "group": Bits8, "k": Bits3, "sub": Bits2, "en": mk_bits(lanes)},
@@ -22,7 +22,7 @@ def step_msg(lanes: int) -> type:
 
 @cache
 def div_resp(n_frac: int) -> type:
-    """DivResp with a ratio of ``n_frac`` bits."""
+    """Return the type DivResp with a ratio of ``n_frac`` bits."""
     return mk_bitstruct(
         f"DivResp_{n_frac}",
         {

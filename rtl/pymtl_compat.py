@@ -1,6 +1,6 @@
-"""What PyMTL3 3.1.17 lacks on Python 3.14, restored by `talbot.rtl` before any block imports PyMTL3.
+"""Names that PyMTL3 3.1.17 lacks on Python 3.14; `talbot.rtl` restores them before any block imports PyMTL3.
 
-Names of `ast` that are gone: `Num`, `Str`, `Constant.n`, `visit_Num`. They mean what they do in Python 3.13: a literal
+Removed names of `ast`: `Num`, `Str`, `Constant.n`, `visit_Num`. They mean the same as in Python 3.13: a literal
 is an instance of `Num` or `Str` by its value; a visitor without `visit_Constant` gets it as `visit_Num` or `visit_Str`.
 And `__annotations__` in the namespace of a class (PEP 649), which `pymtl3.bitstruct` reads.
 """
@@ -52,8 +52,8 @@ def annotated(cls: type) -> type:
     """Return ``cls``, or a copy of it, with `__annotations__` in its namespace."""
     if "__annotations__" in vars(cls):
         return cls
-    made = "__dict__", "__weakref__", "__annotate__", "__annotate_func__", "__annotations_cache__"
-    namespace = {name: value for name, value in vars(cls).items() if name not in made}
+    automatic = "__dict__", "__weakref__", "__annotate__", "__annotate_func__", "__annotations_cache__"
+    namespace = {name: value for name, value in vars(cls).items() if name not in automatic}
     namespace |= {"__qualname__": cls.__qualname__, "__annotations__": inspect.get_annotations(cls)}
     return type(cls)(cls.__name__, cls.__bases__, namespace)
 
@@ -61,7 +61,7 @@ def annotated(cls: type) -> type:
 class BitstructFinder:
     """Finds PyMTL3's module of bit structs, once, and lets it get each class from `annotated`.
 
-    So PyMTL3, which takes a third of a second to import, is imported by who needs it alone.
+    So only modules that need PyMTL3 import it, which takes a third of a second.
     """
 
     def find_spec(self, name, path=None, target=None):

@@ -1,6 +1,6 @@
 """The tops that can be exported: their names, and how to build each for a sensor.
 
-A block is imported when it is built: the names come without PyMTL, and a block that is being changed stops only itself.
+A block is imported when it is built: listing the names needs no PyMTL, and an error in a block affects only that block.
 """
 
 from collections.abc import Callable
@@ -16,34 +16,34 @@ Build = Callable[[SensorParameters], "Component"]
 
 
 def _array(sensor: SensorParameters) -> tuple[int, int, int, tuple[int, ...], int, int]:
-    """The parameters that depend on the array: rows, cols, lanes, order, tile_rows, tile_cols."""
+    """Return the parameters that depend on the array: rows, cols, lanes, order, tile_rows, tile_cols."""
     array, tile = sensor.array, sensor.tile
     return array.rows, array.cols, sensor.chip.lanes, tuple(tile.order), tile.rows, tile.cols
 
 
 def amp_ctrl(sensor: SensorParameters) -> "Component":
-    """The timing of the amplifiers."""
+    """Return the amplifier control."""
     from talbot.rtl.amp_ctrl import AmpCtrl
 
     return AmpCtrl()
 
 
 def readout_seq(sensor: SensorParameters) -> "Component":
-    """The readout sequencer."""
+    """Return the readout sequencer."""
     from talbot.rtl.readout_seq import ReadoutSeq
 
     return ReadoutSeq(*_array(sensor))
 
 
 def edge_adc(sensor: SensorParameters) -> "Component":
-    """One converter."""
+    """Return one converter lane."""
     from talbot.rtl.edge_adc import EdgeAdc
 
     return EdgeAdc()
 
 
 def adc_bank(sensor: SensorParameters) -> "Component":
-    """The converters of all lanes."""
+    """Return the converters of all lanes."""
     from talbot.rtl.adc_bank import AdcBank
 
     return AdcBank(sensor.chip.lanes)
@@ -61,21 +61,21 @@ def divider(variant: str) -> Build:
 
 
 def phase_path(sensor: SensorParameters) -> "Component":
-    """Phase and amplitude of a sample's taps."""
+    """Return the phase path."""
     from talbot.rtl.phase_path import PhasePath
 
     return PhasePath(sensor.chip.lanes, sensor.chip.divider, sensor.chip.n_frac, sensor.chip.cordic_iterations)
 
 
 def run_length(sensor: SensorParameters) -> "Component":
-    """The stream encoder."""
+    """Return the stream encoder."""
     from talbot.rtl.run_length import RunLength
 
     return RunLength(sensor.array.rows, sensor.array.cols, sensor.chip.lanes, sensor.tile.rows, sensor.tile.cols)
 
 
 def reg_file(sensor: SensorParameters) -> "Component":
-    """The registers behind SPI."""
+    """Return the register file."""
     from talbot.rtl.reg_file import RegFile
 
     array, tile, chip = sensor.array, sensor.tile, sensor.chip
@@ -83,7 +83,7 @@ def reg_file(sensor: SensorParameters) -> "Component":
 
 
 def asp_chip(sensor: SensorParameters) -> "Component":
-    """The whole chip."""
+    """Return the chip."""
     from talbot.rtl.asp_chip import AspChip
 
     chip = sensor.chip
@@ -107,7 +107,7 @@ TOPS: dict[str, Build] = {
 
 
 def balance(sensor: SensorParameters) -> "Component":
-    """The trim of the pixel at the pins."""
+    """Return the lookup of the trim of the pixel at the pins."""
     from talbot.rtl.asp_chip.balance_rtl import Balance
 
     trims = register_map().trims[0]
@@ -116,7 +116,7 @@ def balance(sensor: SensorParameters) -> "Component":
 
 
 def pattern(sensor: SensorParameters) -> "Component":
-    """The test pattern."""
+    """Return the test pattern generator."""
     from talbot.rtl.asp_chip.pattern_rtl import Pattern
 
     return Pattern(sensor.chip.lanes)
@@ -134,7 +134,7 @@ WRAPPERS = {
 
 
 def build_top(name: str, sensor: SensorParameters) -> "Component":
-    """The unelaborated component of top or part ``name`` for ``sensor``. Raises ParameterError."""
+    """Return the unelaborated component of top or part ``name`` for ``sensor``. Raises ParameterError."""
     if name not in TOPS | PARTS:
         raise ParameterError(f"top = {name!r}: must be one of {', '.join(TOPS)}")
     return (TOPS | PARTS)[name](sensor)

@@ -1,4 +1,4 @@
-"""Verilog of the chip and its blocks, translated in a process of its own."""
+"""Verilog of the chip and its blocks, translated in a separate process."""
 
 import sys
 from collections.abc import Sequence

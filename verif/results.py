@@ -46,7 +46,7 @@ class Property:
 
     @property
     def good(self) -> bool:
-        """Whether it is proven and its twin fails."""
+        """Return whether it is proven and its twin fails."""
         return self.result == PROVEN and self.twin_fails
 
 
@@ -65,12 +65,12 @@ class Mutants:
 
     @property
     def killable(self) -> int:
-        """Mutants that some input distinguishes from the original."""
+        """Return the number of mutants that some input distinguishes from the original."""
         return self.made - self.equivalent
 
     @property
     def score(self) -> float:
-        """Share of the killable mutants that a test kills, in %."""
+        """Return the share of the killable mutants that a test kills, in %."""
         return 100.0 * self.killed / self.killable if self.killable else 100.0
 
 
@@ -92,12 +92,12 @@ class StuckAt:
 
     @property
     def share(self) -> float:
-        """Share of the sample that is detected, in %."""
+        """Return the share of the sample that is detected, in %."""
         return 100.0 * self.detected / self.sample
 
     @property
     def margin(self) -> float:
-        """Half of the 95 % interval of all faults around ``share``, in %."""
+        """Return half of the 95 % interval of all faults around ``share``, in %."""
         p = self.detected / self.sample
         return 196 * sqrt(p * (1 - p) / self.sample * (1 - self.sample / self.faults))
 
@@ -116,7 +116,7 @@ class Fuzz:
 
 @dataclass(frozen=True)
 class Sweep:
-    """Every byte of a frame changed, ``tried`` times in all, with ``around`` it other bytes or none.
+    """Changes of every byte of a frame, ``tried`` in all; ``around``: the bytes before and after the frame.
 
     recovered: changes that lose nothing. row_lost: those that lose one row. failed: those that lose more, the first ten
     in failures.
@@ -144,9 +144,9 @@ class Resync:
 
 @dataclass
 class BlockResults:
-    """What a step, or all of them, found for a block. coverage: % by kind of COVERAGE, None where nothing was measured.
+    """Results of one or all steps for a block. coverage: % by kind of COVERAGE, None where nothing was measured.
 
-    excluded: coverage points left out. benches: cocotb tests by simulator. open_points: what is not as required, one
+    excluded: coverage points left out. benches: cocotb tests by simulator. open_points: unmet requirements, one
     line each.
     """
 

@@ -9,7 +9,7 @@ from .ports import declare_ports
 
 
 class AdcBankCL(Component):
-    """The ports of AdcBank, and the same values in every cycle."""
+    """Cycle level of AdcBank: the same ports, and the same values in every cycle."""
 
     def construct(s, lanes=8):
         declare_ports(s, lanes)

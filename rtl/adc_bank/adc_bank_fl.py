@@ -11,7 +11,7 @@ from .ports import declare_ports
 
 
 class AdcBankFL(Component):
-    """The ports of AdcBank, and the same messages in an unbounded queue."""
+    """Functional level of AdcBank: the same ports and messages, from an unbounded queue."""
 
     def construct(s, lanes=8):
         declare_ports(s, lanes)

@@ -9,7 +9,7 @@ from .ports import DURATIONS, SLOT, declare_ports
 
 
 class AmpCtrlFL(Component):
-    """The ports of AmpCtrl, and the same values in every cycle."""
+    """Functional level of AmpCtrl: the same ports, and the same values in every cycle."""
 
     def construct(s):
         declare_ports(s)

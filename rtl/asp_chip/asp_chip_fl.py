@@ -25,7 +25,7 @@ from .pins import declare_pins
 
 
 def frame_of(cfg: Any) -> FrameParameters:
-    """The frame of a ChipConfig, without the durations. Raises ParameterError if there is no such frame."""
+    """Return the frame of a ChipConfig, without the durations. Raises ParameterError if the frame is invalid."""
     mode = MODES[int(cfg.mode)]
     return FrameParameters(
         Window(*(int(getattr(cfg, name)) for name in ("row0", "row1", "col0", "col1"))),
@@ -44,7 +44,7 @@ def frame_of(cfg: Any) -> FrameParameters:
 
 
 def trims_of(cfg: Any) -> tuple[int, ...]:
-    """Trim registers by pixel type, unsigned."""
+    """Return the trim registers by pixel type, unsigned."""
     return tuple(int(cfg.trims) >> 8 * f.size * i & (1 << f.width) - 1 for i, f in enumerate(register_map().trims))
 
 

@@ -15,7 +15,7 @@ from talbot.models.parameters import FrameParameters, SensorParameters
 
 
 def idle_pins() -> dict[str, int]:
-    """The pins that a frame drives, by name, with their value before a frame: 0."""
+    """Return the pins that a frame drives, by name, with their value before a frame: 0."""
     return dict.fromkeys(
         (
             "dac",

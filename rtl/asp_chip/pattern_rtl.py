@@ -1,4 +1,4 @@
-"""The test pattern: a digital image in place of sample-and-hold and comparators (models/digital/pattern.py)."""
+"""The test pattern: a digital image instead of sample-and-hold and comparators (models/digital/pattern.py)."""
 
 from pymtl3 import (
     Bits1,

@@ -9,7 +9,7 @@ ORDER = "sclk", "csn", "mosi", "miso", "miso_oe", "link_data", "link_val", "link
 
 
 def pins(lanes: int) -> tuple[dict[str, type], dict[str, type]]:
-    """Types of the inputs and of the outputs by name, without clk and reset. lanes: converters."""
+    """Return the types of inputs and outputs by name, without clk and reset. lanes: converters."""
     inputs = {**dict.fromkeys(INPUTS, Bits1), "comparator": mk_bits(lanes)}
     outputs = {
         "miso": Bits1,

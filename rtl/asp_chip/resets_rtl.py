@@ -30,7 +30,7 @@ class Resets(Component):
 
 @contextmanager
 def children_reset_by(s: Component, reset: OutPort) -> Iterator[None]:
-    """Within it, the children that are given to the component ``s`` are reset by ``reset``, not by its own reset."""
+    """Within this context, children added to the component ``s`` are reset by ``reset`` instead of its reset."""
     own = s.__dict__["reset"]
     s.__dict__["reset"] = reset  # PyMTL connects a child's reset to its parent's when the child is constructed
     try:

@@ -1,4 +1,4 @@
-"""The states of the machines and what waits, for a host that looks for the cause of a stop."""
+"""The states of the state machines and what waits: a host reads why a frame does not end."""
 
 from pymtl3 import Bits2, Bits3, Component, InPort, OutPort, concat, update
 

@@ -50,7 +50,7 @@ class LaneCycles:
 
 
 class EdgeAdcCL(Component):
-    """The ports of EdgeAdc, and the same values in every cycle."""
+    """Cycle level of EdgeAdc: the same ports, and the same values in every cycle."""
 
     def construct(s):
         declare_ports(s)

@@ -10,7 +10,7 @@ from .ports import declare_ports
 
 
 class EdgeAdcFL(Component):
-    """The ports of EdgeAdc, one conversion at a time, and the same results in an unbounded queue."""
+    """Functional level of EdgeAdc: one conversion at a time, the same results from an unbounded queue."""
 
     def construct(s):
         declare_ports(s)

@@ -1,6 +1,6 @@
-"""A PyMTL simulation that leaves out what cannot change: blocks of RTL whose inputs are what they were.
+"""A PyMTL simulation that skips RTL blocks whose inputs have not changed.
 
-PyMTL runs every block twice in a cycle. Where most of a design waits, as between two bits of SPI, that is nearly all of
+PyMTL runs every block twice a cycle. Where most of a design waits, as between two bits of SPI, that takes nearly all of
 a simulation's time.
 """
 
@@ -53,7 +53,7 @@ def _indented(lines: Iterable[str], by: int) -> str:
 
 
 class _Code:
-    """Source of guarded calls, and the scope of what it names. pure: every block so far is of signals alone."""
+    """Source of guarded calls, and the scope of its names. pure: all blocks so far have their state in signals."""
 
     def __init__(self, top: Any) -> None:
         self.reads = {**top.get_all_upblk_metadata()[0], **top._dag.genblk_reads}
@@ -64,7 +64,7 @@ class _Code:
         self.pure = True
 
     def guarded(self, block: Block, after: str = "pass") -> list[str]:
-        """Lines that call ``block`` if its inputs have changed, then do ``after``."""
+        """Return lines that call ``block`` if its inputs have changed, then do ``after``."""
         if block in self.nets and not block.__code__.co_names:
             return []  # a net of whole signals: they are one object
         name = self.name(block)
@@ -85,21 +85,21 @@ class _Code:
         ]
 
     def values(self, signals: Iterable[Any]) -> str:
-        """Source of a tuple of the signals' values."""
+        """Return the source of a tuple of the signals' values."""
         leaves = {self.name(leaf): None for signal in sorted(signals, key=repr) for leaf in self.leaves(signal)}
         return f"({''.join(f'{leaf}._uint, ' for leaf in leaves)})"
 
     def leaves(self, signal: Any) -> list[Bits]:
-        """The Bits that hold a signal, a field of one or what a slice is taken of."""
+        """Return the Bits that hold a signal, a field of it, or the base of a slice."""
         if signal.is_sliced_signal():
             signal = signal.get_parent_object()
         whole = signal.get_top_level_signal()
         return _bits(eval(f"whole{repr(signal)[len(repr(whole)) :]}", {"whole": self.objects[whole]}))
 
-    def name(self, thing: Any) -> str:
-        """The name of a thing in the scope."""
-        name = self.names.setdefault(id(thing), f"x{len(self.names)}")
-        self.scope[name] = thing
+    def name(self, value: Any) -> str:
+        """Return the name of ``value`` in the scope."""
+        name = self.names.setdefault(id(value), f"x{len(self.names)}")
+        self.scope[name] = value
         return name
 
 

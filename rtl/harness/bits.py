@@ -1,7 +1,7 @@
-"""PyMTL's Bits with a short way through its hottest methods, which every simulation in Python runs all the time.
+"""PyMTL's Bits with a fast path through its most called methods.
 
-PyMTL3 3.1.17 finds out by an AttributeError that an operand is an int, which takes ten times as long as to look at its
-class. What a short way does not know (another width, a number out of range, a bit struct) goes to PyMTL's own method,
+PyMTL3 3.1.17 learns from an AttributeError that an operand is an int, which takes ten times as long as a look at its
+class. What a fast path does not handle (another width, a number out of range, a bit struct) goes to PyMTL's method,
 which converts or raises.
 """
 
@@ -77,6 +77,6 @@ SHORT = {name: _short(name) for name in SOURCES}
 
 
 def quicken_bits() -> None:
-    """Give Bits the short ways."""
+    """Give Bits the fast paths."""
     for name, method in SHORT.items():
         setattr(Bits, name, method)

@@ -1,4 +1,4 @@
-"""A component whose behaviour is a simulation elsewhere, with the ports of the component that it replaces."""
+"""A component with the ports of the one that it replaces, and the behaviour of an external simulation."""
 
 import contextlib
 import linecache
@@ -52,7 +52,7 @@ class Driven:
         self.receive = self.process.stdout.readline
 
     def step(self, edge: bool, inputs: int) -> bytes:
-        """Settled outputs for the packed ``inputs``: binary text of 0, 1, x and z.
+        """Return the settled outputs for the packed ``inputs``: binary text of 0, 1, x and z.
 
         edge: a clock edge with the old inputs comes first. Raises SimulationError.
         """
@@ -69,7 +69,7 @@ class Driven:
         return line
 
     def unknown(self, line: bytes) -> list[str]:
-        """The ports that are X or Z in an answer of `step`: 'recv__rdy = x'."""
+        """Return the ports that are X or Z in an answer of `step`: 'recv__rdy = x'."""
         bits = line.decode().strip()[::-1]
         values = {port.name: bits[low : low + port.width][::-1] for port, low in places(self.outputs).items()}
         return [f"{name} = {value}" for name, value in values.items() if value.strip("01")]
@@ -84,15 +84,15 @@ def _end(process: subprocess.Popen) -> None:
 
 
 class Simulation(Protocol):
-    """What simulates a component: `step` as of Driven, with outputs as binary text or as a number."""
+    """A simulation of a component: `step` as in Driven, with outputs as binary text or as a number."""
 
     def step(self, edge: bool, inputs: int) -> bytes | int:
-        """Settled outputs for the packed ``inputs``; edge: a clock edge with the old inputs comes first."""
+        """Return the settled outputs for the packed ``inputs``; edge: a clock edge with the old inputs comes first."""
         ...
 
 
 class Transactor:
-    """Inputs and clock edges of a component sent to its simulation."""
+    """Sends inputs and clock edges of a component to its simulation."""
 
     def __init__(self, simulation: Simulation) -> None:
         self.simulation, self.cycle, self.edge = simulation, 0, False
@@ -105,7 +105,7 @@ class Transactor:
         self.cycle += 1
 
     def evaluate(self, _edges: Any, inputs: int) -> tuple[int, int]:
-        """The packed outputs for the packed ``inputs``, and the bits of them that may have changed."""
+        """Return the packed outputs for the packed ``inputs``, and the bits of them that may have changed."""
         if inputs == self.inputs and not self.edge:
             return 0, 0
         answer = self.simulation.step(self.edge, inputs)
@@ -133,11 +133,11 @@ class DrivenLevel(Component):
 
     def construct(s, dut: Component, ports: Sequence[Port], kinds: Mapping[str, Any], simulation: Simulation) -> None:
         # Interface
-        for attribute, what in list(vars(dut).items()):
-            if isinstance(what, (InPort, OutPort)) and attribute not in ("clk", "reset"):
-                setattr(s, attribute, type(what)(what._dsl.Type))
-            elif isinstance(what, Interface):
-                setattr(s, attribute, type(what)(*what._dsl.args, **what._dsl.kwargs))
+        for attribute, value in list(vars(dut).items()):
+            if isinstance(value, (InPort, OutPort)) and attribute not in ("clk", "reset"):
+                setattr(s, attribute, type(value)(value._dsl.Type))
+            elif isinstance(value, Interface):
+                setattr(s, attribute, type(value)(*value._dsl.args, **value._dsl.kwargs))
 
         # Logic: written out, since PyMTL schedules by the source of a block
         inputs, outputs = split(ports)
@@ -162,7 +162,7 @@ class DrivenLevel(Component):
 
 
 def _output(port: Port, low: int) -> str:
-    """Source that sets an output to its bits of ``answer``, where one of them has ``changed``."""
+    """Return the source that sets an output to its bits of ``answer``, where one of them has ``changed``."""
     mask = (1 << port.width) - 1
     value = f"struct_{port.name}" * port.struct + f"(answer >> {low} & {mask:#x})"
     return f"    if changed & {mask << low:#x}:\n      s.{port.path} @= {value}"
@@ -174,7 +174,7 @@ def _struct(kind: Any, width: int) -> Callable[[int], Any]:
 
 
 def driven_level(dut: Component, simulation: Simulation) -> DrivenLevel:
-    """The DrivenLevel that replaces the elaborated component ``dut`` by ``simulation``."""
+    """Return the DrivenLevel that replaces the elaborated component ``dut`` by ``simulation``."""
     ports, start = ports_of(dut), len(repr(dut)) + 1
     kinds = {repr(signal)[start:]: signal._dsl.Type for signal in port_signals(dut)}
     cls = type(f"{type(dut).__name__}Driven", (DrivenLevel,), {})  # PyMTL caches a class's blocks by the class

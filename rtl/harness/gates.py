@@ -1,4 +1,4 @@
-"""A block as two-input gates, simulated in many copies side by side: a bit of a machine word for each copy.
+"""A block as two-input gates, simulated in many copies in parallel: a bit of a machine word for each copy.
 
 Yosys makes the gates from the exported Verilog, and the C++ compiler makes one function of them, a line for each gate,
 which computes 512 copies at a time: all 2^26 requests of a divider take seconds. Registers begin with random bits.
@@ -44,7 +44,7 @@ ARGUMENTS = "const Wide* in, Wide* state, Wide* out, long n"
 
 
 class Gates:
-    """``copies`` of a component, each with its own inputs; a multiple of WIDE.
+    """``copies`` of a component with separate inputs; a multiple of WIDE.
 
     A port's value is an array (width, copies / 64) of uint64, bit i of the port in row i: see `packed`, `unpacked`.
     """
@@ -87,13 +87,13 @@ class Gates:
 
 
 def packed(values: npt.ArrayLike, width: int = 1) -> Words:
-    """The ``values`` of the copies (copies,) as an array (width, copies / 64)."""
+    """Return the ``values`` of the copies (copies,) as an array (width, copies / 64)."""
     bits = np.asarray(values) >> np.arange(width)[:, None] & 1
     return np.packbits(bits.astype(np.uint8), axis=1, bitorder="little").view(np.uint64)
 
 
 def unpacked(words: Words) -> npt.NDArray[np.int64]:
-    """The copies' values (copies,) of an array (width, copies / 64)."""
+    """Return the copies' values (copies,) of an array (width, copies / 64)."""
     bits = np.unpackbits(words.view(np.uint8), axis=1, bitorder="little")
     return (bits.astype(np.int64) << np.arange(len(bits))[:, None]).sum(axis=0)
 
@@ -130,5 +130,5 @@ def _compile(folder: Path, verilog: str, top: str) -> None:
     (folder / "gates.cpp").write_text("\n".join(text), encoding="utf-8")
     run([*CXX, *accepted(*OPTIONS), "-shared", "-fPIC", folder / "gates.cpp", "-o", folder / "gates.so"])
     symbols = [match.groups() for line in lines if (match := re.match(r"([io])(\d+) (\S+)$", line))]
-    rows = {kind: {name: int(row) for found, row, name in symbols if found == kind} for kind in "io"}
+    rows = {kind: {name: int(row) for symbol, row, name in symbols if symbol == kind} for kind in "io"}
     (folder / "rows.json").write_text(json.dumps(rows | {"state": n_state}), encoding="utf-8")

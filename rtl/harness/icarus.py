@@ -31,7 +31,7 @@ def installed() -> bool:
 
 
 def instance(top: str, ports: Sequence[Port]) -> str:
-    """Verilog of an instance `dut` of module ``top`` between clk, `in` and `got`, packed as `places` does."""
+    """Return Verilog of an instance `dut` of module ``top`` between clk, `in` and `got`, packed as by `places`."""
     pins = [".clk(clk)"]
     for group, vector in zip(split(ports), ("in", "got")):
         pins += [f".{port.name}({vector}[{low} +: {port.width}])" for port, low in places(group).items()]
@@ -68,7 +68,7 @@ endmodule
 def compile_program(program: Path, sources: Sequence[Path], top: str, texts: Sequence[str] = (), *more: str) -> None:
     """Compile module ``top`` of the Verilog files ``sources`` and the Verilog ``texts`` to the file ``program``.
 
-    more: modules beside it. Raises IcarusError.
+    more: further top modules. Raises IcarusError.
     """
     if not installed():
         raise IcarusError(MISSING)
@@ -86,7 +86,7 @@ def compile_program(program: Path, sources: Sequence[Path], top: str, texts: Seq
 
 
 def kept_program(name: str, sources: Sequence[Path], top: str, texts: Sequence[str] = ()) -> Path:
-    """The program of `compile_program`, kept for the same sources and texts. Raises IcarusError."""
+    """Return the program of `compile_program`, kept for the same sources and texts. Raises IcarusError."""
     folder = PROGRAMS / f"{name}.{digest(top, *map(Path, sources), *texts)}"
     return cached(folder, lambda part: compile_program(part / PROGRAM, sources, top, texts)) / PROGRAM
 
@@ -94,5 +94,5 @@ def kept_program(name: str, sources: Sequence[Path], top: str, texts: Sequence[s
 def in_icarus(
     name: str, top: str, ports: Sequence[Port], sources: Sequence[Path] = (), texts: Sequence[str] = ()
 ) -> Driven:
-    """Module ``top`` of ``sources`` and ``texts``, running in Icarus; name: of its program. Raises IcarusError."""
+    """Start module ``top`` of ``sources`` and ``texts`` in Icarus; name: of its program. Raises IcarusError."""
     return Driven(["vvp", "-n", kept_program(name, sources, "DrivenBench", [driven_bench(top, ports), *texts])], ports)

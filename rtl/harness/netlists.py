@@ -1,4 +1,4 @@
-"""Netlists that the Icarus level of the tests runs on, in place of the translated Verilog (`pytest --netlist`)."""
+"""Netlists that replace the translated Verilog at the Icarus level of the tests (`pytest --netlist`)."""
 
 import re
 from collections.abc import Callable, Mapping, Sequence
@@ -17,7 +17,7 @@ from .ports import ports_of
 
 @dataclass(frozen=True)
 class Netlist:
-    """A Verilog file with ``module``, in place of what the tests build as ``name``; None: the class's name."""
+    """A Verilog file whose ``module`` replaces what the tests build as ``name``; None: the class's name."""
 
     name: str
     path: Path
@@ -25,16 +25,18 @@ class Netlist:
 
 
 def netlist(option: str) -> Netlist:
-    """The Netlist of NAME=FILE or NAME=FILE:MODULE. Raises ParameterError."""
+    """Return the Netlist of NAME=FILE or NAME=FILE:MODULE. Raises ParameterError."""
     match = re.fullmatch(r"(\w+)=([^:]+)(?::(\w+))?", option)
     if not match:
         raise ParameterError(f"--netlist = {option!r}: must be NAME=FILE or NAME=FILE:MODULE")
     return Netlist(match[1], Path(match[2]), match[3])
 
 
-def netlist_in_icarus(dut: Component, given: Netlist, cells: Sequence[Path]) -> Driven:
-    """The netlist ``given`` for the elaborated component ``dut``, running in Icarus. Raises IcarusError."""
-    return in_icarus(given.name, given.module or type(dut).__name__, ports_of(dut), [given.path, *cells])
+def netlist_in_icarus(dut: Component, replacement: Netlist, cells: Sequence[Path]) -> Driven:
+    """Start the netlist ``replacement`` of the elaborated component ``dut`` in Icarus. Raises IcarusError."""
+    return in_icarus(
+        replacement.name, replacement.module or type(dut).__name__, ports_of(dut), [replacement.path, *cells]
+    )
 
 
 @dataclass(frozen=True)
@@ -54,17 +56,17 @@ class Netlists:
         if verilog != "icarus":
             return None
         self.built.add(name)
-        if not (given := self.netlists.get(name)):
+        if not (replacement := self.netlists.get(name)):
             return None
-        if not given.path.is_file():
-            raise IcarusError(f"netlist = {given.path}: no such file")
-        return self.simulate(dut, given, self.cells)
+        if not replacement.path.is_file():
+            raise IcarusError(f"netlist = {replacement.path}: no such file")
+        return self.simulate(dut, replacement, self.cells)
 
     def files(self, name: str) -> list[Path]:
-        """The netlist that takes the place of ``name``, for a bench of its own, and the cells; [] without one."""
+        """Return the netlist that replaces ``name``, for a separate bench, and the cells; [] without one."""
         self.built.add(name)
         return [self.netlists[name].path, *self.cells] if name in self.netlists else []
 
     def unused(self) -> list[str]:
-        """Names of the netlists that no test built."""
+        """Return the names of the netlists that no test built."""
         return sorted(set(self.netlists) - self.built)

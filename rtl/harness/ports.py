@@ -17,12 +17,12 @@ class Port:
 
     @property
     def name(self) -> str:
-        """Its name in the Verilog, 'recv__msg'."""
+        """Return its name in the Verilog, 'recv__msg'."""
         return self.path.replace(".", "__")
 
 
 def port_signals(component: Component) -> list[InPort | OutPort]:
-    """Every port of an elaborated component, those of its interfaces too."""
+    """Yield every port of an elaborated component, those of its interfaces too."""
     return [
         signal
         for signal in component.get_all_object_filter(lambda x: isinstance(x, (InPort, OutPort)))
@@ -31,7 +31,7 @@ def port_signals(component: Component) -> list[InPort | OutPort]:
 
 
 def ports_of(component: Component) -> tuple[Port, ...]:
-    """Every port of an elaborated component but clk: inputs first, each group by name."""
+    """Return every port of an elaborated component but clk: inputs first, each group by name."""
     start, ports = len(repr(component)) + 1, []
     for signal in port_signals(component):
         kind = signal._dsl.Type
@@ -40,12 +40,12 @@ def ports_of(component: Component) -> tuple[Port, ...]:
 
 
 def split(ports: Sequence[Port]) -> tuple[tuple[Port, ...], tuple[Port, ...]]:
-    """The inputs and the outputs."""
+    """Return the inputs and the outputs."""
     return tuple(p for p in ports if not p.output), tuple(p for p in ports if p.output)
 
 
 def places(ports: Iterable[Port]) -> dict[Port, int]:
-    """Lowest bit of each port in the packed value, the first port lowest."""
+    """Return the lowest bit of each port in the packed value, the first port lowest."""
     out, low = {}, 0
     for port in ports:
         out[port] = low
@@ -54,19 +54,19 @@ def places(ports: Iterable[Port]) -> dict[Port, int]:
 
 
 def total_width(ports: Iterable[Port]) -> int:
-    """Bits of the packed value, at least 1."""
+    """Return the width of the packed value, at least 1."""
     return max(1, sum(port.width for port in ports))
 
 
 def validity(ports: Iterable[Port]) -> dict[Port, Port]:
-    """The `val` of each output stream's `msg`."""
+    """Return the `val` of each output stream's `msg`."""
     named = {port.path: port for port in ports if port.output}
     pairs = ((port, named.get(path[:-3] + "val")) for path, port in named.items() if path.endswith(".msg"))
     return {msg: val for msg, val in pairs if val}
 
 
 def packed(ports: Iterable[Port], component: str = "s") -> str:
-    """Source of an expression that packs the values of the ``ports`` of the variable named ``component``."""
+    """Return the source of an expression that packs the ``ports`` of the variable named ``component``."""
     parts = []
     for port, low in places(ports).items():
         value = f"int({component}.{port.path}{'.to_bits()' if port.struct else ''})"

@@ -1,4 +1,4 @@
-"""The outputs of a block after a reset do not depend on what came before it, and are the same at every level."""
+"""The outputs of a block after a reset do not depend on its past, and are the same at every level."""
 
 import random
 from collections.abc import Callable
@@ -48,7 +48,7 @@ def outputs_after_reset(sim: Any, before: int = BEFORE) -> list[dict[str, int]]:
 
 
 def at(component: Any, path: str) -> Any:
-    """The port of ``component`` at the path 'recv.msg'."""
+    """Return the port of ``component`` at the path 'recv.msg'."""
     for name in path.split("."):
         component = getattr(component, name)
     return component

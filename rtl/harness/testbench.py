@@ -40,7 +40,7 @@ _hooks: list[_Hooks] = []  # what `hooked` has entered and not left
 
 @contextlib.contextmanager
 def hooked(observe: Observe | None = None, substitute: Substitute | None = None) -> Iterator[None]:
-    """Within it, `build` calls these for every simulator, ahead of its reset.
+    """Within this context, `build` calls these for every simulator, before its reset.
 
     observe(top, dut, verilog): what is simulated, the elaborated component under test and the level; returns what is
     called ahead of each clock edge, or None. substitute(dut, verilog, name): returns the simulation that replaces the
@@ -79,7 +79,7 @@ def build(top: Component, verilog: Level = False, name: str | None = None) -> An
 
 
 def _simulation(dut: Component, verilog: Level, name: str) -> Simulation | None:
-    """What simulates the elaborated ``dut`` in place of PyMTL, or None where PyMTL does."""
+    """Return the simulation that replaces PyMTL for the elaborated ``dut``, or None where PyMTL simulates."""
     for hooks in _hooks:
         if hooks.substitute and (simulation := hooks.substitute(dut, verilog, name)):
             return simulation

@@ -22,7 +22,7 @@ KEPT = {"Synchronizer": "stages"}  # module -> the register that synthesis may n
 
 
 def module_names(top: Component, name: str) -> dict[Component, str]:
-    """Module name of every component in the elaborated ``top``, whose own is ``name``.
+    """Return the module name of every component in the elaborated ``top``, which is named ``name``.
 
     It is the class's name; where a design holds a class with several parameter sets, the later ones (in the order
     of their instance names) are numbered: Queue, Queue_2.
@@ -44,17 +44,17 @@ def module_names(top: Component, name: str) -> dict[Component, str]:
 
 
 def _without_unused_constants(module: str) -> str:
-    """The module without constants that PyMTL declares and does not use: widths of slices."""
+    """Return the module without constants that PyMTL declares and does not use: widths of slices."""
     words = Counter(WORD.findall(module))
-    for found in re.finditer(r"(?m)^  localparam .*? (\w+)\s+=.*\n", module):
-        if words[found[1]] == 1:
-            module = module.replace(found[0], "", 1)
-            words -= Counter(WORD.findall(found[0]))
+    for constant in re.finditer(r"(?m)^  localparam .*? (\w+)\s+=.*\n", module):
+        if words[constant[1]] == 1:
+            module = module.replace(constant[0], "", 1)
+            words -= Counter(WORD.findall(constant[0]))
     return module
 
 
 def _with_kept_register(module: str) -> str:
-    """The module with an attribute at its register of KEPT."""
+    """Return the module with an attribute at its register of KEPT."""
     for name, register in KEPT.items():
         if re.search(rf"(?m)^module {name}$", module):
             module = re.sub(rf"(?m)^  (logic .*\b{register};)$", r'  (* keep, async_reg = "true" *) \1', module)
@@ -82,33 +82,33 @@ def _scalars(part: str, before: str, text: str) -> str:
 def _without_vectors_of_one(text: str) -> str:
     """The text with one-bit signals, fields and constants as scalars; the bit 0 of a signal is the signal."""
     types, *modules = re.split(r"(?m)^(?=module )", text)
-    made = [_scalars(types, r"\.", text)]
+    parts = [_scalars(types, r"\.", text)]
     for module in modules:
         bits = {name for _, name, dimension in VECTOR_OF_ONE.findall(module) if not dimension}
-        module = BIT_0.sub(lambda found, bits=bits: found[1] if found[1] in bits else found[0], module)
-        made.append(_scalars(module, r"(?<![.\w])", module))
-    return "".join(made)
+        module = BIT_0.sub(lambda match, bits=bits: match[1] if match[1] in bits else match[0], module)
+        parts.append(_scalars(module, r"(?<![.\w])", module))
+    return "".join(parts)
 
 
-def _declared(thing: object, prefix: str = "") -> Iterator[str]:
-    """Names of ports in the order of their declaration, an interface's together, as Verilog names them."""
-    for name, value in vars(thing).items():
+def _declared(owner: object, prefix: str = "") -> Iterator[str]:
+    """Yield port names as in Verilog, in the order of declaration, those of an interface together."""
+    for name, value in vars(owner).items():
         if name.startswith("_"):
             continue
-        for i, one in enumerate(value if isinstance(value, list) else [value]):
+        for i, element in enumerate(value if isinstance(value, list) else [value]):
             path = f"{prefix}{name}__{i}" if isinstance(value, list) else f"{prefix}{name}"
-            if isinstance(one, (InPort, OutPort)):
+            if isinstance(element, (InPort, OutPort)):
                 yield from (path, f"{prefix}{name}")
-            elif isinstance(one, Interface):
-                yield from _declared(one, f"{path}__")
+            elif isinstance(element, Interface):
+                yield from _declared(element, f"{path}__")
 
 
 def _with_ordered_ports(text: str, names: dict[Component, str]) -> str:
-    """The text with the ports of every module as they are declared, clock and reset first."""
+    """Return the text with the ports of every module in the order of declaration, clock and reset first."""
     order = {module: ["clk", "reset", *_declared(component)] for component, module in names.items()}
 
-    def header(found: re.Match[str]) -> str:
-        module, ports = found.groups()
+    def header(match: re.Match[str]) -> str:
+        module, ports = match.groups()
         lines = [line.rstrip(" ,") for line in ports.splitlines()]
         place = {name: i for i, name in reversed([*enumerate(order[module])])}
         lines.sort(key=lambda line: place[re.findall(r"(?<!\[)\b[a-zA-Z_]\w*", line)[-1]])
@@ -118,7 +118,7 @@ def _with_ordered_ports(text: str, names: dict[Component, str]) -> str:
 
 
 def tidy(text: str) -> str:
-    """PyMTL's Verilog without absolute paths, fields in type names, one-bit loop counters and unused constants.
+    """Return PyMTL's Verilog without absolute paths, fields in type names, one-bit loop counters, unused constants.
 
     Its first lines name the file as it is written, <top>.sv. A bit is no vector [0:0]. The registers of synchronizers
     have the attribute `keep`.
@@ -141,7 +141,7 @@ def tidy(text: str) -> str:
 
 
 def translate_component(top: Component, name: str) -> str:
-    """The Verilog of the unelaborated component ``top`` as module ``name``, as text."""
+    """Return the Verilog of the unelaborated component ``top`` as module ``name``."""
     top.elaborate()
     names = module_names(top, name)
     for component, module in names.items():

@@ -1,6 +1,6 @@
 """Verilog in Verilator, within this process: a library compiled once, and a module driven by packed inputs.
 
-A bench in Verilog packs the ports as that of Icarus does, so that the C++ side knows two vectors and the clock.
+A bench in Verilog packs the ports like that of Icarus, so the C++ side has two vectors and the clock.
 """
 
 import ctypes
@@ -65,7 +65,7 @@ class Verilated:
 
 
 def kept_library(name: str, top: str, ports: Sequence[Port], text: str) -> Path:
-    """The library that simulates module ``top`` of the Verilog ``text``, kept for the same text. Raises ToolError."""
+    """Return the kept library that simulates module ``top`` of the Verilog ``text``. Raises ToolError."""
     high_in, high_got = (total_width(group) - 1 for group in split(ports))
     text += BENCH.format(high_in=high_in, high_got=high_got, instance=instance(top, ports))
     folder = FOLDER / f"{name}.{digest(verilator_version(), text, WRAPPER, OPTIONS, CXX, COMPILED)}"
@@ -76,11 +76,11 @@ def _compile(library: Path, text: str) -> None:
     with tempfile.TemporaryDirectory(prefix="talbot-") as work:
         source, wrapper = Path(work) / "verilated.sv", Path(work) / "wrapper.cpp"
         source.write_text(text, encoding="utf-8")
-        made = verilate(Path(work), "VerilatedBench", [source], OPTIONS)
+        files = verilate(Path(work), "VerilatedBench", [source], OPTIONS)
         wrapper.write_text(WRAPPER, encoding="utf-8")
-        compile_program(library, [*made, wrapper], [*COMPILED, *accepted("-fno-gnu-unique"), *runtime()])
+        compile_program(library, [*files, wrapper], [*COMPILED, *accepted("-fno-gnu-unique"), *runtime()])
 
 
 def in_verilator(name: str, top: str, ports: Sequence[Port], text: str) -> Verilated:
-    """Module ``top`` of the Verilog ``text``, running in Verilator; name: of its library. Raises ToolError."""
+    """Start module ``top`` of the Verilog ``text`` in Verilator; name: of its library. Raises ToolError."""
     return Verilated(kept_library(name, top, ports, text), ports)

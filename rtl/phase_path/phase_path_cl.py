@@ -8,7 +8,7 @@ from talbot.rtl.quad_divider import QuadDividerCL
 
 
 class PhasePathCL(Component):
-    """The ports of PhasePath, and the same handshakes in every cycle."""
+    """Cycle level of PhasePath: the same ports, and the same handshakes in every cycle."""
 
     def construct(s, lanes=8, divider="radix4", n_frac=8, iterations=10):
         s.recv = RecvIfcRTL(ScanMsg)
@@ -54,8 +54,8 @@ class PhasePathCL(Component):
 
         @update
         def up_rdy():
-            gone = s.divider.recv.rdy if is_fourth() else is_tap() or (passes() and s.send.rdy)
-            s.recv.rdy @= int(s.head is None or bool(gone))
+            accepted = s.divider.recv.rdy if is_fourth() else is_tap() or (passes() and s.send.rdy)
+            s.recv.rdy @= int(s.head is None or bool(accepted))
 
         @update_ff
         def behave():

@@ -11,7 +11,7 @@ from talbot.rtl.messages import SAMPLE, ScanMsg
 
 
 class PhasePathFL(Component):
-    """The ports of PhasePath, a message taken a cycle, and the same messages in an unbounded queue."""
+    """Functional level of PhasePath: a message taken a cycle, the same messages from an unbounded queue."""
 
     def construct(s, lanes=8, divider="radix4", n_frac=8, iterations=10):
         chip = ChipParameters(lanes, divider, n_frac, iterations)

@@ -12,7 +12,7 @@ from .variants import check_variant, ratio_bits
 
 
 def response(variant: str, n_frac: int, iterations: int, request: Any, noise_floor: int) -> Any:
-    """The DivResp of ``variant`` to the DivReq ``request``."""
+    """Return the DivResp of ``variant`` to the DivReq ``request``."""
     r = divide(variant, n_frac, iterations, request.x.int(), request.y.int(), int(noise_floor))
     return div_resp(ratio_bits(variant, n_frac))(
         int(r.octant), int(r.ratio), int(r.zero), int(r.phase), int(r.amp_valid), int(r.amp)
@@ -20,7 +20,7 @@ def response(variant: str, n_frac: int, iterations: int, request: Any, noise_flo
 
 
 class QuadDividerFL(Component):
-    """The ports of any variant, and the same responses; one request at a time."""
+    """Functional level of any variant: the same ports and responses, one request at a time."""
 
     def construct(s, variant, n_frac=8, iterations=10):
         check_variant(variant, n_frac, iterations)

@@ -12,14 +12,14 @@ DIVIDING = {"radix2": QuadDividerRadix2, "radix4": QuadDividerRadix4, "pipelined
 
 
 def check_variant(variant: str, n_frac: int, iterations: int) -> None:
-    """Raise ParameterError unless there is such a divider."""
+    """Raise ParameterError unless the divider exists."""
     check_choice("divider", variant, DIVIDERS)
     check_int("n_frac", n_frac, N_FRAC_MIN, N_FRAC_MAX)
     check_int("iterations", iterations, ITERATIONS_MIN, ITERATIONS_MAX)
 
 
 def quad_divider(variant: str, n_frac: int = 8, iterations: int = 10) -> Component:
-    """The RTL of ``variant`` ('radix2', 'radix4', 'pipelined' or 'cordic'). Raises ParameterError.
+    """Return the RTL of ``variant`` ('radix2', 'radix4', 'pipelined' or 'cordic'). Raises ParameterError.
 
     n_frac: fraction bits of the ratio, 4..16 (not for CORDIC). iterations: of CORDIC, 4..16.
     """
@@ -28,12 +28,12 @@ def quad_divider(variant: str, n_frac: int = 8, iterations: int = 10) -> Compone
 
 
 def ratio_bits(variant: str, n_frac: int = 8) -> int:
-    """Width of the response's ratio: n_frac, or the fixed width of CORDIC's ratio, which is 0."""
+    """Return the width of the response's ratio: n_frac, or the fixed width of CORDIC's ratio, which is 0."""
     return RATIO_BITS if variant == "cordic" else n_frac
 
 
 def timing(variant: str, n_frac: int = 8, iterations: int = 10) -> tuple[int, int]:
-    """Latency and interval in cycles: from the request to the first cycle of the response, and between two results."""
+    """Return latency and interval in cycles: request to first cycle of the response, and between two results."""
     check_variant(variant, n_frac, iterations)
     steps = {"radix2": n_frac, "radix4": -(-n_frac // 2), "pipelined": n_frac, "cordic": iterations}[variant]
     return steps + 1, 1 if variant == "pipelined" else steps + 2

@@ -25,7 +25,7 @@ class Edges(NamedTuple):
 
 
 def edges(rows: int, cols: int, lanes: int, order: Sequence[int], tile_rows: int, tile_cols: int) -> Edges:
-    """Edges of an array of rows x cols pixels. Raises ParameterError if the ports cannot address it."""
+    """Return the edges of an array of rows x cols pixels. Raises ParameterError if the ports cannot address it."""
     check_int("rows", rows, 1, ROWS_MAX)
     check_int("cols", cols, 1, COLS_MAX)
     check_choice("lanes", lanes, LANES)

@@ -9,7 +9,7 @@ from talbot.models.parameters.registers import register_map
 
 @cache
 def chip_config() -> type:
-    """ChipConfig: every configuration field by its name, and `trims`, the trim registers.
+    """Return the type ChipConfig: every configuration field by its name, and `trims`, the trim registers.
 
     The register of pixel type 0 is lowest; its value is in the low bits of its bytes.
     """
@@ -20,7 +20,7 @@ def chip_config() -> type:
 
 @cache
 def chip_status() -> type:
-    """ChipStatus: busy, and one-cycle strobes for the sticky bits that the chip sets."""
+    """Return the type ChipStatus: busy, and one-cycle strobes for the sticky bits that the chip sets."""
     chip = register_map()
     strobes = [f.name for f in chip.fields if f.access == "w1c" and f.name not in ("refused", "aborted")]
     return mk_bitstruct("ChipStatus", {"busy": Bits1, **dict.fromkeys(strobes, Bits1)})
@@ -28,5 +28,5 @@ def chip_status() -> type:
 
 @cache
 def chip_state() -> type:
-    """ChipState: the fields of the register `state`."""
+    """Return the type ChipState: the fields of the register `state`."""
     return mk_bitstruct("ChipState", {f.name: mk_bits(f.width) for f in register_map().state})

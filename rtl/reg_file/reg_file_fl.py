@@ -10,7 +10,7 @@ from .config import chip_config, chip_state, chip_status
 
 
 class RegFileFL(Component):
-    """The ports of RegFile, and the same bytes some cycles earlier: the pins have no synchronizers."""
+    """Functional level of RegFile: the same bytes some cycles earlier, since the pins have no synchronizers."""
 
     def construct(s, rows, cols, lanes, tile_rows=4, tile_cols=6, divider="radix4"):
         Config = chip_config()

@@ -14,7 +14,7 @@ from .trace import load
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Arguments of `talbot replay`."""
+    """Add the options of `talbot replay`."""
     commands = parser.add_subparsers(dest="action", required=True)
     recording = commands.add_parser("record", help="run a block's tests and save a trace a parameter set")
     recording.add_argument("block", choices=TOPS)
@@ -28,7 +28,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Record or replay; 1 where Verilog differs from a trace."""
+    """Record or replay; returns 1 if the Verilog differs from a trace."""
     if options.action == "record":
         for path in record(options.block, options.out):
             head = load(path, cycles=False)
@@ -37,10 +37,10 @@ def run(options: argparse.Namespace) -> int:
     for path in (*options.trace, *options.verilog, *options.cells):
         if not path.is_file():
             raise ParameterError(f"file = {path}: no such file")
-    found = replay_files(options.trace, options.verilog, options.top, options.cells, options.strict)
-    for mismatch in found:
+    mismatches = replay_files(options.trace, options.verilog, options.top, options.cells, options.strict)
+    for mismatch in mismatches:
         print(mismatch)
-    return 1 if found else 0
+    return 1 if mismatches else 0
 
 
 if __name__ == "__main__":

@@ -16,13 +16,13 @@ class RecordError(ToolError):
 
 
 def tests_of(block: str) -> tuple[str, Path]:
-    """The class of a block of rtl.tops and the folder of its tests. Raises ParameterError."""
+    """Return the class of a block of rtl.tops and the folder of its tests. Raises ParameterError."""
     cls = type(build_top(block, SensorParameters()))
     return cls.__name__, Path(sys.modules[cls.__module__].__file__).parent / "test"
 
 
 def whole_level(block: str) -> str:
-    """The level that runs all tests of a block: 'RTL' or 'Verilog'."""
+    """Return the level that runs all tests of a block: 'RTL' or 'Verilog'."""
     return "Verilog" if block == VERILOG_ONLY else "RTL"
 
 

@@ -1,4 +1,4 @@
-"""Pytest plugins: one level's tests only, and a record of what they do at a component's ports."""
+"""Pytest plugins that run the tests of one level and record a component's ports."""
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -47,7 +47,7 @@ class Recorder:
         return hook
 
     def traces(self) -> list[Trace]:
-        """One Trace a parameter set, with its simulators one after the other; the longest first."""
+        """Return a Trace per parameter set, its simulators in sequence; the longest first."""
         out: dict[tuple[Any, ...], Trace] = {}
         for part in self.parts:
             whole = out.setdefault(part.arguments, Trace(part.cls, part.module, part.arguments, part.ports))

@@ -30,7 +30,7 @@ class Mismatch:
 
 
 def bench(top: str, ports: Sequence[Port], strict: bool = False) -> str:
-    """Verilog of module ReplayBench: it drives the cycles of +trace=FILE into module ``top``, to the first mismatch.
+    """Return module ReplayBench, which drives the cycles of +trace=FILE into module ``top``, to the first mismatch.
 
     The msg of an output stream counts when its val is 1, or always if ``strict``; X and Z never match.
     """
@@ -92,8 +92,8 @@ def replay_files(
             program, [*verilog, *cells], "ReplayBench", [bench(top or heads[0][1].cls, heads[0][1].ports, strict)]
         )
         for path, head in heads:
-            if found := _run(program, path, head, strict, seconds):
-                return found
+            if mismatches := _run(program, path, head, strict, seconds):
+                return mismatches
     return []
 
 
@@ -122,15 +122,15 @@ def _run(program: Path, path: Path, head: Trace, strict: bool, seconds: float) -
 
 
 def _differences(head: Trace, cycle: int, want: str, got: str, strict: bool) -> list[Mismatch]:
-    """The ports that differ in ``cycle``; want, got: packed outputs in binary, highest bit first."""
+    """Return the ports that differ in ``cycle``; want, got: packed outputs in binary, highest bit first."""
     outputs, out = split(head.ports)[1], []
     valid = {} if strict else validity(head.ports)
     value = {
         port: tuple(bits[::-1][low : low + port.width][::-1] for bits in (want, got))
         for port, low in places(outputs).items()
     }
-    for port, (expected, seen) in value.items():
+    for port, (expected, actual) in value.items():
         matters = port not in valid or value[valid[port]][0] == "1"
-        if seen.strip("01") or matters and seen != expected:
-            out.append(Mismatch(head.test_at(cycle), cycle, port.name, expected, seen))
+        if actual.strip("01") or matters and actual != expected:
+            out.append(Mismatch(head.test_at(cycle), cycle, port.name, expected, actual))
     return out

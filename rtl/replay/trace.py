@@ -34,30 +34,30 @@ class Trace:
 
     @property
     def name(self) -> str:
-        """Name of the files: the class and, where it has parameters, a digest of them."""
+        """Return the name of the files: the class and, where it has parameters, a digest of them."""
         if not self.arguments:
             return self.cls
         return f"{self.cls}.{digest(repr(self.arguments))[:8]}"
 
     def component(self) -> Component:
-        """The component, not elaborated."""
+        """Return the component, not elaborated."""
         return getattr(importlib.import_module(self.module), self.cls)(*self.arguments)
 
     def verilog(self) -> str:
-        """The component's Verilog; the module is named `cls`."""
+        """Return the component's Verilog; the module is named `cls`."""
         return translate_component(self.component(), self.cls)
 
     def test_at(self, cycle: int) -> str:
-        """Name of the test that drove a cycle."""
+        """Return the name of the test that drove a cycle."""
         return next((name for first, name in reversed(self.tests) if first <= cycle), "")
 
     def cycles_of(self, test: str) -> int:
-        """Cycles of a test, all its simulators together."""
+        """Return the cycles of a test, all its simulators together."""
         ends = [first for first, _ in self.tests[1:]] + [self.cycles or len(self.lines)]
         return sum(end - first for (first, name), end in zip(self.tests, ends, strict=True) if name == test)
 
     def values(self, cycle: int) -> tuple[dict[str, int], ...]:
-        """Inputs and outputs of a cycle, by the port's name in the Verilog."""
+        """Return inputs and outputs of a cycle, by the port's name in the Verilog."""
         _, *packed = self.lines[cycle].split()
         return tuple(
             {port.name: int(number, 16) >> low & (1 << port.width) - 1 for port, low in places(group).items()}
@@ -83,7 +83,7 @@ class Trace:
 
 
 def load(path: Path | str, cycles: bool = True) -> Trace:
-    """The Trace of a .json file that `Trace.save` wrote; without its lines unless ``cycles``."""
+    """Return the Trace of a .json file that `Trace.save` wrote; without its lines unless ``cycles``."""
     head = json.loads(Path(path).read_text(encoding="utf-8"))
     lines = Path(path).with_suffix(".trace").read_text(encoding="utf-8").splitlines() if cycles else []
     return Trace(
@@ -98,5 +98,5 @@ def load(path: Path | str, cycles: bool = True) -> Trace:
 
 
 def _tuples(value: Any) -> Any:
-    """Lists of JSON as tuples."""
+    """Return lists of JSON as tuples."""
     return tuple(map(_tuples, value)) if isinstance(value, list) else value

@@ -16,7 +16,7 @@ QUEUE = 2  # bytes between the encoder and the link
 
 
 class RunLengthCL(Component):
-    """The ports and parameters of RunLength, and the same values in every cycle."""
+    """Cycle level of RunLength: the same ports, parameters, and values in every cycle."""
 
     def construct(s, *chip):
         declare_ports(s)
@@ -47,7 +47,7 @@ class RunLengthCL(Component):
         s.state, s.queue, s.part, s.bits, s.sync = IDLE, deque(), deque(), "", False
 
     def next_byte(s):
-        """The byte that goes into the queue in this cycle, or None."""
+        """Return the byte that enters the queue in this cycle, or None."""
         if s.state == HEADER or s.state == TRAILER:
             byte = s.part.popleft()
             if not s.part:

@@ -13,7 +13,7 @@ from .ports import declare_ports
 
 
 def header_of(s, rows: int, cols: int, lanes: int, tile_rows: int, tile_cols: int) -> StreamHeader:
-    """The StreamHeader that the ports of ``s`` configure."""
+    """Return the StreamHeader that the ports of ``s`` configure."""
     window = Window(*(int(getattr(s, name)) for name in ("row0", "row1", "col0", "col1")))
     return StreamHeader(
         rows,
@@ -62,7 +62,7 @@ class RunLengthFL(Component):
             s.frame_sync <<= bool(s.out) or s.header is not None
 
     def take(s, chip, kind, data):
-        """The bytes to send after a message."""
+        """Return the bytes to send after a message."""
         if s.header is None:
             if kind != FRAME:
                 return b""

@@ -1,4 +1,4 @@
-"""A simulation that leaves out idle blocks has the signals of one that runs all, in every cycle."""
+"""A simulation that skips idle blocks has the same signals in every cycle as one that runs all blocks."""
 
 import random
 
@@ -52,7 +52,7 @@ def test_every_signal_in_every_cycle(name):
 
 
 class Counting(Component):
-    """Its states are no signals."""
+    """A component whose state is not in signals."""
 
     def construct(s):
         s.step, s.count, s.doubled = InPort(4), OutPort(8), OutPort(8)

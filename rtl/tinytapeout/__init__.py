@@ -1,1 +1,1 @@
-"""Blocks of the chip behind Tiny Tapeout's pins, in plain Verilog: a top a project, and the byte bus of all."""
+"""Blocks of the chip behind Tiny Tapeout's pins, in plain Verilog: a top per project, and their byte bus."""

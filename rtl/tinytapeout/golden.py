@@ -7,9 +7,9 @@ from talbot.models.parameters import AmpTiming, FrameParameters, Window
 from talbot.rtl.tinytapeout.host import divisions, frame, row
 
 
-def transfers(asked: FrameParameters, trims: Sequence[int]) -> list[bytes]:
-    """SPI transfers that ask the chip for a frame, the last one starts it. trims: registers by pixel type."""
-    return [*write_transfers(frame_writes(asked, trims)), command("start")]
+def transfers(frame: FrameParameters, trims: Sequence[int]) -> list[bytes]:
+    """Return SPI transfers that configure and start a frame. trims: registers by pixel type."""
+    return [*write_transfers(frame_writes(frame, trims)), command("start")]
 
 
 # A time-of-flight frame with phases, which uses every block, of four tiles of the test pattern

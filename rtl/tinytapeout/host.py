@@ -42,7 +42,7 @@ def frame(transfers: Sequence[bytes], cycles: int = SHOWN) -> list[int]:
 
 
 def _bits(transfer: bytes) -> list[int]:
-    """Program for an SPI transfer to the chip."""
+    """Return the program for an SPI transfer to the chip."""
     bits = (byte >> bit & 1 for byte in transfer for bit in range(7, -1, -1))
     levels = [level for bit in bits for level in (LINK_RDY | MOSI * bit, LINK_RDY | MOSI * bit | SCLK)]
     return [LINK_RDY, *levels, LINK_RDY, CSN | LINK_RDY]
@@ -51,14 +51,14 @@ def _bits(transfer: bytes) -> list[int]:
 def simulate(
     top: str, words: Sequence[int], sources: Sequence[Path], folder: Path, more: str = "", options: Sequence[str] = ()
 ) -> list[str]:
-    """Run the program ``words`` on the module ``top`` of the Verilog files ``sources``; the lines that it shows.
+    """Run the program ``words`` on module ``top`` of the Verilog files ``sources``; returns the lines that it shows.
 
-    folder: of the files that Icarus reads. more: Verilog beside the bench, with a module Tap. options: of the
+    folder: of the files that Icarus reads. more: further Verilog with a module Tap. options: of the
     simulation. Raises IcarusError, ToolError.
     """
     program = folder / "host.hex"
     program.write_text("\n".join(f"{word:03x}" for word in [*words, END]) + "\n", encoding="utf-8")
     texts = [f"`define TOP {top}\n{BENCH.read_text(encoding='utf-8')}", *filter(None, [more])]
     compile_program(folder / "host.vvp", sources, "host", texts, *(("Tap",) if more else ()))
-    said = run(["vvp", "-n", folder / "host.vvp", f"+program={program}", *options]).splitlines()
-    return [line for line in said if line and line[0] in "01xzte"]
+    lines = run(["vvp", "-n", folder / "host.vvp", f"+program={program}", *options]).splitlines()
+    return [line for line in lines if line and line[0] in "01xzte"]

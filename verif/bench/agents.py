@@ -1,7 +1,7 @@
 """The agents of the cocotb benches: stream drivers and monitors, an SPI host, a scoreboard, and their clock.
 
-Agents are called twice a cycle: `drive` after the clock edge, with registers settled; `sample` before the next edge,
-with everything settled. So a bench is the same in every simulator, whatever its scheduling.
+Agents are called twice a cycle: `drive` after the clock edge, with registers settled, and `sample` before the next,
+with everything settled. So the simulator's scheduling has no effect on a bench.
 """
 
 from collections.abc import Callable, Iterable, Sequence
@@ -24,7 +24,7 @@ class Stopped(Exception):
 
 
 class Agent(Protocol):
-    """What drives or watches pins of the design."""
+    """Drives or watches pins of the design."""
 
     def rest(self) -> None:
         """Drive the pins as in reset and start again."""

@@ -1,4 +1,4 @@
-"""The chip in cocotb, an SPI host and a link at its pins and the real-number front end beside it: golden bytes."""
+"""The chip in cocotb with an SPI host, a link and the real-number front end at its pins: golden bytes."""
 
 import contextlib
 import os
@@ -21,7 +21,7 @@ SHOWN = os.environ.get("BENCH_FRAME", "edge")  # the frame whose stream is kept,
 
 
 class Phases:
-    """Sees that no two phases of the amplifiers are on together."""
+    """Checks that at most one phase of the amplifiers is high."""
 
     def __init__(self, dut):
         self.pins = dut.pixel_reset, dut.integrate, dut.cm_reset, dut.read

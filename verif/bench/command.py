@@ -77,8 +77,8 @@ def summary(runs: Mapping[tuple[str, str], BenchRun]) -> dict[str, BlockResults]
         same = len(set(streams.values())) == 1 and None not in streams.values()
         by_block[CHIP].tests.add(Tests(int(same), int(not same)))
         if not same:
-            found = ", ".join(f"{name} {str(stream)[:60]}" for name, stream in streams.items())
-            by_block[CHIP].open_points.append(f"{CHIP}: {SAME}: {found}")
+            differences = ", ".join(f"{name} {str(stream)[:60]}" for name, stream in streams.items())
+            by_block[CHIP].open_points.append(f"{CHIP}: {SAME}: {differences}")
     return by_block
 
 

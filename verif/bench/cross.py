@@ -33,7 +33,7 @@ ALL_TYPES = (1 << 24) - 1
 
 
 class Cross(NamedTuple):
-    """A class of frames. All are allowed; which masks and windows leave nothing is ReadoutSeq's to test."""
+    """A class of valid frames; masks and windows that leave nothing to read are tests of ReadoutSeq."""
 
     mode: str
     mask: str
@@ -87,10 +87,10 @@ def frames(lanes: int, seed: int) -> Iterator[FrameParameters]:
     for mode, mask, window, overlap in rng.sample(crosses, len(crosses)):
         row, col = rng.randrange(last_row), rng.randrange(last_col)  # a whole tile, which has every type
         part = Window(row, last_row, col, last_col - 1)
-        whole, one = sensor.full_window, Window(row, row, col, col)
+        whole, tile = sensor.full_window, Window(row, row, col, col)
         types = rng.sample(range(24), {"one type": 1, "some types": rng.randint(2, 23), "all types": 24}[mask])
         yield FrameParameters(
-            {"whole array": whole, "part": part, "one tile": one}[window],
+            {"whole array": whole, "part": part, "one tile": tile}[window],
             mode,
             mask=sum(1 << t for t in types),
             overlap=overlap,
@@ -116,7 +116,7 @@ def crossed(lanes: int, seed: int) -> Crossed:
 
 
 def run(lanes: int, stall: int, planned: Sequence[FrameParameters]) -> str | None:
-    """Run frames in one simulation; returns what is wrong with the first wrong one, or None."""
+    """Run frames in one simulation; returns the error of the first wrong one, or None."""
     sensor = sensor_of(lanes)
     rng, shape = np.random.default_rng(lanes), (TAPS, sensor.array.rows, sensor.array.cols)
     samples = rng.uniform(0, 128, (*shape, 1)) + rng.normal(0, 20, (*shape, 2))

@@ -16,7 +16,7 @@ LAST, LIMIT = 1 << 9, 20_000
 
 
 def random_frame():
-    """[(row, [step])]; a step is its four taps, each the samples of the enabled lanes."""
+    """Return [(row, [step])]; a step is its four taps, each the samples of the enabled lanes."""
 
     def step():
         lanes = random.randint(1, CHIP.lanes)
@@ -26,7 +26,7 @@ def random_frame():
 
 
 def messages(frame, on, noise_floor):
-    """(messages in, messages out) of a frame: lists of int."""
+    """Return (messages in, messages out) of a frame: lists of int."""
     sent, expected = [(FRAME, 0)], [(FRAME, 0)]
     for row, steps in frame:
         sent.append((ROW, row))

@@ -16,7 +16,7 @@ LIMIT = 60_000
 
 
 def random_header():
-    """Any configuration of the small chip."""
+    """Return the header of a random configuration of the small chip."""
     mode = random.choice(MODES)
     row0, row1 = sorted(random.choices(range(3), k=2))
     col0, col1 = sorted(random.choices(range(6), k=2))
@@ -35,7 +35,7 @@ def random_header():
 
 
 def messages(header, samples):
-    """The scan's messages of a frame: list of int."""
+    """Return the scan's messages of a frame: list of int."""
     layout, out = header.layout(), [(FRAME, 0)]
     for i, row in enumerate(layout.rows.tolist()):
         codes = samples.reshape(header.rows, -1)[row, layout.places_of(i)]

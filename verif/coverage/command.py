@@ -39,12 +39,12 @@ def measured(plans: dict[str, TestPlan], store: Path) -> dict[str, Verdict]:
     """Return the Verdict by block. plans: by block. store: folder of kept results."""
     traces = recorded(plans, store.parent / "traces")
     jobs = measure_jobs(plans, traces)
-    found: dict[str, list[Measurement]] = {}
+    measurements: dict[str, list[Measurement]] = {}
     for (block, _), result in zip(jobs, run_jobs([job for _, job in jobs], store, "coverage"), strict=True):
-        found.setdefault(block, []).append(from_json(Measurement, result))
+        measurements.setdefault(block, []).append(from_json(Measurement, result))
     proven = run_jobs([Job(block, constants, (str(traces[block][0]),)) for block in plans], store, "constants")
     return {
-        block: judge(block, plan, found[block], {(module, signal, bit) for module, signal, bit in bits})
+        block: judge(block, plan, measurements[block], {(module, signal, bit) for module, signal, bit in bits})
         for (block, plan), bits in zip(plans.items(), proven, strict=True)
     }
 

@@ -74,21 +74,21 @@ def constant_bits(verilog: str, top: str, ports: Sequence[Port]) -> set[tuple[st
 
 def outputs(aiger: bytes) -> list[int]:
     """Return the literals of the outputs of a binary AIGER file."""
-    head, rest = aiger.split(b"\n", 1)
+    head, body = aiger.split(b"\n", 1)
     _, _, _, latches, count, *_ = head.split()
-    lines = rest.split(b"\n", int(latches) + int(count))
+    lines = body.split(b"\n", int(latches) + int(count))
     return [int(line) for line in lines[int(latches) : int(latches) + int(count)]]
 
 
 def modules_of(verilog: str, top: str) -> dict[str, str]:
     """Return the module of each instance by its path, 'dut' for the top."""
     inside = {name: re.findall(r"(?m)^  (\w+) (\w+)\n  \(", body) for name, body in modules(verilog).items()}
-    found, todo = {}, [("dut", top)]
+    instances, todo = {}, [("dut", top)]
     while todo:
         path, module = todo.pop()
-        found[path] = module
+        instances[path] = module
         todo += [(f"{path}.{name}", of) for of, name in inside[module]]
-    return found
+    return instances
 
 
 def fields_of(verilog: str) -> dict[tuple[str, str], dict[int, tuple[str, int]]]:
@@ -98,11 +98,11 @@ def fields_of(verilog: str) -> dict[tuple[str, str], dict[int, tuple[str, int]]]
         structs[name] = [
             (field, int(high or 0)) for high, field in re.findall(r"logic (?:\[(\d+):0\] )?(\w+);", body)
         ]  # the first in the highest bits
-    found: dict[tuple[str, str], dict[int, tuple[str, int]]] = defaultdict(dict)
+    fields: dict[tuple[str, str], dict[int, tuple[str, int]]] = defaultdict(dict)
     for module, body in modules(verilog).items():
         for kind, signal in re.findall(r"(?m)^  (?:input +|output )?(\w+) (\w+) *[;,]?$", body):
             low = 0
             for field, high in reversed(structs.get(kind, [])):
-                found[module, signal] |= {low + bit: (f"{signal}.{field}", bit) for bit in range(high + 1)}
+                fields[module, signal] |= {low + bit: (f"{signal}.{field}", bit) for bit in range(high + 1)}
                 low += high + 1
-    return found
+    return fields

@@ -1,4 +1,4 @@
-"""A trace replayed into the Verilog of its component: Verilator's counts, state registers, functional cover points."""
+"""Replay of a trace into its component's Verilog: Verilator's counts, state registers, functional cover points."""
 
 import re
 import tempfile
@@ -36,12 +36,12 @@ class Point:
 
     @property
     def key(self) -> tuple[str, str, str, str, int]:
-        """What identifies the point in the Verilog of every parameter set."""
+        """The identity of the point in the Verilog of every parameter set."""
         return self.kind, self.module, self.what, self.code if self.kind != "toggle" else "", self.nth
 
 
 class Place(NamedTuple):
-    """Where Verilator counts: kind and what of a Point, line and column of the Verilog."""
+    """A place at which Verilator counts: kind and what of a Point, line and column of the Verilog."""
 
     kind: str
     module: str
@@ -51,7 +51,7 @@ class Place(NamedTuple):
 
 
 class Source(NamedTuple):
-    """What a line of Verilog belongs to: its module, or '', and the file and line of the Python, or ''."""
+    """The origin of a line of Verilog: its module, or '', and the file and line of the Python, or ''."""
 
     module: str
     python: str
@@ -78,7 +78,7 @@ class Transition:
 
 @dataclass(frozen=True)
 class Measurement:
-    """What one trace reaches. functional: cycles in which each functional cover point is true."""
+    """The points that a trace reaches. functional: cycles in which each functional cover point is true."""
 
     cycles: int
     counts: tuple[Count, ...]
@@ -90,11 +90,11 @@ def sources_of(verilog: str) -> list[Source]:
     """Return the Source of each line of ``verilog``, line 1 at index 1."""
     module, file, source, out = "", "", "", [Source("", "")]
     for text in verilog.splitlines():
-        if found := re.match(r"\s*// At (\S+)", text):
-            source = found[1]
+        if match := re.match(r"\s*// At (\S+)", text):
+            source = match[1]
             file = source if ":" not in source else file
-        if found := re.match(r"module (\w+)", text):
-            module = found[1]
+        if match := re.match(r"module (\w+)", text):
+            module = match[1]
         elif text.startswith("endmodule"):
             module = ""
         out.append(Source(module, source if ":" in source and source.startswith(file) else file))
@@ -107,14 +107,14 @@ def read_points(path: Path, verilog: str) -> dict[Point, int]:
     """Return the counts of Verilator's file ``path`` for ``verilog``; toggles are those after the first cycle."""
     lines, where = verilog.splitlines(), sources_of(verilog)
     rows, first = read_counts(path), read_counts(Path(f"{path}.first"))
-    found, identical = {}, Counter()
+    points, identical = {}, Counter()
     for place, count in sorted(rows.items()):
         code = " ".join(lines[place.line - 1].split())
         same = place.kind, place.module, place.what, code
         point = Point(*same, identical[same], place.line, where[place.line].python)
         identical[same] += 1
-        found[point] = count - (first[place] if place.kind == "toggle" else 0)
-    return found
+        points[point] = count - (first[place] if place.kind == "toggle" else 0)
+    return points
 
 
 def read_counts(path: Path) -> Counter[Place]:
@@ -138,7 +138,7 @@ def measure(path: Path | str, folder: str, registers: tuple[Registers, ...], poi
     folder: of the block below rtl/, whose own modules count. registers: of each state machine. points: names of the
     functional cover points of the folder to evaluate. Raises ToolError where the Verilog differs from the trace.
     """
-    path, own = Path(path), f"rtl/{folder}/"
+    path, prefix = Path(path), f"rtl/{folder}/"
     trace = load(path)
     verilog = trace.verilog()
     program = compile_program(verilog, trace.cls, trace.ports, registers, coverage=True)
@@ -147,12 +147,12 @@ def measure(path: Path | str, folder: str, registers: tuple[Registers, ...], poi
         differs = program.run(path.with_suffix(".trace"), "--points", counts, "--states", states)[0]
         if differs >= 0:
             raise ToolError(f"{trace.name}: the Verilog differs from {trace.test_at(differs)} in cycle {differs}")
-        found = read_points(counts, verilog)
+        reached = read_points(counts, verilog)
         steps = tuple(Transition(*map(int, line.split())) for line in states.read_text(encoding="utf-8").splitlines())
     ports = Recorded(trace)
     return Measurement(
         trace.cycles,
-        tuple(Count(point, times) for point, times in found.items() if point.source.startswith(own)),
+        tuple(Count(point, times) for point, times in reached.items() if point.source.startswith(prefix)),
         steps,
         {name: int(POINTS[folder][name](ports).sum()) for name in points},
     )

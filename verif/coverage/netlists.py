@@ -11,8 +11,8 @@ from talbot.rtl.harness.ports import ports_of
 from .program import compile_program
 
 
-def netlist_in_verilator(dut: Any, given: Netlist, cells: Iterable[Path]) -> Driven:
-    """Run the Netlist ``given`` for the elaborated component ``dut`` in Verilator. Raises ToolError."""
-    text, ports = "".join(file.read_text(encoding="utf-8") for file in (*cells, given.path)), ports_of(dut)
-    program = compile_program(text, given.module or type(dut).__name__, ports)
+def netlist_in_verilator(dut: Any, netlist: Netlist, cells: Iterable[Path]) -> Driven:
+    """Run the Netlist ``netlist`` for the elaborated component ``dut`` in Verilator. Raises ToolError."""
+    text, ports = "".join(file.read_text(encoding="utf-8") for file in (*cells, netlist.path)), ports_of(dut)
+    program = compile_program(text, netlist.module or type(dut).__name__, ports)
     return Driven([program.folder / "replay", "--drive", "0"], ports)

@@ -22,7 +22,7 @@ KINDS = "line", "branch", "expression", "toggle"
 
 @dataclass(frozen=True)
 class Promise:
-    """What a README promises. cover: functional cover points that show that it is tried. tests: those that check it."""
+    """A promise of a README. cover: functional cover points that exercise it. tests: those that check it."""
 
     promise: str
     cover: tuple[str, ...]
@@ -81,7 +81,7 @@ class TestPlan:
 
     @property
     def cover(self) -> list[str]:
-        """Names of the functional cover points, ascending."""
+        """Return the names of the functional cover points, ascending."""
         return sorted({name for promise in self.promises for name in promise.cover})
 
 
@@ -223,8 +223,8 @@ def _check_tests(name: str, plan: TestPlan) -> None:
     for i, promise in enumerate(plan.promises):
         for test in promise.tests:
             file, _, function = test.rpartition("::")
-            path, own = PACKAGE / file, tests_in(f"rtl/{plan.folder}/test")
-            if function not in (own if not file else _tests_of(path) if path.is_file() else ()):
+            path, names = PACKAGE / file, tests_in(f"rtl/{plan.folder}/test")
+            if function not in (names if not file else _tests_of(path) if path.is_file() else ()):
                 raise ParameterError(f"{name}: promises[{i}].tests = {test!r}: no such test")
 
 

@@ -1,4 +1,4 @@
-"""The recorded traces of blocks, kept until a file that decides them changes."""
+"""The recorded traces of blocks, kept until a file in their key changes."""
 
 from collections.abc import Collection
 from pathlib import Path

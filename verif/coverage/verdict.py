@@ -31,9 +31,9 @@ class Verdict:
         """True where nothing is missing or wrong."""
         return not self.errors and not self.missing
 
-    def count(self, kind: str, wanted: Collection[object], hit: Collection[object]) -> None:
-        """Set the percentage of a kind; ``hit`` is a part of ``wanted``."""
-        self.coverage[kind] = math.floor(1e4 * len(hit) / len(wanted)) / 100 if wanted else None  # 100: all of them
+    def count(self, kind: str, required: Collection[object], hit: Collection[object]) -> None:
+        """Set the percentage of a kind; ``hit`` is a part of ``required``."""
+        self.coverage[kind] = math.floor(1e4 * len(hit) / len(required)) / 100 if required else None  # 100: all of them
 
 
 class Toggle(NamedTuple):
@@ -67,9 +67,9 @@ def matches(exclusion: Exclusion, at: str, point: Point) -> bool:
     return not high or int(low or high) <= bit <= int(high)
 
 
-def split_toggle(what: str) -> Toggle:
+def split_toggle(text: str) -> Toggle:
     """Return the parts of 'signal[3]:0->1'."""
-    ((signal, bit, edge),) = re.findall(r"^(.*?)(?:\[(\d+)\])?:(.*)$", what)
+    ((signal, bit, edge),) = re.findall(r"^(.*?)(?:\[(\d+)\])?:(.*)$", text)
     return Toggle(signal, int(bit or 0), edge)
 
 
@@ -119,37 +119,37 @@ def judge(
     excluded = set()
     for exclusion in plan.exclusions_of(block):
         for at in exclusion.at:
-            found = [point for point in points if matches(exclusion, at, point)]
+            matching = [point for point in points if matches(exclusion, at, point)]
             where = f"exclude {exclusion.kind} {at!r}{' ' + exclusion.what if exclusion.what else ''}"
-            if not found:
+            if not matching:
                 verdict.errors.append(f"{where}: must match a point")
             verdict.errors += [
                 f"{where}: {point.what} of {point.source} is hit {points[point]} times"
-                for point in found
+                for point in matching
                 if points[point]
             ]
-            excluded.update(found)
+            excluded.update(matching)
     verdict.excluded = len(excluded)
     for kind in KINDS:
-        wanted = [point for point in points if point.kind == kind and point not in excluded]
-        verdict.count(kind, wanted, [point for point in wanted if points[point]])
-        verdict.missing += missing_lines([point for point in wanted if not points[point]])
+        required = [point for point in points if point.kind == kind and point not in excluded]
+        verdict.count(kind, required, [point for point in required if points[point]])
+        verdict.missing += missing_lines([point for point in required if not points[point]])
     judge_machines(verdict, plan.machines_of(block), measures)
-    wanted = plan.cover
-    hit = [name for name in wanted if any(measured.functional[name] for measured in measures)]
-    verdict.count("functional", wanted, hit)
-    verdict.missing += [f"functional {plan.folder}: {name}" for name in wanted if name not in hit]
+    required = plan.cover
+    hit = [name for name in required if any(measured.functional[name] for measured in measures)]
+    verdict.count("functional", required, hit)
+    verdict.missing += [f"functional {plan.folder}: {name}" for name in required if name not in hit]
     return verdict
 
 
 def judge_machines(verdict: Verdict, machines: Iterable[Machine], measures: Iterable[Measurement]) -> None:
     """Add states and transitions of ``machines`` to ``verdict``."""
-    wanted: list[tuple[str, ...]] = []
+    required: list[tuple[str, ...]] = []
     hit = set()
     for number, machine in enumerate(machines):
         name = "+".join(register for register, _ in machine.registers)
         names = {value: state for state, value in machine.states.items()}
-        wanted += [(name, state) for state in machine.states] + [(name, *step) for step in machine.transitions]
+        required += [(name, state) for state in machine.states] + [(name, *step) for step in machine.transitions]
         for step in (step for measured in measures for step in measured.transitions if step.machine == number):
             start, end = (names.get(value, str(value)) for value in (step.before, step.after))
             hit.add((name, end))
@@ -159,5 +159,5 @@ def judge_machines(verdict: Verdict, machines: Iterable[Machine], measures: Iter
             if (start, end) not in machine.transitions:
                 verdict.errors.append(f"fsm {name}: {start} > {end}: no such transition in the plan")
     verdict.errors = list(dict.fromkeys(verdict.errors))
-    verdict.count("fsm", wanted, hit & set(wanted))
-    verdict.missing += [f"fsm {what[0]}: {' > '.join(what[1:])}" for what in wanted if what not in hit]
+    verdict.count("fsm", required, hit & set(required))
+    verdict.missing += [f"fsm {item[0]}: {' > '.join(item[1:])}" for item in required if item not in hit]

@@ -1,4 +1,4 @@
-"""The small chip of the fault tests: its Verilog in Verilator or Icarus under many waveforms."""
+"""The small chip of the fault tests: its Verilog in Verilator or Icarus with many waveforms."""
 
 import tempfile
 from collections.abc import Sequence

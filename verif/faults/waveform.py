@@ -57,12 +57,12 @@ class Trace:
 
     @cached_property
     def taken(self) -> npt.NDArray[np.int64]:
-        """Cycles in which the link takes a byte."""
+        """Return the cycles in which the link takes a byte."""
         return np.flatnonzero(self.flag(VAL) & (self.wave & RDY != 0))
 
     @property
     def stream(self) -> bytes:
-        """Bytes that the link takes."""
+        """Return the bytes that the link takes."""
         return self.out[self.taken, 0].tobytes()
 
     def reply(self, start: int, size: int) -> bytes:

@@ -1,1 +1,1 @@
-"""Proofs by Yosys and SMT solvers of the properties in rtl/<block>/formal, each with a broken twin that must fail."""
+"""Proofs by Yosys and SMT solvers of the properties in rtl/<block>/formal, each with a mutated twin that must fail."""

@@ -1,4 +1,4 @@
-"""Every property proven, every cover point reached, every broken twin caught: build/verify/formal.json.
+"""Every property proven, every cover point reached, every mutated twin detected: build/verify/formal.json.
 
 The exit status is 1 unless every property is proven by every engine named for it, every cover point of its wrapper is
 reached, and every twin fails. A timeout is not a proof.
@@ -62,7 +62,7 @@ class Outcome:
 
     @property
     def problems(self) -> list[str]:
-        """What is not proven, not reached or not caught, one line each."""
+        """Return a line for each property that is not proven, cover point not reached and twin not detected."""
         name = f"{self.proof.block}.{self.proof.name}"
         missing, twins = ([], {}) if self.proof.size_of else (self.covers.missing, self.twins)
         return [
@@ -95,11 +95,11 @@ def collect(proofs: Iterable[Proof], store: Path, workers: int = -1) -> list[Out
     for proof in manifest.every():
         checked.setdefault(proof.wrapper, proof.name)
     planned = [(proof, [*pieces(proof, present(proof), checked[proof.wrapper] == proof.name)]) for proof in proofs]
-    results = iter(run_jobs([piece.job for _, found in planned for piece in found], store, "formal", workers))
+    results = iter(run_jobs([piece.job for _, parts in planned for piece in parts], store, "formal", workers))
     outcomes = []
-    for proof, found in planned:
+    for proof, parts in planned:
         by_kind = {kind: {} for kind in (ProofResult, CoverResult, TwinResult, NecessityResult, FreedomResult)}
-        for piece in found:
+        for piece in parts:
             result = from_json(piece.kind, next(results))
             if UNKNOWN in vars(result).values():  # tried again next time
                 piece.job.file(store).unlink(missing_ok=True)
@@ -125,12 +125,12 @@ def present(proof: Proof) -> list[str]:
 
 def summary(outcomes: Sequence[Outcome]) -> dict[str, BlockResults]:
     """Return the proofs and open points by block."""
-    found: dict[str, BlockResults] = {}
+    results: dict[str, BlockResults] = {}
     for outcome in outcomes:
-        entry = found.setdefault(outcome.proof.block, BlockResults())
+        entry = results.setdefault(outcome.proof.block, BlockResults())
         entry.proofs += outcome.properties
         entry.open_points += outcome.problems
-    return {block: found[block] for block in TOPS if block in found}
+    return {block: results[block] for block in TOPS if block in results}
 
 
 def table(outcomes: Iterable[Outcome]) -> str:
@@ -151,14 +151,14 @@ def chosen(proofs: Sequence[Proof], options: Namespace) -> list[Proof]:
     if unknown := named - {proof.name for proof in proofs}:
         raise ParameterError(f"proof = {', '.join(sorted(unknown))}: must be the name of a proof")
     named |= {proof.size_of for proof in proofs if proof.name in named}  # whose covers and twins it shares
-    found = [
+    selected = [
         proof
         for proof in proofs
         if (not options.only or proof.block in options.only) and (not options.proof or proof.name in named)
     ]
-    if not found:
+    if not selected:
         raise ParameterError(f"only = {', '.join(options.only or options.proof)}: must be a block with proofs")
-    return found
+    return selected
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -170,7 +170,7 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 
 def run(options: Namespace) -> int:
-    """Return 0, 1 where something is not proven."""
+    """Run the proofs; returns 1 if something is not proven, else 0."""
     proofs = chosen(manifest.every(), options)
     outcomes = collect(proofs, options.out / "formal", options.workers)
     write_step("formal", summary(outcomes), options.out)

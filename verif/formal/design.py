@@ -1,4 +1,4 @@
-"""The Verilog that is proven: the export of rtl.export, and the same with a twin's bug."""
+"""The Verilog under proof: the export of rtl.export, and the same with a twin's bug."""
 
 import re
 from functools import cache

@@ -27,10 +27,10 @@ class FormalError(ToolError):
 @cache
 def tool(name: str) -> str:
     """Return the path of a tool (`base.tools.located`). Raises FormalError."""
-    found = located(name)
-    if not found:
+    path = located(name)
+    if not path:
         raise FormalError(f"tool = {name}: not found; make setup installs it")
-    return found
+    return path
 
 
 @cache

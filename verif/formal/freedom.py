@@ -1,4 +1,4 @@
-"""The inputs are free: cover points, made for every proof, of the values that its assumptions and its wrapper leave."""
+"""Freedom of inputs: cover points, generated for every proof, of values that assumptions and wrapper must allow."""
 
 import re
 from collections.abc import Iterable, Iterator
@@ -75,7 +75,7 @@ class Literal:
 def signals(netlist: Netlist, modules: Iterable[str]) -> list[Signal]:
     """Return the top's inputs and free constants, and the ports of the modules under proof that are other nets."""
     ports = netlist.module["ports"]
-    found = [Signal(name, ports[name]["bits"]) for name in netlist.ports("input") if name != "clk"]
+    inputs = [Signal(name, ports[name]["bits"]) for name in netlist.ports("input") if name != "clk"]
     inner = []
     for instance, module in netlist.instances.items():
         for port, entry in netlist.modules[module]["ports"].items() if module in modules else ():
@@ -85,11 +85,11 @@ def signals(netlist: Netlist, modules: Iterable[str]) -> list[Signal]:
     for cell in netlist.of_type("$anyconst", "$anyseq"):
         bits = netlist.cells[cell]["connections"]["Y"]
         inside = all(bits != signal.bits for signal in inner)
-        found.append(Signal(netlist.name_of(bits), bits, False, netlist.cells[cell]["type"] == "$anyconst", inside))
-    known: set[tuple[Bit, ...]] = set()
-    free = [s for s in (*found, *inner) if any(isinstance(bit, int) for bit in s.bits)]
+        inputs.append(Signal(netlist.name_of(bits), bits, False, netlist.cells[cell]["type"] == "$anyconst", inside))
+    nets: set[tuple[Bit, ...]] = set()
+    free = [s for s in (*inputs, *inner) if any(isinstance(bit, int) for bit in s.bits)]
     tied = [s for s in inner if s not in free and not s.output]
-    return [*tied, *(s for s in free if not (tuple(s.bits) in known or known.add(tuple(s.bits))))]
+    return [*tied, *(s for s in free if not (tuple(s.bits) in nets or nets.add(tuple(s.bits))))]
 
 
 class Points:
@@ -99,25 +99,25 @@ class Points:
         """Add the cover points of a proof to its netlist."""
         self.netlist, self.never = netlist, proof.never
         self.names: list[str] = []
-        found = signals(netlist, proof.modules)
-        given = " ".join(proof.tied).split()
-        self.tied = [s.name for s in found if all(isinstance(b, str) for b in s.bits) or s.inside and s.name in given]
-        found = [s for s in found if s.name not in self.tied]
-        reset = next((s for s in found if s.name == "reset"), None)
+        inputs = signals(netlist, proof.modules)
+        tied = " ".join(proof.tied).split()
+        self.tied = [s.name for s in inputs if all(isinstance(b, str) for b in s.bits) or s.inside and s.name in tied]
+        inputs = [s for s in inputs if s.name not in self.tied]
+        reset = next((s for s in inputs if s.name == "reset"), None)
         # Counts from the first cycle after the first reset on
         low: list[Bit] = [*netlist.add("$_NOT_", A=reset.bits)] if reset else ["1"]
         (self.begun,) = netlist.before(low) if reset else low
         (self.live,) = netlist.add("$_AND_", A=[self.begun], B=low) if reset else [self.begun]
         self.reset = reset
-        small = {s.name: list(self._small(s)) for s in found}
-        self.outputs = [literal.text for s in found if s.output for literal in small[s.name]]
-        for signal in found:
+        small = {s.name: list(self._small(s)) for s in inputs}
+        self.outputs = [literal.text for s in inputs if s.output for literal in small[s.name]]
+        for signal in inputs:
             for literal in (*small[signal.name], *(self._edges(signal) if len(signal.bits) > SMALL else ())):
                 self._cover(literal)
-        for one, other in combinations(found, 2):
-            wide = sum(len(signal.bits) > SMALL for signal in (one, other))  # with the outputs only, as busy
-            if one.output + other.output == 1 or not wide and not one.output:
-                for pair in ((a, b) for a in small[one.name] for b in small[other.name]):
+        for first, second in combinations(inputs, 2):
+            wide = sum(len(signal.bits) > SMALL for signal in (first, second))  # with the outputs only, as busy
+            if first.output + second.output == 1 or not wide and not first.output:
+                for pair in ((a, b) for a in small[first.name] for b in small[second.name]):
                     self._cover(*pair)
 
     def _equals(self, signal: Signal, value: int) -> Bit:
@@ -142,8 +142,8 @@ class Points:
             signal.bits if any(re.fullmatch(key, f"{signal.name}={top}") for key in self.never) else ()
         ):
             for value in (0, 1):
-                one = Signal(f"{signal.name}.{i}", [bit])
-                yield Literal(signal, f"{one.name}={value}", self._equals(one, value))
+                bit_signal = Signal(f"{signal.name}.{i}", [bit])
+                yield Literal(signal, f"{bit_signal.name}={value}", self._equals(bit_signal, value))
 
     def _cover(self, *literals: Literal) -> None:
         about_reset = any(literal.signal is self.reset for literal in literals)
@@ -155,7 +155,7 @@ class Points:
 
 
 def freedom(proof: Proof, texts: dict[str, str], wrapper: str) -> FreedomResult:
-    """Find the values of the inputs that are not reached within free_depth."""
+    """Return the values of the inputs that are not reached within free_depth."""
     points: list[Points] = []
 
     def add(netlist: Netlist) -> None:

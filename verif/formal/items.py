@@ -17,7 +17,7 @@ from .prove import ProofResult
 
 
 def failure(proof: Proof, store: Path) -> str:
-    """Prove it by its first engine: return '' or what is not proven. store: folder of the kept results."""
+    """Prove by the first engine; returns '' or the failure. store: folder of the kept results."""
     engine = proof.engines[0]
     job = next(pieces(proof, [engine])).job  # and no twin, whose text a bug may change
     result = from_json(ProofResult, run([job], store, proof.name, workers=1)[0])
@@ -42,19 +42,19 @@ class ProofItem(pytest.Item):
 
     cls = None  # as of tests outside classes
 
-    def __init__(self, *, proof: Proof, **given: Any) -> None:
+    def __init__(self, *, proof: Proof, **options: Any) -> None:
         """Mark its tools, and it slow where the proof is, or repeats another at its size."""
-        super().__init__(**given)
+        super().__init__(**options)
         self.proof = proof
         self.add_marker(pytest.mark.needs("yosys-smtbmc", proof.engines[0]))
         if proof.slow or proof.size_of:
             self.add_marker("slow")
 
     def runtest(self) -> None:
-        """Prove it, or take the result that is kept."""
+        """Prove, or take the kept result."""
         if problem := failure(self.proof, OUT / "formal"):
             pytest.fail(problem, pytrace=False)
 
     def reportinfo(self) -> tuple[Path, int, str]:
-        """Return where it is declared; pytest wants a line of a test that it skips."""
+        """Return the place of its declaration; pytest needs a line for a skipped test."""
         return self.path, 0, f"proof {self.name}"

@@ -1,4 +1,4 @@
-"""Proofs as rtl/<block>/formal/proofs.yaml declares them: what is proven, how, and the bug of each property's twin."""
+"""Proofs declared in rtl/<block>/formal/proofs.yaml: properties, method, and the bug of each property's twin."""
 
 from collections.abc import Iterator
 from itertools import product
@@ -31,17 +31,17 @@ def _sizes(entry: dict[str, Any]) -> Iterator[dict[str, Any]]:
     A mapping (parameter of the sensor -> values) names every combination. A list names the SIZE of each, the tile only
     where it is not the default one: the first has the covers and the twins; the first engine alone proves the others.
     """
-    rest = {key: value for key, value in entry.items() if key != "sizes"}
+    fields = {key: value for key, value in entry.items() if key != "sizes"}
     sizes = entry.get("sizes", {})
     if isinstance(sizes, list):
         names = [f"{entry['name']}_{size[0]}x{'_'.join(map(str, size[1:]))}" for size in sizes]
         for name, size in zip(names, sizes, strict=True):
-            sized = rest | {"name": name, "sensor": dict(zip(SIZE, size))}
-            yield sized | ({"size_of": names[0], "engines": rest["engines"][:1]} if name != names[0] else {})
+            sized = fields | {"name": name, "sensor": dict(zip(SIZE, size))}
+            yield sized | ({"size_of": names[0], "engines": fields["engines"][:1]} if name != names[0] else {})
         return
     for values in product(*sizes.values()):
         name = "_".join([entry["name"], "x".join(map(str, values))] if values else [entry["name"]])
-        yield rest | {"name": name, "sensor": rest.get("sensor", {}) | dict(zip(sizes, values, strict=True))}
+        yield fields | {"name": name, "sensor": fields.get("sensor", {}) | dict(zip(sizes, values, strict=True))}
 
 
 def _proof(folder: Path, entry: dict[str, Any]) -> Proof:

@@ -12,9 +12,9 @@ Place = tuple[str, str]  # a cell and its port
 
 @dataclass(frozen=True)
 class Conjunct:
-    """What an assumption demands beside others.
+    """One of the conditions that an assumption requires.
 
-    path: from the assumption down to the operand. holds: the value that is wanted of it. source: its place in the text.
+    path: from the assumption down to the operand. holds: the value required of it. source: its place in the text.
     """
 
     path: tuple[Place, ...]
@@ -59,7 +59,7 @@ class Netlist:
     def add(self, kind: str, width: int = 1, init: str = "", **ports: list[Bit]) -> list[Bit]:
         """Add a cell and return its new output, ``Q`` of a register, else ``Y``. ports: inputs. init: of a register."""
         out = "Q" if kind == "$ff" else "Y"
-        found: list[Bit] = list(range(self.next, self.next + width))
+        output: list[Bit] = list(range(self.next, self.next + width))
         self.next += width
         name = f"$added${self.next}"
         parameters = {f"{port}_WIDTH": len(bits) for port, bits in ports.items()}
@@ -71,12 +71,12 @@ class Netlist:
             "parameters": {} if kind.startswith("$_") else parameters,
             "attributes": {},
             "port_directions": dict.fromkeys(ports, "input") | {out: "output"},
-            "connections": {**ports, out: found},
+            "connections": {**ports, out: output},
         }
         if init:
-            self.nets[f"{name}_init"] = {"hide_name": 1, "bits": found, "attributes": {"init": init}}
-        self.drivers |= dict.fromkeys(found, name)
-        return found
+            self.nets[f"{name}_init"] = {"hide_name": 1, "bits": output, "attributes": {"init": init}}
+        self.drivers |= dict.fromkeys(output, name)
+        return output
 
     def check(self, kind: str, name: str, condition: Bit) -> None:
         """Add a cell of type ``$assert`` or ``$cover``."""
@@ -96,7 +96,7 @@ class Netlist:
         return late
 
     def begin(self, values: Mapping[str, int]) -> None:
-        """Let every register begin with any value, but those named in ``values`` with that one."""
+        """Let every register begin with any value, except those in ``values``, which begin with the value there."""
         for name, net in self.nets.items():
             net["attributes"].pop("init", None)
             if name in values:
@@ -105,7 +105,7 @@ class Netlist:
             raise ParameterError(f"free_from = {', '.join(sorted(unknown))}: must be registers of the wrapper")
 
     def conjuncts(self, assumption: str) -> list[Conjunct]:
-        """Return the parts whose absence weakens an assumption, however deep; without any of them it is none.
+        """Return the parts whose removal weakens an assumption, at any depth.
 
         They are the operands of its conjunctions, and those of the disjunctions in its conditions.
         """
@@ -114,7 +114,7 @@ class Netlist:
         return [Conjunct(path, holds, self._source(path)) for path, holds in parts]
 
     def drop(self, conjunct: Conjunct) -> None:
-        """Leave ``conjunct`` out: the operand gets the value that is wanted of it. Cells on its path are copied."""
+        """Remove ``conjunct``: the operand gets the value required of it. Cells on its path are copied."""
         new: Bit = "1" if conjunct.holds else "0"
         for name, port in reversed(conjunct.path[1:]):
             cell = self.cells[name]
@@ -142,9 +142,9 @@ class Netlist:
     def name_of(self, bits: list[Bit]) -> str:
         """Return the shortest name of a net, or of a bit of one; '' for none."""
         nets = [(name, net["bits"]) for name, net in self.nets.items() if not net["hide_name"]]
-        names = [name for name, found in nets if found == bits]
+        names = [name for name, net_bits in nets if net_bits == bits]
         if len(bits) == 1:
-            names = names or [f"{name}[{found.index(bits[0])}]" for name, found in nets if bits[0] in found]
+            names = names or [f"{name}[{net_bits.index(bits[0])}]" for name, net_bits in nets if bits[0] in net_bits]
         return min(names, key=len, default="")
 
     def _parts(self, path: tuple[Place, ...], holds: bool) -> Iterator[tuple[tuple[Place, ...], bool]]:

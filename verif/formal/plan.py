@@ -1,4 +1,4 @@
-"""The jobs of a proof: what is proven is planned here, so that a change of one block leaves the others' results."""
+"""The jobs of a proof, planned such that a change of one block keeps the results of the others."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ from .prove import CoverResult, ProofResult, TwinResult, cover, prove, twin
 
 @dataclass(frozen=True)
 class Piece:
-    """One job of a proof. kind: the class of its result. name: the engine, the property or what is checked."""
+    """One job of a proof. kind: the class of its result. name: the engine, the property or the check."""
 
     kind: type[ProofResult | CoverResult | TwinResult | NecessityResult | FreedomResult]
     name: str

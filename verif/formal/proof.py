@@ -1,4 +1,4 @@
-"""A proof: what is proven of a block, how, and the bug of each property's twin."""
+"""A proof of a block: properties, method, and the bug of each property's twin."""
 
 import re
 from collections.abc import Iterable
@@ -85,31 +85,31 @@ class Proof:
 
     @property
     def text(self) -> str:
-        """Text of the sources and the wrapper."""
+        """Return the text of the sources and the wrapper."""
         return "\n".join(path.read_text(encoding="utf-8") for path in (*self.sources, self.wrapper))
 
     @property
     def assumed(self) -> tuple[str, ...]:
-        """Labels of its assumptions."""
+        """Return the labels of its assumptions."""
         return (RESET, *self.assumptions)
 
     @property
     def sensor_parameters(self) -> SensorParameters:
-        """Parameters that the design is exported for."""
-        given = dict(self.sensor)
+        """Return the parameters of the exported design."""
+        parameters = dict(self.sensor)
         default = SensorParameters()
-        array = ArrayParameters(given.pop("rows", default.array.rows), given.pop("cols", default.array.cols))
+        array = ArrayParameters(parameters.pop("rows", default.array.rows), parameters.pop("cols", default.array.cols))
         chip = ChipParameters(
-            given.pop("lanes", default.chip.lanes),
-            given.pop("divider", default.chip.divider),
-            given.pop("n_frac", default.chip.n_frac),
-            given.pop("iterations", default.chip.cordic_iterations),
+            parameters.pop("lanes", default.chip.lanes),
+            parameters.pop("divider", default.chip.divider),
+            parameters.pop("n_frac", default.chip.n_frac),
+            parameters.pop("iterations", default.chip.cordic_iterations),
         )
         tile = TileParameters.small(
-            given.pop("tile_rows", default.tile.rows), given.pop("tile_cols", default.tile.cols)
+            parameters.pop("tile_rows", default.tile.rows), parameters.pop("tile_cols", default.tile.cols)
         )
-        if given:
-            raise ParameterError(f"{self.name}.sensor = {', '.join(given)}: must be parameters of the sensor")
+        if parameters:
+            raise ParameterError(f"{self.name}.sensor = {', '.join(parameters)}: must be parameters of the sensor")
         return SensorParameters(tile=tile, array=array, chip=chip)
 
 
@@ -129,16 +129,16 @@ def labels(text: str) -> Labels:
     Raises ParameterError for an assertion, assumption or cover point without a label, or a label that occurs twice.
     """
     plain = re.sub(r"//.*|/\*[\s\S]*?\*/", "", text)
-    found = LABEL.findall(plain)
-    if len(found) != len(re.findall(r"\b(?:assert|assume|cover|restrict)\b", plain)):
+    statements = LABEL.findall(plain)
+    if len(statements) != len(re.findall(r"\b(?:assert|assume|cover|restrict)\b", plain)):
         raise ParameterError("label = none: every assert, assume and cover must have one")
-    names = [name for name, _ in found]
+    names = [name for name, _ in statements]
     if len(set(names)) != len(names):
         raise ParameterError(f"label = {', '.join(sorted({n for n in names if names.count(n) > 1}))}: must occur once")
-    asserts = [name for name, kind in found if kind == "assert"]
+    asserts = [name for name, kind in statements if kind == "assert"]
     return Labels(
         [n for n in asserts if not n.startswith("inv_")],
         [n for n in asserts if n.startswith("inv_")],
-        [name for name, kind in found if kind == "cover"],
-        [name for name, kind in found if kind == "assume"],
+        [name for name, kind in statements if kind == "cover"],
+        [name for name, kind in statements if kind == "assume"],
     )

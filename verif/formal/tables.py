@@ -26,8 +26,8 @@ def phase_of_ratio(proof: Proof) -> str:
     bits = proof.sensor_parameters.chip.n_frac
     larger, smaller = np.meshgrid(np.arange(1, 256), np.arange(256), indexing="ij")
     inside = smaller < larger
-    found = quad_divide(larger[inside], smaller[inside], bits)
-    table = dict(zip(found.ratio.tolist(), found.phase.tolist()))
+    result = quad_divide(larger[inside], smaller[inside], bits)
+    table = dict(zip(result.ratio.tolist(), result.phase.tolist()))
     top = quad_divide(1, 1, bits)  # the diagonal: octant 1, counted back from the axis at 64
     table[int(top.ratio)] = 64 - int(top.phase)
     return case("phase_of_ratio", bits, 8, [table.get(r, 0) for r in range(1 << bits)])
@@ -132,16 +132,16 @@ def phase_path(proof: Proof) -> str:
     entries = f"{_connected(values)} wire [{17 * chip.lanes - 1}:0] entries = {{{', '.join(map(_inside, values))}}};"
     if chip.divider == "pipelined":
         names = [f"divider.stage{i}.out_val" for i in reversed(range(steps + 1))]
-        left = "".join(f"{_inside(name)} ? {i} : " for i, name in enumerate(names)) + "0"
+        remaining = "".join(f"{_inside(name)} ? {i} : " for i, name in enumerate(names)) + "0"
         held, sound, state = " + ".join(map(_inside, names)), "1", dict.fromkeys(names, 1)
     else:
         state = {"divider.ctrl.running": 1, "divider.ctrl.done": 1}
         running, done = map(_inside, state)
         count = f"divider.dpath.{'i' if chip.divider == 'cordic' else 'count'}"
         state[count] = 4
-        held, left = f"{running} + {done}", f"{done} ? 0 : {steps} - {_inside(count)}"
+        held, remaining = f"{running} + {done}", f"{done} ? 0 : {steps} - {_inside(count)}"
         sound = f"!({running} && {done}) && (!{running} || {_inside(count)} < {steps})"
-    divider = f"{_connected(state)} wire [4:0] held = {held}; wire [4:0] left = {left}; wire sound = {sound};"
+    divider = f"{_connected(state)} wire [4:0] held = {held}; wire [4:0] left = {remaining}; wire sound = {sound};"
     return f"`define ENTRIES {entries}\n`define DIVIDER {divider}\n`define CYCLES {steps}\n"
 
 

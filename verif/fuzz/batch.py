@@ -1,4 +1,4 @@
-"""A batch of inputs: each from (seed, batch, index) alone, decoded within limits, the first failing one kept."""
+"""A batch of inputs, each a function of (seed, batch, index), decoded within limits; the first failing one is kept."""
 
 import contextlib
 import faulthandler
@@ -40,7 +40,7 @@ class Failure:
 
 @dataclass(frozen=True)
 class Batch:
-    """What a batch found. inputs, host, files: how many for the decoder, for the host, through files."""
+    """The result of a batch. inputs, host, files: how many for the decoder, for the host, through files."""
 
     batch: int
     inputs: int
@@ -70,7 +70,7 @@ def make_input(seed: int, batch: int, index: int, pool: Sequence[Sent] | None = 
 
 @contextlib.contextmanager
 def bounded_memory(extra: int) -> Iterator[None]:
-    """Limit what this process may add to its address space, in bytes; beyond it, MemoryError is raised."""
+    """Limit the growth of this process's address space, in bytes; beyond it, MemoryError is raised."""
     now = int(Path("/proc/self/statm").read_text(encoding="utf-8").split()[0]) * resource.getpagesize()
     soft, hard = resource.getrlimit(resource.RLIMIT_AS)
     limit = now + extra if hard == resource.RLIM_INFINITY else min(now + extra, hard)
@@ -82,7 +82,7 @@ def bounded_memory(extra: int) -> Iterator[None]:
 
 
 def warm_up(pool: Iterable[Sent]) -> None:
-    """Decode the good frames, whole and damaged, so that no input is charged for what the first call compiles."""
+    """Decode the good frames, whole and damaged, so that compilation does not count for an input."""
     for sent in pool:
         for data in (sent.data, sent.data[:-20] + b"\x55" * 20):
             with contextlib.suppress(Exception):  # the inputs will show it
@@ -90,7 +90,7 @@ def warm_up(pool: Iterable[Sent]) -> None:
 
 
 def try_input(case: Case, through_file: bool) -> tuple[str, float]:
-    """Decode one Case; returns ('frames' or 'refused', seconds). Raises Broken or what the decoder raises."""
+    """Decode one Case; returns ('frames' or 'refused', seconds). Raises Broken or the decoder's exception."""
     start = time.thread_time()
     frames = check_stream(case)
     spent = time.thread_time() - start

@@ -1,4 +1,4 @@
-"""What must hold of the decoder's result for any input."""
+"""Checks of the decoder's result for any input."""
 
 import contextlib
 import io
@@ -27,7 +27,7 @@ def demand(holds: object, text: str) -> None:
 
 
 def check_stream(case: Case) -> list[DecodedFrame]:
-    """Decode a Case; returns its frames, [] for a StreamError. Raises Broken, or what the decoder raises."""
+    """Decode a Case; returns its frames, [] for a StreamError. Raises Broken or the decoder's exception."""
     try:
         frames = decode_stream(case.data, case.tile)
     except StreamError as error:
@@ -87,8 +87,8 @@ def check_file(case: Case, frames: Sequence[DecodedFrame]) -> None:
             names = [out.name] + [f"decoded-{i}.npz" for i in range(1, len(frames))]
             demand(sorted(p.name for p in Path(folder).glob("*.npz")) == sorted(names), "files are missing")
             for name, frame in zip(names, frames, strict=True):
-                with np.load(out.with_name(name)) as kept:
-                    demand(np.array_equal(kept["samples"], frame.samples), f"{name} holds other samples")
+                with np.load(out.with_name(name)) as archive:
+                    demand(np.array_equal(archive["samples"], frame.samples), f"{name} holds other samples")
         if case.tile == TileParameters():
             _check_command(source, frames)
 
@@ -97,7 +97,7 @@ def _check_command(source: Path, frames: Sequence[DecodedFrame]) -> None:
     output, errors = io.StringIO(), io.StringIO()
     with contextlib.redirect_stdout(output), contextlib.redirect_stderr(errors):
         status = main(decode, [str(source)])
-    wanted = 2 if not frames else int(not all(frame.complete and not frame.errors for frame in frames))
-    demand(status == wanted, f"exit status {status}, not {wanted}")
+    expected = 2 if not frames else int(not all(frame.complete and not frame.errors for frame in frames))
+    demand(status == expected, f"exit status {status}, not {expected}")
     demand(len(output.getvalue().splitlines()) == len(frames) + bool(frames), "not one line per frame")
     demand(status != 2 or errors.getvalue().count("\n") == 1, "an error of more than one line")

@@ -41,7 +41,7 @@ def sweeps(count: int, seed: int) -> list[Job]:
 
 
 def summarize(seed: int, done: Sequence[Batch], swept: Sequence[Sweep]) -> dict[str, BlockResults]:
-    """Return what the batches and sweeps found, for the blocks Decoder and Host."""
+    """Return the results of batches and sweeps, for the blocks Decoder and Host."""
     kinds = Counter()
     decoder, host = [], []
     for batch in done:
@@ -65,7 +65,7 @@ def summarize(seed: int, done: Sequence[Batch], swept: Sequence[Sweep]) -> dict[
 
 
 def running(folder: Path) -> list[str]:
-    """Return the inputs that were being decoded when a process ended, by the marks of the batches."""
+    """Return the inputs in progress when a process ended, by the marks of the batches."""
     return [
         f"batch {mark.suffix[1:]}, input {mark.read_text(encoding='utf-8').strip()}"
         for mark in sorted(folder.glob("at.*"))
@@ -104,13 +104,13 @@ def run(options: Namespace) -> int:
     for job, result in [*zip(planned, done, strict=True), *zip(jobs, swept, strict=True)]:
         if result.failures:
             job.file(folder).unlink(missing_ok=True)  # failures are tried again
-    found = summarize(options.seed, done, swept)
-    write_step("fuzz", found, options.out)
-    return report(found)
+    results = summarize(options.seed, done, swept)
+    write_step("fuzz", results, options.out)
+    return report(results)
 
 
 def show(seed: int, batch: int, index: int) -> int:
-    """Print and decode one input by itself. Raises what the decoder raises."""
+    """Print and decode one input. Raises the decoder's exception."""
     case = make_input(seed, batch, index)
     print(f"{case.kind}, {len(case.data)} bytes, tile {case.tile.rows} x {case.tile.cols}: {case.data.hex()}")
     outcome, seconds = try_input(case, True)
@@ -118,10 +118,10 @@ def show(seed: int, batch: int, index: int) -> int:
     return 0
 
 
-def report(found: Mapping[str, BlockResults]) -> int:
+def report(results: Mapping[str, BlockResults]) -> int:
     """Print the figures and open points; returns the exit status."""
     failures = 0
-    for block, entry in found.items():
+    for block, entry in results.items():
         for part in (entry.fuzz, entry.resync):
             failures += part.failures if part else 0
         if fuzz := entry.fuzz:

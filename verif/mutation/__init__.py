@@ -1,1 +1,1 @@
-"""Mutants of the RTL, and whether the tests notice them."""
+"""Mutants of the RTL, and whether the tests detect them."""

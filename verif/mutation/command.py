@@ -58,7 +58,7 @@ class Planted:
 
     @property
     def name(self) -> str:
-        """What its jobs are called."""
+        """Return the name of its jobs."""
         return f"{self.block}-{self.folder.name}"
 
 
@@ -90,48 +90,48 @@ def populations(block: str, paths: Sequence[Path], store: Path, factor: float, s
 def try_mutants(blocks: Iterable[str], store: Path, factor: float = 1.0, seed: int = SEED) -> dict[str, BlockResults]:
     """Try a sample of mutants of each block. factor: of the sample's size."""
     traces = recorded(blocks := list(blocks), store.parent / "traces")
-    made = [one for block in blocks for one in populations(block, traces[block], store, factor, seed)]
+    groups = [group for block in blocks for group in populations(block, traces[block], store, factor, seed)]
     tests, judges, whole, of = [], [], [], []
-    for one in made:
-        text, formal = one.folder / "mutants.v", PACKAGE / "rtl" / folder_of(one.block) / "formal"
-        decides = one.path.with_suffix(".trace"), text, code(f"rtl/{folder_of(one.block)}/test")
-        tried = str(one.path), str(one.folder), one.folder.name == "bits"  # the tests of a block once
-        whole.append(Job(one.name, try_original, tried, decides))
-        for mutant in one.mutants:
-            name, arguments = f"{one.name}-{mutant.number}", (str(one.path), str(one.folder), mutant)
+    for group in groups:
+        text, formal = group.folder / "mutants.v", PACKAGE / "rtl" / folder_of(group.block) / "formal"
+        decides = group.path.with_suffix(".trace"), text, code(f"rtl/{folder_of(group.block)}/test")
+        tried = (str(group.path), str(group.folder), group.folder.name == "bits")  # the tests of a block once
+        whole.append(Job(group.name, try_original, tried, decides))
+        for mutant in group.mutants:
+            name, arguments = f"{group.name}-{mutant.number}", (str(group.path), str(group.folder), mutant)
             tests.append(Job(name, try_tests, arguments, decides))
             judges.append(Job(name, judge, arguments, (text, formal)))  # independent of the tests
-            of.append(one.block)
+            of.append(group.block)
     run_jobs(whole, store / "tests", "tests without a mutant")
     results = from_json(list[Judgement], run_jobs(tests, store / "tests", "mutants against the tests"))
-    left = [i for i, result in enumerate(results) if result.result == SURVIVED]
-    judged = run_jobs([judges[i] for i in left], store / "judged", "undetected mutants")
-    for i, result in zip(left, judged, strict=True):
+    survivors = [i for i, result in enumerate(results) if result.result == SURVIVED]
+    judged = run_jobs([judges[i] for i in survivors], store / "judged", "undetected mutants")
+    for i, result in zip(survivors, judged, strict=True):
         results[i] = from_json(Judgement, result)
         if results[i].result == SURVIVED:
             judges[i].file(store / "judged").unlink(missing_ok=True)  # survivors are judged again
-    mutants = [mutant for one in made for mutant in one.mutants]
+    mutants = [mutant for group in groups for mutant in group.mutants]
     by_block = {block: [i for i, name in enumerate(of) if name == block] for block in blocks}
-    found = {block: summary([mutants[i] for i in at], [results[i] for i in at]) for block, at in by_block.items()}
+    summaries = {block: summary([mutants[i] for i in at], [results[i] for i in at]) for block, at in by_block.items()}
     for block, entry in escaped(blocks, store / "planted").items():
-        entry.add(found[block])
-        found[block] = entry
-    return found
+        entry.add(summaries[block])
+        summaries[block] = entry
+    return summaries
 
 
 def escaped(blocks: Iterable[str], store: Path) -> dict[str, BlockResults]:
-    """Plant the bugs of planted.yaml that ``blocks`` have; one that its tests pass is an open point."""
+    """Plant the bugs of planted.yaml in ``blocks``; a bug that passes its tests is an open point."""
     planned = bugs(blocks)
     caught = run_jobs([job for _, job in planned], store, "bugs that escaped once")
-    found: dict[str, BlockResults] = {}
+    results: dict[str, BlockResults] = {}
     for (block, job), good in zip(planned, caught, strict=True):
         points = [] if good else [f"planted {job.name} = survived: its tests must fail"]
-        found.setdefault(block, BlockResults()).add(
+        results.setdefault(block, BlockResults()).add(
             BlockResults(mutants=Mutants(1, killed=int(good), survived=int(not good)), open_points=points)
         )
         if not good:
             job.file(store).unlink(missing_ok=True)
-    return found
+    return results
 
 
 def summary(mutants: Sequence[Mutant], judged: Sequence[Judgement]) -> BlockResults:
@@ -159,10 +159,10 @@ def run(options: Namespace) -> int:
     """Return 0, 1 with survivors."""
     if not 0 < options.factor <= 100:
         raise ParameterError(f"factor = {options.factor}: must be in 0..100")
-    found = try_mutants(options.only or TOPS, options.out / "mutation", options.factor, options.seed)
-    write_step("mutation", found, options.out)
+    summaries = try_mutants(options.only or TOPS, options.out / "mutation", options.factor, options.seed)
+    write_step("mutation", summaries, options.out)
     whole = Counter()
-    for block, entry in found.items():
+    for block, entry in summaries.items():
         counts = asdict(entry.mutants or Mutants())
         whole.update(counts)
         print(f"{block}: {json.dumps(counts)}", flush=True)

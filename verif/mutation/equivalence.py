@@ -71,21 +71,21 @@ def promises(top: str) -> str:
 
     Its outputs: `promised`, the neighbours have kept their promises so far; <port>_counts, they read that output now.
     """
-    found = [
+    modules = [
         text
         for text in map(Path.read_text, sorted(PACKAGE.glob("rtl/*/formal/promises.sv")))
         if re.search(rf"^module {top}Promises\b", text, re.MULTILINE)
     ]
-    return found[0] if found else ""
+    return modules[0] if modules else ""
 
 
 def module_ports(verilog: str, module: str) -> tuple[Port, ...]:
     """Return the ports of a module that Yosys wrote, without clk and mutant."""
     (text,) = re.findall(rf"(?s)^module {module}\(.*?^endmodule", verilog, re.MULTILINE)
-    found = re.findall(r"^  (input|output) (?:\[(\d+):0\] )?(\w+) *;", text, re.MULTILINE)
+    ports = re.findall(r"^  (input|output) (?:\[(\d+):0\] )?(\w+) *;", text, re.MULTILINE)
     return tuple(
         Port(name.replace("__", "."), int(high or 0) + 1, way == "output")
-        for way, high, name in found
+        for way, high, name in ports
         if name not in ("clk", "mutant")
     )
 
@@ -109,6 +109,6 @@ def compare(
                 continue
             if any(text in output for text in PROVEN):
                 return EQUIVALENT, 0
-            if found := re.search(r"was asserted in frame (\d+)", output):
-                return DIFFERENT, int(found[1])
+            if match := re.search(r"was asserted in frame (\d+)", output):
+                return DIFFERENT, int(match[1])
     return UNKNOWN, 0

@@ -54,14 +54,14 @@ def try_tests(path: str, folder: str, mutant: Mutant) -> Judgement:
     program = compile_program(verilog, head.cls, head.ports, mutant=True)
     number = str(mutant.number)
     cycle = program.run(Path(path).with_suffix(".trace"), "--mutants", number, number)[mutant.number]
-    own = own_tests(mutant)
-    tries = [(own, 2 * head.cycles)] if own else []
+    module_tests = own_tests(mutant)
+    tries = [(module_tests, 2 * head.cycles)] if module_tests else []
     if cycle >= 0:
         test = head.test_at(cycle)
         every = list(dict.fromkeys(name for _, name in head.tests))
         tries += [([test], 2 * head.cycles_of(test)), (every, 2 * head.cycles)]
     for tests, cycles in tries:
-        if failed := attempt(head, verilog, mutant, tests, cycles + SPARE, alone=tests is own).failed:
+        if failed := attempt(head, verilog, mutant, tests, cycles + SPARE, alone=tests is module_tests).failed:
             return Judgement(KILLED, failed)
     return Judgement(SURVIVED)
 
@@ -97,14 +97,14 @@ def mutated(path: str, folder: str) -> tuple[Trace, str]:
 
 
 def judge(path: str, folder: str, mutant: Mutant) -> Judgement:
-    """Judge a mutant that the tests do not notice. path, folder: see `try_tests`."""
+    """Judge a mutant that the tests do not detect. path, folder: see `try_tests`."""
     head, verilog = mutated(path, folder)
     number = mutant.number
     if head.cls in VARIANTS and not divides_right(verilog, head, number):
         return Judgement(KILLED, "flow/simulate/divider/test/exhaustive_test.py")
     if mutant.module != head.cls and the_same(verilog, mutant.module, number):
         return Judgement(EQUIVALENT)
-    kept = []
+    holding = []
     for proof in proofs_of(head):
         texts = {module: one_mutant(verilog, module, number) for module in proof.modules}
         changed = [text for text in texts.values() if text != verilog]
@@ -112,10 +112,10 @@ def judge(path: str, folder: str, mutant: Mutant) -> Judgement:
             continue  # it is about other parts
         if prove(proof, proof.engines[0], texts, design.wrapper(proof)).result != PROVEN:
             return Judgement(KILLED, f"proof {proof.name}")
-        kept.append(proof.name)
+        holding.append(proof.name)
     verdict, cycles = compare(verilog, head.cls, head.ports, number)
-    if verdict == EQUIVALENT or verdict == UNKNOWN and kept:
-        return Judgement(EQUIVALENT, ", ".join(kept) if verdict == UNKNOWN else "")
+    if verdict == EQUIVALENT or verdict == UNKNOWN and holding:
+        return Judgement(EQUIVALENT, ", ".join(holding) if verdict == UNKNOWN else "")
     return Judgement(SURVIVED, difference=cycles if verdict == DIFFERENT else verdict)
 
 

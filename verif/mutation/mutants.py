@@ -35,8 +35,8 @@ class Mutant:
     code: str
 
     def __str__(self) -> str:
-        what = " ".join(word for word in re.sub(r"-(src|wire|wirebit|module) \S+", "", self.options).split())
-        return f"{self.source} ({self.module}.v line {self.line}): {what} of {self.code!r}"
+        command = " ".join(word for word in re.sub(r"-(src|wire|wirebit|module) \S+", "", self.options).split())
+        return f"{self.source} ({self.module}.v line {self.line}): {command} of {self.code!r}"
 
 
 def yosys(script: str, files: Mapping[str, str]) -> dict[str, bytes]:
@@ -74,16 +74,16 @@ def generate(verilog: str, top: str, folder: str, number: int, seed: int) -> lis
     lists = [f"mutate -list {count} -seed {seed} -module {module} -o {module}.list" for module, count in parts.items()]
     files = yosys("; ".join([PREPARE.format(top=top), *lists]), {"dut.v": verilog})
     where, lines = sources_of(verilog), ["", *verilog.splitlines()]
-    found: list[Mutant] = []
+    mutants: list[Mutant] = []
     listed = (line for module in parts for line in files[f"{module}.list"].decode().splitlines())
     # In the proof of equivalence every register is clocked alike: of a changed clock it would say nothing
     chosen = dict.fromkeys(line for line in listed if "-port CLK " not in line)
     for options in chosen:
         (module,) = re.findall(r"-module (\S+)", options)
         line = _line(options)
-        found.append(
+        mutants.append(
             Mutant(
-                len(found) + 1,
+                len(mutants) + 1,
                 options.removeprefix("mutate "),
                 module,
                 line,
@@ -91,7 +91,7 @@ def generate(verilog: str, top: str, folder: str, number: int, seed: int) -> lis
                 " ".join(lines[line].split()),
             )
         )
-    return found
+    return mutants
 
 
 def _line(options: str) -> int:

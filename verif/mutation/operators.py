@@ -1,4 +1,4 @@
-"""Mutants of the exported SystemVerilog's text: what a wrong line of RTL looks like, and what happens rarely.
+"""Mutants of the exported SystemVerilog's text: wrong lines of RTL, and bugs that act rarely.
 
 The export has a statement a line and parentheses around every operand. A mutant replaces the right side of a
 statement, or a condition, where the input ``mutant`` selects it; a triggered one flips a bit of many.
@@ -28,7 +28,7 @@ IT = "<it>"  # the name of a mutant's own signal, in its text
 
 @dataclass
 class Module:
-    """A module of the export. width: by signal. state: what it holds, and its inputs. parameter: values by name."""
+    """A module of the export. width: by signal. state: its registers and inputs. parameter: values by name."""
 
     clocked: bool = False
     width: dict[str, int] = field(default_factory=dict)
@@ -61,27 +61,27 @@ class Change(NamedTuple):
 
 
 def modules_of(verilog: str) -> dict[str, Module]:
-    """Return what the text of each module declares."""
-    found: dict[str, Module] = {}
+    """Return the declarations of each module."""
+    declarations: dict[str, Module] = {}
     for name, body in modules(verilog).items():
-        module = found[name] = Module("always_ff" in body)
+        module = declarations[name] = Module("always_ff" in body)
         for way, high, signal in re.findall(r"(?m)^  (input +|output )?logic (?:\[(\d+):0\] )?(\w+) *[;,]?$", body):
             module.width[signal] = int(high or 0) + 1
             if way.startswith("input") and signal not in ("clk", "reset"):
                 module.state.append(signal)
         module.state += [s for s in dict.fromkeys(re.findall(r"(?m)^ +(\w+) <= ", body)) if s in module.width]
         module.parameter = {k: int(v) for k, v in re.findall(r"localparam \S+ (?:\S+ )?(\w+) += \d+'d(\d+);", body)}
-    return found
+    return declarations
 
 
 def lines_of(verilog: str) -> dict[str, list[Line]]:
     """Return the statements and conditions of each module."""
-    found, clocked, reset, looped = defaultdict(list), False, False, -1
-    given: set[str] = set()
+    lines, clocked, reset, looped = defaultdict(list), False, False, -1
+    assigned: set[str] = set()
     for number, ((module, _), text) in enumerate(zip(sources_of(verilog)[1:], verilog.splitlines(), strict=True), 1):
         indent = len(text) - len(text.lstrip())
         if text.startswith("  always"):
-            clocked, given, looped = "always_ff" in text, set(), -1
+            clocked, assigned, looped = "always_ff" in text, set(), -1
         elif indent == 4 and "begin" in text:
             reset = clocked and text.lstrip().startswith("if ( reset")
         looped = -1 if text.strip() and indent <= looped else looped
@@ -90,28 +90,28 @@ def lines_of(verilog: str) -> dict[str, list[Line]]:
         if not module or looped >= 0 or text.lstrip().startswith("//"):
             continue  # a loop's variable is not seen outside
         if match := CONDITION.fullmatch(text):
-            found[module].append(
+            lines[module].append(
                 Line(number, match[1] + "( ", "", "", match[2], " ) begin", clocked, indent == 4 and reset, False)
             )
         elif match := STATEMENT.fullmatch(text):
             _, target, assign, value = match.groups()
-            kept = clocked or target in given
+            kept = clocked or target in assigned
             head = f"{match[1]}{target} {assign} "
-            found[module].append(Line(number, head, target, assign, value, ";", clocked, reset and indent > 4, kept))
-            given |= {target} if indent == 4 else set()
-    return found
+            lines[module].append(Line(number, head, target, assign, value, ";", clocked, reset and indent > 4, kept))
+            assigned |= {target} if indent == 4 else set()
+    return lines
 
 
 def operators(line: Line, module: Module, rng: random.Random) -> Iterator[Change]:
     """Yield other operators, a concatenation in another order, a lost inversion, another signal of the same width."""
     value = line.value
-    for found in OPERATOR.finditer(value):
-        yield Change("operator", line, f"{value[: found.start()]} {OTHER[found[1]]} {value[found.end() :]}")
-    for found in re.finditer(r"\{ ([^{},?]+), ([^{},?]+)(?=[,}])", value):
-        if (first := found[1].strip()) != (second := found[2].strip()):
-            yield Change("operator", line, f"{value[: found.start()]}{{ {second}, {first} {value[found.end() :]}")
-    for found in re.finditer(r"~(?=[\w(])", value):
-        yield Change("operator", line, value[: found.start()] + value[found.end() :])
+    for match in OPERATOR.finditer(value):
+        yield Change("operator", line, f"{value[: match.start()]} {OTHER[match[1]]} {value[match.end() :]}")
+    for match in re.finditer(r"\{ ([^{},?]+), ([^{},?]+)(?=[,}])", value):
+        if (first := match[1].strip()) != (second := match[2].strip()):
+            yield Change("operator", line, f"{value[: match.start()]}{{ {second}, {first} {value[match.end() :]}")
+    for match in re.finditer(r"~(?=[\w(])", value):
+        yield Change("operator", line, value[: match.start()] + value[match.end() :])
     same = [signal for signal in module.state if module.width[signal] == module.width.get(value) and signal != value]
     if same:
         yield Change("operator", line, rng.choice(same))
@@ -119,13 +119,13 @@ def operators(line: Line, module: Module, rng: random.Random) -> Iterator[Change
 
 def constants(line: Line, module: Module, rng: random.Random) -> Iterator[Change]:
     """Yield constants off by one, with another bit, at their edges."""
-    for found in CONSTANT.finditer(line.value):
-        width, literal, name = int(found[1]), found[2], found[3]
+    for match in CONSTANT.finditer(line.value):
+        width, literal, name = int(match[1]), match[2], match[3]
         most = (1 << width) - 1
         value = int(literal) if literal else module.parameter.get(name, 0) & most
         others = {value + 1, value - 1, value ^ 1 << rng.randrange(width), 0, most} - {value, -1, most + 1}
         new = rng.choice(sorted(others))
-        yield Change("constant", line, f"{line.value[: found.start()]}{width}'d{new}{line.value[found.end() :]}")
+        yield Change("constant", line, f"{line.value[: match.start()]}{width}'d{new}{line.value[match.end() :]}")
 
 
 def conditions(line: Line, module: Module, rng: random.Random) -> Iterator[Change]:
@@ -133,13 +133,13 @@ def conditions(line: Line, module: Module, rng: random.Random) -> Iterator[Chang
     value = line.value
     if not line.target:
         yield from (Change("condition", line, new) for new in (f"~( {value} )", "1'd0", "1'd1"))
-    for found in re.finditer(r" [&|] ", value):
-        low, high = operand(value, found.start(), -1), operand(value, found.end() - 1, 1)
-        yield Change("condition", line, value[:low] + value[found.end() : high] + value[high:])
-        yield Change("condition", line, value[: found.start()] + value[high:])
-    found = re.fullmatch(r"(.+?) \? (.+) : (.+)", value)
-    if found and all(part.count(opened) == part.count(closed) for part in found.groups() for opened, closed in PAIRS):
-        yield Change("condition", line, f"{found[1]} ? {found[3]} : {found[2]}")
+    for match in re.finditer(r" [&|] ", value):
+        low, high = operand(value, match.start(), -1), operand(value, match.end() - 1, 1)
+        yield Change("condition", line, value[:low] + value[match.end() : high] + value[high:])
+        yield Change("condition", line, value[: match.start()] + value[high:])
+    match = re.fullmatch(r"(.+?) \? (.+) : (.+)", value)
+    if match and all(part.count(opened) == part.count(closed) for part in match.groups() for opened, closed in PAIRS):
+        yield Change("condition", line, f"{match[1]} ? {match[3]} : {match[2]}")
 
 
 def operand(value: str, at: int, step: int) -> int:
@@ -199,19 +199,19 @@ def rewritten(verilog: str, top: str, folder: str, number: int, seed: int) -> tu
 
     The text is Yosys's, as that of `mutants.with_mutants`, with an input `mutant` that selects one.
     """
-    rng, known, found = random.Random(seed), modules_of(verilog), lines_of(verilog)
+    rng, modules, by_module = random.Random(seed), modules_of(verilog), lines_of(verilog)
     parts = defaultdict(list)
     for module in own_modules(verilog, folder):
-        for line in found[module]:
+        for line in by_module[module]:
             for kind in KINDS:
-                for change in kind(line, known[module], rng):
+                for change in kind(line, modules[module], rng):
                     parts[change.kind, module].append((module, change))
     for changes in parts.values():
         rng.shuffle(changes)
     chosen: list[tuple[str, Change]] = []
     while len(chosen) < number and any(parts.values()):
-        left = sorted(part for part, changes in parts.items() if changes)
-        chosen += [parts[part].pop() for part in rng.sample(left, len(left))]
+        remaining = sorted(part for part, changes in parts.items() if changes)
+        chosen += [parts[part].pop() for part in rng.sample(remaining, len(remaining))]
     where, lines = sources_of(verilog), ["", *verilog.splitlines()]
     mutants = [
         Mutant(i, f"{c.kind}: {c.value.replace(IT, 'it')} {c.always.strip()}", module, n := c.line.number,

@@ -1,4 +1,4 @@
-"""Bugs that once escaped, in planted.yaml, each in a copy of the sources: its block's tests must fail."""
+"""Bugs that escaped before (planted.yaml), each in a copy of the sources: the block's tests must fail."""
 
 import shutil
 import sys
@@ -43,16 +43,16 @@ class Planted:
 
 def read() -> list[Planted]:
     """Return the bugs of planted.yaml. Raises ParameterError."""
-    found = [
+    bugs = [
         Planted(
             entry["name"], entry["block"], entry["file"], tuple(map(tuple, entry["changes"])), tuple(entry["tests"])
         )
         for entry in yaml.safe_load(FILE.read_text(encoding="utf-8"))
     ]
-    for bug in found:
+    for bug in bugs:
         if bug.block not in TOPS:
             raise ParameterError(f"{FILE.name}: {bug.name}: block = {bug.block}: must be one of {', '.join(TOPS)}")
-    return found
+    return bugs
 
 
 def jobs(blocks: Iterable[str]) -> list[tuple[str, Job]]:

@@ -36,7 +36,7 @@ OPTIONS = (
 
 
 class Endless(AssertionError):
-    """A simulation runs much longer than that of the original."""
+    """The simulation runs much longer than that of the original."""
 
 
 class Limited(Driven):

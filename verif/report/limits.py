@@ -42,11 +42,11 @@ def read(path: Path = FILE) -> Limits:
 def of_block(limits: Limits, block: str) -> dict[str, dict[str, Any]]:
     """Return what holds for a block: figure -> sides. Its own limits override those of its group."""
     groups = [limits.get(EVERY, {}), limits.get(RTL, {}) if is_rtl(block) else {}, limits.get(block, {})]
-    found: dict[str, dict[str, Any]] = {}
+    merged: dict[str, dict[str, Any]] = {}
     for group in groups:
         for figure, sides in group.items():
-            found[figure] = found.get(figure, {}) | sides
-    return found
+            merged[figure] = merged.get(figure, {}) | sides
+    return merged
 
 
 def fallen(summary: Mapping[str, BlockResults], limits: Limits) -> list[str]:
@@ -63,10 +63,10 @@ def fallen(summary: Mapping[str, BlockResults], limits: Limits) -> list[str]:
     return out
 
 
-def check(block: str, found: Mapping[str, float | None], wanted: Mapping[str, dict[str, Any]]) -> Iterator[str]:
-    """Yield a line for each figure of ``found`` beyond ``wanted`` (figure -> sides)."""
-    for figure, sides in wanted.items():
-        value = found.get(figure)
+def check(block: str, figures: Mapping[str, float | None], limits: Mapping[str, dict[str, Any]]) -> Iterator[str]:
+    """Yield a line for each figure of ``figures`` beyond ``limits`` (figure -> sides)."""
+    for figure, sides in limits.items():
+        value = figures.get(figure)
         if value is None and NONE in sides:
             continue
         if value is None:

@@ -21,7 +21,7 @@ def summarize(steps: Iterable[Mapping[str, BlockResults]]) -> dict[str, BlockRes
 def figures(entry: BlockResults) -> dict[str, float | None]:
     """Return the figures of a block that limits are set for, None where nothing was measured."""
     proofs, mutants = entry.proofs, entry.mutants
-    found = {
+    values = {
         "tests.passed": entry.tests.passed,
         "tests.failed": entry.tests.failed,
         "proofs.proven": sum(p.good for p in proofs),
@@ -35,18 +35,18 @@ def figures(entry: BlockResults) -> dict[str, float | None]:
     }
     for name, part in (("fuzz", entry.fuzz), ("resync", entry.resync)):
         if part:
-            found |= {f"{name}.{key}": value for key, value in vars(part).items() if isinstance(value, int)}
-    return found
+            values |= {f"{name}.{key}": value for key, value in vars(part).items() if isinstance(value, int)}
+    return values
 
 
 def totals(summary: Mapping[str, BlockResults]) -> dict[str, float]:
     """Return the sums over all blocks of the figures that are counts."""
-    found: dict[str, float] = {}
+    sums: dict[str, float] = {}
     for entry in summary.values():
         for name, value in figures(entry).items():
             if isinstance(value, int) and not name.startswith("coverage"):
-                found[name] = found.get(name, 0) + value
-    return found
+                sums[name] = sums.get(name, 0) + value
+    return sums
 
 
 def is_rtl(block: str) -> bool:

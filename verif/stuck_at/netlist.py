@@ -40,9 +40,9 @@ class Gates:
     outputs: dict[str, list[int]]
 
     def block(self, gate: int) -> str:
-        """The instance in the top that a gate is in, or 'top'."""
-        found = re.match(r"\$flatten\\(\w+)\.", self.names[gate])
-        return found[1] if found else "top"
+        """Return the instance in the top that has a gate, or 'top'."""
+        match = re.match(r"\$flatten\\(\w+)\.", self.names[gate])
+        return match[1] if match else "top"
 
 
 def synthesize(verilog: str, top: str) -> Gates:
@@ -55,7 +55,7 @@ def synthesize(verilog: str, top: str) -> Gates:
 
 
 def ordered(module: dict[str, Any]) -> Gates:
-    """Return the module of Yosys's JSON with its gates behind what they read."""
+    """Return the module of Yosys's JSON with its gates in the order of evaluation."""
     number: dict[int | str, int] = {"0": ZERO, "1": ONE, "x": ZERO}
 
     def net(bit: int | str) -> int:
@@ -69,12 +69,12 @@ def ordered(module: dict[str, Any]) -> Gates:
         pins = cell["connections"]
         ins = [net(pins[pin][0]) for pin in PINS.get(kind, "AB")]
         cells.append((name, kind, ins, net(pins["Q" if kind == FF else "Y"][0])))
-    known = {ZERO, ONE, *(n for name, nets in ports.items() if directions[name] == "input" for n in nets)}
-    known |= {out for _, kind, _, out in cells if kind == FF}
+    driven = {ZERO, ONE, *(n for name, nets in ports.items() if directions[name] == "input" for n in nets)}
+    driven |= {out for _, kind, _, out in cells if kind == FF}
     readers: dict[int, list[int]] = {}
-    lacking = [len(set(ins) - known) if kind != FF else 0 for _, kind, ins, _ in cells]
+    lacking = [len(set(ins) - driven) if kind != FF else 0 for _, kind, ins, _ in cells]
     for i, (_, kind, ins, _) in enumerate(cells):
-        for n in set(ins) - known if kind != FF else ():
+        for n in set(ins) - driven if kind != FF else ():
             readers.setdefault(n, []).append(i)
     order = [i for i, (_, kind, _, _) in enumerate(cells) if kind != FF and not lacking[i]]
     for i in order:

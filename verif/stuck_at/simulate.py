@@ -48,23 +48,23 @@ class Simulator:
         self._simulate((), len(stimulus), len(stimulus))
 
     def output(self, name: str) -> npt.NDArray[np.int64]:
-        """Values of an output without a fault, cycle by cycle."""
+        """Return the values of an output without a fault, cycle by cycle."""
         names = [port for port, nets in self.gates.outputs.items() for _ in nets]
-        found = self.good[:, [i for i, port in enumerate(names) if port == name]]
-        return found @ (1 << np.arange(found.shape[1]))
+        values = self.good[:, [i for i, port in enumerate(names) if port == name]]
+        return values @ (1 << np.arange(values.shape[1]))
 
     def detected(self, faults: Sequence[Fault]) -> npt.NDArray[np.bool_]:
-        """Which faults make an output differ. Many are found early: only the others get the whole test."""
-        found = np.zeros(len(faults), np.bool_)
+        """Return which faults make an output differ. Only faults not detected early get the whole test."""
+        differs = np.zeros(len(faults), np.bool_)
         for cycles in (len(self.stimulus) // 4, len(self.stimulus)):
-            rest = np.flatnonzero(~found)
-            for at in range(0, len(rest), LANES):
-                chosen = rest[at : at + LANES]
-                found[chosen] = self._simulate([faults[i] for i in chosen], cycles, self.settled)[: len(chosen)]
-        return found
+            remaining = np.flatnonzero(~differs)
+            for at in range(0, len(remaining), LANES):
+                chosen = remaining[at : at + LANES]
+                differs[chosen] = self._simulate([faults[i] for i in chosen], cycles, self.settled)[: len(chosen)]
+        return differs
 
     def _simulate(self, faults: Sequence[Fault], cycles: int, compare_from: int) -> npt.NDArray[np.bool_]:
-        """One pass. The bits without a fault count as found, so that it ends with the last fault."""
+        """Simulate one group. Bits without a fault count as detected, so the group ends with its last fault."""
         gates = self.gates
         sites = sorted({fault.gate for fault in faults})
         site = np.full(len(gates.names), -1, np.int32)
@@ -78,13 +78,13 @@ class Simulator:
                 low, high = stuck[place, OUTPUT]
                 values[gates.out[gate]] = values[gates.out[gate]] & ~low | high
         table = np.column_stack((gates.kinds, gates.ins, gates.out, site)).astype(np.int32)
-        found = np.packbits(np.arange(LANES) >= max(1, len(faults)), bitorder="little").view(np.uint64)
+        differs = np.packbits(np.arange(LANES) >= max(1, len(faults)), bitorder="little").view(np.uint64)
         room = np.zeros((len(gates.names) - gates.gates, WORDS), np.uint64)
         sizes = len(gates.names), cycles, len(self.inputs), len(self.outputs)
         total, length, n_in, n_out = map(ctypes.c_int64, sizes)
         library().simulate(
             *(table.ctypes, ctypes.c_int64(gates.gates), total, values.ctypes, stuck.ctypes),
             *(self.stimulus.ctypes, length, self.inputs.ctypes, n_in, self.outputs.ctypes, n_out),
-            *(self.good.ctypes, ctypes.c_int64(compare_from), room.ctypes, found.ctypes),
+            *(self.good.ctypes, ctypes.c_int64(compare_from), room.ctypes, differs.ctypes),
         )
-        return np.unpackbits(found.view(np.uint8), bitorder="little").astype(np.bool_)
+        return np.unpackbits(differs.view(np.uint8), bitorder="little").astype(np.bool_)

@@ -1,4 +1,4 @@
-"""The functional test: what a tester does at the chip's pins, cycle by cycle, without looking at the outputs."""
+"""The functional test: a tester's inputs at the chip's pins, cycle by cycle, independent of the outputs."""
 
 import numpy as np
 import numpy.typing as npt
@@ -22,11 +22,11 @@ class Tester:
         self.cycles: list[tuple[int, int, int, int]] = [(1, 0, 1, 0)] * RESET
 
     def wait(self, cycles: int) -> None:
-        """Let time pass."""
+        """Wait for some cycles."""
         self.cycles += [(0, 0, 1, 0)] * cycles
 
     def transfer(self, octets: bytes) -> None:
-        """One SPI transfer."""
+        """Send an SPI transfer."""
         self.cycles += [(0, 0, 0, octets[0] >> 7)] * HALF_BIT
         for octet in octets:
             for place in range(7, -1, -1):
@@ -36,7 +36,7 @@ class Tester:
         self.wait(2 * HALF_BIT)
 
     def read_all(self) -> None:
-        """Every address."""
+        """Read every address."""
         self.transfer(read_transfer(0, 127))
 
     def frame(self, frame: FrameParameters) -> None:
@@ -51,15 +51,15 @@ class Tester:
 
 
 def frames(sensor: SensorParameters) -> list[FrameParameters]:
-    """A frame of the test pattern in each mode."""
-    made = [
+    """Return a frame of the test pattern in each mode."""
+    settings = [
         FrameParameters(
             sensor.full_window, mode, test_pattern=True, timing=SHORT_TIMING, threshold=9 * n, frame_number=0x5A5A >> n
         )
         for n, mode in enumerate(MODES)
     ]
     return [
-        *made,
+        *settings,
         FrameParameters(sensor.full_window, "tof", test_pattern=True, timing=SHORT_TIMING, phase=True, noise_floor=20),
     ]
 

@@ -1,6 +1,6 @@
 """Every pytest test, one job per folder, counted by block and level: build/verify/suite.json.
 
-A skipped test is an open point: what it checks is not checked.
+A skipped test is an open point.
 """
 
 import shlex
@@ -31,10 +31,10 @@ def options_of(seed: int) -> tuple[str, ...]:
     return "--all", "--hypothesis-profile=seeded", f"--hypothesis-seed={seed}"
 
 
-def jobs(wanted: Iterable[str], seconds: Mapping[str, float], seed: int = SEED) -> list[Job]:
+def jobs(paths: Iterable[str], seconds: Mapping[str, float], seed: int = SEED) -> list[Job]:
     """Return a Job for each folder, the longest first. seconds: of each folder's last run."""
     setup = [ROOT / "pyproject.toml", seed, *map(located, TOOLS)]
-    ordered = sorted(wanted, key=lambda folder: -seconds.get(folder, 1e9))
+    ordered = sorted(paths, key=lambda folder: -seconds.get(folder, 1e9))
     return [
         Job(folder.replace("/", "-"), run_folder, (folder, options_of(seed)), (code(folder, "conftest"), *setup))
         for folder in ordered
@@ -50,12 +50,12 @@ def forget(planned: Sequence[Job], done: Sequence[FolderRun], store: Path) -> No
 
 def summarize(done: Iterable[FolderRun]) -> dict[str, BlockResults]:
     """Return tests, simulators, faults and open points by block."""
-    found: dict[str, BlockResults] = {}
+    results: dict[str, BlockResults] = {}
     for result in done:
         for case in result.cases:
             for block in blocks_of(result.folder, case.test):
-                count(found.setdefault(block, BlockResults()), result.folder, case)
-    return found
+                count(results.setdefault(block, BlockResults()), result.folder, case)
+    return results
 
 
 def count(entry: BlockResults, folder: str, case: Case) -> None:
@@ -89,11 +89,11 @@ def add_arguments(parser: ArgumentParser) -> None:
 def run(options: Namespace) -> int:
     """Return 0, 1 when a test failed."""
     store = options.out / "suite"
-    known = folders()
+    every = folders()
     for folder in options.folder or ():
-        if folder not in known:
-            raise ParameterError(f"folder = {folder!r}: must be a folder of tests, as {known[0]}")
-    planned = jobs(options.folder or known, last_seconds(store) if store.exists() else {}, options.seed)
+        if folder not in every:
+            raise ParameterError(f"folder = {folder!r}: must be a folder of tests, as {every[0]}")
+    planned = jobs(options.folder or every, last_seconds(store) if store.exists() else {}, options.seed)
     done = from_json(list[FolderRun], run_jobs(planned, store, "tests"))
     forget(planned, done, store)
     write_step("suite", summarize(done), options.out)

@@ -1,4 +1,4 @@
-"""The tests of one folder in a pytest process of their own: outcomes, messages and times."""
+"""The tests of one folder in a separate pytest process: outcomes, messages and times."""
 
 import re
 import sys
@@ -20,13 +20,13 @@ NO_TESTS = 5  # pytest's exit status
 
 def folders() -> list[str]:
     """Return the folders with tests, except those of layouts, relative to the repository, ascending."""
-    found = {
+    paths = {
         str(path.parent.relative_to(ROOT))
         for top in TESTED
         for path in (ROOT / top).rglob("*_test.py")
         if not path.name.endswith("_bench_test.py")
     }
-    return sorted(folder for folder in found if not folder.startswith(LAYOUTS))
+    return sorted(folder for folder in paths if not folder.startswith(LAYOUTS))
 
 
 @dataclass(frozen=True)
@@ -77,12 +77,12 @@ def read_report(path: Path) -> Iterator[Case]:
     """Yield the cases of a junit file."""
     for case in ElementTree.parse(path).iter("testcase"):
         outcome, message = "passed", ""
-        for found in case:
-            if found.tag in ("failure", "error"):
-                outcome, message = "failed", found.get("message", "") or (found.text or "")[-800:]
+        for child in case:
+            if child.tag in ("failure", "error"):
+                outcome, message = "failed", child.get("message", "") or (child.text or "")[-800:]
                 break
-            if found.tag == "skipped":
-                outcome, message = "skipped", found.get("message", "")
+            if child.tag == "skipped":
+                outcome, message = "skipped", child.get("message", "")
         classname = case.get("classname", "")
         file = case.get("file") or classname.replace(".", "/") + ".py"
         last = classname.rsplit(".", 1)[-1]  # the module, or a class in it

@@ -103,7 +103,7 @@ def test_every_need_answers():
 
 
 def test_no_test_words_a_missing_tool_by_itself():
-    """By the mark alone: no skipif, no importorskip, no pytest.skip outside the fixtures of --netlist."""
+    """Tests state needs by the mark only: no skipif, importorskip or pytest.skip outside the fixtures of --netlist."""
     parts = [part for part in sorted(PACKAGE.iterdir()) if part.is_dir()]
     files = [file for part in parts for file in part.rglob("*_test.py") if file != Path(__file__)]
     assert len(files) > 300

@@ -1,6 +1,6 @@
-"""AdcBank as gates with any number of lanes, banks side by side: every output in every cycle.
+"""AdcBank as gates with any number of lanes, many banks in parallel: every output in every cycle.
 
-The comparators answer at random, so that each lane has its own codes; the steps come in any order.
+The comparators answer at random, so every lane has different codes; the steps come in any order.
 """
 
 import numpy as np
@@ -15,7 +15,7 @@ FIELDS = {"kind": 2, "row": 10, "group": 8, "k": 3, "sub": 2}  # of a StepMsg, t
 
 
 class ManyBanks:
-    """``copies`` of a bank, by README.md; rtl/edge_adc/test holds ManyLanes to the golden model."""
+    """Model of ``copies`` banks after README.md; rtl/edge_adc/test compares ManyLanes with the golden model."""
 
     def __init__(self, lanes, copies):
         self.each = np.arange(lanes)[:, None]
@@ -38,7 +38,7 @@ class ManyBanks:
         self.msg = np.where(self.mark, self.kind << 10 | self.row, sample)
 
     def tick(self, val, step, comparator, rdy, reset):
-        """End the cycle that `look` has looked at; ``step``: by field."""
+        """End the cycle that `look` computed; ``step``: by field."""
         sent, take = self.val & rdy, val & self.rdy
         go = self.hold & (self.pins["en"] >> self.each & 1).astype(bool)
         self.lanes.tick(go, comparator, self.mine & rdy, reset)

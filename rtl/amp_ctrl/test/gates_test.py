@@ -1,4 +1,4 @@
-"""AmpCtrl as gates: many rows with their own configurations side by side, every pin in every cycle."""
+"""AmpCtrl as gates: many rows with different configurations in parallel, every pin in every cycle."""
 
 from itertools import product
 
@@ -24,7 +24,7 @@ def gates():
 
 
 class Golden:
-    """The golden waveform of one copy, as AmpCtrlFL has it."""
+    """The golden waveform of one copy, as in AmpCtrlFL."""
 
     def __init__(self):
         self.row, self.pins, self.error = None, AmpPins(), 0
@@ -68,7 +68,7 @@ def follow(gates, inputs, cycles):
 
 
 def test_any_start_any_configuration_and_any_reset(gates):
-    """Every input changes in every cycle; each copy has its own share of starts, waits, zeros and resets."""
+    """Every input changes in every cycle; shares of starts, waits, zeros and resets differ between copies."""
     random = np.random.default_rng(1)
     longest, share = random.choice((1, 2, 3, 9), WIDE), random.random((4, WIDE))
 
@@ -85,7 +85,7 @@ def test_any_start_any_configuration_and_any_reset(gates):
 
 
 def test_every_set_of_zeros(gates):
-    """Any zero refuses the start, whatever is beside it; the start after it is accepted."""
+    """A start with any zero duration is refused; the next start is accepted."""
     zeros = np.array(list(product((0, 1), repeat=6)))
     values = np.array([1, 2, 0x100, 0x8000, 0xFFFF, 0x5555, 0x00FF, 0x0100])
     sets, others = (x.ravel() for x in np.meshgrid(np.arange(64), np.arange(8), indexing="ij"))
@@ -106,7 +106,7 @@ def test_every_set_of_zeros(gates):
 
 
 def waveform(timing, four_tap):
-    """Levels of the pins in each segment of a row, by README.md's order, and the cycles where these begin."""
+    """Return the pins' levels in each segment of a row (README.md) and the first cycle of each segment."""
     t, row = timing, [(timing.t_guard, (), 0)]
     integrate, pause = (t.t_int, ("integrate", "shutter")), (t.t_guard, ("shutter",))
     for tap in range(4 if four_tap else 1):

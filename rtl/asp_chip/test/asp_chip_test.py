@@ -75,7 +75,7 @@ class ChipTests:
         return ChipBench(cls.sim, LANES, **kw)
 
     def check(self, bench, frame, golden, trims=None):
-        """One frame: its bytes, its counters and its end."""
+        """Run one frame and check its bytes, its counters and its end."""
         bench.write(frame_writes(frame, trims))
         bench.start()
         assert bytes(bench.stream) == golden.stream

@@ -1,4 +1,4 @@
-"""The trim at the pins is the one of the pixel's type, in every row of the largest array."""
+"""The trim at the pins is that of the pixel's type, in every row of the largest array."""
 
 import numpy as np
 import pytest

@@ -34,7 +34,7 @@ class ChipBench:
         self.spi = SpiHost(sim, self.tick)
 
     def tick(self):
-        """One cycle: the comparators decide, the link takes a byte if there is one."""
+        """Run one cycle: the comparators decide, the link takes a byte if there is one."""
         sim = self.sim
         answers = self.answers() if self.held is not None else 0
         ready = self.random.random() >= self.stall
@@ -63,7 +63,7 @@ class ChipBench:
                     self.taken[lane] = self.held[where]
 
     def answers(self):
-        """Comparators: held value >= level(dac), half an LSB built into the DAC (docs/chip.md)."""
+        """Return the comparators: held value >= level(dac), half an LSB built into the DAC (docs/chip.md)."""
         sim = self.sim
         codes = np.array([int(sim.dac) >> 8 * lane & 0xFF for lane in range(self.lanes)])
         levels = codes - (0.5 if sim.unsigned_ else 128.5)
@@ -90,5 +90,5 @@ class ChipBench:
             assert cycles < MAX_CYCLES, f"the frame has not ended after {cycles} cycles"
 
     def status(self):
-        """Status and counters, over SPI."""
+        """Return status and counters, read over SPI."""
         return decode_status([self.spi.transfer(t) for t in status_transfers()])

@@ -42,7 +42,7 @@ def build_chip(of, verilog):
 
 
 class Session:
-    """A chip and what must be true of it, step by step."""
+    """A chip and the checks of each step of a session."""
 
     def __init__(self, sim, of, seed):
         self.sim, self.sensor, self.pick = sim, of, random.Random(seed)
@@ -81,7 +81,7 @@ class Session:
         self.bench.write(frame_writes(frame, self.trims))
 
     def clean(self):
-        """Nothing is left of the step before."""
+        """Check that nothing of the previous step remains."""
         bench = self.bench
         bench.stream.clear()
         bench.sync.clear()
@@ -113,7 +113,7 @@ class Session:
         assert (status["conversions_made"], status["conversions_left_out"]) == (golden.made, golden.left_out), frame
 
     def cut_frame(self):
-        """A frame that has run for any time: what of its stream has left is the beginning of the golden one."""
+        """A frame cut after any time: the bytes that left are the beginning of the golden stream."""
         while True:
             frame = self.frame()
             try:

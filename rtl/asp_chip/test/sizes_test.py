@@ -1,4 +1,4 @@
-"""A chip of any size is the one that is proven and simulated, 8 x 13 with two lanes, but for its blocks' parameters."""
+"""A chip of any size differs from the proven and simulated one (8 x 13, two lanes) in its blocks' parameters only."""
 
 import pytest
 

@@ -72,7 +72,7 @@ class Bench:
         return self
 
     def compare(self):
-        """Compare the DAC with the value that was held last."""
+        """Compare the DAC with the last held value."""
         sim = self.sim
         answer = False
         if self.go_at:

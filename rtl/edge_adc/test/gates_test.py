@@ -1,4 +1,4 @@
-"""EdgeAdc as gates: every threshold with every sequence of answers and every level, and random lanes, side by side."""
+"""EdgeAdc as gates: every threshold with every sequence of answers and every level, and random lanes, in parallel."""
 
 from itertools import product
 
@@ -21,7 +21,7 @@ def gates():
 
 
 def cycle(gates, lanes, go, unsigned, threshold, comparator, rdy, reset):
-    """One cycle of the gates and of ``lanes``, which must agree; ``comparator``: a function of the DAC codes."""
+    """Run a cycle of the gates and of ``lanes``, which must agree; ``comparator``: a function of the DAC codes."""
     lanes.look(unsigned, threshold)
     answers = comparator(lanes.dac)
     for name, value, width in (
@@ -63,7 +63,7 @@ def begin(gates):
 
 
 def test_every_threshold_and_every_sequence_of_answers(gates):
-    """Consistent ones and others: a comparator has noise. Signed, then unsigned in another order."""
+    """Consistent and inconsistent ones, as from a noisy comparator. Signed, then unsigned in another order."""
     at, yes, lanes = np.arange(COPIES), np.ones(COPIES, bool), begin(gates)
     for turn, unsigned in (at, ~yes), (at * 0x2545F % COPIES, yes):
         threshold, answers = turn >> 10, turn & 1023
@@ -73,7 +73,7 @@ def test_every_threshold_and_every_sequence_of_answers(gates):
 
 
 def test_every_level_of_an_ideal_comparator(gates):
-    """Values at every level and beside it, at every threshold: the code is the golden model's."""
+    """Values at and near every level, at every threshold: the code is the golden model's."""
     signed, thresholds = np.arange(-130.5, 130, 0.25), (0, 1, 127)
     sets = [
         *product((False,), range(128), signed[signed % 1 > 0.1]),

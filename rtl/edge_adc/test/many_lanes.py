@@ -4,7 +4,7 @@ import numpy as np
 
 
 class ManyLanes:
-    """running, number: the decision in this cycle. ready: results that are not taken; elder: the one at the output."""
+    """running, number: the decision in this cycle. ready: results not yet taken; elder: the result at the output."""
 
     def __init__(self, shape):
         self.running, self.above = np.zeros(shape, bool), np.zeros(shape, bool)
@@ -23,7 +23,7 @@ class ManyLanes:
         self.free = ~self.busy | self.running & (self.digit >= 6) & (self.ready == 0)
 
     def tick(self, go, comparator, rdy, reset):
-        """End the cycle that `look` has looked at."""
+        """End the cycle that `look` computed."""
         last = self.running & (self.digit == 7)
         zero = self.running & (self.first > 0) & (self.number == 1) & comparator & ~self.above
         answers = np.where(comparator, self.dac, self.bits)

@@ -1,4 +1,4 @@
-"""The short ways through Bits end as PyMTL's own methods do, with a value or with an error."""
+"""The fast paths through Bits give the same values and errors as PyMTL's methods."""
 
 import operator
 import random
@@ -17,7 +17,7 @@ PLACES += [slice(2, None), slice(True, 3), slice(Bits8(0), 3), *NUMBERS, Bits8(5
 
 
 def outcome(method, bits, *operands):
-    """What a call returns and leaves in ``bits``, or the error it raises."""
+    """Return the result of a call and the value it leaves in ``bits``, or the error it raises."""
     try:
         made = method(bits, *operands)
     except Exception as error:

@@ -1,4 +1,4 @@
-"""The copies of a block as gates equal the block in PyMTL, each with its own inputs."""
+"""Every copy of a block as gates equals the block in PyMTL; the copies have different inputs."""
 
 import numpy as np
 import pytest

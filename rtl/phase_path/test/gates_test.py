@@ -1,4 +1,4 @@
-"""PhasePath as gates: frames one after the other, `on` and the noise floor changed between them, side by side."""
+"""PhasePath as gates: consecutive frames with changes of `on` and the noise floor, many copies in parallel."""
 
 from itertools import product
 
@@ -27,7 +27,7 @@ PATIENCE = 120  # cycles in which a message moves, where both sides are willing
 
 
 def frame(random, chip, on, noise_floor):
-    """(messages in, messages out) of a random frame."""
+    """Return (messages in, messages out) of a random frame."""
     sent, expected = [(FRAME, 0)], [(FRAME, 0)]
     for _ in range(random.integers(3)):
         row = int(random.integers(1024))
@@ -71,7 +71,7 @@ class Scripts:
 
 
 def check(chip, seed):
-    """Every message in every cycle, and that something moves: a reset would end a frame that does not, too."""
+    """Check every message in every cycle, and progress: a reset would also end a frame that hangs."""
     random = np.random.default_rng(seed)
     gates = Gates(PhasePath(chip.lanes, chip.divider, chip.n_frac, chip.cordic_iterations), WIDE)
     scripts, script = Scripts(random, chip), np.arange(WIDE) % SCRIPTS

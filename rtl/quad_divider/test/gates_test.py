@@ -1,4 +1,4 @@
-"""The dividers as gates: every request at every noise floor, and random ones under stalls and resets, side by side."""
+"""The dividers as gates: every request at every noise floor, and random ones under stalls and resets, in parallel."""
 
 from itertools import product
 
@@ -31,12 +31,12 @@ AMP_VALID = 8  # bit of a DivResp
 
 
 def bits_of(config):
-    """Width of a DivResp."""
+    """Return the width of a DivResp."""
     return div_resp(ratio_bits(*config[:2])).nbits
 
 
 def responses(config):
-    """The DivResp to each of REQUESTS with a noise floor of 0."""
+    """Return the DivResp to each of REQUESTS with a noise floor of 0."""
     found = divide(*config, X, Y)
     out = np.zeros(REQUESTS.size, np.int64)
     widths = ("octant", 3), ("ratio", ratio_bits(*config[:2])), ("zero", 1), ("phase", 8), ("amp_valid", 1), ("amp", 8)
@@ -82,7 +82,7 @@ def wrong_requests(gates, config, floors):
 
 
 def check_random(gates, config, seed, cycles=300):
-    """Random requests, noise floors, stalls and resets; each copy has its own. All outputs, in every cycle."""
+    """Check all outputs in every cycle, with random requests, noise floors, stalls and resets for each copy."""
     latency, interval = timing(*config)
     golden, random, n = responses(config), np.random.default_rng(seed), gates.copies
     pace, willing = random.choice((0.1, 0.5, 1.0), (2, n))

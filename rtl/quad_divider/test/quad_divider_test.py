@@ -216,7 +216,7 @@ class TestIcarus(TestVerilog):
 
 
 def around_thresholds(n_frac):
-    """Vectors on both sides of every step of the phase table: those whose ratio is nearest to a threshold."""
+    """Return the vectors nearest to each threshold of the phase table, on both sides."""
     larger, smaller = (v.ravel() for v in np.meshgrid(np.arange(1, 257), np.arange(257)))
     ratio = (smaller << n_frac) // larger
     for threshold in phase_thresholds(n_frac):

@@ -84,7 +84,7 @@ def messages(scan):
 
 
 def lead(scan):
-    """Slots from a row's reset to its read."""
+    """Return the slots from a row's reset to its read."""
     return 0 if scan.frame.mode == "tof" else scan.frame.timing.exposure
 
 
@@ -95,7 +95,7 @@ def slots(scan):
 
 
 def fields_of(msg):
-    """A StepMsg as ``messages`` writes it."""
+    """Return the fields of a StepMsg as in ``messages``."""
     kind = int(msg.kind)
     if kind == SAMPLE:
         return (kind, *(int(getattr(msg, name)) for name in ("row", "group", "k", "sub", "en")))
@@ -138,7 +138,7 @@ def amp_ctrl_simulator():
 
 
 def amp_ctrl(timing, four_tap):
-    """The real AmpCtrl in place of ``amplifiers``; timing: AmpTiming, or None for durations of 0."""
+    """The real AmpCtrl instead of ``amplifiers``; timing: AmpTiming, or None for durations of 0."""
     sim = amp_ctrl_simulator()
     for name in ("t_reset", "t_int", "t_cm", "t_settle", "t_read", "t_guard", "n_cm"):
         port = getattr(sim, name)
@@ -165,7 +165,7 @@ def bank(ready, conversion):
 
 
 def randomly(seed, err_at=None, longest=(2, 40), read=9, hurry=(0.1, 0.5, 0.9, 1)):
-    """Surroundings with random timing, some of it extreme: amplifiers and bank; and random starts while busy."""
+    """Return amplifiers and bank with random, partly extreme timing, and random starts while busy."""
     noise = random.Random(seed)
     longest, hurry = noise.choice(longest), noise.choice(hurry)
     return (
@@ -234,7 +234,7 @@ def check_given_up(record, scan):
 
 
 class Bench:
-    """One simulator of any level, and its surroundings, which keep their state from frame to frame."""
+    """A simulator of any level with models of amplifiers and bank that keep their state between frames."""
 
     def __init__(self, sim, amplifier, converters):
         self.sim = sim
@@ -253,7 +253,7 @@ class Bench:
         self.sim.reset @= 0
 
     def cycle(self, record, start=0):
-        """One clock cycle; returns the pins in it."""
+        """Run one clock cycle; returns the pins in it."""
         sim = self.sim
         ready, idle = self.supply
         self.drive(start=start, amp_done=self.answer[0], amp_err=self.answer[1], bank_idle=idle)
@@ -283,7 +283,7 @@ class Bench:
         return pins
 
     def surround(self, amplifier, converters):
-        """Others in place of amplifiers and bank, while none is busy."""
+        """Replace the models of amplifiers and bank, while none is busy."""
         self.amplifier, self.converters = amplifier, converters
         self.answer, self.supply = next(amplifier), next(converters)
 

@@ -42,7 +42,7 @@ def named(size, slow):
 
 
 def quickly(pick, err_at=None, hurry=(0.5, 1, 1)):
-    """Surroundings that take few cycles."""
+    """Return models of amplifiers and bank that take few cycles."""
     return randomly(pick.random(), err_at, longest=(1, 4), read=2, hurry=hurry)
 
 
@@ -92,7 +92,7 @@ def column_choices(size, pick):
 
 
 def row_choices(size, pick):
-    """The same of rows; and every type alone."""
+    """Return ports of frames with every choice of rows, and with every type alone."""
     (last_row, last_col), rows = (tiles - 1 for tiles in size.tiles), range(size.tile_rows)
     for bits in range(1, 1 << len(rows)):
         mask = types_of(size, [row for row in rows if bits >> row & 1], [0])
@@ -162,7 +162,7 @@ class TestReadoutSeqSizes:
             check(bench.frame(ports, noise), size.scan(ports), ports["overlap"], before)
 
     def spoil(self, bench, size, ports, wrong, pick):
-        """Something ahead of a frame: nothing, a refused start, a frame that the amplifiers refuse, a reset in one."""
+        """Run an event before a frame: none, a refused start, a frame that the amplifiers refuse, a reset in one."""
         what = pick.choice(("nothing", "nothing", "refused", "aborted", "reset"))
         if what == "refused":
             self.refuse(bench, size, pick.choice(wrong))

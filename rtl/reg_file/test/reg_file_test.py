@@ -101,7 +101,7 @@ class TestFL:
         assert list(bench.read(0, 128)) == expected
 
     def test_sclk_is_high_as_a_transfer_begins(self):
-        """Its fall is no bit: the transfer is good, and `miso` is 0 in the command byte."""
+        """The falling edge counts as no bit: the transfer is good, and `miso` is 0 in the command byte."""
         bench = self.bench()
         for pin, level in (("sclk", 1), ("csn", 0), ("sclk", 0)):
             wire = getattr(bench.sim, pin)
@@ -333,7 +333,7 @@ class TestFL:
         assert bench.loop == [0x5A] and bench.value("loop_enable") == 0
 
     def test_loop_back_excludes_a_frame(self):
-        """Without loop_enable a byte is refused, with it a start is: each way nothing else happens."""
+        """Without loop_enable a byte is refused, with it a start; nothing else happens."""
         bench, refused = self.bench(), 1 << CHIP["refused"].shift
         bench.spi.transfer(bytes((0x80 | CHIP["loop_back"].byte, 1, 2)))
         assert bench.read(CHIP["busy"].byte)[0] == refused
@@ -347,7 +347,7 @@ class TestFL:
         assert bench.starts == 1
 
     def test_abort(self):
-        """One strobe, busy or not; a waiting loop-back byte is dropped; a start beside it is refused."""
+        """One strobe, busy or not; a waiting loop-back byte is dropped; a start in the same write is refused."""
         status = CHIP["busy"].byte
         both = 1 << CHIP["start"].shift | 1 << CHIP["abort"].shift
         aborted, refused = (1 << CHIP[name].shift for name in ("aborted", "refused"))
@@ -395,7 +395,7 @@ class TestFL:
         assert bench.loop == sent and bench.read(CHIP["busy"].byte)[0] == 0
 
     def test_a_loop_back_byte_as_the_link_takes_the_one_before(self):
-        """It is refused in that cycle still, and accepted in the next one."""
+        """It is refused in that cycle and accepted in the next."""
         strobe, loop_back = self.tick_of_the_strobe() + 8 * 2 * 4, CHIP["loop_back"].byte
         for ready, refused in ((strobe - 1, 0), (strobe, 1), (strobe + 1, 1)):
             bench, ticks = self.bench(), [0]

@@ -48,7 +48,7 @@ def gates(folder, recorded):
 
 
 def planted(verilog, folder, old, new):
-    """A copy of ``verilog`` with one text in place of another."""
+    """Return ``verilog`` with one text replaced by another."""
     text = verilog.read_text()
     assert text.count(old) >= 1
     path = folder / "planted.v"

@@ -41,7 +41,7 @@ def header_of(mode="edge", window=Window(0, 2, 0, 5), **frame):
 
 
 def messages_of(header, samples):
-    """The scan's messages of a frame."""
+    """Return the scan's messages of a frame."""
     layout, out = header.layout(), [ScanMsg(FRAME, 0)]
     for i, row in enumerate(layout.rows.tolist()):
         codes = samples.reshape(header.rows, -1)[row, layout.places_of(i)]
@@ -50,7 +50,7 @@ def messages_of(header, samples):
 
 
 def scan_of(rows):
-    """The scan's messages of a frame of any rows: (index, codes)."""
+    """Return the scan's messages of a frame of any rows: (index, codes)."""
     out = [ScanMsg(FRAME, 0)]
     for row, codes in rows:
         out += [ScanMsg(ROW, row), *(ScanMsg(SAMPLE, int(code) & 0xFF) for code in codes)]
@@ -58,7 +58,7 @@ def scan_of(rows):
 
 
 def stream_of(header, rows, made, left_out):
-    """The golden bytes of such a frame."""
+    """Return the golden bytes of such a frame."""
     first = header.to_bytes()
     coder = header.edge, header.threshold
     body = b"".join(encode_marked(row, codes, *coder) for row, codes, _ in segments(header, rows))
@@ -77,7 +77,7 @@ class Bench:
         self.reset()
 
     def configure(self, header, made=0, left_out=0):
-        """Another frame's configuration and counts."""
+        """Set the configuration and counts of another frame."""
         for name, value in ports_of(header).items():
             port = getattr(self.sim, name)
             port @= value
@@ -438,7 +438,7 @@ class TestRunLengthIcarus(TestRunLength):
 
 
 class TestRunLengthEveryInput:
-    """Too long for any other level."""
+    """Tests that take too long at other levels."""
 
     verilog = True
 

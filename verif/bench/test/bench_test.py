@@ -1,4 +1,4 @@
-"""The cocotb benches pass in both simulators, report what is wrong, and always end."""
+"""The cocotb benches pass in both simulators, report errors, and always end."""
 
 import json
 from importlib.util import find_spec
@@ -19,7 +19,7 @@ SMALL = "raw, a window"
 
 
 def streams_of(simulators, tmp_path):
-    """The bytes of one frame of the chip's bench in each of the simulators."""
+    """Return the bytes of one frame of the chip's bench in each simulator."""
     for simulator in simulators:
         file = tmp_path / simulator
         tests = simulation.simulate(

@@ -1,4 +1,4 @@
-"""Every cross has a frame; a frame that differs is named."""
+"""Every cross has a frame; a frame that differs is reported."""
 
 import pytest
 

@@ -20,7 +20,7 @@ def _row_started(p: Recorded) -> Mask:
 
 
 def _read_waits_for_the_hold(p: Recorded) -> Mask:
-    """The guard before `read` is longer than t_guard."""
+    """Return the cycles in which the guard before `read` is longer than t_guard."""
     last = (p.integrate == 1) | (p.start == 1)
     return (p.busy == 1) & (p.hold_free == 0) & (p.shutter == 0) & (p.read == 0) & (p.since(last) > 12)
 

@@ -9,7 +9,7 @@ CHIP = register_map()
 
 
 def _configuration(p: Recorded, field: str) -> Mask:
-    """Cycles in which a frame starts while ``field`` holds something other than 0, as the host wrote it."""
+    """Return the cycles in which a frame starts while ``field`` is not 0, as the host wrote it."""
     place = CHIP[field]
     mask = (1 << place.width) - 1 << place.shift
     value, chosen = 0, []
@@ -35,14 +35,14 @@ def _byte_waits(p: Recorded) -> Mask:
 
 
 def _last_pixel(p: Recorded) -> Mask:
-    """The array's last row and column."""
+    """Return the array's last row and column."""
     rows, cols, lanes = p.arguments[:3]
     col = (cols - 1) // 6
     return (p.hold == 1) & (p.row == rows - 1) & (p.k == (cols - 1) % 6) & (p.group == col // lanes)
 
 
 def _start_refused(p: Recorded) -> Mask:
-    """A start that the chip does not become busy from."""
+    """Return the cycles of a start after which the chip is not busy."""
     starts = where(p, [t for t in transfers(p) if t.writes and (CHIP["start"].byte, 1) in t.bytes_at()])
     return starts & (p.busy == 0) & (p.since(p.busy == 1) != 0)
 

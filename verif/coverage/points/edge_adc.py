@@ -14,7 +14,7 @@ def _result_waits(p: Recorded) -> Mask:
 
 
 def _second_result_waits(p: Recorded) -> Mask:
-    """A complete search after a result that is not taken."""
+    """Return the cycles in which a search ends while a result waits."""
     blocked = (p.out__val == 1) & (p.out__rdy == 0) & (p.busy == 1)
     return blocked & (p.since(~blocked) > 12)
 

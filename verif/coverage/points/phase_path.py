@@ -14,7 +14,7 @@ def _out(p: Recorded) -> Mask:
 
 
 def _amplitude_suppressed(p: Recorded) -> Mask:
-    """A zero after a phase of no value."""
+    """Return the cycles of an amplitude of 0 after a phase that is not valid."""
     sample = _out(p) & (p.on == 1) & (p.send__kind == SAMPLE)
     return sample & (p.noise_floor > 0) & (p.send__data == 0)
 
@@ -25,7 +25,7 @@ def _reset_in_a_step(p: Recorded) -> Mask:
 
 
 def _after(p: Recorded, event: Mask) -> Mask:
-    """Cycles with ``event`` before them, and no reset since."""
+    """Return the cycles after ``event`` without a reset since."""
     event_at, reset_at = p.since(event), p.since(p.reset == 1)
     return (event_at > 0) & ((reset_at < 0) | (event_at < reset_at))
 

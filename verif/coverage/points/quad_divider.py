@@ -27,7 +27,7 @@ def _response_waits_long(p: Recorded) -> Mask:
 
 
 def _reset_under_way(p: Recorded) -> Mask:
-    """A reset between a request and its response."""
+    """Return the cycles of a reset between a request and its response."""
     ended = p.since(_response(p) | (p.was(p.reset) == 1))
     requested = p.since(_request(p))
     return (

@@ -14,7 +14,7 @@ def _refused(p: Recorded) -> Mask:
 
 
 def _last_tile(p: Recorded) -> tuple[int, int]:
-    """(row, column) of the array's last tile."""
+    """Return (row, column) of the array's last tile."""
     rows, cols, _, _, tile_rows, tile_cols = p.arguments
     return (rows - 1) // tile_rows, (cols - 1) // tile_cols
 

@@ -16,13 +16,13 @@ WRITABLE = CHIP.writable()
 LOOP, START, STATUS = (CHIP[name].byte for name in ("loop_back", "start", "busy"))
 
 
-def _writes_to(p: Recorded, wanted: Callable[[int, int], int]) -> Mask:
+def _writes_to(p: Recorded, selects: Callable[[int, int], int]) -> Mask:
     """Transfers that write a byte to an address for which ``wanted(address, byte)``."""
-    return where(p, [t for t in transfers(p) if t.writes and any(wanted(*pair) for pair in t.bytes_at())])
+    return where(p, [t for t in transfers(p) if t.writes and any(selects(*pair) for pair in t.bytes_at())])
 
 
-def _reads_from(p: Recorded, wanted: Callable[[int], int]) -> Mask:
-    return where(p, [t for t in transfers(p) if t.data and not t.writes and any(wanted(a) for a, _ in t.bytes_at())])
+def _reads_from(p: Recorded, selects: Callable[[int], int]) -> Mask:
+    return where(p, [t for t in transfers(p) if t.data and not t.writes and any(selects(a) for a, _ in t.bytes_at())])
 
 
 def _every_configuration_byte_written(p: Recorded) -> Mask:

@@ -1,4 +1,4 @@
-"""Coverage counts what is reached and only that; plans and exclusions that do not hold are errors."""
+"""Coverage counts exactly the reached points; wrong plans and exclusions are errors."""
 
 import re
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""The same faults in Icarus, whose time is not cycles and whose registers begin as X: every output of every cycle."""
+"""The same faults in Icarus, event-driven and with registers at X: every output of every cycle."""
 
 import numpy as np
 import pytest

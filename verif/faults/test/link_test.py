@@ -1,4 +1,4 @@
-"""The link's `rdy` sticks: nothing is lost, nothing moves, the host still gets an answer, and reset helps."""
+"""The link's `rdy` sticks: no byte is lost, the chip waits, SPI answers, and reset recovers."""
 
 import numpy as np
 import pytest
@@ -24,7 +24,7 @@ def offers_stand(trace):
 
 @pytest.mark.parametrize("name", FRAMES)
 def test_rdy_sticks_for_a_while_at_any_cycle(name):
-    """The same bytes, later; `busy` stays up, and an offered byte stands."""
+    """The same bytes later; `busy` stays high, and an offered byte does not change."""
     frame = quiet(name)
     traces = run(
         [
@@ -67,7 +67,7 @@ def test_rdy_sticks_for_ever(name):
 
 
 def test_rdy_sticks_in_loop_back():
-    """One byte waits and comes out when it may; those that find it waiting are refused."""
+    """One byte waits until it is taken; later ones are refused meanwhile."""
     loop, enable = CHIP["loop_back"].byte, CHIP["loop_enable"]
     wave = [
         reset(),

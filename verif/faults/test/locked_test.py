@@ -20,7 +20,7 @@ def changed_one_way(values):
 
 
 def write_in(name, cases):
-    """Write to an address at a cycle of the frame, (address, cycle) pairs: refused? for each.
+    """Write to an address at a cycle of the frame, (address, cycle) pairs; returns for each whether it was refused.
 
     Asserts that the frame is the golden one and that the register has the new value exactly where it was not refused.
     """

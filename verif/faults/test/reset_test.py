@@ -1,4 +1,4 @@
-"""Reset: without a clock's edge it is nothing; with one, at any cycle, it ends all, and the next frame is right."""
+"""Reset: without a clock edge it has no effect; with one, at any cycle, it ends all, and the next frame is right."""
 
 import numpy as np
 import pytest
@@ -72,7 +72,7 @@ def test_reset_in_a_frame_resets_the_registers():
 
 
 def test_reset_in_the_middle_of_a_transfer():
-    """What is left of the transfer is not taken for commands: nothing starts and nothing is written."""
+    """The rest of the transfer is not read as commands: nothing starts and nothing is written."""
     bytes_of_starts = b"\x00" + command("start") * 4 + bytes((0x80 | CHIP["mode"].byte, 0xFF, 0xFF))
     read, wave = transfer(READ_ALL), []
     for first in (0x00, 0x80 | CHIP["t_int"].byte):

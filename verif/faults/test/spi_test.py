@@ -1,4 +1,4 @@
-"""SPI transfers that are cut short, clocked without a select, or glitches: whole bytes count, nothing else does."""
+"""SPI transfers cut short, clocks without select, glitches: only complete bytes take effect."""
 
 import numpy as np
 import pytest

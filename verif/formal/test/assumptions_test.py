@@ -19,7 +19,7 @@ PUT = "a_put: assume (!put || ready);"
 
 
 def problems(name, folder, *changes, checks=(necessity, freedom), label="", **listed):
-    """What ``checks`` say of proof ``name`` after ``changes`` (find, replace) of its wrapper.
+    """Return the problems of proof ``name`` after ``changes`` (find, replace) of its wrapper, by ``checks``.
 
     label: of the assumptions whose necessity is looked at, by default all.
     """

@@ -1,4 +1,4 @@
-"""The runner itself: what it proves, what it refuses, and that a weakened property cannot hide."""
+"""The runner of proofs: results, errors, and detection of a weakened property."""
 
 import dataclasses
 import json
@@ -25,7 +25,7 @@ NO_COVERS = CoverResult([], [], 0.0)
 
 @pytest.fixture(scope="module")
 def queue():
-    """The proof of the byte queue: small, and every kind of job has something to do."""
+    """The proof of the byte queue: small, with every kind of job."""
     return next(proof for proof in manifest.every() if proof.name == "byte_queue")
 
 
@@ -104,7 +104,7 @@ def test_the_proof_of_a_block_is_a_test_that_names_what_fails(queue, tmp_path):
 
 
 def test_what_only_induction_refutes_is_unknown(queue, tmp_path):
-    """A step that fails is no counterexample, and no proof."""
+    """A failed induction step is neither a counterexample nor a proof."""
     loose = changed(queue, tmp_path, "\\dut.count == inside && inside <= 2", "inside <= 3")
     result = prove(dataclasses.replace(loose, depth=1), "boolector", design.exported(loose), design.wrapper(loose))
     assert result.result == "unknown"

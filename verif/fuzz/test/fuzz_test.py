@@ -1,4 +1,4 @@
-"""A part of the fuzzing in `make test`, and that a decoder that is wrong does not get through it."""
+"""A part of the fuzzing for `make test`; it detects a wrong decoder."""
 
 import json
 import time

@@ -1,4 +1,4 @@
-"""Mutants differ from the original; the equivalence check says 'equivalent' of what is, and only of that."""
+"""Mutants differ from the original; the equivalence check reports 'equivalent' for equivalent mutants only."""
 
 import pytest
 
@@ -70,7 +70,7 @@ def test_equivalence(small):
 
 
 def simulated(program, number, pattern=(0, 1, 1, 1, 0, 1, 1, 0, 1, 1)):
-    """First cycle in which each mutant differs from the golden counter."""
+    """Return the first cycle in which each mutant differs from the golden counter."""
     lines, n = ["1 1 0", "0 1 0"], 0
     for up in pattern * 3:
         lines.append(f"0 {up << 1:x} {n:x}")
@@ -116,7 +116,7 @@ def test_looks_at_nothing():
 
 @pytest.mark.slow
 def test_what_no_test_checks_survives(tmp_path):
-    """A mutant that moves a pin in a test that does not look at it is not killed; the module's own tests kill."""
+    """A mutant that changes an unchecked pin is not killed by that test; the module's tests kill it."""
     path, folder, mutants = planted(one_cycle(), tmp_path, "asp_chip", 8)
     blind, seeing = tmp_path / "blind_test.py", tmp_path / "seeing_test.py"
     blind.write_text(BLIND)
@@ -165,7 +165,7 @@ def test_one_mutant_alone(small, tmp_path):
 @pytest.mark.slow
 @pytest.mark.parametrize("block", ["PhasePath", "ReadoutSeq", "RunLength"])
 def test_promises_leave_the_block_its_work(block):
-    """A promise that no neighbour can keep would make every mutant equivalent."""
+    """A promise that no neighbour can keep would make all mutants equivalent."""
     top = build_top(block, SensorParameters())
     text = translate_component(top, block)
     mutants = generate(text, block, folder_of(block), 8, 1)

@@ -1,4 +1,4 @@
-"""Mutants of the text: each kind does what it says, and none selected is the original."""
+"""Mutants of the text: each kind has its effect, and with none selected the text is the original."""
 
 import random
 

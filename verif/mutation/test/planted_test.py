@@ -1,4 +1,4 @@
-"""Planted bugs: one that a test sees, one that none sees, and entries that do not fit the sources."""
+"""Planted bugs: one that a test detects, one that none detects, and entries that do not fit the sources."""
 
 from dataclasses import replace
 from functools import reduce

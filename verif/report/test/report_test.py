@@ -1,4 +1,4 @@
-"""The report: results of steps into one summary, limits that fall, steps that are missing or end badly."""
+"""The report: summary of all steps, broken limits, missing and failed steps."""
 
 import copy
 import json
@@ -31,7 +31,7 @@ FUZZ = {
 
 
 def everything():
-    """What all steps find when all is well."""
+    """Return the results of all steps without a failure."""
     return summarize(
         [
             {block: copy.deepcopy(GOOD) for block in TOPS},

@@ -1,4 +1,4 @@
-"""The fault simulator against brute force: every fault of small circuits, each in a netlist that has it built in."""
+"""The fault simulator against brute force: every fault of small circuits, each built into the netlist."""
 
 import numpy as np
 import pytest
@@ -23,7 +23,7 @@ def gates():
 
 
 def by_hand(gates, stimulus, fault):
-    """Outputs of every cycle with ``fault``, a gate at a time."""
+    """Return the outputs of every cycle with ``fault``, computed gate by gate."""
     functions = {
         "AND": lambda a, b, s: a & b,
         "NAND": lambda a, b, s: 1 - (a & b),

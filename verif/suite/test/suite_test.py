@@ -1,4 +1,4 @@
-"""The suite's counting, on small test files of its own."""
+"""The suite's counting, on small test files."""
 
 from dataclasses import replace
 
