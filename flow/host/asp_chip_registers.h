@@ -141,14 +141,14 @@
 #define ASP_OVERLAP_DEFAULT 0x1u
 #define ASP_OVERLAP_MASK 0x01u
 
-/* phase (rw): In tof mode, send (phase, amplitude) in place of the taps. */
+/* phase (rw): In tof mode, send (phase, amplitude) instead of the taps. */
 #define ASP_PHASE_ADDRESS 0x04u
 #define ASP_PHASE_SHIFT 1u
 #define ASP_PHASE_WIDTH 1u
 #define ASP_PHASE_DEFAULT 0x0u
 #define ASP_PHASE_MASK 0x02u
 
-/* test_pattern (rw): A digital pattern in place of the comparators. */
+/* test_pattern (rw): A digital pattern instead of the comparators. */
 #define ASP_TEST_PATTERN_ADDRESS 0x04u
 #define ASP_TEST_PATTERN_SHIFT 2u
 #define ASP_TEST_PATTERN_WIDTH 1u

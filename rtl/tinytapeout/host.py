@@ -18,7 +18,7 @@ DURATIONS = "t_reset", "t_int", "t_cm", "t_settle", "t_read", "t_guard"  # of th
 
 
 def divisions(requests: Iterable[tuple[int, int, int]]) -> list[int]:
-    """Program for the divider: for each request (x, y, noise floor / 4) the four bytes of its result are shown."""
+    """Return the program for the divider: it shows the four bytes of each result of (x, y, noise floor / 4)."""
     words = []
     for x, y, floor in requests:
         high = floor << 2 | (y >> 8 & 1) << 1 | x >> 8 & 1
@@ -29,14 +29,14 @@ def divisions(requests: Iterable[tuple[int, int, int]]) -> list[int]:
 
 
 def row(timing: AmpTiming, four_tap: bool, cycles: int) -> list[int]:
-    """Program for the amplifier control: one row, shown in at least so many ``cycles``."""
+    """Return the program for the amplifier control: one row, shown for at least ``cycles``."""
     durations = [getattr(timing, name) for name in DURATIONS]
     data = [byte for value in durations for byte in (value & 255, value >> 8)] + [timing.n_cm]
     return [HOLD_FREE, ADDRESS, *data, ROW | cycles // 256 + 1, int(four_tap)]
 
 
 def frame(transfers: Sequence[bytes], cycles: int = SHOWN) -> list[int]:
-    """Program for the chip: SPI ``transfers``; from before the last one at least so many ``cycles`` are shown."""
+    """Return the program for the chip: SPI ``transfers``, the last one and at least ``cycles`` shown."""
     *before, last = map(_bits, transfers)
     return [CSN | LINK_RDY, *chain.from_iterable(before), ROW | -(-cycles // 256), *last]
 

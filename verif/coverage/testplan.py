@@ -48,7 +48,7 @@ class Exclusion:
     """Points that need not be hit.
 
     kind: of KINDS. at: each 'Module.signal', 'Module.signal[7:4]', or 'Module: text of the line'. what: the arm or edge
-    ('else', '0->1') if not all. blocks: that it holds for, default all. proof: in place of a test, of what the
+    ('else', '0->1') if not all. blocks: that it holds for, default all. proof: instead of a test, of what the
     points do; a toggle has one.
     """
 

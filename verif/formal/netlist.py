@@ -148,7 +148,7 @@ class Netlist:
         return min(names, key=len, default="")
 
     def _parts(self, path: tuple[Place, ...], holds: bool) -> Iterator[tuple[tuple[Place, ...], bool]]:
-        """Yield the parts of the operand at the end of ``path``, which is wanted to be ``holds``; none of an atom."""
+        """Yield the parts of the operand at the end of ``path``, which must be ``holds``; none for an atom."""
         bits = self._at(path[-1])
         driver = self.drivers.get(bits[0]) if len(bits) == 1 else None
         if driver is None or not self.cells[driver]["attributes"].get("src", "").startswith("wrapper.sv"):

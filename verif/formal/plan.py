@@ -25,7 +25,7 @@ class Piece:
 def pieces(proof: Proof, engines: Iterable[str], assumptions: bool = True) -> Iterator[Piece]:
     """Yield every piece of a proof by ``engines``. Raises ParameterError, FormalError.
 
-    assumptions: check these, too (once for a wrapper is enough, whatever the sizes it is proven for).
+    assumptions: check these, too (one size of a wrapper is enough).
     """
     texts, wrapper = design.exported(proof), design.wrapper(proof)
     base = (*sorted(texts.values()), wrapper, proof.top, proof.method, proof.timeout, *proof.assumed)

@@ -44,7 +44,7 @@ NUMBERS = {  # of mutants of bits, and as many of the text
     "RegFile": 12,
     "AspChip": 12,
 }
-OTHERS = 2  # parameter sets with a proof, beside the main one
+OTHERS = 2  # parameter sets with a proof, besides the main one
 
 
 @dataclass(frozen=True)

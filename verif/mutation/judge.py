@@ -48,7 +48,7 @@ def try_tests(path: str, folder: str, mutant: Mutant) -> Judgement:
     """Run the block's tests on a mutant: 'killed' or 'survived'.
 
     path: of the trace whose component is mutated. folder: of mutants.v with all its mutants. The recorded cycles show
-    which test to try first; a mutant that differs in none of them passes all tests but those of its own module.
+    which test to try first; a mutant that differs in none of them passes all tests except those of its module.
     """
     head, verilog = mutated(path, folder)
     program = compile_program(verilog, head.cls, head.ports, mutant=True)
@@ -67,7 +67,7 @@ def try_tests(path: str, folder: str, mutant: Mutant) -> Judgement:
 
 
 def own_tests(mutant: Mutant) -> list[Path]:
-    """Return the test file of the mutated module alone, if any: `test/<name>_test.py` beside its `<name>_rtl.py`."""
+    """Return the test file of the mutated module alone, if any: `test/<name>_test.py` next to its `<name>_rtl.py`."""
     source = PACKAGE / mutant.source.split(":")[0]
     file = source.parent / "test" / f"{source.stem.removesuffix('_rtl')}_test.py"
     return [file] if file.exists() and source.stem.removesuffix("_rtl") != source.parent.name else []

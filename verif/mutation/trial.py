@@ -67,7 +67,7 @@ class Trial(OneLevel):
         self.failed, self.took_place = "", False
 
     def substitute(self, dut: Any, verilog: Any, _name: Any) -> Limited | None:
-        """Return the mutant in place of ``dut``, or None (rtl.harness.testbench.hooked)."""
+        """Return the mutant that replaces ``dut``, or None (rtl.harness.testbench.hooked)."""
         name, arguments = type(dut).__name__, (*dut._dsl.args, *dut._dsl.kwargs.values())
         if name == self.head.cls:
             if verilog is not self.verilog or arguments != self.head.arguments:

@@ -25,7 +25,7 @@ class Step:
 
 
 STEPS = (
-    Step("formal", "formal", "proofs and their broken twins"),
+    Step("formal", "formal", "proofs and their mutated twins"),
     Step("suite", "suite", "tests of every block at every level", True),
     Step("bench", "cocotb", "cocotb benches in Icarus and Verilator", True),
     Step("coverage", "coverage", "coverage and test plans"),

@@ -12,7 +12,7 @@ from talbot.base.paths import ROOT
 from talbot.base.tools import ToolTimeout, finish
 
 TESTED = "models", "base", "rtl", "pixels", "flow", "verif", "talbot"
-# Layouts have an environment of their own, in which `make test` runs these
+# Layouts have a separate environment, in which `make test` runs these
 LAYOUTS = "flow/handoff", "flow/layout", "flow/openroad", "platforms", "base/steps"
 SECONDS = 1500  # limit of a folder's tests
 NO_TESTS = 5  # pytest's exit status

@@ -51,7 +51,7 @@ class TestTwo:
 
 @pytest.fixture
 def run(pytester, monkeypatch):
-    """run(text, *options): the result of pytest on a file with ``text``, with a table of needs of its own."""
+    """run(text, *options): the result of pytest on a file with ``text`` and a separate table of needs."""
     table = {
         "there": Need(lambda: True, "make there"),
         "absent": Need(lambda: False, "make tools"),

@@ -1,4 +1,4 @@
-"""ReadoutSeq at RTL for every class of array, and frames back to back whatever ended the one before.
+"""ReadoutSeq at RTL for every class of array, and frames back to back after every kind of end.
 
 Its simulators are in PyMTL, which compiles nothing: each array takes milliseconds to build.
 """
