@@ -3,7 +3,7 @@ from pathlib import Path
 import pytest
 
 from talbot.models.digital.stream import decode_stream
-from talbot.models.digital.stream.test.examples import EXAMPLES, small_frame
+from talbot.models.digital.stream.test.examples import EXAMPLES, FURTHER, edges, small_frame
 from talbot.models.parameters.stream_format import FIELD_BYTES, HEADER_BYTES, TRAILER_BYTES
 
 DOCUMENT = (Path(__file__).parents[5] / "docs" / "stream.md").read_text()
@@ -12,6 +12,15 @@ DOCUMENT = (Path(__file__).parents[5] / "docs" / "stream.md").read_text()
 @pytest.mark.parametrize("example", EXAMPLES)
 def test_worked_examples_are_what_the_encoder_gives(example):
     assert "```\n" + "\n".join(example()) + "\n```" in DOCUMENT
+
+
+@pytest.mark.parametrize("example", (edges, *FURTHER))
+def test_the_tokens_of_an_example_are_its_payload(example):
+    *lines, payload, _ = example()
+    bits = "".join(line[47:].replace(" ", "") for line in lines if line.startswith("  k="))
+    sent = bytes.fromhex(payload.removeprefix("payload: "))
+    assert len(sent) == -(-len(bits) // 8)
+    assert f"{int.from_bytes(sent, 'big'):0{8 * len(sent)}b}" == bits.ljust(8 * len(sent), "0")
 
 
 def test_the_frame_of_the_document_decodes():
