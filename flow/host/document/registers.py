@@ -15,7 +15,7 @@ NOTE = (
     "w1c sticky, cleared by writing 1. A register without a name has that of its field. Addresses and bits that are "
     "not listed read 0 and ignore writes."
 )
-COLUMNS = "address, register", "bits", "field", "access", "reset", "meaning"
+COLUMNS = "address[bits] register", "field", "access", "reset", "meaning"
 
 
 @dataclass(frozen=True)
@@ -30,11 +30,10 @@ class Row:
         """Return the row's texts, in the order of COLUMNS."""
         f, high = self.field, self.field.lsb + self.field.width - 1
         register = f.register.partition("[")[0] + (f"[0..{self.more}]" if self.more else "")
+        bits = f"{high}:{f.lsb}" if f.width > 1 else f"{f.lsb}"
+        index = f" + {f.size} i " if self.more else ""
         return (
-            f"0x{f.address:02X}"
-            + (f" + {f.size} i" if self.more else "")
-            + (f" {register}" if register != f.name else ""),
-            f"{high}:{f.lsb}" if f.width > 1 else f"{f.lsb}",
+            f"0x{f.address:02X}{index}[{bits}]" + (f" {register}" if register != f.name else ""),
             f.name,
             f.access,
             f"{f.reset:#x}" if f.reset > 9 else f"{f.reset}",

@@ -61,7 +61,7 @@ def test_the_map_for_other_tools_has_every_field(tmp_path):
 def test_every_field_is_documented():
     text = (ROOT / "docs" / "registers.md").read_text()
     assert all(f"| {f.name} |" in text and f.description in text for f in register_map().fields)
-    assert "| 0x20 + 2 i trim[0..23] | 9:0 | trim |" in text
+    assert "| 0x20 + 2 i [9:0] trim[0..23] | trim |" in text
 
 
 def test_the_host_document_explains_every_field():
