@@ -5,15 +5,19 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from talbot.base.files import atomic, check_file
+from talbot.base.sensor import Varied, add_sensor, sensor_asked
 from talbot.models.digital.stream import decode_file
 from talbot.models.digital.stream.frame import DecodedFrame
-from talbot.models.parameters import ParameterError, TileParameters, read_sensor
+from talbot.models.digital.stream.header import StreamHeader
+from talbot.models.parameters import ParameterError, SensorParameters, TileParameters
+
+VARIED = Varied(used=("array.rows", "array.cols", "tile.rows", "tile.cols", "tile.order", "chip.lanes"))
 
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Arguments of `talbot decode`."""
     parser.add_argument("file", type=Path, help="stream.bin of a run, or captured from a chip")
-    parser.add_argument("--sensor", type=Path, help="sensor file of the chip, for its tile (default: the thesis's)")
+    add_sensor(parser)
     parser.add_argument("--out", type=Path, help="the .npz; further frames: X-1.npz ... (default: beside FILE)")
 
 
@@ -23,24 +27,41 @@ def run(options: Namespace) -> int:
     check_file("out", out)
     if out.exists() and options.file.exists() and out.samefile(options.file):
         raise ParameterError(f"out = {str(out)!r}: must not be the stream itself")
-    tile = read_sensor(options.sensor).tile if options.sensor else TileParameters()
-    frames = decode_to(options.file, out, tile)
+    sensor = sensor_asked(options, VARIED) if options.sensor else None  # without a file any size with the default tile
+    frames = decode_to(options.file, out, sensor.tile if sensor else TileParameters(), sensor)
     for frame in frames:
         print(describe(frame))
     print(f"written: {out}")
     return 0 if all(frame.complete and not frame.errors for frame in frames) else 1
 
 
-def decode_to(path: Path, out: Path, tile: TileParameters = TileParameters()) -> list[DecodedFrame]:
+def decode_to(
+    path: Path, out: Path, tile: TileParameters = TileParameters(), sensor: SensorParameters | None = None
+) -> list[DecodedFrame]:
     """Decode the stream in ``path`` and write each frame: ``out`` = x.npz, then x-1.npz, x-2.npz, each atomically.
 
-    Raises StreamError where there is no frame, OSError.
+    sensor: of the chip; None for any with this tile. Raises StreamError where there is no frame,
+    ParameterError for a frame of another sensor, OSError.
     """
     frames = decode_file(path, tile)
+    if sensor:
+        for frame in frames:
+            check_header(frame.header, sensor)
     for i, frame in enumerate(frames):
         with atomic(out.with_name(f"{out.stem}-{i}{out.suffix}") if i else out) as part:
             frame.save(part)
     return frames
+
+
+def check_header(header: StreamHeader, sensor: SensorParameters) -> None:
+    """Raise ParameterError where a frame is not of ``sensor``."""
+    for field, value, sent in (
+        ("array.rows", sensor.array.rows, header.rows),
+        ("array.cols", sensor.array.cols, header.cols),
+        ("chip.lanes", sensor.chip.lanes, header.lanes),
+    ):
+        if value != sent:
+            raise ParameterError(f"{field} = {value}: must be {sent}, as in the header of frame {header.frame_number}")
 
 
 def describe(frame: DecodedFrame) -> str:

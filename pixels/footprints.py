@@ -15,7 +15,7 @@ from talbot.base.files import staged
 from talbot.base.gds import write_gds
 from talbot.base.lef import write as lef_text
 from talbot.base.lef.read import Box
-from talbot.models.parameters import ArrayParameters, ChipParameters
+from talbot.base.sensor import Varied, add_sensor, sensor_asked
 from talbot.platforms.die import top_metal
 from talbot.platforms.layers import Layer
 from talbot.platforms.layout import layout_platform
@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 # Of LayoutPlatform.metals: of pins in the north and south, and in the west and east
 VERTICAL, ACROSS = 4, 3
 WIDE_UM = 0.4  # of a signal's pin
+FIELDS = {"rows": "array.rows", "cols": "array.cols", "lanes": "chip.lanes"}
+VARIED = Varied(used=(*FIELDS.values(), "array.pitch"))
 USES = {name: "GROUND" if name == "vssa" else "POWER" for name in SUPPLIES}
 
 
@@ -116,17 +118,14 @@ def write(out: str | Path, footprints: Iterable[Block], pdk: str, supply_um: flo
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Options of `talbot footprints`."""
     parser.add_argument("--pdk", default="sky130", help="process")
-    parser.add_argument("--rows", type=int, default=ArrayParameters().rows, help="pixels down")
-    parser.add_argument("--cols", type=int, default=ArrayParameters().cols, help="pixels across")
-    parser.add_argument("--lanes", type=int, default=ChipParameters().lanes, help="converters")
+    add_sensor(parser, FIELDS)
     parser.add_argument("--out", type=Path, required=True, help="folder of the files")
 
 
 def run(options: argparse.Namespace) -> int:
     """Write the footprints."""
-    sizes = AnalogSizes()
-    footprints = blocks(ArrayParameters(options.rows, options.cols), ChipParameters(options.lanes), sizes)
-    write(options.out, footprints, options.pdk, sizes.supply_um)
+    sensor, sizes = sensor_asked(options, VARIED, FIELDS), AnalogSizes()
+    write(options.out, blocks(sensor.array, sensor.chip, sizes), options.pdk, sizes.supply_um)
     return 0
 
 

@@ -2,21 +2,14 @@
 
 import argparse
 import sys
-from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
 
 from talbot.base.command import main
 from talbot.base.files import write
 from talbot.base.paths import RESULTS
-from talbot.models.parameters import (
-    DIVIDERS,
-    ArrayParameters,
-    ChipParameters,
-    ParameterError,
-    SensorParameters,
-    TileParameters,
-)
+from talbot.base.sensor import Varied, add_sensor, sensor_asked
+from talbot.models.parameters import SensorParameters
 from talbot.rtl.harness.translate import translate_component
 from talbot.rtl.lint import lint
 from talbot.rtl.tops import PARTS, TOPS, WRAPPERS, build_top
@@ -24,6 +17,29 @@ from talbot.rtl.tops import PARTS, TOPS, WRAPPERS, build_top
 WRAPPER = Path(__file__).parent / "tinytapeout"
 BUS = "tt_bytes"
 BY_NAME = *PARTS, *WRAPPERS
+# Options, and the fields of the sensor that they replace
+FIELDS = {
+    "rows": "array.rows",
+    "cols": "array.cols",
+    "lanes": "chip.lanes",
+    "tile-rows": "tile.rows",
+    "tile-cols": "tile.cols",
+    "order": "tile.order",
+    "divider": "chip.divider",
+    "n-frac": "chip.n_frac",
+    "iterations": "chip.cordic_iterations",
+}
+VARIED = Varied(used=tuple(FIELDS.values()))
+# Wrappers connect buses of the standard sensor's widths
+WRAPPED = {
+    "tt_um_talbot_divider": Varied(
+        ("chip.cordic_iterations",), {"chip.n_frac": "tt_um_talbot_divider.v connects a result of this width"}
+    ),
+    "tt_um_talbot_chip": Varied(
+        ("array", "tile", "chip.divider", "chip.n_frac", "chip.cordic_iterations"),
+        {"chip.lanes": "tt_um_talbot_chip.v connects this number of comparators"},
+    ),
+}
 
 
 def translate(name: str, sensor: SensorParameters) -> str:
@@ -61,7 +77,6 @@ targets:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of `talbot verilog`."""
-    sensor = SensorParameters()
     parser.add_argument(
         "--top",
         action="append",
@@ -72,35 +87,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", type=Path, default=RESULTS / "verilog", help="folder of the files")
     parser.add_argument("--core", action="store_true", help="also <top>.core, for FuseSoC")
     parser.add_argument("--check", action="store_true", help="lint with Verilator, and Icarus and Yosys if installed")
-    parser.add_argument("--rows", type=int, default=sensor.array.rows, help="pixels down")
-    parser.add_argument("--cols", type=int, default=sensor.array.cols, help="pixels across")
-    parser.add_argument("--lanes", type=int, default=sensor.chip.lanes, help="converters")
-    parser.add_argument("--tile-rows", type=int, default=sensor.tile.rows, help="pixels down a tile, 1..4")
-    parser.add_argument("--tile-cols", type=int, default=sensor.tile.cols, help="pixels across a tile, 1..6")
-    parser.add_argument(
-        "--order", help="pixel type of each position in a tile, row by row: 3,0,2,1 (default: the thesis's)"
-    )
-    parser.add_argument("--divider", default=sensor.chip.divider, help=f"one of {', '.join(DIVIDERS)}")
-    parser.add_argument("--n-frac", type=int, default=sensor.chip.n_frac, help="fraction bits")
-    parser.add_argument("--iterations", type=int, default=sensor.chip.cordic_iterations, help="of CORDIC")
+    add_sensor(parser, FIELDS)
 
 
 def sensor_of(options: argparse.Namespace) -> SensorParameters:
     """Return the sensor of the command line's options. Raises ParameterError."""
-    return SensorParameters(
-        tile=_tile(options),
-        array=ArrayParameters(options.rows, options.cols),
-        chip=ChipParameters(options.lanes, options.divider, options.n_frac, options.iterations),
-    )
-
-
-def _tile(options: argparse.Namespace) -> TileParameters:
-    tile = TileParameters.small(options.tile_rows, options.tile_cols)
-    if options.order is None:
-        return tile
-    if not all(word.strip().isdecimal() for word in options.order.split(",")):
-        raise ParameterError(f"order = {options.order!r}: must be a permutation of 0..{tile.n_types - 1}, as 3,0,2,1")
-    return replace(tile, order=tuple(int(word) for word in options.order.split(",")))
+    sensor = sensor_asked(options, VARIED, FIELDS)
+    for top in options.top or ():
+        WRAPPED.get(top, Varied()).check(sensor)
+    return sensor
 
 
 def run(options: argparse.Namespace) -> int:

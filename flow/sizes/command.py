@@ -10,13 +10,12 @@ from talbot.base.command import Parser
 from talbot.base.files import insert, marked, staged
 from talbot.base.paths import RESULTS
 from talbot.base.progress import each
+from talbot.base.sensor import add_sensor
 from talbot.rtl import export
 from talbot.rtl.verilog import export_verilog
 
 from .measure import measure
 from .table import blocks_table, markdown
-
-SENSOR = "rows", "cols", "lanes", "divider", "n_frac", "iterations"
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -24,20 +23,23 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("tops", nargs="*", help="tops to measure; default: every one")
     parser.add_argument("--out", type=Path, default=RESULTS / "sizes", help="folder of sizes.json and sizes.md")
     parser.add_argument("--document", type=Path, help="also put the blocks' table between the marks of this file")
-    for name in SENSOR:
-        parser.add_argument(f"--{name.replace('_', '-')}", help="of the sensor: see talbot verilog --help")
+    add_sensor(parser, export.FIELDS)
 
 
 def run(options: Namespace) -> int:
     """Synthesize the tops, write and print their table."""
     if options.document:
         marked(options.document, "sizes")
-    sensor = [f"--{name.replace('_', '-')}={value}" for name in SENSOR if (value := getattr(options, name))]
+    words = [
+        f"--{name}={value}"
+        for name in ("sensor", *export.FIELDS)
+        if (value := getattr(options, name.replace("-", "_"))) is not None
+    ]
     asked = Parser(prog="talbot sizes")
     export.add_arguments(asked)
-    export.sensor_of(asked.parse_args([*(f"--top={top}" for top in options.tops), *sensor]))  # bad input: said here
+    export.sensor_of(asked.parse_args([*(f"--top={top}" for top in options.tops), *words]))  # bad input: said here
     with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
-        tops = export_verilog(Path(folder), options.tops, sensor)
+        tops = export_verilog(Path(folder), options.tops, words)
         sizes = [measure(path, path.stem) for path in each(tops, "top", lambda path: path.stem)]
     with staged(options.out) as part:
         (part / "sizes.json").write_text(

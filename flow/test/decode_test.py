@@ -34,6 +34,23 @@ def test_decodes_to_a_file(tmp_path, capsys, stream):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["d.npz", "s.bin"]
 
 
+@pytest.mark.parametrize(
+    "text, said",
+    [
+        ("", "array.rows = 384: must be 12, as in the header of frame 9"),
+        ("array.rows = 12\narray.cols = 60", "array.cols = 60: must be 30, as in the header"),
+        ("array.rows = 12\narray.cols = 30\nchip.lanes = 2", "chip.lanes = 2: must be "),
+        ("tile.rows = 2\ntile.cols = 3", "tile = 2 x 3: must be 4 x 6, as in the header"),
+    ],
+)
+def test_a_stream_of_another_sensor_is_refused(tmp_path, capsys, stream, text, said):
+    (tmp_path / "s.bin").write_bytes(stream[1])
+    (tmp_path / "odd.toml").write_text(text)
+    assert main(decode, [str(tmp_path / "s.bin"), f"--sensor={tmp_path / 'odd.toml'}"]) == 2
+    err = capsys.readouterr().err
+    assert said in err and err.count("\n") == 1 and not [*tmp_path.glob("*.npz")]
+
+
 def test_every_frame_has_its_file(tmp_path, stream):
     (tmp_path / "s.bin").write_bytes(stream[1] * 3)
     assert len(decode.decode_to(tmp_path / "s.bin", tmp_path / "d.npz")) == 3

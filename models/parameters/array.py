@@ -28,3 +28,8 @@ class ArrayParameters:
         check_int("rows", self.rows, 1, ROWS_MAX)
         check_int("cols", self.cols, 1, COLS_MAX)
         check_real("pitch", self.pitch, 1e-7, 1e-3)
+
+    @property
+    def pitch_um(self) -> float:
+        """Pixel pitch in um, to a picometre."""
+        return round(1e6 * self.pitch, 6)

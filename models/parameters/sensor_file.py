@@ -127,6 +127,28 @@ def keys(kind: type[Any] = SensorParameters, prefix: str = "") -> dict[str, str]
     return meanings
 
 
+def values(part: Any, prefix: str = "") -> dict[str, Any]:
+    """Values of the fields that are no tables.
+
+    Parameters
+    ----------
+    part : SensorParameters or a part of it
+        The sensor.
+    prefix : str
+        The part's name with a dot behind it, '' for the whole.
+
+    Returns
+    -------
+    dict of str to any
+        Full name ('optics.camera.focus') to value.
+    """
+    out: dict[str, Any] = {}
+    for item in fields(part):
+        name, value = f"{prefix}{item.name}", getattr(part, item.name)
+        out |= values(value, f"{name}.") if item.name in _parts(type(part)) else {name: value}
+    return out
+
+
 def nearest(key: str, known: Iterable[str], cutoff: float = 0.7) -> str:
     """Return the hint of an error for an unknown key.
 

@@ -6,6 +6,7 @@ import re
 import shutil
 import subprocess
 import sys
+from dataclasses import replace
 
 import pytest
 
@@ -13,7 +14,7 @@ from talbot.base.command import main
 from talbot.base.paths import ROOT
 from talbot.base.tools import finish
 from talbot.base.verilator import verilator_folder
-from talbot.models.parameters import ArrayParameters, ChipParameters, ParameterError, SensorParameters
+from talbot.models.parameters import ArrayParameters, ChipParameters, ParameterError, SensorParameters, TileParameters
 from talbot.rtl import export
 from talbot.rtl.export import translate
 from talbot.rtl.harness.translate import tidy
@@ -92,6 +93,13 @@ def test_fusesoc_reads_and_lints_the_core(tmp_path):
     assert "talbot:asp:AmpCtrl:" in done.stdout + done.stderr
 
 
+def test_a_small_tile_is_lint_clean(tmp_path):
+    """Its types are fewer than the mask's bits."""
+    path = tmp_path / "ReadoutSeq.sv"
+    path.write_text(translate("ReadoutSeq", replace(SMALL, tile=TileParameters.small(2, 3))))
+    assert "Verilator clean" in lint(path, "ReadoutSeq")
+
+
 @pytest.mark.parametrize("name", TOPS)
 def test_lint_clean(exported, name):
     assert "Verilator clean" in lint(exported / f"{name}.sv", name)
@@ -113,6 +121,26 @@ def test_files_are_written_atomically(tmp_path, capsys):
     assert main(export, ["--top", "RegFile", "--out", str(tmp_path), "--lanes", "3"]) == 2
     assert "lanes = 3: must be one of" in capsys.readouterr().err
     assert [p.name for p in tmp_path.iterdir()] == ["RegFile.sv"]
+
+
+def test_a_sensor_file_is_its_options(tmp_path):
+    (tmp_path / "odd.toml").write_text(
+        'array.rows = 9\ntile.rows = 2\ntile.cols = 3\ntile.order = [5, 0, 4, 1, 3, 2]\nchip.divider = "cordic"\n'
+    )
+    words = "--rows=9 --tile-rows=2 --tile-cols=3 --order=5,0,4,1,3,2 --divider=cordic".split()
+    for folder, said in (("file", [f"--sensor={tmp_path / 'odd.toml'}"]), ("options", words)):
+        assert main(export, ["--top=RegFile", "--top=ReadoutSeq", f"--out={tmp_path / folder}", *said]) == 0
+    for name in ("RegFile.sv", "ReadoutSeq.sv"):
+        assert (tmp_path / "file" / name).read_text() == (tmp_path / "options" / name).read_text()
+
+
+@pytest.mark.parametrize(
+    "top, option, field",
+    [("tt_um_talbot_chip", "lanes", "chip.lanes"), ("tt_um_talbot_divider", "n-frac", "chip.n_frac")],
+)
+def test_a_wrapper_has_the_widths_of_the_standard_sensor(top, option, field, tmp_path, capsys):
+    assert main(export, [f"--top={top}", f"--{option}=4", "--out", str(tmp_path)]) == 2
+    assert f"error: {field} = 4: must be 8 ({top}.v connects" in capsys.readouterr().err
 
 
 def test_unknown_top():
