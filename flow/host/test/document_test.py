@@ -7,6 +7,8 @@ from talbot.base.page.check import faults
 from talbot.base.paths import ROOT
 from talbot.base.tools import run
 from talbot.commands import main
+from talbot.flow.host.document import command
+from talbot.flow.host.document.c_header import c_header
 from talbot.flow.host.document.command import DOCUMENT, HEADER
 from talbot.flow.host.document.exports import HEADER as HEADER_OF_STRUCTS
 from talbot.flow.host.document.exports import IPXACT, PAGE, export
@@ -28,6 +30,30 @@ def test_the_committed_documents_are_current(tmp_path, capsys):
     for name in WRITTEN:
         assert (tmp_path / name).read_text() == (ROOT / "docs" / name).read_text(), name
     assert (tmp_path / HEADER.name).read_text() == HEADER.read_text()
+
+
+def test_the_documents_of_another_sensor_have_its_sizes(tmp_path, monkeypatch):
+    (tmp_path / "odd.toml").write_text(
+        "array.rows = 40\narray.cols = 60\ntile.rows = 2\ntile.cols = 3\nchip.lanes = 4\n"
+    )
+    monkeypatch.setattr(command, "RESULTS", tmp_path)
+    assert main(["document", f"--sensor={tmp_path / 'odd.toml'}"]) == 0
+    folder = tmp_path / "document" / "odd"
+    header, page = (folder / HEADER.name).read_text(), (folder / "host.md").read_text()
+    for name, value in (
+        ("ROWS", "0x28u"),
+        ("COLS", "0x3cu"),
+        ("LANES", "0x4u"),
+        ("TILE_ROWS", "0x2u"),
+        ("ROW1", "0x13u"),
+    ):
+        assert f"#define ASP_{name}_DEFAULT {value}\n" in header
+    assert "has 40 x 60 pixels and 4 lanes" in page and "| 39 | 19 | 2 | 0 |" in page
+    assert "| rows | ro | 0..65535 | 0x28 |" in (folder / "registers.md").read_text()
+    assert "'h28" in (folder / "registers" / IPXACT).read_text()
+    for link in re.findall(r"\]\(([^)#:]+)", page):
+        assert (folder / link).exists(), link
+    assert HEADER.read_text() == c_header(register_map())
 
 
 def test_a_wrong_place_is_refused_before_anything_is_written(tmp_path, capsys):

@@ -131,6 +131,21 @@ class RegisterMap:
         """Fields of the register `state`."""
         return tuple(f for f in self.fields if f.register == "state")
 
+    def with_resets(self, resets: Mapping[str, int]) -> "RegisterMap":
+        """The same map with other values after reset.
+
+        Parameters
+        ----------
+        resets : mapping of str to int
+            Key to value, as `array_resets` has them.
+
+        Returns
+        -------
+        RegisterMap
+            The map of a chip of another sensor.
+        """
+        return RegisterMap(tuple(replace(f, reset=resets.get(f.key, f.reset)) for f in self.fields))
+
     def image(self, fields: Iterable[Field], values: Mapping[str, int] | None = None) -> dict[int, int]:
         """Contents of the bytes that hold some fields.
 
@@ -194,13 +209,29 @@ def _fields(register: "RegNode") -> Iterator[Field]:
         )
 
 
-def compiled() -> "AddrmapNode":
-    """Compile asp_chip.rdl: the chip's address map, for exporters of other formats."""
+def compiled(resets: Mapping[str, int] | None = None) -> "AddrmapNode":
+    """Compile asp_chip.rdl: the chip's address map, for exporters of other formats.
+
+    Parameters
+    ----------
+    resets : mapping of str to int, optional
+        Values after reset that replace those of the source, by field.
+
+    Returns
+    -------
+    AddrmapNode
+        The chip.
+    """
     from systemrdl.compiler import RDLCompiler  # imported where it is needed: it is slow
 
     compiler = RDLCompiler()
     compiler.compile_file(str(SOURCE))
-    return compiler.elaborate().top
+    chip = compiler.elaborate().top
+    for register in chip.registers(unroll=True):
+        for node in register.fields():
+            if resets and node.inst_name in resets:
+                node.inst.properties["reset"] = resets[node.inst_name]
+    return chip
 
 
 @cache
