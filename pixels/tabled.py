@@ -9,12 +9,14 @@ import numpy as np
 
 from talbot.base.cache import cached, digest
 from talbot.base.paths import BUILD
+from talbot.base.sensor import Varied
 from talbot.base.sources import code
 from talbot.models.parameters import ParameterError, PixelType, SensorParameters, check_choice, drawn_curves
 from talbot.models.pixel import TableResponse
 from talbot.platforms.materials import refractive_index
 
 from .designs import DRAWN, IDEAL, PIXELS, gratings
+from .drawn import DRAWN_PITCH
 from .optics.design import REACHED, Design, measure
 from .optics.fit import Fit
 from .optics.response import bare_share
@@ -22,6 +24,7 @@ from .optics.solve import Floats
 from .optics.table import ACROSS_DEGREES, along_degrees, angle_table
 
 STORE = BUILD / "pixel" / "tables"
+DRAWN_ALONE = Varied(("tile", "optics"), DRAWN_PITCH)
 SOURCE = "PIXEL="  # of a response, and the pixel behind it
 
 
@@ -36,6 +39,8 @@ def tabled(sensor: SensorParameters, pixel: str, note: Callable[[str], None] = l
     check_choice("pixel", pixel, PIXELS)
     if pixel == IDEAL:
         return sensor
+    if pixel in DRAWN:
+        DRAWN_ALONE.check(sensor)
     for beta in _betas(sensor, pixel):
         if pixel not in DRAWN:
             _table(pixel, beta, note)

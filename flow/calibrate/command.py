@@ -9,11 +9,11 @@ from talbot.base.files import check_folder, staged
 from talbot.base.paths import results_of
 from talbot.base.progress import Steps
 from talbot.flow.frame.arguments import Number
-from talbot.flow.frame.command import add_frame_arguments, name_of, request_of, typed_of
+from talbot.flow.frame.command import OF_SENSOR, add_frame_arguments, name_of, request_of, typed_of
 from talbot.flow.frame.reading import WHOLE
 
 SCENE = "motorcycle"
-SIDE = "96"  # pixels: 16 x 24 of each type
+SIDES = {"rows": "96", "cols": "96"}  # pixels without a sensor file: 16 x 24 of each type
 STEPS = ("bench", "fit", "picture", "report")
 HOLES = Number("holes", "positions of the hole along the pupil's diameter", 5, 31, "13")
 
@@ -23,7 +23,6 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--scene", default=SCENE, help="of the picture that it is tried on")
     parser.add_argument("--depth", help="depth file for --scene (models/scene/README.md)")
     add_frame_arguments(parser, WHOLE | {"mode": "raw", "calibration": None})
-    parser.set_defaults(rows=SIDE, cols=SIDE)
     parser.add_argument("--out", help="folder for the results (default: build/calibrate)")
     HOLES.add(parser)
 
@@ -34,9 +33,12 @@ def run(options: Namespace) -> int:
     from .measure import calibrate
 
     holes = HOLES.value(options)
-    typed = typed_of(options, add_arguments)
+    typed = typed_of(options, add_arguments, OF_SENSOR | SIDES)
     standard = list(typed.items()) == [("scene", SCENE)]
     options.out = options.out or results_of("calibrate") / ("" if standard else name_of(typed))
+    if not options.sensor:
+        for name, side in SIDES.items():
+            setattr(options, name, getattr(options, name) or side)
     frame_request = request_of(options)
     check_folder("out", frame_request.folder, page.NAMES)
     with Steps(STEPS, lines=True) as progress:

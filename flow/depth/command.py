@@ -20,14 +20,15 @@ FILE = "or of the sensor file"
 F_MOD_HZ = Number("f_mod", "modulation frequency in Hz", 1e5, 1e9, note=f"{F_MOD:g}, {FILE}", kind=float)
 CONTRASTS = Number("contrast", "demodulation contrast", 0.01, 1, note=f"{CONTRAST:g}, {FILE}", kind=float)
 AMBIENTS = Number("ambient", "ambient light, of white", 0, 10, note=f"{AMBIENT:g}, {FILE}", kind=float)
-CODE = Number("code", "chips of a code that modulates a second exposure, 2**n - 1 (0: none)", 0, 4095, "0")
-CHIP_RATE = Number("chip_rate", "of the code, chips a second", 1e6, 1e9, "250e6", kind=float)
+CODE = Number("code", "chips of a second exposure's code, 2**n - 1 (0: none)", 0, 4095, note=f"0, {FILE}")
+CHIP_RATE = Number("chip_rate", "of the code, chips a second", 1e6, 1e9, note=f"250e6, {FILE}", kind=float)
+GATE_M = 2.0
 GATE = Number(
     "gate",
     "depth of the code's first tap in m; nearer than a chip before it nothing is seen",
     0,
     100,
-    "2.0",
+    note=f"{GATE_M:g}, {FILE}",
     kind=float,
 )
 
@@ -53,7 +54,8 @@ def run(options: Namespace) -> int:
     ours = replace(standard, f_mod=F_MOD, contrast=CONTRAST, ambient_current=AMBIENT * standard.white_current)
     default = replace(STANDARD, optics=replace(STANDARD.optics, camera=LIFE_SIZE), electrical=ours)
     sensor = asked_sensor(options, default)
-    e, changes = sensor.electrical, {}
+    e = sensor.electrical
+    coded, changes = _code(options, e), {"code": 0}  # a sine modulates the first exposures
     if options.f_mod is not None:
         changes["f_mod"] = F_MOD_HZ.value(options)
     if options.contrast is not None:
@@ -63,7 +65,8 @@ def run(options: Namespace) -> int:
     camera = camera_of(options, sensor.optics.camera)
     sensor = replace(sensor, optics=replace(sensor.optics, camera=camera), electrical=replace(e, **changes))
     frame_request, typed = reading.asked(options, "depth", add_arguments, sensor)
-    prior, code = prior_asked(options, frame_request), _code(options, frame_request.sensor.electrical)
+    prior = prior_asked(options, frame_request)
+    code = replace(frame_request.sensor.electrical, **coded) if coded["code"] else None
 
     def found(note: reading.Note) -> Depth:
         frames = capture(frame_request, note, options.golden, code, options.direct)
@@ -72,11 +75,15 @@ def run(options: Namespace) -> int:
     return reading.run(frame_request, typed, STEPS, found, page, _print)
 
 
-def _code(options: Namespace, electrical: ElectricalParameters) -> ElectricalParameters | None:
-    """What modulates the light of the coded frames, None without any. Raises ParameterError."""
+def _code(options: Namespace, file: ElectricalParameters) -> dict[str, Any]:
+    """Fields of the code of the second exposure: of the options, else of the sensor ``file``. Raises ParameterError."""
     chips, rate, gate = (number.value(options) for number in (CODE, CHIP_RATE, GATE))
-    coded = replace(electrical, code=chips, chip_rate=rate, code_delay=2 * gate / SPEED_OF_LIGHT)
-    return coded if chips else None
+    usual = file if file.code else replace(STANDARD.electrical, code_delay=2 * GATE_M / SPEED_OF_LIGHT)
+    return {
+        "code": usual.code if chips is None else chips,
+        "chip_rate": usual.chip_rate if rate is None else rate,
+        "code_delay": usual.code_delay if gate is None else 2 * gate / SPEED_OF_LIGHT,
+    }
 
 
 def _print(s: dict[str, Any], folder: Path) -> None:

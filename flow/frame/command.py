@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from talbot.base.cache import digest
 from talbot.base.paths import results_of
 from talbot.base.progress import Steps
+from talbot.base.sensor import Varied
 from talbot.flow.simulate.frame import WAVES
 from talbot.models.parameters import (
     COLS_MAX,
@@ -19,6 +20,7 @@ from talbot.models.parameters import (
     LANES,
     MODES,
     ROWS_MAX,
+    STANDARD,
     CameraParameters,
     ParameterError,
     SensorParameters,
@@ -38,6 +40,13 @@ NAME_MAX = 120  # characters of a folder's name
 # Options that a sensor file has, too, and their texts without one
 OF_SENSOR = {"rows": "384", "cols": "384", "lanes": "8", "converter": "typical"}
 VIEWS = "384, or of a light field's views"
+MEASURED = "afe = circuit has what ngspice measured of the drawn circuit"
+OF_CIRCUIT = Varied(
+    ("array.rows", "array.cols", "tile", "optics"),
+    {"converter": MEASURED}
+    | {f"electrical.{name}": MEASURED for name in ("full_well", "swing", "read_noise", "dark_current", "gain_fpn")}
+    | {"electrical.difference_gain": MEASURED, "chip.f_clk": MEASURED, "array.pitch": MEASURED},
+)
 NUMBERS = (
     Number("views", "of the capture along the pupil's diameter", 1, 31, "auto", "auto", "as many as it needs"),
     Number("threshold", "edge mode: |code| below this is left out", 0, 127, "10"),
@@ -142,15 +151,20 @@ def run(options: Namespace) -> int:
     return 1 if summary["stream_mismatches"] or summary["decoded_mismatches"] else 0
 
 
-def typed_of(options: Namespace, add_arguments: Callable[[ArgumentParser], None]) -> dict[str, Any]:
-    """Return the scene, then every argument that is not its default; not the folder."""
+def typed_of(
+    options: Namespace, add_arguments: Callable[[ArgumentParser], None], without_file: Mapping[str, str] = OF_SENSOR
+) -> dict[str, Any]:
+    """Return the scene, then every argument that is not its default; not the folder.
+
+    without_file: values of options that a sensor file has, too, where there is none.
+    """
     parser = ArgumentParser()
     add_arguments(parser)
     defaults, chosen = vars(parser.parse_args([])), vars(options)
-    without_file = {} if chosen["sensor"] else OF_SENSOR
+    usual = {} if chosen["sensor"] else without_file
 
     def is_told(name: str) -> bool:
-        default = without_file.get(name) if defaults[name] is None else defaults[name]
+        default = usual.get(name) if defaults[name] is None else defaults[name]
         return name == "scene" or name != "out" and chosen[name] not in (None, default)
 
     return {name: chosen[name] for name in defaults if is_told(name)}
@@ -209,6 +223,7 @@ def request_of(a: Namespace, sensor: SensorParameters | None = None, sequence: b
         if "converter" in typed:
             raise ParameterError(f"converter = {a.converter!r}: must be left out with afe = circuit, which has its own")
         plain["converter"] = "circuit"
+        OF_CIRCUIT.check(sensor, replace(STANDARD, electrical=drawn_electrical(STANDARD.electrical)))
         sensor = replace(sensor, electrical=drawn_electrical(sensor.electrical))
     mask = text.pixel_types(a.types)
     window = partial(text.window, a.window)

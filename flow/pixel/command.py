@@ -5,7 +5,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from talbot.base.progress import Steps
-from talbot.models.parameters import check_choice
+from talbot.base.sensor import Varied, add_sensor, labelled, sensor_asked
+from talbot.models.parameters import ParameterError, check_choice
+from talbot.pixels.optics.geometry import PITCHES_UM
 
 if TYPE_CHECKING:
     from talbot.pixels.optics.geometry import PixelGeometry
@@ -17,9 +19,12 @@ NUMBERS = {
     "fill": ("share of a period that the upper lines cover", 0, 1),
     "analyzer_fill": ("share of a period that the lower lines cover", 0, 1),
     "shift": ("of the lower lines against the upper ones, in periods", -1, 1),
-    "pitch_um": ("pitch of the pixels", 1, 100),
+    "pitch_um": ("pitch of the pixels", *PITCHES_UM),
 }
-PITCH_UM = 10.0  # where none is asked for
+VARIED = Varied(
+    used=("tile", "array.pitch", "optics.camera", "optics.views"),
+    limits={"array.pitch": (1e-6 * PITCHES_UM[0], 1e-6 * PITCHES_UM[1])},
+)
 WAVELENGTH_UM = 0.55
 
 
@@ -31,7 +36,8 @@ def add_arguments(parser: ArgumentParser) -> None:
     note = "of one geometry, which is solved in place of the search"
     numbers = {name: f"{said}, {low:g}..{high:g}" for name, (said, low, high) in NUMBERS.items()}
     numbers["period_um"] = f"{NUMBERS['period_um'][0]}, 0.1..half of the pitch"
-    numbers["pitch_um"] += f" (default: {PITCH_UM:g})"
+    numbers["pitch_um"] += " (default: the sensor's)"
+    add_sensor(parser)
     for name, said in (METALS | numbers).items():
         parser.add_argument(f"--{name.replace('_', '-')}", help=f"{said}, {note}")
     parser.add_argument("--wavelength-um", help=f"of light, 0.35..1, {note} (default: {WAVELENGTH_UM})")
@@ -50,21 +56,25 @@ def run(options: Namespace) -> int:
     from .job import STEPS, make
     from .search import offered
 
+    sensor = sensor_asked(options, VARIED)
+    for kind in sensor.tile.types:
+        if kind.beta == 0:
+            raise ParameterError("beta = 0: must be greater than 0, for gratings")
     check_choice("kind", options.kind, (*KINDS, "all"))
     stack = optical_stack(options.pdk, options.heights)
-    if chosen := _one(options):
-        out = options.out or RESULTS / "pixel" / "one"
+    if chosen := _one(options, sensor.array.pitch_um):
+        out = options.out or RESULTS / "pixel" / labelled("one", options)
         _print_one(one.make(*chosen, out), out)
         return 0
-    kinds = offered(stack, KINDS if options.kind == "all" else (options.kind,))
-    out = options.out or RESULTS / "pixel" / options.pdk
+    kinds = offered(stack, KINDS if options.kind == "all" else (options.kind,), sensor.array.pitch_um)
+    out = options.out or RESULTS / "pixel" / labelled(options.pdk, options)
     with Steps(STEPS, lines=True) as steps:
-        summary = make(stack, kinds, out, steps.note)
+        summary = make(stack, kinds, sensor, out, steps.note)
     _print(summary, out)
     return 0 if any(row["reached"] for row in summary["betas"]) else 1
 
 
-def _one(options: Namespace) -> "tuple[PixelGeometry, float] | None":
+def _one(options: Namespace, pitch_um: float) -> "tuple[PixelGeometry, float] | None":
     """The geometry and the wavelength in um; None where no option names either. Raises ParameterError."""
     from talbot.flow.frame.arguments import real
     from talbot.pixels.optics.geometry import PixelGeometry
@@ -74,6 +84,7 @@ def _one(options: Namespace) -> "tuple[PixelGeometry, float] | None":
         return None
     kind = "amplitude" if options.kind == "all" else options.kind
     values: dict[str, Any] = {"analyzer": None} if kind == "interleaved" else {}
+    values |= {"pitch_um": pitch_um}
     values |= {name: real(name, text, *NUMBERS[name][1:]) if name in NUMBERS else text for name, text in given.items()}
     geometry = PixelGeometry(options.pdk, kind, heights=options.heights, **values)
     return geometry, real("wavelength_um", options.wavelength_um or str(WAVELENGTH_UM), 0.35, 1)

@@ -11,12 +11,12 @@ from .search import Plan
 from .types import nearest
 
 
-def write_tile(plan: Plan, tile: TileParameters, gds: Path) -> str:
+def write_tile(plan: Plan, tile: TileParameters, gds: Path, pitch: float = ArrayParameters.pitch) -> str:
     """Write ``gds``; returns "", or why the tile cannot be drawn."""
     try:
         designs = [plan.designs[nearest(plan, kind.beta)] for kind in tile.types]
         pixels = tuple(pixel_layout(d.geometry, kind, d.fit) for kind, d in zip(tile.types, designs, strict=True))
-        made = ArrayLayout(ArrayParameters(tile.rows, tile.cols), tile, pixels)
+        made = ArrayLayout(ArrayParameters(tile.rows, tile.cols, pitch), tile, pixels)
         layout = db.Layout()
         layout.dbu = 0.001
         write_gds(layout, gds, draw_tile(layout, made, draw_pixels(layout, made)))

@@ -34,16 +34,17 @@ class Kept:
     seconds: float
 
 
-def errors(geometry: PixelGeometry, wavelength_um: float) -> list[Kept]:
+def errors(geometry: PixelGeometry, wavelength_um: float, optics: OpticsParameters) -> list[Kept]:
     """All rows of a geometry: a job. Angles are in the plane across the lines.
 
     orders: of a solution at `DEGREES`, against `ORDERS_ALL`. wavelengths: spread evenly over the filter's `BAND_UM`,
     their mean. degrees: step of a table that is cubic between its angles, at all angles `STEP_LEAST` apart. angles in
-    a view: Gaussian nodes in the cell of each of a default lens's views, the mean over the cell. samples: of the field
-    in scalar waves, the share that leaves a pixel (amplitude gratings alone).
+    a view: Gaussian nodes in the cell of each view of the lens of ``optics``, the mean over the cell. samples: of the
+    field in scalar waves, the share that leaves a pixel (amplitude gratings alone).
     """
-    rows = [_orders, _wavelengths, _angles, *([_samples] if geometry.kind == "amplitude" else [])]
-    return [row for each in rows for row in each(geometry, wavelength_um)]
+    rows = [*_orders(geometry, wavelength_um), *_wavelengths(geometry, wavelength_um)]
+    rows += _angles(geometry, wavelength_um, optics)
+    return rows + ([*_samples(geometry, wavelength_um)] if geometry.kind == "amplitude" else [])
 
 
 def _orders(geometry: PixelGeometry, wavelength_um: float) -> Iterator[Kept]:
@@ -61,7 +62,7 @@ def _wavelengths(geometry: PixelGeometry, wavelength_um: float) -> Iterator[Kept
     return _rows("wavelengths", BAND_KEPT, solved(BAND_ALL), solved)
 
 
-def _angles(geometry: PixelGeometry, wavelength_um: float) -> Iterator[Kept]:
+def _angles(geometry: PixelGeometry, wavelength_um: float, optics: OpticsParameters) -> Iterator[Kept]:
     def table(step: float) -> Floats:
         return respond(geometry, np.deg2rad(_spread(step)), wavelength_um, orders=ORDERS).unpolarized[0]
 
@@ -72,7 +73,6 @@ def _angles(geometry: PixelGeometry, wavelength_um: float) -> Iterator[Kept]:
 
     yield from _rows("degrees", STEPS_KEPT, truth, read)
     between = CubicSpline(np.deg2rad(fine), truth, axis=1)
-    optics = OpticsParameters()
     edges = optics.nu_max * np.linspace(-1, 1, optics.views + 1)
 
     def cells(nodes: int) -> tuple[Floats, Floats]:

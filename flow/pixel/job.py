@@ -13,7 +13,7 @@ from talbot.base.files import check_folder, staged
 from talbot.base.jobs import Job, run
 from talbot.base.paths import BUILD
 from talbot.base.records import from_json
-from talbot.models.parameters import PixelType, TileParameters
+from talbot.models.parameters import OpticsParameters, PixelType, SensorParameters
 from talbot.pixels.optics.design import Design
 from talbot.pixels.optics.solve import Floats
 from talbot.platforms.optics import OpticalStack, tables
@@ -39,25 +39,34 @@ STORE = BUILD / "pixel" / "solved"
 
 
 def make(
-    stack: OpticalStack, kinds: Sequence[str], out: Path, note: Callable[[str], None] = lambda text: None
+    stack: OpticalStack,
+    kinds: Sequence[str],
+    sensor: SensorParameters,
+    out: Path,
+    note: Callable[[str], None] = lambda text: None,
 ) -> dict[str, Any]:
-    """Find the pixels of ``stack``, write all about them into ``out``; returns the summary. Raises ParameterError."""
+    """Find the pixels of ``stack`` for ``sensor``, write all about them into ``out``; returns the summary.
+
+    Raises ParameterError.
+    """
     from . import page  # Matplotlib: not before it is needed
 
     start = perf_counter()
     check_folder("out", out, page.NAMES)
-    types = TileParameters().types
+    types, pitch_um = sensor.tile.types, sensor.array.pitch_um
     betas = sorted({kind.beta for kind in types})
-    found = search(stack, betas, kinds, STORE, note)
+    found = search(stack, betas, kinds, STORE, note, pitch_um)
     note("curves")
     curves = _curves(found.plans[0])
     plan = replace(found.plans[0], designs={beta: one.exact for beta, one in curves.items()})
     found = replace(found, plans=(plan, *found.plans[1:]))
     others = [name for name in tables(stack.process) if name != stack.heights]
-    wrong, rays, raised = _compared(plan, others)
+    wrong, rays, raised = _compared(plan, others, sensor.optics)
     note("report")
     summary = {
         "process": stack.process,
+        "pitch_um": pitch_um,
+        "tile": [sensor.tile.rows, sensor.tile.cols],
         "heights": stack.heights,
         "kind": plan.kind,
         "wavelength_um": plan.wavelength_um,
@@ -68,8 +77,8 @@ def make(
         "wall_s": perf_counter() - start,
     }
     with staged(out, page.NAMES) as folder:
-        summary["not_drawn"] = write_tile(plan, TileParameters(), folder / "tile.gds")
-        page.write(folder, summary, found, curves, raised, wrong, rays)
+        summary["not_drawn"] = write_tile(plan, sensor.tile, folder / "tile.gds", sensor.array.pitch)
+        page.write(folder, sensor.tile, summary, found, curves, raised, wrong, rays)
         names = [name_of(kind) for kind in types]
         axes = axes_of(curves[betas[0]].response)
         shares = stacked(types, plan, curves)
@@ -91,11 +100,14 @@ def _curves(plan: Plan) -> dict[float, Measured]:
 
 
 def _compared(
-    plan: Plan, others: Sequence[str]
+    plan: Plan, others: Sequence[str], optics: OpticsParameters
 ) -> tuple[dict[float, list[Kept]], dict[float, Floats], dict[str, dict[float, Design]]]:
     """Of every design: errors against run time, rays around the axis, and the other tables of heights."""
     chosen = [(beta, (design.geometry, plan.wavelength_um)) for beta, design in plan.designs.items()]
-    jobs = [Job(f"errors-{beta:g}", errors, arguments, arguments) for beta, arguments in chosen]
+    jobs = [
+        Job(f"errors-{beta:g}", errors, (*arguments, optics), (*arguments, optics.nu_max, optics.views))
+        for beta, arguments in chosen
+    ]
     jobs += [Job(f"around-{beta:g}", solve_around, arguments, arguments) for beta, arguments in chosen]
     points = [(name, beta, design) for name in others for beta, design in plan.designs.items()]
     jobs += [

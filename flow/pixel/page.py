@@ -31,6 +31,7 @@ NARROW_NM, WIDE_NM = 50, 100  # classes of bandwidth
 
 def write(
     folder: Path,
+    tile: TileParameters,
     summary: dict[str, Any],
     found: Found,
     measured: dict[float, Measured],
@@ -39,7 +40,7 @@ def write(
     rays: dict[float, Floats],
 ) -> None:
     """Write the page and its pictures into ``folder``, which exists. rays: of `types.solve_around`, by beta."""
-    plan, tile = found.plans[0], TileParameters()
+    plan = found.plans[0]
     section, shown = cross_section(plan), responses(measured)
     turned = around(tile, plan, measured, rays)
     for figure, name in ((section, "cross_section"), (shown, "response"), (turned, "types")):

@@ -106,20 +106,25 @@ def bandwidth(wavelengths_um: Sequence[float] | Floats, depths: Sequence[float],
     return float(ends[1] - ends[0])
 
 
-def offered(stack: OpticalStack, kinds: Sequence[str]) -> list[str]:
+def offered(stack: OpticalStack, kinds: Sequence[str], pitch_um: float) -> list[str]:
     """Those of ``kinds`` that the process can make. Raises ParameterError where there is none."""
-    found = [kind for kind in kinds if next(candidates(stack, [kind]), None)]
+    found = [kind for kind in kinds if next(candidates(stack, [kind], pitch_um), None)]
     if not found:
         raise ParameterError(f"kind = {', '.join(kinds)}: must be one that {stack.process} can make")
     return found
 
 
 def search(
-    stack: OpticalStack, betas: Sequence[float], kinds: Sequence[str], store: Path, note: Callable[[str], None]
+    stack: OpticalStack,
+    betas: Sequence[float],
+    kinds: Sequence[str],
+    store: Path,
+    note: Callable[[str], None],
+    pitch_um: float = PixelGeometry.pitch_um,
 ) -> Found:
     """Search the metals of ``stack`` for ``betas``; solutions are kept in ``store``. kinds: `offered`."""
     note("candidates")
-    grid = [*candidates(stack, kinds)]
+    grid = [*candidates(stack, kinds, pitch_um)]
     tried = _solve(((geometry, w) for geometry in grid for w in WAVELENGTHS_UM), len(WAVELENGTHS_UM), store)
     note("refine")
     for turn in range(ROUNDS):

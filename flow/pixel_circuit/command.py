@@ -6,11 +6,17 @@ from typing import Any
 
 from talbot.base.jobs import worker_count
 from talbot.base.progress import Steps
+from talbot.base.sensor import Varied, add_sensor, labelled, sensor_asked
+from talbot.pixels.drawn import DRAWN_PITCH, DUMMIES
+
+# What the circuit has is measured; the written sensor file has all other fields as they are
+VARIED = Varied(used=("array.rows", "electrical"), fixed=DRAWN_PITCH)
 
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot pixel-circuit`."""
     add = parser.add_argument
+    add_sensor(parser)
     add("--pdk", default="sky130", help="process, sky130")
     add("--corners", default="all", help="all (tt, ss, ff at -40, 25, 85 degrees), typical, or some: tt_25,ss_-40")
     add("--gate", type=float, default=5.0, help="V of an active reset line, 1..5.5; 3.3 is a soft reset")
@@ -24,13 +30,14 @@ def run(options: Namespace) -> int:
     """Measure, write page and sensor file, print the figures; 1 where a check fails."""
     from talbot.base.paths import RESULTS
 
+    sensor = sensor_asked(options, VARIED)
     from .deck import Bench
     from .job import STEPS, make
 
-    bench = Bench(sink_a=options.sink, gate_v=options.gate)
-    out = options.out or RESULTS / "pixel-circuit" / options.pdk
+    bench = Bench(sink_a=options.sink, gate_v=options.gate, rows=sensor.array.rows + 2 * DUMMIES)
+    out = options.out or RESULTS / "pixel-circuit" / labelled(options.pdk, options)
     with Steps(STEPS, lines=True) as steps:
-        summary = make(options.pdk, options.corners, bench, out, options.table, options.workers, steps.note)
+        summary = make(options.pdk, options.corners, bench, out, options.table, options.workers, steps.note, sensor)
     _print(summary, out)
     return 0 if summary["passed"] else 1
 

@@ -10,7 +10,8 @@ import numpy.typing as npt
 
 from talbot.base.tools import ToolError, run
 from talbot.cells.corner import Corner
-from talbot.models.parameters import check_real, drawn_lines
+from talbot.models.parameters import ArrayParameters, check_real, drawn_lines
+from talbot.pixels.drawn import DUMMIES
 from talbot.pixels.layout.pixel import DIFFUSION, PixelLayout
 from talbot.platforms.pixel import pixel_models
 
@@ -34,7 +35,7 @@ class Bench:
 
     sink_a: float = 5e-6
     low_v: float = 0.3
-    rows: int = 388
+    rows: int = ArrayParameters.rows + 2 * DUMMIES
     gate_v: float = 5.0
 
     def __post_init__(self) -> None:

@@ -12,7 +12,14 @@ from talbot.base.jobs import Job, run
 from talbot.base.paths import BUILD
 from talbot.base.records import from_json
 from talbot.cells.corner import Corner
-from talbot.models.parameters import ELEMENTARY_CHARGE, STANDARD, ElectricalParameters, ParameterError, sensor_text
+from talbot.models.parameters import (
+    ELEMENTARY_CHARGE,
+    STANDARD,
+    ElectricalParameters,
+    ParameterError,
+    SensorParameters,
+    sensor_text,
+)
 from talbot.pixels.designs import gratings
 from talbot.pixels.layout.circuit import spice
 from talbot.pixels.layout.write import fitted
@@ -58,8 +65,11 @@ def make(
     table: Path | None = None,
     workers: int = -1,
     note: Callable[[str], None] = lambda text: None,
+    sensor: SensorParameters = STANDARD,
 ) -> dict[str, Any]:
     """Measure and report into ``out``, into ``table`` what sensors take; returns the summary.
+
+    sensor: of the written sensor file, but for what is measured.
 
     Raises ParameterError, ToolError.
     """
@@ -87,7 +97,7 @@ def make(
     (result,) = run([Job("spread", spread_of, (pdk, middle, bench, levels, DRAWN), inputs)], STORE, "mismatch", 1)
     spread_ = from_json(Spread, result)
     note("exposures")
-    electrical = electrical_of(usual, spread_)
+    electrical = electrical_of(usual, spread_, sensor.electrical)
     exposures = emva(replace(electrical, column_fpn=0.0, flicker_noise=0.0))
     summary: dict[str, Any] = {
         "process": pdk,
@@ -107,7 +117,9 @@ def make(
         (folder / "pixel.spice").write_text(
             spice("pixel", made.circuit, process.transistor, process.diode), encoding="utf-8"
         )
-        (folder / "sensor.toml").write_text(sensor_file(electrical, sources(usual, spread_)), encoding="utf-8")
+        (folder / "sensor.toml").write_text(
+            sensor_file(replace(sensor, electrical=electrical), sources(usual, spread_)), encoding="utf-8"
+        )
         page.write(folder, summary)
         (folder / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n", encoding="utf-8")
     if table:
@@ -115,10 +127,10 @@ def make(
     return summary
 
 
-def electrical_of(usual: PixelFound, found: Spread) -> ElectricalParameters:
+def electrical_of(usual: PixelFound, found: Spread, base: ElectricalParameters) -> ElectricalParameters:
     """The pixels' electrical parameters by the circuit; what is of amplifiers and light is as it was."""
     return replace(
-        ElectricalParameters(),
+        base,
         full_well=round(usual.full_well),
         swing=round(usual.full_well * ELEMENTARY_CHARGE / (1e-15 * usual.well_ff), 4),
         read_noise=round(usual.dark_noise, 2),
@@ -154,11 +166,11 @@ def sensor_table(summary: Mapping[str, Any], came: Mapping[str, str]) -> dict[st
     }
 
 
-def sensor_file(electrical: ElectricalParameters, came: Mapping[str, str]) -> str:
-    """A sensor file with these parameters, the source of each at its top."""
+def sensor_file(sensor: SensorParameters, came: Mapping[str, str]) -> str:
+    """Text of a sensor's file, with the source of each measured parameter at its top."""
     known = "".join(f"# {name}: {source}\n" for name, source in came.items())
     return f"# The pixel in transistors. What is not named here is assumed, as `talbot sensor` says.\n{known}" + (
-        sensor_text(replace(STANDARD, electrical=electrical))
+        sensor_text(sensor)
     )
 
 

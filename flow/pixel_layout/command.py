@@ -5,14 +5,17 @@ from pathlib import Path
 from typing import Any
 
 from talbot.base.progress import Steps
-from talbot.models.parameters import ArrayParameters
+from talbot.base.sensor import Varied, add_sensor, labelled, sensor_asked
+from talbot.pixels.drawn import DRAWN_PITCH
+
+FIELDS = {"rows": "array.rows", "cols": "array.cols"}
+VARIED = Varied(used=(*FIELDS.values(), "tile"), fixed=DRAWN_PITCH)
 
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot pixel-layout`. The foundry's decks are those of PDK_ROOT."""
     parser.add_argument("--pdk", default="sky130", help="process, sky130")
-    parser.add_argument("--rows", type=int, default=ArrayParameters().rows, help="pixels down")
-    parser.add_argument("--cols", type=int, default=ArrayParameters().cols, help="pixels across")
+    add_sensor(parser, FIELDS)
     parser.add_argument(
         "--table", type=Path, help="also write the lines for models: models/parameters/pixel_lines.json"
     )
@@ -26,11 +29,12 @@ def run(options: Namespace) -> int:
     """Draw, check, write the page and print the figures; 1 where a check fails."""
     from talbot.base.paths import RESULTS
 
+    sensor = sensor_asked(options, VARIED, FIELDS)
     from .job import STEPS, make
 
-    out = options.out or RESULTS / "pixel-layout" / options.pdk
+    out = options.out or RESULTS / "pixel-layout" / labelled(options.pdk, options)
     with Steps(STEPS, lines=True) as steps:
-        summary = make(options.pdk, options.rows, options.cols, out, options.table, options.curves, steps.note)
+        summary = make(options.pdk, sensor, out, options.table, options.curves, steps.note)
     _print(summary, out)
     return 0 if summary["passed"] else 1
 

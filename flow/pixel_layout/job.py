@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Callable
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from time import perf_counter
 from typing import Any
@@ -12,7 +12,7 @@ import numpy as np
 from talbot.base.files import check_file, check_folder, staged, write
 from talbot.base.gds import db, write_gds
 from talbot.flow.pixel.types import name_of
-from talbot.models.parameters import PixelType
+from talbot.models.parameters import PixelType, SensorParameters
 from talbot.pixels.designs import gratings
 from talbot.pixels.layout.array import DUMMIES, SOUTH, WEST, draw_array, draw_pixels, draw_tile
 from talbot.pixels.layout.circuit import Diode, spice, spice_array
@@ -36,8 +36,7 @@ MOST_SECONDS, MOST_BYTES = 30.0, 20e6  # of the array's GDS
 
 def make(
     pdk: str,
-    rows: int,
-    cols: int,
+    sensor: SensorParameters,
     out: Path,
     table: Path | None = None,
     responses: Path | None = None,
@@ -55,7 +54,9 @@ def make(
         if file:
             check_file(name, file)
     decks = installed(pdk)
-    array, small = array_layout(pdk, rows, cols), array_layout(pdk, *SMALL)
+    rows, cols = sensor.shape
+    array = array_layout(pdk, rows, cols, sensor.tile)
+    small = replace(array, array=replace(array.array, rows=SMALL[0], cols=SMALL[1]))
     types = [_type(pixel, gratings(pdk).wavelength_um) for pixel in array.pixels]
     with staged(out, (*FILES, *REPORTS, *page.NAMES)) as folder:
         made = Made(array, small, folder)
@@ -72,7 +73,7 @@ def make(
             name: lvs(made.path(f"{name}.gds"), text, pdk, made.path(f"{name}.lvsdb")) for name, text in _spice(made)
         }
         note("lines")
-        lines = extracted(pdk)
+        lines = extracted(array)
         note("curves")
         solved = curves(array.pixels, gratings(pdk).wavelength_um)
         share, most = densities(made.path("tile.gds"), pdk), array.pixels[0].process.density_most
@@ -81,6 +82,8 @@ def make(
             "process": pdk,
             "rows": rows,
             "cols": cols,
+            "pitch_um": array.pitch_um,
+            "tile": [sensor.tile.rows, sensor.tile.cols],
             "width_um": block.width_um,
             "height_um": block.height_um,
             "pixels": (rows + 2 * DUMMIES) * (cols + 2 * DUMMIES),

@@ -6,7 +6,7 @@ neighbours. Gates and junctions are the transistors' and not counted.
 """
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -18,12 +18,11 @@ from talbot.flow.layout.parasitics.extract import floating, with_fill_floating
 from talbot.flow.layout.parasitics.shapes import labels, shapes
 from talbot.pixels.layout.array import ArrayLayout, draw_array, draw_pixels
 from talbot.pixels.layout.pixel import COLUMN, COLUMNS, LINE, READ_Y, RESET_Y, ROWS_ON, PixelLayout, draw
-from talbot.pixels.layout.write import array_layout
 from talbot.platforms.extraction import extraction_platform
 from talbot.platforms.layout import layout_platform
 from talbot.platforms.wires import CORNERS
 
-BASE = 4, 6  # rows and columns of the smaller array: a tile
+LEAST = 4, 6  # rows and columns of the smaller array, which has whole tiles
 ROWS, COLUMN_NETS = ("pixel_reset", "read"), ("column_a", "column_b")
 NAMES = ROWS + COLUMN_NETS
 
@@ -36,12 +35,15 @@ class Line:
     farad: dict[str, float]
 
 
-def extracted(pdk: str) -> dict[str, Line]:
-    """The lines `NAMES` of the pixels of a process. Raises StepError."""
-    rows, cols = BASE
-    small = _farads(array_layout(pdk, rows, cols))
-    taller, wider = _farads(array_layout(pdk, 2 * rows, cols)), _farads(array_layout(pdk, rows, 2 * cols))
-    pixel = array_layout(pdk, rows, cols).pixels[0]
+def extracted(made: ArrayLayout) -> dict[str, Line]:
+    """The lines `NAMES` of the pixels of an array. Raises StepError."""
+
+    def farads(rows: int, cols: int) -> dict[str, dict[str, float]]:
+        return _farads(replace(made, array=replace(made.array, rows=rows, cols=cols)))
+
+    tile, pixel = made.tile, made.pixels[0]
+    rows, cols = (-(-least // size) * size for least, size in zip(LEAST, (tile.rows, tile.cols), strict=True))
+    small, taller, wider = farads(rows, cols), farads(2 * rows, cols), farads(rows, 2 * cols)
     out = {}
     for name in NAMES:
         large, more = (wider, cols) if name in ROWS else (taller, rows)

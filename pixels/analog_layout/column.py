@@ -20,6 +20,7 @@ from talbot.models.parameters import ParameterError
 from talbot.pixels.circuits.column import CONTROLS, OF_TAPS, PINS, TAPS, TWICE, column
 from talbot.pixels.circuits.column_block import GROUPS, PLACES
 from talbot.pixels.circuits.column_sizes import FINGER, ColumnSizes
+from talbot.pixels.drawn import DRAWN_PITCH_UM
 from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.analog import AnalogMasks
 
@@ -47,7 +48,7 @@ from .strip import (
 )
 
 # um
-PITCH = 10.0  # of the columns
+PITCH = DRAWN_PITCH_UM  # of the columns
 RAIL_GAP = 1.2  # between the centres of adjacent columns' rails
 ROWS = 13  # tracks in a strip
 ROW_IN = 0.2  # from a rail's centre to the first track

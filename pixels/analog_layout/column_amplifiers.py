@@ -94,8 +94,8 @@ def draw_column_amplifiers(
 ) -> ColumnAmplifiers:
     """Draw all columns and what drives them. Raises ParameterError where they do not fit."""
     room = room or AnalogSizes()
-    if abs(1e6 * array.pitch - PITCH) > 1e-6:
-        raise ParameterError(f"pitch = {array.pitch:g}: must be {PITCH * 1e-6:g} m, that of the drawn columns")
+    if array.pitch_um != PITCH:
+        raise ParameterError(f"pitch = {array.pitch:g}: must be {PITCH * 1e-6:g}, that of the drawn columns")
     if chip.lanes != LANES:
         raise ParameterError(f"lanes = {chip.lanes}: must be {LANES}, the lines over the drawn columns")
     canvas = new_canvas(masks, NAME)

@@ -13,6 +13,7 @@ from itertools import permutations
 
 from talbot.models.parameters import ParameterError
 from talbot.pixels.circuits.row_driver import CODES, CONTROLS, ROW_INPUTS, ROW_LINES, SIDES, SUPPLIES
+from talbot.pixels.drawn import DRAWN_PITCH_UM
 from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.analog import AnalogMasks
 
@@ -39,7 +40,7 @@ from .strip import (
 )
 
 # um
-PITCH = 10.0  # of the rows
+PITCH = DRAWN_PITCH_UM  # of the rows
 RAIL_GAP = 1.2  # between the centres of adjacent rows' rails
 LINE_WIDTH = 0.4  # of lines that cross all rows
 LINE_PITCH = 0.8

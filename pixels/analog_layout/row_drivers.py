@@ -118,8 +118,8 @@ def _names(canvas: Canvas, cell: Cell) -> None:
 def draw_row_drivers(masks: AnalogMasks, array: ArrayParameters, room: AnalogSizes | None = None) -> RowDrivers:
     """Draw all rows in their frame. Raises ParameterError where they do not fit, or the bank has too few lines."""
     room = room or AnalogSizes()
-    if abs(1e6 * array.pitch - PITCH) > 1e-6:
-        raise ParameterError(f"pitch = {array.pitch:g}: must be {PITCH * 1e-6:g} m, that of the drawn rows")
+    if array.pitch_um != PITCH:
+        raise ParameterError(f"pitch = {array.pitch:g}: must be {PITCH * 1e-6:g}, that of the drawn rows")
     if taken(array.rows - 1)["high"] >= CODES["high"]:
         raise ParameterError(f"rows = {array.rows}: must be at most {64 * CODES['high']} for the drawn bank")
     d = devices(row())

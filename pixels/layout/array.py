@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from talbot.base.gds import db
 from talbot.models.parameters import ArrayParameters, ParameterError, TileParameters
 from talbot.pixels.blocks import AnalogSizes, Block, pixel_array
+from talbot.pixels.drawn import DUMMIES
 from talbot.pixels.footprints import draw_pins
 from talbot.platforms.layers import GdsLayer
 
@@ -31,7 +32,6 @@ from .pixel import (
     draw,
 )
 
-DUMMIES = 2  # rows and columns on each side
 WEST, SOUTH, EAST, NORTH = 10.0, 10.0, 30.0, 10.0  # um from the outline to the dummies
 GROUND_RING, SUPPLY_RING = (1.0, 1.6), (3.5, 4.1)  # um from the dummies: taps
 WELL_RING = 3.0, 4.6
@@ -53,7 +53,7 @@ class ArrayLayout:
     def __post_init__(self) -> None:
         if len(self.pixels) != self.tile.n_types:
             raise ParameterError(f"pixels = {len(self.pixels)}: must be one for each of {self.tile.n_types} types")
-        if any(abs(pixel.geometry.pitch_um - 1e6 * self.array.pitch) > 1e-6 for pixel in self.pixels):
+        if any(abs(pixel.geometry.pitch_um - self.array.pitch_um) > 1e-6 for pixel in self.pixels):
             raise ParameterError(f"pitch = {self.array.pitch:g}: must be that of every pixel's geometry")
 
     @property

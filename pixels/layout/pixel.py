@@ -19,6 +19,7 @@ import numpy as np
 
 from talbot.base.gds import db
 from talbot.models.parameters import ParameterError, PixelType, check_real
+from talbot.pixels.drawn import DRAWN_PITCH_UM
 from talbot.pixels.optics.fit import Fit
 from talbot.pixels.optics.geometry import QUADRATURE, PixelGeometry
 from talbot.pixels.tabled import rows
@@ -46,7 +47,6 @@ DIFFUSION = 0.90, 3.80, 0.95  # left, right and bottom of the transistors
 IMPLANT, TAP, TAP_TALL = 0.125, 0.36, 0.42  # around diffusion; a tap's width and height
 TAP_Y = 3.40
 END = 0.165  # of poly beyond the middle of a contact
-LEAST_PITCH = 10.0
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,8 @@ class PixelLayout:
         process, g = self.process, self.geometry
         if g.kind != "amplitude":
             raise ParameterError(f"kind = {g.kind!r}: must be amplitude for a drawn pixel")
-        check_real("pitch_um", g.pitch_um, LEAST_PITCH, 100)
+        if abs(g.pitch_um - DRAWN_PITCH_UM) > 1e-6:
+            raise ParameterError(f"pitch_um = {g.pitch_um}: must be {DRAWN_PITCH_UM}, for which pixels are drawn")
         check_real("w_um", self.w_um, 0.42, 1.0)
         check_real("l_um", self.l_um, 0.5, 0.5)
         if process.level(g.diffraction) != UPPER or process.level(g.analyzer or "") >= PLATES:

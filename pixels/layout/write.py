@@ -8,9 +8,11 @@ from pathlib import Path
 from talbot.base.command import main
 from talbot.base.files import staged
 from talbot.base.gds import db, write_gds
+from talbot.base.sensor import Varied, add_sensor, sensor_asked
 from talbot.models.parameters import ArrayParameters, ParameterError, TileParameters
 from talbot.pixels.blocks import AnalogSizes
 from talbot.pixels.designs import gratings
+from talbot.pixels.drawn import DRAWN_PITCH
 from talbot.pixels.footprints import lef
 from talbot.pixels.optics.design import REACHED, measure
 from talbot.pixels.optics.fit import Fit
@@ -21,6 +23,8 @@ from .array import ArrayLayout, draw_array, draw_pixels
 from .pixel import PixelLayout, pixel_layout
 
 NAME = "pixel_array"
+FIELDS = {"rows": "array.rows", "cols": "array.cols"}
+VARIED = Varied(used=(*FIELDS.values(), "tile"), fixed=DRAWN_PITCH)
 
 
 def drawn_pixels(pdk: str, tile: TileParameters) -> tuple[PixelLayout, ...]:
@@ -43,9 +47,8 @@ def fitted(geometry: PixelGeometry, wavelength_um: float) -> Fit:
     return measure(geometry, wavelength_um).fit
 
 
-def array_layout(pdk: str, rows: int, cols: int) -> ArrayLayout:
-    """An array of the standard tile. Raises ParameterError."""
-    tile = TileParameters()
+def array_layout(pdk: str, rows: int, cols: int, tile: TileParameters = TileParameters()) -> ArrayLayout:
+    """An array of a tile. Raises ParameterError."""
     return ArrayLayout(ArrayParameters(rows, cols), tile, drawn_pixels(pdk, tile))
 
 
@@ -68,14 +71,14 @@ def write(out: str | Path, array: ArrayLayout) -> None:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Options of `python -m talbot.pixels.layout.write`."""
     parser.add_argument("--pdk", default="sky130", help="process")
-    parser.add_argument("--rows", type=int, default=ArrayParameters().rows, help="pixels down")
-    parser.add_argument("--cols", type=int, default=ArrayParameters().cols, help="pixels across")
+    add_sensor(parser, FIELDS)
     parser.add_argument("--out", type=Path, required=True, help="folder of the files")
 
 
 def run(options: argparse.Namespace) -> int:
     """Write the files."""
-    write(options.out, array_layout(options.pdk, options.rows, options.cols))
+    sensor = sensor_asked(options, VARIED, FIELDS)
+    write(options.out, array_layout(options.pdk, *sensor.shape, sensor.tile))
     return 0
 
 

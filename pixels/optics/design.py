@@ -34,7 +34,9 @@ class Design:
         return abs(self.fit.beta / beta - 1)
 
 
-def candidates(stack: OpticalStack, kinds: Sequence[str] = KINDS) -> Iterator[PixelGeometry]:
+def candidates(
+    stack: OpticalStack, kinds: Sequence[str] = KINDS, pitch_um: float = PixelGeometry.pitch_um
+) -> Iterator[PixelGeometry]:
     """Geometries of the metals of ``stack`` that its rules allow, lines and spaces of one width."""
     names = [metal.name for metal in stack.metals]
     below = {"interleaved": [None], "photogate": [stack.gate.name] if stack.gate else []}
@@ -50,6 +52,7 @@ def candidates(stack: OpticalStack, kinds: Sequence[str] = KINDS) -> Iterator[Pi
                         analyzer=lower,
                         period_um=period,
                         analyzer_fill=GATES if kind == "photogate" else 0.5,
+                        pitch_um=pitch_um,
                     )
                     if geometry is not None:
                         yield geometry

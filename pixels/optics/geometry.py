@@ -2,11 +2,12 @@
 
 from dataclasses import dataclass
 
-from talbot.models.parameters import ParameterError, check_choice, check_real
+from talbot.models.parameters import ArrayParameters, ParameterError, check_choice, check_real
 from talbot.platforms.materials import refractive_index
 from talbot.platforms.optics import Metal, OpticalStack, optical_stack
 
 KINDS = "amplitude", "interleaved", "photogate"
+PITCHES_UM = 1.0, 100.0
 QUADRATURE = 0.0, 0.25, 0.5, 0.75  # of a period: alpha = 0, pi/2, pi and 3 pi/2
 
 
@@ -67,13 +68,13 @@ class PixelGeometry:
     fill: float = 0.5
     analyzer_fill: float = 0.5
     shift: float = 0.0
-    pitch_um: float = 10.0
+    pitch_um: float = 1e6 * ArrayParameters.pitch
     heights: str | None = None
 
     def __post_init__(self) -> None:
         check_choice("kind", self.kind, KINDS)
         stack = self.stack
-        check_real("pitch_um", self.pitch_um, 1, 100)
+        check_real("pitch_um", self.pitch_um, *PITCHES_UM)
         check_real("period_um", self.period_um, 0.1, self.pitch_um / 2)
         check_real("shift", self.shift, -1, 1)
         upper = stack.metal("diffraction", self.diffraction)

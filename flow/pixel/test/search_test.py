@@ -12,7 +12,7 @@ from talbot.flow.pixel.page import pareto
 from talbot.flow.pixel.pictures import around
 from talbot.flow.pixel.search import Plan, bandwidth, search
 from talbot.flow.pixel.types import AZIMUTHS, DEGREES, RAY_DEGREES, measured, name_of, solve_around, solve_one, stacked
-from talbot.models.parameters import PixelType, TileParameters
+from talbot.models.parameters import OpticsParameters, PixelType, TileParameters
 from talbot.pixels.designs import DESIGNS
 from talbot.pixels.optics.design import REACHED, WAVELENGTHS_UM, measure
 from talbot.pixels.tabled import rows
@@ -96,7 +96,7 @@ def test_a_tile_is_drawn_of_a_plan_or_refused(tmp_path):
 
 def test_errors_fall_with_what_is_kept():
     """Of a grating with a coarse, smooth response; what is held for the truth has no error."""
-    found = errors(replace(DESIGNS["sky130"].geometries[12.0], period_um=2.4), 0.575)
+    found = errors(replace(DESIGNS["sky130"].geometries[12.0], period_um=2.4), 0.575, OpticsParameters())
     names = "orders", "wavelengths", "degrees", "angles in a view", "samples"
     assert tuple(dict.fromkeys(row.what for row in found)) == names
     for name in names:

@@ -15,6 +15,7 @@ from talbot.flow.pixel_circuit.emva import emva
 from talbot.flow.pixel_circuit.measure import PixelFound, Spread, characteristic, measure, spread, summed, total_noise
 from talbot.models.parameters import (
     ELEMENTARY_CHARGE,
+    STANDARD,
     ArrayParameters,
     ElectricalParameters,
     ParameterError,
@@ -148,9 +149,9 @@ def test_the_sensor_file_has_the_circuits_figures_and_their_source(tmp_path):
         [],
     )
     found = Spread(100, 0.02, 0.0046)
-    electrical = job.electrical_of(usual, found)
+    electrical = job.electrical_of(usual, found, STANDARD.electrical)
     path = tmp_path / "sensor.toml"
-    path.write_text(job.sensor_file(electrical, job.sources(usual, found)))
+    path.write_text(job.sensor_file(replace(STANDARD, electrical=electrical), job.sources(usual, found)))
     read = read_sensor(path)
     assert read.electrical == electrical and read.array == ArrayParameters()
     assert electrical.read_noise == round(sqrt(2) * np.hypot(41.0, 25.0), 2)

@@ -1,0 +1,15 @@
+"""What of a sensor the drawn circuits cannot vary: fields and reasons, for `talbot.base.sensor.Varied`."""
+
+DRAWN_PITCH_UM = 10.0
+DUMMIES = 2  # rows and columns on each side of a drawn array
+DRAWN_PITCH = {"array.pitch": "the masks of pixels, rows and columns are drawn for this pitch"}
+DRAWN_LINES = {"array.pitch": "resistance and capacitance of lines are those of pixels drawn on this pitch"}
+DRAWN_LANES = {"chip.lanes": "converters are drawn for this number of lines over the columns"}
+DRAWN_SIZES = dict.fromkeys(
+    (
+        "chip.f_clk",
+        *(f"electrical.{name}" for name in ("full_well", "swing", "difference_gain")),
+        *(f"converter.{name}" for name in ("inl", "offset", "noise", "ktc")),
+    ),
+    "transistors are drawn in the sizes that the standard sensor needs",
+)
