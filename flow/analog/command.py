@@ -6,12 +6,33 @@ from typing import Any
 
 from talbot.base.jobs import worker_count
 from talbot.base.progress import Steps
+from talbot.base.sensor import Varied, add_sensor, labelled, sensor_asked
 from talbot.models.parameters import check_int
+from talbot.pixels.drawn import DRAWN_LINES
+
+# The converter's fields are limits of the datasheet
+VARIED = Varied(
+    used=(
+        "array.rows",
+        "array.cols",
+        "chip.lanes",
+        "chip.f_clk",
+        "electrical.full_well",
+        "electrical.swing",
+        "electrical.difference_gain",
+        "converter.inl",
+        "converter.offset",
+        "converter.noise",
+        "converter.ktc",
+    ),
+    fixed=DRAWN_LINES,
+)
 
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot analog`."""
     add = parser.add_argument
+    add_sensor(parser)
     add("--pdk", default="sky130", help="process: sky130")
     add("--corners", default="quick", help="all (21), quick (3), typical, or names like ss_n40C_1v62,ff_125C_1v98")
     add("--draws", default="200", help="comparators of the Monte Carlo run, 20..100000")
@@ -31,14 +52,15 @@ def run(options: Namespace) -> int:
 
     from .job import STEPS, corners_of, make
 
+    sensor = sensor_asked(options, VARIED)
     if options.gm_id:
         return _tables(options.pdk, options.gm_id)
     corners = corners_of(options.corners)
     draws = int(options.draws) if options.draws.isdecimal() else options.draws
     check_int("draws", draws, 20, 100_000)
-    out = options.out or RESULTS / "analog" / options.pdk
+    out = options.out or RESULTS / "analog" / labelled(options.pdk, options)
     with Steps(STEPS, lines=True) as steps:
-        summary = make(options.pdk, corners, int(draws), out, options.table, options.workers, steps.note)
+        summary = make(options.pdk, corners, int(draws), out, options.table, options.workers, steps.note, sensor)
     _print(summary, out)
     return 1 if summary["failed"] else 0
 

@@ -14,7 +14,7 @@ from talbot.base.jobs import Job, run
 from talbot.base.paths import BUILD
 from talbot.base.records import from_json
 from talbot.cells.corner import Corner
-from talbot.models.parameters import DIODE, ParameterError, check_int
+from talbot.models.parameters import DIODE, STANDARD, ParameterError, SensorParameters, check_int
 from talbot.models.parameters.electrical import AMPLIFIER
 from talbot.pixels.circuits import amplifier as amplifiers
 from talbot.pixels.circuits import lane as lanes
@@ -71,24 +71,26 @@ def corners_of(text: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys((TYPICAL, *names)))
 
 
-def setup_of(pdk: str) -> tuple[Setup, LaneSizes]:
-    """Specification and sizes of the lane of the default sensor in a process."""
-    process, spec = process_of(pdk), LaneSpec.of()
+def setup_of(pdk: str, sensor: SensorParameters = STANDARD) -> tuple[Setup, LaneSizes]:
+    """Specification and sizes of the lane of a sensor in a process. Raises ParameterError."""
+    process, spec = process_of(pdk), LaneSpec.of(sensor, converter=sensor.converter)
     sizes = lanes.size(spec, process)
     cell = next(one for one in process.unit_cells(spec.unit_mismatch) if one.kind == sizes.dac.kind)
     return Setup(pdk, spec, (cell.low, cell.high)), sizes
 
 
-def amplifier_of(setup: Setup, lane: LaneSizes) -> tuple[AmplifierSpec, AmplifierSizes]:
-    """Specification and sizes of the amplifier that drives ``lane``."""
-    spec = AmplifierSpec.of()
+def amplifier_of(
+    setup: Setup, lane: LaneSizes, sensor: SensorParameters = STANDARD
+) -> tuple[AmplifierSpec, AmplifierSizes]:
+    """Specification and sizes of the amplifier that drives ``lane``. Raises ParameterError."""
+    spec = AmplifierSpec.of(sensor)
     load = amplifier.load_of(setup, lane, Corner.parse(TYPICAL))
     return spec, amplifiers.size(spec, load, process_of(setup.pdk))
 
 
-def column_of(setup: Setup) -> tuple[ColumnSpec, ColumnSizes]:
-    """Specification and sizes of the column amplifiers of the default sensor."""
-    spec = ColumnSpec.of()
+def column_of(setup: Setup, sensor: SensorParameters = STANDARD) -> tuple[ColumnSpec, ColumnSizes]:
+    """Specification and sizes of the column amplifiers of a sensor. Raises ParameterError."""
+    spec = ColumnSpec.of(sensor)
     return spec, column_size(spec, process_of(setup.pdk))
 
 
@@ -100,6 +102,7 @@ def make(
     table: Path | None = None,
     workers: int = -1,
     note: Callable[[str], None] = lambda text: None,
+    sensor: SensorParameters = STANDARD,
 ) -> dict[str, Any]:
     """Measure, write the datasheet into ``out``, with ``table`` what frames need; returns the summary."""
     from . import page  # Matplotlib: not before it is needed
@@ -109,11 +112,12 @@ def make(
     check_folder("out", out)
     if table:
         check_file("table", table)
-    setup, sizes = setup_of(pdk)
+    setup, sizes = setup_of(pdk, sensor)
+    column_spec = column_of(setup, sensor)[0]
     note("check")
     typical = Corner.parse(TYPICAL)
     deck(lanes.sar_lane(sizes), setup, typical)
-    spec_a, sizes_a = amplifier_of(setup, sizes)
+    spec_a, sizes_a = amplifier_of(setup, sizes, sensor)
     given = repr((setup, sizes))
     checks = [
         Job("faults", lane.faults, (setup, sizes, typical), (given,)),
@@ -126,9 +130,9 @@ def make(
     ]
     if wrong := [fault for faults in run(checks, STORE, "check", workers) for fault in faults]:
         raise ParameterError(wrong[0])
-    found = measured(setup, sizes, corners, draws, workers, note)
+    found = measured(setup, sizes, corners, draws, workers, note, sensor)
     note("report")
-    rows = datasheet(setup.spec, found, len(found.offsets))
+    rows = datasheet(setup.spec, found, len(found.offsets), sensor)
     counts = [*found.decisions.values(), *found.lanes.values(), *found.amplifiers.values(), *found.supports.values()]
     counts += [*found.rows.values(), *found.columns.values(), *found.turns.values()]
     summary = {
@@ -136,12 +140,14 @@ def make(
         "corners": list(corners),
         "draws": len(found.offsets),
         "specification": asdict(setup.spec),
-        "sizes": asdict(sizes) | {"amplifier": asdict(sizes_a.ota)} | column_widths(setup),
+        "amplifier": asdict(spec_a),
+        "column": asdict(column_spec),
+        "sizes": asdict(sizes) | {"amplifier": asdict(sizes_a.ota)} | column_widths(setup, sensor),
         "rows": [asdict(row) | {"passes": row.passes} for row in rows],
         "failed": [f"{row.circuit}: {row.name}" for row in rows if not row.passes],
         "transients": sum(one.runs for one in counts),
         "retried": sum(one.repeated for one in counts),
-        "converter": converter(setup.spec, sizes, found),
+        "converter": converter(setup.spec, sizes, found, column_spec),
         "noise": asdict(found.noise),
         "amplifier_noise": asdict(found.amplifier_noise),
         "wall_s": perf_counter() - start,
@@ -154,9 +160,9 @@ def make(
     return summary
 
 
-def column_widths(setup: Setup) -> dict[str, dict[str, float]]:
+def column_widths(setup: Setup, sensor: SensorParameters) -> dict[str, dict[str, float]]:
     """Widths (um) of each of a column's stages, for the datasheet."""
-    _, sizes = column_of(setup)
+    _, sizes = column_of(setup, sensor)
     stages = {"front": sizes.front, "back": sizes.back, "lane": sizes.lane}
     return {f"column {name}": {k: v for k, v in asdict(one).items() if k != "current"} for name, one in stages.items()}
 
@@ -168,6 +174,7 @@ def measured(
     draws: int,
     workers: int = -1,
     note: Callable[[str], None] = lambda text: None,
+    sensor: SensorParameters = STANDARD,
 ) -> Found:
     """All measurements; those that an earlier run made with the same circuits and code are read."""
     places = {name: Corner.parse(name) for name in corners}
@@ -179,13 +186,14 @@ def measured(
     ]
     note("corners")
     results = run(jobs, STORE, "corners", workers)
-    spec_a, sizes_a = amplifier_of(setup, sizes)
+    spec_a, sizes_a = amplifier_of(setup, sizes, sensor)
     amplifiers = _everywhere(
         "amplifier", AmplifierResult, amplifier.measure, (setup, spec_a, sizes_a, sizes), places, workers
     )
     supports = _everywhere("support", SupportResult, support.measure, (setup, SupportSpec()), places, workers)
-    rows = _everywhere("row driver", RowDriverResult, row_driver.measure, (setup, RowDriverSpec.of()), places, workers)
-    spec_c, sizes_c = column_of(setup)
+    driven = setup, RowDriverSpec.of(sensor)
+    rows = _everywhere("row driver", RowDriverResult, row_driver.measure, driven, places, workers)
+    spec_c, sizes_c = column_of(setup, sensor)
     given_c = repr((setup, spec_c, sizes_c))
     columns = _everywhere("column", ColumnResult, column.measure, (setup, spec_c, sizes_c), places, workers)
     both = setup, (spec_c, spec_a), (sizes_c, sizes_a), sizes
@@ -273,12 +281,11 @@ def _everywhere(
     return {name: from_json(record, one) for name, one in zip(places, run(jobs, STORE, what, workers), strict=True)}
 
 
-def converter(spec: LaneSpec, sizes: LaneSizes, found: Found) -> dict[str, Any]:
+def converter(spec: LaneSpec, sizes: LaneSizes, found: Found, column_spec: ColumnSpec) -> dict[str, Any]:
     """What `models/afe` takes of the circuit, each with its source and the fit's error where there is one (LSB)."""
     rms, low, high = interval(found.offsets)
     rms_a, low_a, high_a = interval([one.offset for one in found.amplifier_draws])
     rms_c, low_c, high_c = interval(found.column_offsets)
-    column_spec = ColumnSpec.of()
     of_diode = 2**0.5 * column_spec.swing / column_spec.lsb / DIODE  # of a difference, for each LSB of a diode
     shape = inl(found.lanes[TYPICAL].decided)
     bend, bend_sources, bend_error = amplifier_curve(found.amplifiers[TYPICAL].points)

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from talbot.models.parameters import STANDARD, SensorParameters
 from talbot.pixels.circuits.amplifier import BIAS, AmplifierSpec
 from talbot.pixels.circuits.column_sizes import ColumnSpec
 from talbot.pixels.circuits.row_driver import RowDriverSpec
@@ -18,7 +19,7 @@ from .row_driver import RowDriverResult
 from .support import SupportResult
 
 
-def datasheet(spec: LaneSpec, found: Found, draws: int) -> list[Row]:
+def datasheet(spec: LaneSpec, found: Found, draws: int, sensor: SensorParameters = STANDARD) -> list[Row]:
     """The rows, with limits from the specification."""
     half, share = 1e9 * spec.half_cycle, 1e12 * spec.decision_energy
     rms, _, high = interval(found.offsets)
@@ -68,16 +69,15 @@ def datasheet(spec: LaneSpec, found: Found, draws: int) -> list[Row]:
             over=f"{len(found.enob)} drawn arrays, with noise",
         ),
         corners("lane", "energy of a decision", "pJ", energies, share),
-        *_amplifier(found),
-        *_columns(found),
-        *_row_driver(found.rows),
+        *_amplifier(found, AmplifierSpec.of(sensor)),
+        *_columns(found, ColumnSpec.of(sensor)),
+        *_row_driver(found.rows, RowDriverSpec.of(sensor)),
         *_support(found.supports),
     ]
 
 
-def _amplifier(found: Found) -> list[Row]:
+def _amplifier(found: Found, spec: AmplifierSpec) -> list[Row]:
     """The rows of the difference amplifier."""
-    spec = AmplifierSpec.of()
 
     def corners(name: str, unit: str, values: dict[str, float], most: float | None) -> Row:
         return over_corners("amplifier", name, unit, values.items(), TYPICAL, most=most)
@@ -108,9 +108,8 @@ def _amplifier(found: Found) -> list[Row]:
     ]
 
 
-def _columns(found: Found) -> list[Row]:
+def _columns(found: Found, spec: ColumnSpec) -> list[Row]:
     """The rows of a column; LSB are those of the lane's converter in edge mode."""
-    spec = ColumnSpec.of()
 
     def row(
         name: str, unit: str, values: dict[str, float], most: float | None = None, least: float | None = None
@@ -146,9 +145,8 @@ def _columns(found: Found) -> list[Row]:
     ]
 
 
-def _row_driver(found: dict[str, RowDriverResult]) -> list[Row]:
+def _row_driver(found: dict[str, RowDriverResult], spec: RowDriverSpec) -> list[Row]:
     """The rows of a row's driver."""
-    spec = RowDriverSpec.of()
 
     def row(name: str, unit: str, field: str, scale: float, **limits: float) -> Row:
         values = {corner: scale * getattr(one, field) for corner, one in found.items()}

@@ -6,6 +6,16 @@ from typing import Any
 
 from talbot.base.jobs import worker_count
 from talbot.base.progress import Steps
+from talbot.base.sensor import Varied, add_sensor, labelled, sensor_asked
+from talbot.models.parameters import STANDARD
+from talbot.pixels.blocks import blocks
+from talbot.pixels.drawn import DRAWN_LANES, DRAWN_PITCH, DRAWN_SIZES
+
+VARIED = Varied(
+    used=("array.rows", "array.cols"),
+    fixed=DRAWN_PITCH | DRAWN_LANES | DRAWN_SIZES,
+    limits={"array.rows": (1, STANDARD.array.rows), "array.cols": (1, STANDARD.array.cols)},
+)
 
 SHOWN = 10  # differences of a cell
 
@@ -13,6 +23,7 @@ SHOWN = 10  # differences of a cell
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot analog-layout`."""
     add = parser.add_argument
+    add_sensor(parser)
     add("--pdk", default="sky130", help="process: sky130")
     add("--corners", default="typical", help="as of talbot analog: all (21), quick (3), typical, or names")
     add("--table", type=Path, help="also write the curves as drawn: models/parameters/circuit_drawn.json")
@@ -25,11 +36,15 @@ def run(options: Namespace) -> int:
     from talbot.base.paths import RESULTS
     from talbot.flow.analog.job import corners_of
 
+    sensor = sensor_asked(options, VARIED)
+    blocks(sensor.array, sensor.chip)  # has room for its pins
     from .job import STEPS, make
 
-    out = options.out or RESULTS / "analog-layout" / options.pdk
+    out = options.out or RESULTS / "analog-layout" / labelled(options.pdk, options)
     with Steps(STEPS, lines=True) as steps:
-        summary = make(options.pdk, corners_of(options.corners), out, options.table, options.workers, steps.note)
+        summary = make(
+            options.pdk, corners_of(options.corners), out, options.table, options.workers, steps.note, sensor
+        )
     _print(summary, out)
     return 0 if summary["passed"] else 1
 

@@ -22,7 +22,7 @@ from talbot.flow.analog.row_driver import RowDriverResult
 from talbot.flow.analog.row_driver import measure as measure_row
 from talbot.flow.analog.turn import TurnResult
 from talbot.flow.analog.turn import measure as measure_turn
-from talbot.models.parameters import ArrayParameters
+from talbot.models.parameters import STANDARD, ArrayParameters, SensorParameters
 from talbot.pixels.analog_layout.amplifier import amplifier_cell
 from talbot.pixels.analog_layout.bias import bias_cell
 from talbot.pixels.analog_layout.cells import Cell, comparator_cell
@@ -57,7 +57,12 @@ KINDS = "gds", "spice", "extracted.spice", "lyrdb", "lvsdb"
 
 
 def cells(
-    masks: AnalogMasks, sizes: LaneSizes, amplifier: AmplifierSizes, lanes: int, column: ColumnSizes
+    masks: AnalogMasks,
+    sizes: LaneSizes,
+    amplifier: AmplifierSizes,
+    lanes: int,
+    column: ColumnSizes,
+    array: ArrayParameters,
 ) -> dict[str, Cell]:
     """What is drawn and extracted, by name. lanes: that share a bias."""
     return {
@@ -65,7 +70,7 @@ def cells(
         "sar_lane": lane_cell(masks, sizes),
         "amplifier": amplifier_cell(masks, amplifier),
         "bias": bias_cell(masks, lanes),
-        "row": row_cell(masks, ArrayParameters()),
+        "row": row_cell(masks, array),
         "column": column_cell(masks, column),
         "non_overlap": switch_cell(masks),
     }
@@ -78,6 +83,7 @@ def make(
     table: Path | None = None,
     workers: int = -1,
     note: Callable[[str], None] = lambda text: None,
+    sensor: SensorParameters = STANDARD,
 ) -> dict[str, Any]:
     """Draw, check, measure and report into ``out``; returns the summary. Raises ParameterError, StepError.
 
@@ -91,8 +97,8 @@ def make(
         check_file("table", table)
     masks, (setup, sizes) = analog_masks(pdk), setup_of(pdk)
     spec, own = amplifier_of(setup, sizes)
-    made = cells(masks, sizes, own, spec.lanes, column_of(setup)[1])
-    blocks = drawn_blocks(pdk)
+    made = cells(masks, sizes, own, spec.lanes, column_of(setup)[1], sensor.array)
+    blocks = drawn_blocks(pdk, sensor)
     drawn: dict[str, Cell | DrawnBlock] = {**made, **blocks}
     names = [f"{name}.{kind}" for name in drawn for kind in KINDS if name in made or kind != "extracted.spice"]
     names += [f"{name}.lef" for name in blocks]

@@ -12,7 +12,7 @@ from talbot.base.files import staged
 from talbot.base.gds import write_gds
 from talbot.base.steps import StepError
 from talbot.flow.analog.job import amplifier_of, column_of, setup_of
-from talbot.models.parameters import ArrayParameters, ChipParameters
+from talbot.models.parameters import STANDARD, SensorParameters
 from talbot.pixels.analog_layout.column_amplifiers import NAME as COLUMNS
 from talbot.pixels.analog_layout.column_amplifiers import draw_column_amplifiers
 from talbot.pixels.analog_layout.converters import NAME as CONVERTERS
@@ -26,13 +26,14 @@ from talbot.platforms.analog import analog_masks
 from .checks import differences, lvs
 
 
-def drawn_blocks(pdk: str) -> dict[str, DrawnBlock]:
-    """Converters, rows' drivers, column amplifiers, by name, for the default array and chip. Raises ParameterError."""
+def drawn_blocks(pdk: str, sensor: SensorParameters = STANDARD) -> dict[str, DrawnBlock]:
+    """Converters, rows' drivers, column amplifiers, by name, for the array and chip. Raises ParameterError."""
+    array, chip = sensor.array, sensor.chip
     masks, (setup, sizes), room = analog_masks(pdk), setup_of(pdk), AnalogSizes()
     return {
-        CONVERTERS: draw_converters(masks, sizes, amplifier_of(setup, sizes)[1], ChipParameters(), room),
-        ROWS: draw_row_drivers(masks, ArrayParameters(), room),
-        COLUMNS: draw_column_amplifiers(masks, column_of(setup)[1], ArrayParameters(), ChipParameters(), room),
+        CONVERTERS: draw_converters(masks, sizes, amplifier_of(setup, sizes)[1], chip, room),
+        ROWS: draw_row_drivers(masks, array, room),
+        COLUMNS: draw_column_amplifiers(masks, column_of(setup)[1], array, chip, room),
     }
 
 

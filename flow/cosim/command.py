@@ -1,22 +1,38 @@
 """Rows of a small array with the analog circuits in the loop: the chip's Verilog and ngspice in lock-step."""
 
 import json
+import sys
 from argparse import ArgumentParser, Namespace
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from talbot.base.progress import Steps
+from talbot.base.sensor import Varied, add_sensor, labelled, sensor_asked
 from talbot.flow.frame.arguments import Number
-from talbot.models.parameters import ParameterError, check_choice
+from talbot.models.parameters import ParameterError, SensorParameters, check_choice
+from talbot.pixels.drawn import DRAWN_LINES
 
 AMPLIFIERS = "all", "lanes", "none"
 
+COLS, LANES = (6, 48), (1, 2, 4)
+FILE = "or of a sensor file with as few"
+CUT = {
+    "cols": Number("cols", "columns of the array", *COLS, note=f"12, {FILE}"),
+    "lanes": Number("lanes", "converters, 1, 2 or 4", min(LANES), max(LANES), note=f"2, {FILE}"),
+}
+MODELLED = "the circuit's row and the curves of its model are those of the standard sensor"
+VARIED = Varied(
+    used=("tile", "array.cols", "chip.lanes", "chip.divider", "chip.n_frac", "chip.cordic_iterations"),
+    fixed=DRAWN_LINES
+    | dict.fromkeys(
+        ("array.rows", "chip.f_clk", *(f"electrical.{name}" for name in ("full_well", "swing", "difference_gain"))),
+        MODELLED,
+    ),
+)
 TYPES = Number("types", "pixel types of the row that are read, at most 2 in time of flight", 1, 6, "6")
 RELTOL = Number("reltol", "ngspice's relative tolerance", 1e-8, 0.1, "1e-4", kind=float)
 SHARED = (
-    Number("cols", "columns of the array", 6, 48, "12"),
-    Number("lanes", "converters, 1, 2 or 4", 1, 4, "2"),
     Number("threshold", "of edge mode", 0, 127, "10"),
     Number("seed", "of the pixels' values", 0, 2**32 - 1, "1"),
     Number("t_int", "cycles of integration; 20000 are 2 ms", 1, 65535, "20000"),
@@ -27,7 +43,8 @@ def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot cosim`: texts, checked by `run`."""
     add = parser.add_argument
     add("--modes", default="edge,image,tof", help="modes whose row is read")
-    for number in (TYPES, RELTOL, *SHARED):
+    add_sensor(parser)
+    for number in (TYPES, RELTOL, *CUT.values(), *SHARED):
         number.add(parser)
     add("--method", default="trap", help="ngspice's integration, trap or gear")
     add(
@@ -51,13 +68,20 @@ def run(options: Namespace) -> int:
     from .job import STEPS, model_alone, rows, summary
     from .row import MODES, RowRequest
 
+    sensor = sensor_asked(options, VARIED)
+    if options.sensor and (options.study or options.faults):
+        raise ParameterError(f"sensor = {str(options.sensor)!r}: must be left out with study and faults")
     modes = options.modes.split(",")
     if not set(modes) <= set(MODES):
         raise ParameterError(f"modes = {options.modes!r}: must be some of {','.join(MODES)}")
     check_choice("amplifiers", options.amplifiers, AMPLIFIERS)
     columns = options.amplifiers == "all"
-    types, accuracy = TYPES.value(options), Accuracy(reltol=RELTOL.value(options), method=options.method)
-    shared: dict[str, Any] = {number.field: number.value(options) for number in SHARED} | {"accuracy": accuracy}
+    types, accuracy = (
+        min(TYPES.value(options), sensor.tile.cols),
+        Accuracy(reltol=RELTOL.value(options), method=options.method),
+    )
+    shared: dict[str, Any] = {number.field: number.value(options) for number in SHARED}
+    shared |= _cut(options, sensor) | {"accuracy": accuracy, "sensor": sensor}
     asked = [
         RowRequest(
             mode=mode,
@@ -69,7 +93,7 @@ def run(options: Namespace) -> int:
         for mode in modes
     ]
     asked += [replace(one, extracted=True) for one in asked if options.extracted]
-    out = options.out or RESULTS / "cosim"
+    out = options.out or RESULTS / labelled("cosim", options)
     check_folder("out", out, page.names(MODES))
     with Steps(STEPS, lines=True) as steps:
         done = rows(asked, steps.note)
@@ -85,6 +109,19 @@ def run(options: Namespace) -> int:
     _print(found, out)
     missed = [line for line in found["faults"] if line["planted"] != line["name"]]
     return int(bool(missed) or any(row["beyond"] for row in found["rows"]))
+
+
+def _cut(options: Namespace, sensor: SensorParameters) -> dict[str, int]:
+    """Columns and converters of the row: of the options, else of a sensor file where it has as few."""
+    cols, lanes = (number.value(options) for number in CUT.values())
+    array, chip = sensor.array.cols, sensor.chip.lanes
+    found = {
+        "cols": cols or (array if options.sensor and COLS[0] <= array <= COLS[1] else 12),
+        "lanes": lanes or (chip if options.sensor and chip in LANES else 2),
+    }
+    if options.sensor and found != {"cols": array, "lanes": chip}:
+        print(f"talbot: {found['cols']} of {array} columns are read, by {found['lanes']} lanes", file=sys.stderr)
+    return found
 
 
 def _print(s: dict[str, Any], folder: Path) -> None:

@@ -4,6 +4,7 @@ import re
 from collections.abc import Mapping
 from functools import cache
 
+from talbot.models.parameters import STANDARD
 from talbot.pixels.circuits.netlist import Circuit
 
 PDK, WIRES = "sky130", "typ"
@@ -20,7 +21,7 @@ def circuits() -> Mapping[str, Circuit]:
     from talbot.platforms.layout import layout_platform
 
     masks, (setup, sizes) = analog_masks(PDK), setup_of(PDK)
-    made = cells(masks, sizes, amplifier_of(setup, sizes)[1], 1, column_of(setup)[1])
+    made = cells(masks, sizes, amplifier_of(setup, sizes)[1], 1, column_of(setup)[1], STANDARD.array)
     wires = layout_platform(PDK).wires[WIRES]
     return {name: extract(made[name], masks, wires)[0] for name in NAMES}
 

@@ -15,6 +15,7 @@ from talbot.models.digital.stream import decode_stream
 from talbot.models.parameters import (
     DRAWN,
     SHORT_TIMING,
+    STANDARD,
     FrameParameters,
     ParameterError,
     SensorParameters,
@@ -75,6 +76,8 @@ class RowRequest:
     partition : bool
         Each lane and its columns are a circuit and a process of their own, with references, bias and row lines of their
         own; one chip hears all of them.
+    sensor : SensorParameters
+        Of which the small array has the tile and the chip.
     """
 
     mode: str = "image"
@@ -95,6 +98,7 @@ class RowRequest:
     timing: Timing = Timing()
     accuracy: Accuracy = Accuracy()
     spec: LaneSpec = LaneSpec()
+    sensor: SensorParameters = STANDARD
 
     def __post_init__(self) -> None:
         check_choice("mode", self.mode, MODES)
@@ -125,7 +129,9 @@ class RowRequest:
     def frame(self) -> tuple[SensorParameters, FrameParameters]:
         """The sensor, and a frame that reads one row of it."""
         rows = 4
-        asked = request(rows=rows, cols=self.cols, lanes=self.lanes, mode=self.mode, converter="ideal")
+        asked = request(
+            rows=rows, cols=self.cols, lanes=self.lanes, mode=self.mode, converter="ideal", sensor=self.sensor
+        )
         sensor = asked.sensor
         mask = sum(1 << kind for kind in set(sensor.tile.order[: self.types]))
         edge = self.mode == "edge"
