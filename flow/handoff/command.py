@@ -6,7 +6,9 @@ from pathlib import Path
 from talbot.base.command import failures
 from talbot.base.files import staged
 from talbot.base.paths import RESULTS
+from talbot.base.sensor import add_sensor, sensor_asked
 from talbot.flow.layout.design import DESIGNS, design, folder_name
+from talbot.flow.layout.varied import VARIED
 from talbot.models.parameters import check_choice
 from talbot.platforms.processes import PROCESSES
 
@@ -17,6 +19,7 @@ from .contents import Broken, contents, manifest, waived
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot handoff`."""
     parser.add_argument("--design", default="quad_divider", help=f"one of {', '.join(DESIGNS)}")
+    add_sensor(parser)
     parser.add_argument("--pdk", default=PROCESSES[0], help=f"process, one of {', '.join(PROCESSES)}")
     parser.add_argument("--layouts", type=Path, default=RESULTS / "layout", help="folder of the layouts")
     parser.add_argument("--out", type=Path, default=RESULTS / "handoff", help="folder of the archive")
@@ -24,6 +27,7 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Write the archive and print its hash; 1 where the layout breaks a rule that is not waived."""
+    sensor_asked(options, VARIED)
     chosen = design(options.design)
     check_choice("pdk", options.pdk, PROCESSES)
     name = folder_name(chosen, options.pdk)

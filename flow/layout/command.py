@@ -7,6 +7,7 @@ from pathlib import Path
 from talbot.base.command import failures
 from talbot.base.paths import RESULTS
 from talbot.base.progress import Steps
+from talbot.base.sensor import add_sensor, sensor_asked
 from talbot.models.parameters import ParameterError, check_choice
 from talbot.platforms.foundry import installed
 from talbot.platforms.processes import PROCESSES
@@ -19,12 +20,14 @@ from .report.metrics import broken
 from .report.page import closing
 from .sensor.die import CHIP, SENSOR, die_steps, lay_out_sensor
 from .sensor.plan import BLOCKS
+from .varied import VARIED
 
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Arguments of `talbot layout`."""
     add = parser.add_argument
     add("design", nargs="?", default=CHIP, help=f"one of {', '.join((*DESIGNS, SENSOR))}")
+    add_sensor(parser)
     add("--pdk", default=PROCESSES[0], help=f"process, one of {', '.join(PROCESSES)}")
     add("--utilization", type=float, help="cells' area by core area where the search begins (default: the design's)")
     cells = "characterized cells at a corner (again for further corners; default: those shipped)"
@@ -35,6 +38,7 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(arguments: Namespace) -> int:
     """Lay out a design and print what came of it; 1 where a limit is broken."""
+    sensor_asked(arguments, VARIED)
     check_choice("DESIGN", arguments.design, (*DESIGNS, SENSOR))
     chosen = design(CHIP if arguments.design == SENSOR else arguments.design)
     start = chosen.utilization if arguments.utilization is None else arguments.utilization

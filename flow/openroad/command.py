@@ -10,9 +10,11 @@ from talbot.base.files import check_folder, staged
 from talbot.base.openroad import INSTALL
 from talbot.base.paths import RESULTS
 from talbot.base.progress import Steps
+from talbot.base.sensor import add_sensor, sensor_asked
 from talbot.base.tools import ToolError
 from talbot.flow.layout.design import DESIGNS, flat_design
 from talbot.flow.layout.geometry.merge import merge
+from talbot.flow.layout.varied import VARIED
 from talbot.platforms.openroad import openroad_platform
 
 from .results import broken, summarize
@@ -30,6 +32,7 @@ CHECKED = {"gds": "fill.gds", "sdc": "sdc", "drc.lyrdb": "drc.report", "lvsdb": 
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot openroad`."""
     parser.add_argument("design", nargs="?", default="asp_chip", help=f"one of {', '.join(DESIGNS)}")
+    add_sensor(parser)
     parser.add_argument("--pdk", default="sky130", help="process")
     parser.add_argument("--out", type=Path, default=RESULTS / "layout", help="folder of the layouts")
     parser.add_argument("--write-only", action="store_true", help="write the scripts, run nothing")
@@ -37,6 +40,7 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Write the scripts, run them and print where the figures are; 1 where a figure is beyond its limit."""
+    sensor_asked(options, VARIED)
     chosen, tech = flat_design(options.design), openroad_platform(options.pdk)
     folder = options.out / f"{chosen.name}-openroad"
     check_folder("out", folder)

@@ -4,12 +4,17 @@ from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
 from talbot.base.jobs import worker_count
+from talbot.base.sensor import Varied, add_sensor, sensor_asked
 
 from .sweeps import SWEEPS, run_sweeps
+
+PARTS = "tile", "array", "optics", "electrical", "converter", "chip"
+VARIED = Varied(fixed=dict.fromkeys(PARTS, "each sweep varies one field of the standard sensor"))
 
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot tradeoff`."""
+    add_sensor(parser)
     parser.add_argument("--only", help=f"names with commas between, of {', '.join(SWEEPS)} (default: all)")
     workers = "processes, -1: all cores (default: 1, so that nothing else of the run is in the seconds measured)"
     parser.add_argument("--workers", type=worker_count, default=1, help=workers)
@@ -18,6 +23,7 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Run the sweeps and print where their page is."""
+    sensor_asked(options, VARIED)
     run_sweeps(options.out, options.only.split(",") if options.only is not None else None, workers=options.workers)
     print(f"look at {options.out / 'tradeoff.html'}")
     return 0
