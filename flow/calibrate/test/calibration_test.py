@@ -8,6 +8,7 @@ import pytest
 from talbot.commands import main
 from talbot.flow.calibrate import measure, page
 from talbot.models.calibrate import read_calibration
+from talbot.models.parameters import ParameterError
 
 
 @pytest.fixture(scope="module")
@@ -76,3 +77,25 @@ def test_no_such_calibration(capsys, tmp_path):
     words = "--calibration=none.json", f"--out={tmp_path / 'out'}"
     assert main(["lightfield", *words]) == 2
     assert "calibration = 'none.json': must be a calibration.json" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "text, words, size",
+    [
+        ("", [], (96, 96)),
+        ("array.rows = 48\narray.cols = 60\n", [], (48, 60)),
+        ("array.rows = 48\narray.cols = 60\n", ["--rows=30"], (30, 60)),
+    ],
+)
+def test_the_size_is_that_of_a_sensor_file(text, words, size, tmp_path, monkeypatch):
+    sizes = []
+
+    def calibrate(request, *_):
+        sizes.append(request.sensor.shape)
+        raise ParameterError("seen")
+
+    monkeypatch.setattr(measure, "calibrate", calibrate)
+    (tmp_path / "odd.toml").write_text(text)
+    file = [f"--sensor={tmp_path / 'odd.toml'}"] if text else []
+    assert main(["calibrate", f"--out={tmp_path / 'out'}", *file, *words]) == 2
+    assert sizes == [size]

@@ -2,12 +2,16 @@
 
 import json
 import re
+from argparse import ArgumentParser
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from talbot.commands import main
-from talbot.flow.depth import page
+from talbot.flow.depth import command, page
+from talbot.models.parameters import STANDARD
+from talbot.models.pixel.time_of_flight import SPEED_OF_LIGHT
 
 
 def measured(folder, *words):
@@ -148,6 +152,24 @@ def test_coded_light_sees_past_the_fog(tmp_path, capsys):
 def test_a_rendered_scene_through_another_lens_has_no_depth(capsys, tmp_path):
     assert main(["depth", "--scene=room", "--focus=2", f"--out={tmp_path / 'out'}"]) == 2
     assert "a rendered scene has one at its own size and lens" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "file, words, fields",
+    [
+        ({}, [], (0, 250e6, 4.0)),
+        ({}, ["--code=31"], (31, 250e6, 4.0)),
+        ({"code": 63, "chip_rate": 1e8, "code_delay": 0.0}, [], (63, 1e8, 0.0)),
+        ({"code": 63, "chip_rate": 1e8}, ["--code=0", "--gate=3"], (0, 1e8, 6.0)),
+    ],
+)
+def test_a_code_is_of_the_options_else_of_the_sensor_file(file, words, fields):
+    parser = ArgumentParser()
+    command.add_arguments(parser)
+    code = command._code(parser.parse_args(words), replace(STANDARD.electrical, **file))
+    chips, rate, meters = fields
+    assert (code["code"], code["chip_rate"]) == (chips, rate)
+    assert code["code_delay"] == pytest.approx(meters / SPEED_OF_LIGHT)
 
 
 def test_three_taps_where_nothing_moves(done):
