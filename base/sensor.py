@@ -70,12 +70,13 @@ def sensor_asked(
     standard: without a file.
     """
     sensor = read_sensor(options.sensor) if options.sensor else standard
+    parts: dict[str, Any] = {}
     for option, name in (replaced or {}).items():
         value, (part, _, key) = getattr(options, option.replace("-", "_")), name.partition(".")
         if value is not None:
-            changed = getattr(sensor, part)
-            changed = _tile(changed, key, value) if part == "tile" else replace(changed, **{key: value})
-            sensor = replace(sensor, **{part: changed})
+            base = parts.get(part, getattr(sensor, part))
+            parts[part] = _tile(base, key, value) if part == "tile" else replace(base, **{key: value})
+    sensor = replace(sensor, **parts)  # at once: an array may be too large for the tile before
     varied.check(sensor)
     return sensor
 

@@ -36,6 +36,7 @@ def test_options_replace_fields_of_the_file(asked):
     sensor = asked(text, "--rows=60", "--order=5,4,3,2,1,0", "--lanes=2")
     assert sensor.shape == (60, 50) and sensor.tile.order == (5, 4, 3, 2, 1, 0) and sensor.chip.lanes == 2
     assert asked(text, "--tile-rows=1").tile == TileParameters.small(1, 3)
+    assert asked("array.rows = 256\ntile.rows = 1\ntile.cols = 6", "--rows=1024", "--tile-rows=4").tile_rows == 256
 
 
 @pytest.mark.parametrize(

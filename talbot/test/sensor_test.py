@@ -31,6 +31,8 @@ ODD = {
     "array.pitch": "12e-6",
     "optics.camera.exit_pupil": "0.05",
     "electrical.code": "31",
+    "electrical.code_delay": "1e-9",
+    "electrical.ambient_current": "1e-12",
     "chip.lanes": "4",
     "chip.divider": '"cordic"',
 }
