@@ -21,7 +21,7 @@ def check(netlist: Netlist, models: Container[str], rails: Mapping[str, int]) ->
             _fail(netlist, f"port {' or '.join(same)} is missing; it has {', '.join(netlist.ports)}")
     twice = sorted({port for port in netlist.ports if netlist.ports.count(port) > 1})
     if twice:
-        _fail(netlist, f"two ports have the name {twice[0]}")
+        _fail(netlist, f"ports: duplicate name {twice[0]}")
     names = [t.name for t in netlist.transistors]
     for t in netlist.transistors:
         if t.model not in models:
@@ -29,7 +29,7 @@ def check(netlist: Netlist, models: Container[str], rails: Mapping[str, int]) ->
         if not (t.size.get("w", 0) > 0 and t.size.get("l", 0) > 0):
             _fail(netlist, f"transistor {t.name} must have w and l above 0")
         if names.count(t.name) > 1:
-            _fail(netlist, f"two transistors have the name {t.name}")
+            _fail(netlist, f"transistors: duplicate name {t.name}")
     for passive in (*netlist.capacitors, *netlist.resistors):
         if passive.value < 0:
             _fail(netlist, f"{passive.name} must be 0 or more")

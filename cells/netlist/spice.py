@@ -105,7 +105,9 @@ def _subcircuits(text: str, origin: str) -> dict[str, Netlist]:
         card = words[0].lower()
         if card == ".subckt":
             if current is not None or len(words) < 2 or words[1] in netlists:
-                raise ParameterError(f"netlist = {origin}: {line!r} must have a name of its own and lie in no other")
+                raise ParameterError(
+                    f"netlist = {origin}: {line!r}: must have a unique name and be outside other subcircuits"
+                )
             spelled = {}
             ports = tuple(_node(w, spelled) for w in words[2:] if "=" not in w and w.lower() != "params:")
             current = netlists[words[1]] = Netlist(words[1], ports)

@@ -138,7 +138,7 @@ class Circuit:
 
     def _faults(self, process: ModuleType) -> Iterator[str]:
         counts = Counter([*(t.name for t in self.transistors), *(i.name for i in self.instances)])
-        yield from (f"device {n} = twice: must be a name of its own" for n, k in counts.items() if k > 1)
+        yield from (f"devices: duplicate name {n}" for n, k in counts.items() if k > 1)
         for t in self.transistors:
             if t.role not in process.ROLES:
                 yield f"device {t.name}: role = {t.role!r}: must be one of {', '.join(process.ROLES)}"

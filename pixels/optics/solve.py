@@ -116,7 +116,7 @@ def _check(reflected: Floats, transmitted: Floats) -> None:
     ):
         raise SolverError(
             f"reflected + transmitted = {total.min():.6g}..{total.max():.6g}: must be in 0..1; "
-            "other orders, or an angle beside it, may give an answer"
+            "other orders, or a slightly different angle, may work"
         )
 
 

@@ -107,7 +107,7 @@ def test_a_missing_model_a_missing_rail_and_a_wrong_port_are_named():
         check(netlist, {"n": "n"}, RAILS)
     with pytest.raises(ParameterError, match="port VPB or VPWR is missing; it has A, B, Y, VDD, VSS"):
         check(netlist, POLARITY, {"VPB": 1, "VPWR": 1, "VSS": 0})
-    with pytest.raises(ParameterError, match="two ports have the name A"):
+    with pytest.raises(ParameterError, match="ports: duplicate name A"):
         check(cell(NAND, "A B Y A"), POLARITY, RAILS)
 
 
@@ -148,8 +148,8 @@ def test_spice_as_people_write_it():
         ("M=2", "M=1.5", "must have a whole number m of 1 or more"),
         ("M=2", "M=two", "netlist = 'two': must be a number"),
         (".Ends Inv", "", ".subckt Inv has no .ends"),
-        (".SUBCKT Inv a Y Vdd VSS PARAMS: x=1", ".SUBCKT", "must have a name of its own and lie in no other"),
-        (".Ends Inv", ".subckt Inv a Y\n.ends\n", "must have a name of its own and lie in no other"),
+        (".SUBCKT Inv a Y Vdd VSS PARAMS: x=1", ".SUBCKT", "must have a unique name and be outside other subcircuits"),
+        (".Ends Inv", ".subckt Inv a Y\n.ends\n", "must have a unique name and be outside other subcircuits"),
         ("XP0 Y A VDD Vdd p", "XP0 Y A VDD p", "must be a transistor: drain gate source bulk model"),
     ],
 )

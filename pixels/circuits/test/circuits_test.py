@@ -75,7 +75,7 @@ INVERTER = Circuit(
         ({"w": float("nan")}, "device n: w = nan"),
         ({"gate": "b"}, "net b at device n: must have a driver"),
         ({"source": "nowhere"}, "net nowhere at device n: must have two ends"),
-        ({"name": "p"}, "device p = twice"),
+        ({"name": "p"}, "devices: duplicate name p"),
         ({"drain": ""}, "device n: node"),
     ],
 )
