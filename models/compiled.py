@@ -89,7 +89,7 @@ def _numba() -> Any:
 
     class HealingFile(caching.IndexDataCacheFile):
         def load(self, key: object) -> object:
-            """What is kept under ``key``; where that is damaged, None, and the index is written again."""
+            """Return the entry of ``key``; None where it is damaged, and the index is written again."""
             try:
                 return super().load(key)
             except Exception:  # unpickling raises nearly anything

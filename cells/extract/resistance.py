@@ -39,7 +39,7 @@ class Resistances:
 
 
 class Terminal(NamedTuple):
-    """Where a transistor ('drain', 'gate' or 'source' of a device by number) is on a net."""
+    """The point where a transistor's 'drain', 'gate' or 'source' (device by number) meets a net."""
 
     device: int
     role: str

@@ -28,7 +28,7 @@ DEFAULT = "linear"  # as fast as direct once its filters are there, and it has p
 
 
 class Found(NamedTuple):
-    """What a method gives.
+    """The result of a method.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What the views of a light field show together: refocused pictures [Jayasuriya2017, Ch. 3], disparity, all in focus.
+"""Results of all views of a light field: refocused pictures [Jayasuriya2017, Ch. 3], disparity, all in focus.
 
 View (v, u) shows at (y, x) what the middle of the views shows at (y + dv d, x + du d), where dv, du is its place from
 the middle in view steps and d the disparity, in px per view step. Views that are 0 everywhere, as in the corners that a

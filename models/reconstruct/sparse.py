@@ -29,7 +29,7 @@ CHUNK = 2048  # patches that are coded together: as much as stays in the cache, 
 
 @dataclass(frozen=True)
 class Coding:
-    """How patches are coded.
+    """The parameters of the patches' code.
 
     Attributes
     ----------
@@ -138,7 +138,7 @@ class Lasso(NamedTuple):
 
 
 class Dictionary(NamedTuple):
-    """What patches are made of.
+    """The atoms of the patches.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""From depth to disparity and back: the camera of models/parameters/camera.py before a scene.
+"""Conversion of depth and disparity by the camera of models/parameters/camera.py.
 
 A scene's own metres are divided by the camera's scale: everything here and in a `Scene` is in metres from the camera.
 """

@@ -81,7 +81,7 @@ class Echo:
         return -(-rows // high), -(-cols // wide)
 
     def returned(self, correlation: Correlation) -> Returned:
-        """What a correlation makes of all light of a view.
+        """Return the correlation of all light of a view.
 
         Parameters
         ----------

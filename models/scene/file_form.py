@@ -72,7 +72,7 @@ def is_video(path: Path) -> bool:
 
 
 def form_of(path: Path) -> str | None:
-    """What a file that is no picture is, and what it must be.
+    """Return the form of a file that is no picture, and the required form.
 
     Parameters
     ----------

@@ -208,7 +208,7 @@ class LightField:
         )
 
     def _below_zero(self) -> tuple[str, ...]:
-        """What the sensor does not see of the light field, in a line."""
+        """Return a line on the negative light, which the sensor does not see."""
         least = float(self.values.min())
         if least >= 0:
             return ()

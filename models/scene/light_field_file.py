@@ -45,7 +45,7 @@ LENSLET = 14  # their views along each axis
 
 
 def named(scene: str) -> Callable[[], LightField] | None:
-    """What reads a scene's name on the command line, where it is a light field's.
+    """Return the reader of a scene's name on the command line, where it is a light field's.
 
     Parameters
     ----------
@@ -193,7 +193,7 @@ def _clipped(values: npt.NDArray[Any], white: float) -> str:
 
 
 def _codes(values: npt.NDArray[Any], white: float) -> npt.NDArray[Any]:
-    """What a PNG can hold of them: uint8, or uint16 of gray."""
+    """Convert to the codes that a PNG can hold: uint8, or uint16 of gray."""
     colour = values.ndim == 5
     if values.dtype.kind == "f":
         codes = encode16(np.clip(values.astype(float) / white, 0, 1)) * (255 if colour else 65535)

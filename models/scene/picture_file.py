@@ -1,4 +1,4 @@
-"""From any image file to linear luminance: 1 to 16 bits, gray, colour, palette or alpha, of any size."""
+"""Image files as linear luminance: 1 to 16 bits, gray, colour, palette or alpha, of any size."""
 
 import re
 import warnings
@@ -31,7 +31,7 @@ REC709 = np.array([0.2126, 0.7152, 0.0722], np.float32)
 
 
 class Header(NamedTuple):
-    """What a file says of its pictures before they are decoded.
+    """A file's statements on its pictures, before decoding.
 
     Attributes
     ----------
@@ -351,7 +351,7 @@ def _ppm_pixels(picture: Any, path: Path) -> Pixels:
 
 
 def _still(picture: Any) -> int:
-    """How many pictures come before the frames: an APNG's default image may be none of them."""
+    """Return the number of pictures before the frames: an APNG's default image may be one."""
     return int(getattr(picture, "default_image", False) and picture.n_frames > 1)
 
 

@@ -1,4 +1,4 @@
-"""Which capacitor a unit of an array of 16 x 16 belongs to, in common centroid.
+"""The capacitor of each unit of a 16 x 16 array, in common centroid.
 
 Every unit but two has its partner of the same capacitor on the other side of the array's middle, at the same distance:
 what changes along a line across the array cancels. The two that are alone, the lowest bit and the terminator, are
