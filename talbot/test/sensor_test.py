@@ -24,7 +24,8 @@ WORDS = {"sequence": ["--scene=missing"], "decode": ["missing.bin"], "footprints
 ODD = {
     "tile.rows": "2\ntile.cols = 3",  # with the first types
     "tile.cols": "3",
-    "tile.types": "[{ beta = 12.0, gamma_deg = 0.0, alpha = 0.0 }]\ntile.rows = 1\ntile.cols = 1",
+    "tile.types": f"[{', '.join(f'{{ beta = {10.0 + k}, gamma_deg = 0.0, alpha = 0.0 }}' for k in range(6))}]\n"
+    "tile.rows = 2\ntile.cols = 3",
     "tile.order": f"{[*reversed(range(24))]}",
     "array.rows": "40",
     "array.cols": "60",
