@@ -86,10 +86,7 @@ def asked(monkeypatch, capsys, tmp_path):
         ("pixel PERIOD_UM=7", "period_um = 7.0: must be a number in [0.1, 5.0]"),
         ("pixel PDKS=sky130", "PDKS = 'sky130': must be a variable of make pixel; did you mean PDK?"),
         ("sim PIXEL=gf180", "pixel = 'gf180': must be one of ideal, sky130, ihp-sg13g2"),
-        (
-            "tradeoff SCENE=coins",
-            "SCENE = 'coins': must be a variable of make tradeoff: SENSOR, ONLY, WORKERS, OUT, PYTHON",
-        ),
+        ("tradeoff SCENE=coins", "SCENE = 'coins': must be a variable of make tradeoff: SENSOR, ONLY, WORKERS, OUT"),
         ("mutate SEDE=2", "did you mean SEED?"),
         ("layout DESIGN=none", "DESIGN = 'none': must be one of "),
         ("layout DESIGN=amp_ctrl UTILISATION=0.8", "did you mean UTILIZATION?"),

@@ -20,8 +20,8 @@ case "$*" in
     "-m venv "*) mkdir -p "$3/bin" && cp "$0" "$3/bin/python" ;;
     "-m pip --version") exit 0 ;;
     "-m pip install "*uv.lock) env | grep -E '^(PIP_|PYTHON)' | sort >>"$LOG"; [ "${UV:-}" ] || cp "$0" "${0%/*}/uv" ;;
-    *"pip install "*) env | grep -E '^(UV_|SSL_CERT_FILE|HTTPS_PROXY)' | sort >>"$LOG.uv"; echo "umask $(umask)" >>"$LOG"
-        echo "${0##*/} $*" >>"$LOG.pip"; sleep 0.3 ;;
+    *"pip install "*) env | grep -E '^(UV_|SSL_CERT_FILE|HTTPS_PROXY)' | sort >>"$LOG.uv"
+        echo "umask $(umask)" >>"$LOG"; echo "${0##*/} $*" >>"$LOG.pip"; sleep 0.3 ;;
     *version_info*) exit "${UNFIT:-0}" ;;
     *) echo "Python 3.12.1 at fake" ;;
 esac
