@@ -1,8 +1,12 @@
-"""What of a sensor the drawn circuits cannot vary: fields and reasons, for `talbot.base.sensor.Varied`."""
+"""What of a sensor the drawn circuits can and cannot vary: fields and reasons, for `talbot.base.sensor.Varied`."""
+
+from talbot.base.sensor import Varied
 
 DRAWN_PITCH_UM = 10.0
 DUMMIES = 2  # rows and columns on each side of a drawn array
 DRAWN_PITCH = {"array.pitch": "the masks of pixels, rows and columns are drawn for this pitch"}
+ARRAY_FIELDS = {"rows": "array.rows", "cols": "array.cols"}  # options that replace fields of the sensor
+DRAWN_ARRAY = Varied(used=(*ARRAY_FIELDS.values(), "tile"), fixed=DRAWN_PITCH)
 DRAWN_LINES = {"array.pitch": "resistance and capacitance of lines are those of pixels drawn on this pitch"}
 DRAWN_LANES = {"chip.lanes": "converters are drawn for this number of lines over the columns"}
 DRAWN_SIZES = dict.fromkeys(

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Renew the locks (make locks): for Python 3.11 and later on every platform, versions and hashes of what runs (run), what
 # video files add (video), rendering (render), tests and verification (test), cells and layouts (layout), `make lint`
-# (lint); LibreLane has another environment; uv installs all of these (uv). pdk.lock is kept by hand: one wheel whose dependencies are not wanted.
+# (lint); LibreLane has another environment; uv installs all of these (uv). pdk.lock is edited directly: one wheel whose
+# dependencies are not wanted.
 set -euo pipefail
 cd "$(dirname "$0")"
 compile() { uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-annotate --no-header "$@"; }

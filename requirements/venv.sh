@@ -105,7 +105,8 @@ install() {
     "$folder/bin/uv" pip install --quiet --python "$folder/bin/python" --no-deps "$@" 2>/dev/null \
         || "$folder/bin/python" -m pip install --quiet --no-deps --no-compile "$@"
 }
-[ -x "$folder/bin/uv" ] || "$folder/bin/python" -m pip install --quiet --no-deps --no-compile --require-hashes -r "$here/uv.lock"
+[ -x "$folder/bin/uv" ] || "$folder/bin/python" -m pip install --quiet --no-deps --no-compile --require-hashes \
+    -r "$here/uv.lock" 2>/dev/null || true # a registry without it
 # A lock names all that its packages depend on. pip compiles 6,000 modules with one core, compileall with all, and without
 # half of their text: tests, and packages that few commands import. Python compiles those when it imports them
 later='site-packages/((.*/)?(tests?|testcases)|pip|setuptools|networkx|fontTools|pygments)/'

@@ -23,7 +23,7 @@ class Floor:
 def variables(
     top: str, tech: PlaceAndRoute, floor: Floor, files: Mapping[str, object], frame: Frame | None = None
 ) -> str:
-    """Text of design.tcl for the module ``top``. files: variables beyond these; frame: decides in place of ``floor``.
+    """Text of design.tcl for the module ``top``. files: variables beyond these; frame: decides instead of ``floor``.
 
     A value is text, a number, a sequence, or, for an array, a mapping. A sequence's items are words, or lists of words.
     """

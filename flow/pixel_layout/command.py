@@ -5,17 +5,16 @@ from pathlib import Path
 from typing import Any
 
 from talbot.base.progress import Steps
-from talbot.base.sensor import Varied, add_sensor, labelled, sensor_asked
-from talbot.pixels.drawn import DRAWN_PITCH
+from talbot.base.sensor import add_sensor, labelled, sensor_asked
+from talbot.pixels.drawn import ARRAY_FIELDS, DRAWN_ARRAY
 
-FIELDS = {"rows": "array.rows", "cols": "array.cols"}
-VARIED = Varied(used=(*FIELDS.values(), "tile"), fixed=DRAWN_PITCH)
+VARIED = DRAWN_ARRAY
 
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot pixel-layout`. The foundry's decks are those of PDK_ROOT."""
     parser.add_argument("--pdk", default="sky130", help="process, sky130")
-    add_sensor(parser, FIELDS)
+    add_sensor(parser, ARRAY_FIELDS)
     parser.add_argument(
         "--table", type=Path, help="also write the lines for models: models/parameters/pixel_lines.json"
     )
@@ -29,7 +28,7 @@ def run(options: Namespace) -> int:
     """Draw, check, write the page and print the figures; 1 where a check fails."""
     from talbot.base.paths import RESULTS
 
-    sensor = sensor_asked(options, VARIED, FIELDS)
+    sensor = sensor_asked(options, VARIED, ARRAY_FIELDS)
     from .job import STEPS, make
 
     out = options.out or RESULTS / "pixel-layout" / labelled(options.pdk, options)

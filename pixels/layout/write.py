@@ -8,11 +8,11 @@ from pathlib import Path
 from talbot.base.command import main
 from talbot.base.files import staged
 from talbot.base.gds import db, write_gds
-from talbot.base.sensor import Varied, add_sensor, sensor_asked
+from talbot.base.sensor import add_sensor, sensor_asked
 from talbot.models.parameters import ArrayParameters, ParameterError, TileParameters
 from talbot.pixels.blocks import AnalogSizes
 from talbot.pixels.designs import gratings
-from talbot.pixels.drawn import DRAWN_PITCH
+from talbot.pixels.drawn import ARRAY_FIELDS, DRAWN_ARRAY
 from talbot.pixels.footprints import lef
 from talbot.pixels.optics.design import REACHED, measure
 from talbot.pixels.optics.fit import Fit
@@ -23,8 +23,6 @@ from .array import ArrayLayout, draw_array, draw_pixels
 from .pixel import PixelLayout, pixel_layout
 
 NAME = "pixel_array"
-FIELDS = {"rows": "array.rows", "cols": "array.cols"}
-VARIED = Varied(used=(*FIELDS.values(), "tile"), fixed=DRAWN_PITCH)
 
 
 def drawn_pixels(pdk: str, tile: TileParameters) -> tuple[PixelLayout, ...]:
@@ -71,13 +69,13 @@ def write(out: str | Path, array: ArrayLayout) -> None:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Options of `python -m talbot.pixels.layout.write`."""
     parser.add_argument("--pdk", default="sky130", help="process")
-    add_sensor(parser, FIELDS)
+    add_sensor(parser, ARRAY_FIELDS)
     parser.add_argument("--out", type=Path, required=True, help="folder of the files")
 
 
 def run(options: argparse.Namespace) -> int:
     """Write the files."""
-    sensor = sensor_asked(options, VARIED, FIELDS)
+    sensor = sensor_asked(options, DRAWN_ARRAY, ARRAY_FIELDS)
     write(options.out, array_layout(options.pdk, *sensor.shape, sensor.tile))
     return 0
 

@@ -19,7 +19,9 @@ case "$*" in
     "-m pip config list") echo "${CONF:-}" ;;
     "-m venv "*) mkdir -p "$3/bin" && cp "$0" "$3/bin/python" ;;
     "-m pip --version") exit 0 ;;
-    "-m pip install "*uv.lock) env | grep -E '^(PIP_|PYTHON)' | sort >>"$LOG"; [ "${UV:-}" ] || cp "$0" "${0%/*}/uv" ;;
+    "-m pip install "*uv.lock) env | grep -E '^(PIP_|PYTHON)' | sort >>"$LOG"
+        [ -z "${UV:-}" ] || { echo "no uv" >&2; exit 1; }
+        cp "$0" "${0%/*}/uv" ;;
     *"pip install "*) env | grep -E '^(UV_|SSL_CERT_FILE|HTTPS_PROXY)' | sort >>"$LOG.uv"
         echo "umask $(umask)" >>"$LOG"; echo "${0##*/} $*" >>"$LOG.pip"; sleep 0.3 ;;
     *version_info*) exit "${UNFIT:-0}" ;;

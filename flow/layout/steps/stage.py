@@ -84,7 +84,7 @@ def scripts() -> dict[str, Path]:
 
 
 class Stage(Step[StageParameters]):
-    """One script, in a process of its own.
+    """One script, in one process.
 
     One that crashes or hangs is run again with the setting `careful` (flow/layout/tcl/common.tcl), once; `again` says
     why. stopped: why there is no result, the last line of an error; None where there is one.
@@ -143,9 +143,7 @@ class Stage(Step[StageParameters]):
             watch(child, log)
         text = log.read_text(encoding="utf-8", errors="replace")
         if -child.returncode in FROM_OUTSIDE:
-            raise StepError(
-                f"{self.name}: openroad was ended by signal {-child.returncode}: no memory left, or by hand"
-            )
+            raise StepError(f"{self.name}: openroad was ended by signal {-child.returncode}: no memory left, or a user")
         if child.returncode < 0:
             raise Stopped(f"openroad ended by signal {-child.returncode}", again=not careful)
         if child.returncode:

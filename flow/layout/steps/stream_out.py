@@ -111,7 +111,7 @@ def label(layout: "db.Layout", tech: LayoutPlatform) -> None:
 
 
 def with_open_nets(netlist: Netlist, library: str) -> Netlist:
-    """Give every pin of a cell that the netlist leaves out a net of its own. library: SPICE of the cells."""
+    """Give every pin of a cell that the netlist leaves out a new net. library: SPICE of the cells."""
     ports = {m[1]: m[2].split() for m in re.finditer(r"(?im)^\.subckt (\S+) (.*)$", library)}
     instances = []
     for number, i in enumerate(netlist.instances):

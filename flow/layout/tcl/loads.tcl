@@ -6,13 +6,13 @@ open_stage repair
 set_propagated_clock [all_clocks]
 routing_layers
 
-# Legal places, and routes of the cells that are new or moved
-proc place_and_reroute {} {
+# Legal places, and routes of the cells that are new or moved. args: of estimate_parasitics
+proc place_and_reroute {args} {
   global_route -start_incremental -allow_congestion
   legalize
   optimize_mirroring
   global_route -end_incremental -allow_congestion
-  estimate_parasitics -global_routing
+  estimate_parasitics -global_routing {*}$args
 }
 
 global_route -allow_congestion -congestion_iterations $congestion_iterations
@@ -21,8 +21,7 @@ set load_margin [expr {2 * $load_margin}]
 repair_loads
 place_and_reroute
 repair_timing -hold -hold_margin $hold_margin
-place_and_reroute
-estimate_parasitics -global_routing -spef_file global.spef
+place_and_reroute -spef_file global.spef
 
 # A design that is late now stops here, before the hours of detailed routing
 foreach {name path} {setup max hold min} {

@@ -9,7 +9,7 @@ from talbot.base import openroad
 from talbot.base.steps import StepError
 from talbot.flow.layout.steps.stage import Stage, StageParameters, diverges, processor_s, violations
 
-# In place of OpenROAD: a crash unless careful; then the figure, and the database
+# Instead of OpenROAD: a crash unless careful; then the figure, and the database
 PROGRAM = """
 import os, signal, sys
 print("TALBOT placement_density 0.5")
@@ -49,7 +49,7 @@ def test_violations_are_those_of_the_last_routing():
 
 @pytest.fixture
 def place(tmp_path, monkeypatch):
-    """place(*arguments): metrics of the stage `place` with the program in place of OpenROAD."""
+    """place(*arguments): metrics of the stage `place` with the program instead of OpenROAD."""
 
     def run(*arguments):
         (tmp_path / "program.py").write_text(PROGRAM)
