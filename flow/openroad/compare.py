@@ -58,7 +58,11 @@ def table(names: Sequence[str], out: Path, before: str = "") -> str:
                 if path.is_file()
                 else [NOT_RUN] + [""] * (columns - 3)
             )
-            kept = [] if path.is_file() else [line for line in before.splitlines() if line.startswith(first)]
+            kept = (
+                []
+                if path.is_file()
+                else [line for line in before.splitlines() if line.startswith(first) and NOT_RUN not in line]
+            )
             lines.append(kept[0] if kept else f"{first} {' | '.join(cells)} |")
     return "\n".join(lines)
 

@@ -7,7 +7,7 @@ from talbot.rtl.asp_chip.pins import pins
 from .markdown import table
 
 MEANING = {
-    "clk": "System clock. All pins except SPI's are synchronous to its rising edge.",
+    "clk": "System clock. All pins except SPI's and `reset` are synchronous to its rising edge.",
     "reset": "Active high, synchronized on the chip; at least 4 rising edges of `clk`.",
     "sclk": "SPI clock, mode 0, at most f_clk / 8.",
     "csn": "SPI chip select, active low.",
