@@ -2,7 +2,6 @@
 
 import json
 import os
-import re
 import shutil
 import time
 from collections.abc import Callable, Mapping, Sequence
@@ -17,7 +16,7 @@ from talbot.base.liberty.read import without
 from talbot.base.steps.alone import alone
 from talbot.base.steps.versions import version
 from talbot.base.tools import ToolError, finish
-from talbot.flow.layout.steps.stage import ENVIRONMENT
+from talbot.flow.layout.steps.stage import ENVIRONMENT, figures
 from talbot.models.parameters import ParameterError
 from talbot.platforms.openroad import WIRES, OpenRoadPlatform
 
@@ -125,9 +124,8 @@ def _run(folder: Path, stage: Stage, key: str, top: str, tech: OpenRoadPlatform,
         raise ToolError(f"{'yosys' if stage.name == 'synth' else 'openroad'} {stage.name}: {state}:\n{tail}")
     if stage.name == "synth":
         write_synthesized(folder, top, tech)
-    figures = {what: float(value) for what, value in re.findall(r"^TALBOT (\S+) (\S+)$", done.stdout, re.M)}
-    figures |= {f"seconds.{name}": round(time.perf_counter() - begin, 1), f"mib.{name}": peak}
-    record = {"key": key, "result": digest(folder / stage.gives), "figures": figures}
+    measured = figures(done.stdout) | {f"seconds.{name}": round(time.perf_counter() - begin, 1), f"mib.{name}": peak}
+    record = {"key": key, "result": digest(folder / stage.gives), "figures": measured}
     with staged(folder) as part:
         (part / f"{name}.json").write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
-    return figures
+    return measured

@@ -125,8 +125,8 @@ class Stage(Step[StageParameters]):
                 return found | {"stopped": str(stop), "again": again}
             for path in outputs.values():
                 (work / path.name).replace(path)
-        measured = {key: float(value) for key, value in re.findall(r"(?m)^TALBOT (\S+) (\S+)$", text)}
-        return found | {key: value for key, value in measured.items() if key in self.metrics} | {"again": again}
+        measured = {name: value for name, value in figures(text).items() if name in self.metrics}
+        return found | measured | {"again": again}
 
     def prepare(self, work: Path, inputs: Files) -> None:
         """Put the scripts and the inputs into the folder ``work``, under the names that the scripts have for them."""
@@ -153,6 +153,12 @@ class Stage(Step[StageParameters]):
         if lacking := [name for name in self.outputs.values() if not (work / name).is_file()]:
             raise Stopped(f"openroad did not write {lacking[0]}", again=not careful)
         return text
+
+
+def figures(text: str) -> dict[str, float]:
+    """Return the figures that scripts printed as lines 'TALBOT name value', by name: counts as integers."""
+    pairs = re.findall(r"(?m)^TALBOT (\S+) (\S+)$", text)
+    return {name: int(value) if value.isdecimal() else float(value) for name, value in pairs}
 
 
 def design_tcl(p: StageParameters) -> str:
