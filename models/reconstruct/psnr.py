@@ -11,7 +11,7 @@ def psnr_db(estimate: npt.ArrayLike, truth: npt.ArrayLike, peak: float = 1.0) ->
 
     Parameters
     ----------
-    found, truth : array
+    estimate, truth : array
         Of one shape.
     peak : float
         Greater than 0.
@@ -40,7 +40,7 @@ def psnr_without_mean_db(
 
     Parameters
     ----------
-    found, truth : array
+    estimate, truth : array
         Of one shape.
     peak : float
         Greater than 0.
