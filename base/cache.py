@@ -12,8 +12,8 @@ import os
 from collections.abc import Callable
 from pathlib import Path
 
-from .check import work_begins
-from .files import part_folder
+from talbot.base.check import work_begins
+from talbot.base.files import part_folder
 
 CONTENT = ".content.json"  # digest of each file in a kept folder, and RUNS for a program
 RUNS = "+x"

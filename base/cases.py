@@ -4,10 +4,9 @@ import os
 from collections.abc import Sequence
 from pathlib import Path
 
+from talbot.base.files import write
+from talbot.base.page import TABLES, Section, Tile, render
 from talbot.models.stability import Case
-
-from .files import write
-from .page import TABLES, Section, Tile, render
 
 
 def write_page(out: Path, title: str, about: str, cases: Sequence[Case]) -> None:

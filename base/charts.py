@@ -20,8 +20,8 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 from matplotlib.transforms import Bbox
 
-from .style import own_style
-from .supervise import RUN
+from talbot.base.style import own_style
+from talbot.base.supervise import RUN
 
 # Of a label beside its point: offset in points, alignment
 PLACES = ((5, 3, "left", "bottom"), (5, -3, "left", "top"), (-5, 3, "right", "bottom"), (-5, -3, "right", "top"))

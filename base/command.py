@@ -15,14 +15,13 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, NoReturn
 
+from talbot.base import failure
+from talbot.base.check import ONLY, Checked
+from talbot.base.files import check_folder
+from talbot.base.paths import BUILD
+from talbot.base.tools import ToolError
 from talbot.models.parameters import ParameterError
 from talbot.models.parameters.sensor_file import nearest
-
-from . import failure
-from .check import ONLY, Checked
-from .files import check_folder
-from .paths import BUILD
-from .tools import ToolError
 
 # A value too long to be read in an error's line, quoted or a word: its beginning, the rest
 LONG = re.compile(r"""('[^']{80})[^']{80,}(?=')|("[^"]{80})[^"]{80,}(?=")|(\S{160})\S{160,}?(?=:?(?:\s|$))""")

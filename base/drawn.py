@@ -4,7 +4,7 @@ from typing import Any, Literal
 
 from markupsafe import Markup
 
-from .kept import kept
+from talbot.base.kept import kept
 
 
 def drawn(chart: Literal["bars", "curves"], *arguments: object, **named: object) -> Markup:
@@ -13,6 +13,6 @@ def drawn(chart: Literal["bars", "curves"], *arguments: object, **named: object)
 
 
 def _drawn(chart: str, arguments: tuple[Any, ...], named: dict[str, Any]) -> Markup:
-    from . import charts
+    from talbot.base import charts
 
     return charts.svg(getattr(charts, chart)(*arguments, **named))

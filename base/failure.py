@@ -13,7 +13,7 @@ import traceback
 from collections.abc import Callable
 from pathlib import Path
 
-from .supervise import RUN
+from talbot.base.supervise import RUN
 
 INTERNAL = 3  # exit status: neither a check that fails (1) nor bad input (2)
 ROOM = 64 << 20  # bytes

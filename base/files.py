@@ -10,11 +10,10 @@ import tempfile
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
+from talbot.base.check import work_begins
+from talbot.base.failure import FULL
+from talbot.base.supervise import undisturbed, writing
 from talbot.models.parameters import ParameterError
-
-from .check import work_begins
-from .failure import FULL
-from .supervise import undisturbed, writing
 
 PART = f".part-{platform.node()}-"  # then the process, so that a killed one's leftovers are recognized
 

@@ -16,14 +16,13 @@ from typing import Any
 
 import joblib
 
+from talbot.base.cache import digest
+from talbot.base.check import work_begins
+from talbot.base.files import write
+from talbot.base.progress import each
+from talbot.base.sources import code
+from talbot.base.tools import ToolError
 from talbot.models.parameters import ParameterError
-
-from .cache import digest
-from .check import work_begins
-from .files import write
-from .progress import each
-from .sources import code
-from .tools import ToolError
 
 
 @dataclass(frozen=True)

@@ -21,10 +21,10 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from .cache import digest
-from .files import write
-from .paths import BUILD
-from .sources import code
+from talbot.base.cache import digest
+from talbot.base.files import write
+from talbot.base.paths import BUILD
+from talbot.base.sources import code
 
 T = TypeVar("T")
 STORE = BUILD / "kept"

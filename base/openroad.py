@@ -10,7 +10,7 @@ import sys
 from importlib.util import find_spec
 from pathlib import Path
 
-from .tools import ToolError
+from talbot.base.tools import ToolError
 
 LAUNCHER = Path(__file__).with_name("openroad_wheel.py")
 LOADER = Path("/lib64/ld-linux-x86-64.so.2")

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from platformdirs import user_cache_path
 
-from .supervise import RUN
+from talbot.base.supervise import RUN
 
 PACKAGE = Path(__file__).parents[1]  # the folder talbot, as Python found it: in a checkout its parts are links
 ROOT = PACKAGE.parent  # the repository, or the folder of an installation's packages

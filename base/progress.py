@@ -9,7 +9,7 @@ from typing import Any, Self, TypeVar
 
 from tqdm import tqdm
 
-from .check import work_begins
+from talbot.base.check import work_begins
 
 T = TypeVar("T")
 INTERVAL = 2.0  # s between the lines of `Frames` and of `each`

@@ -18,9 +18,9 @@ from itertools import accumulate
 from pathlib import Path
 from threading import Lock
 
-from .cache import digest
-from .files import write
-from .paths import BUILD, PACKAGE, ROOT
+from talbot.base.cache import digest
+from talbot.base.files import write
+from talbot.base.paths import BUILD, PACKAGE, ROOT
 
 DATA = frozenset(
     (".md", ".toml", ".sv", ".v", ".cpp", ".vlt", ".rdl", ".tcl", ".lib", ".html", ".css", ".js", ".json", ".yaml")

@@ -19,8 +19,8 @@ from pathlib import Path
 from threading import Lock
 from typing import IO, TypeVar
 
-from .check import work_begins
-from .environment import of_tools
+from talbot.base.check import work_begins
+from talbot.base.environment import of_tools
 
 T = TypeVar("T")
 YOSYS = "yosys", "yosys-abc", "yosys-smtbmc"

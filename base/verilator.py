@@ -10,9 +10,9 @@ from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
 from pathlib import Path
 
-from .cache import cached, digest
-from .paths import BUILD
-from .tools import ToolError, finish, run
+from talbot.base.cache import cached, digest
+from talbot.base.paths import BUILD
+from talbot.base.tools import ToolError, finish, run
 
 CXX = ("g++", "-std=gnu++17", "-fno-strict-aliasing")  # the last flag is Verilator's own requirement
 RUNTIME = ("verilated", "verilated_threads")

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 
 from talbot.models.parameters import check_choice
-
-from .optics.geometry import PixelGeometry
+from talbot.pixels.optics.geometry import PixelGeometry
 
 
 @dataclass(frozen=True)

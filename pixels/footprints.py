@@ -16,11 +16,10 @@ from talbot.base.gds import write_gds
 from talbot.base.lef import write as lef_text
 from talbot.base.lef.read import Box
 from talbot.base.sensor import Varied, add_sensor, sensor_asked
+from talbot.pixels.blocks import DEEP_UM, SUPPLIES, AnalogSizes, Block, Pin, blocks
 from talbot.platforms.die import top_metal
 from talbot.platforms.layers import Layer
 from talbot.platforms.layout import layout_platform
-
-from .blocks import DEEP_UM, SUPPLIES, AnalogSizes, Block, Pin, blocks
 
 if TYPE_CHECKING:
     import klayout.db as db

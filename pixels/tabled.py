@@ -13,15 +13,14 @@ from talbot.base.sensor import Varied
 from talbot.base.sources import code
 from talbot.models.parameters import ParameterError, PixelType, SensorParameters, check_choice, drawn_curves
 from talbot.models.pixel import TableResponse
+from talbot.pixels.designs import DRAWN, IDEAL, PIXELS, gratings
+from talbot.pixels.drawn import DRAWN_PITCH
+from talbot.pixels.optics.design import REACHED, Design, measure
+from talbot.pixels.optics.fit import Fit
+from talbot.pixels.optics.response import bare_share
+from talbot.pixels.optics.solve import Floats
+from talbot.pixels.optics.table import ACROSS_DEGREES, along_degrees, angle_table
 from talbot.platforms.materials import refractive_index
-
-from .designs import DRAWN, IDEAL, PIXELS, gratings
-from .drawn import DRAWN_PITCH
-from .optics.design import REACHED, Design, measure
-from .optics.fit import Fit
-from .optics.response import bare_share
-from .optics.solve import Floats
-from .optics.table import ACROSS_DEGREES, along_degrees, angle_table
 
 STORE = BUILD / "pixel" / "tables"
 DRAWN_ALONE = Varied(("tile", "optics"), DRAWN_PITCH)

@@ -6,10 +6,9 @@ from importlib import import_module
 from pathlib import Path
 
 from talbot.models.parameters import check_real
-
-from .layers import GdsLayer
-from .pixel import PROCESSES, PixelProcess
-from .processes import package
+from talbot.platforms.layers import GdsLayer
+from talbot.platforms.pixel import PROCESSES, PixelProcess
+from talbot.platforms.processes import package
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from importlib import import_module
 
-from .layers import Layer, Via
-from .processes import package
+from talbot.platforms.layers import Layer, Via
+from talbot.platforms.processes import package
 
 PROCESSES = ("sky130",)
 

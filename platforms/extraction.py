@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from importlib import import_module
 from types import ModuleType
 
-from .layers import Crossing, GdsLayer, Layer, Via
-from .processes import package
+from talbot.platforms.layers import Crossing, GdsLayer, Layer, Via
+from talbot.platforms.processes import package
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,7 @@ from importlib import import_module
 from pathlib import Path
 
 from talbot.models.parameters import ParameterError
-
-from .processes import package
+from talbot.platforms.processes import package
 
 PROCESSES = ("sky130",)
 

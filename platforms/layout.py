@@ -6,11 +6,10 @@ from importlib import import_module
 from pathlib import Path
 
 from talbot.models.parameters import ParameterError
-
-from .frame import Frame
-from .layers import GdsLayer, Layer, Via
-from .processes import package
-from .wires import Wires
+from talbot.platforms.frame import Frame
+from talbot.platforms.layers import GdsLayer, Layer, Via
+from talbot.platforms.processes import package
+from talbot.platforms.wires import Wires
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 
-from .place_and_route import PlaceAndRoute
-from .processes import package
+from talbot.platforms.place_and_route import PlaceAndRoute
+from talbot.platforms.processes import package
 
 PROCESSES = ("sky130",)
 WIRES = "nom", "min", "max"  # corners of the wires' parasitics

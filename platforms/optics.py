@@ -4,8 +4,7 @@ from dataclasses import dataclass
 from importlib import import_module
 
 from talbot.models.parameters import ParameterError, check_choice
-
-from .processes import package
+from talbot.platforms.processes import package
 
 
 @dataclass(frozen=True)

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 
-from .layers import GdsLayer
-from .processes import package
+from talbot.platforms.layers import GdsLayer
+from talbot.platforms.processes import package
 
 PROCESSES = ("sky130",)
 

@@ -6,9 +6,8 @@ from pathlib import Path
 from types import ModuleType
 
 from talbot.models.parameters import ParameterError
-
-from .layers import GdsLayer, Layer, Via
-from .processes import package
+from talbot.platforms.layers import GdsLayer, Layer, Via
+from talbot.platforms.processes import package
 
 PROCESSES = ("sky130",)
 

@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from importlib import import_module
 
-from .layers import GdsLayer
-from .processes import package
+from talbot.platforms.layers import GdsLayer
+from talbot.platforms.processes import package
 
 PROCESSES = ("sky130",)  # with cells that are drawn for OpenROAD
 

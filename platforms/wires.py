@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from .layers import Crossing
+from talbot.platforms.layers import Crossing
 
 SUBSTRATE = "substrate"  # and wells: below every layer
 CORNERS: tuple[str, ...] = ("typ", "min", "max")  # of wires: nominal, least and most capacitance and resistance

@@ -12,16 +12,15 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from talbot.api import pixel
+    from talbot.api.decode import DecodedFrame, decode
+    from talbot.api.image import Image
+    from talbot.api.light_field import LightField
+    from talbot.api.run import Run
+    from talbot.api.sensor import Sensor, scenes
+    from talbot.api.sweep import Tradeoff, tradeoff
     from talbot.base.tools import ToolError
     from talbot.models.parameters import ParameterError, PixelType
-
-    from .api import pixel
-    from .api.decode import DecodedFrame, decode
-    from .api.image import Image
-    from .api.light_field import LightField
-    from .api.run import Run
-    from .api.sensor import Sensor, scenes
-    from .api.sweep import Tradeoff, tradeoff
 
 __all__ = [
     "DecodedFrame",

@@ -21,7 +21,7 @@ def _command() -> int:
     from talbot.base import paths
 
     paths.caches()  # Numba and Matplotlib read it when they are imported
-    from . import commands  # after the fork: it imports all of NumPy
+    from talbot import commands  # after the fork: it imports all of NumPy
 
     return commands.main(sys.argv[1:])
 

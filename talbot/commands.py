@@ -11,9 +11,8 @@ from talbot.base.check import ONLY
 from talbot.base.command import Parser, add_command, execute, guarded
 from talbot.base.page import index
 from talbot.base.paths import RESULTS
-
-from .front import COMMANDS, listing
-from .make import arguments
+from talbot.front import COMMANDS, listing
+from talbot.make import arguments
 
 STATUS = """talbot COMMAND --help lists the options of a command.
 

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from .read import Box
+from talbot.base.lef.read import Box
 
 if TYPE_CHECKING:
     import klayout.db as db

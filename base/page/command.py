@@ -3,10 +3,9 @@
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
+from talbot.base.page import index
 from talbot.base.paths import RESULTS
 from talbot.models.parameters import ParameterError
-
-from . import index
 
 
 def add_arguments(parser: ArgumentParser) -> None:

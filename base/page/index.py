@@ -10,8 +10,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from talbot.base.files import write
-
-from . import FOLDER, Tile, render
+from talbot.base.page import FOLDER, Tile, render
 
 NAME = "index.html"
 HEAD = 100_000  # characters of a page in which its card is

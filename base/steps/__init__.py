@@ -1,6 +1,6 @@
 """Steps from files to files, run in order: none is run again whose inputs did not change."""
 
-from .runner import Runner
-from .step import Files, Step, StepError
+from talbot.base.steps.runner import Runner
+from talbot.base.steps.step import Files, Step, StepError
 
 __all__ = ["Files", "Runner", "Step", "StepError"]

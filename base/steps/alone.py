@@ -14,7 +14,7 @@ from multiprocessing.process import BaseProcess
 from types import FrameType
 from typing import Any
 
-from .step import StepError
+from talbot.base.steps.step import StepError
 
 ONE_AT_A_TIME = threading.Lock()
 PR_SET_PDEATHSIG = 1  # linux/prctl.h: the signal that a process gets when its parent ends

@@ -18,11 +18,10 @@ from talbot.base.cache import cached, digest
 from talbot.base.paths import ROOT
 from talbot.base.progress import ended
 from talbot.base.sources import code, modules
+from talbot.base.steps.alone import alone
+from talbot.base.steps.step import Step, StepError
+from talbot.base.steps.versions import version
 from talbot.base.tools import plain
-
-from .alone import alone
-from .step import Step, StepError
-from .versions import version
 
 RECORD = "record.json"
 LOOK_S = 0.1  # how often `Runner.beside` looks for a step that can begin

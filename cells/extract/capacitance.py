@@ -13,10 +13,9 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from talbot.base.gds import db
+from talbot.cells.extract.devices import CellLayout
 from talbot.platforms.extraction import ExtractionPlatform
 from talbot.platforms.layers import DIFFUSION, Layer
-
-from .devices import CellLayout
 
 EPSILON = 1e-6  # um
 Span = tuple[float, float]  # distances near and far from an edge, um

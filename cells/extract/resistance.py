@@ -12,11 +12,10 @@ from itertools import combinations
 from typing import Any, NamedTuple
 
 from talbot.base.gds import db, pex
+from talbot.cells.extract.devices import CellLayout, Device
 from talbot.models.parameters import ParameterError
 from talbot.platforms.extraction import ExtractionPlatform
 from talbot.platforms.layers import DIFFUSION
-
-from .devices import CellLayout, Device
 
 IDEAL = 1e-3  # ohm a square of a diffusion, in which the transistor's model has the resistance
 LEAST = 1e-3  # ohm; what is less is as much

@@ -17,14 +17,13 @@ import numpy as np
 from talbot.cells.corner import Corner
 from talbot.cells.spice.engine import Points, Simulator
 from talbot.cells.spice.wave import Wave
+from talbot.flow.analog.deck import EDGE, SETTINGS, Setup, deck, settling, simulator
 from talbot.models.parameters.electrical import BOLTZMANN
 from talbot.pixels.circuits.amplifier import PINS, TRIM_BITS, UNITS, AmplifierSizes, AmplifierSpec, amplifier
 from talbot.pixels.circuits.dac import PARASITIC
 from talbot.pixels.circuits.lane import LaneSizes
 from talbot.pixels.circuits.netlist import Circuit, Instance
 from talbot.pixels.circuits.support import bias
-
-from .deck import EDGE, SETTINGS, Setup, deck, settling, simulator
 
 INPUTS = (
     "column_a",

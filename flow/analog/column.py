@@ -21,6 +21,8 @@ from talbot.cells.corner import Corner
 from talbot.cells.spice.engine import Points, Simulator
 from talbot.cells.spice.settings import Settings
 from talbot.cells.spice.wave import Wave
+from talbot.flow.analog.deck import EDGE, SETTINGS, Setup, deck, settling, simulator
+from talbot.flow.analog.noise import GAMMA
 from talbot.models.parameters.electrical import BOLTZMANN
 from talbot.pixels.circuits import column as columns
 from talbot.pixels.circuits.amplifier import BIAS
@@ -38,9 +40,6 @@ from talbot.pixels.circuits.column_sizes import EFFICIENCY, FRONT, LANE, ColumnS
 from talbot.pixels.circuits.netlist import Capacitor, Circuit, Instance, Transistor
 from talbot.pixels.circuits.row_driver import THICK
 from talbot.pixels.circuits.support import bias
-
-from .deck import EDGE, SETTINGS, Setup, deck, settling, simulator
-from .noise import GAMMA
 
 ROW = 3.3  # V of the row's lines: wells at the charge amplifiers' level ask for less than the drawn pixel's 5 V
 # By the trapezoidal rule the same line was 0.15 LSB off from run to run, a third of a limit, and with a trtol of 1 or 3

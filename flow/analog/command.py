@@ -49,8 +49,7 @@ def add_arguments(parser: ArgumentParser) -> None:
 def run(options: Namespace) -> int:
     """Measure, write the datasheet and print it; 1 where a characteristic is outside its limits."""
     from talbot.base.paths import RESULTS
-
-    from .job import STEPS, corners_of, make
+    from talbot.flow.analog.job import STEPS, corners_of, make
 
     sensor = sensor_asked(options, VARIED)
     if options.gm_id:
@@ -68,9 +67,8 @@ def run(options: Namespace) -> int:
 def _tables(pdk: str, file: Path) -> int:
     """Measure transistors and write their tables."""
     from talbot.base.files import check_file, write
-
-    from .deck import process_of
-    from .tables import tables, text
+    from talbot.flow.analog.deck import process_of
+    from talbot.flow.analog.tables import tables, text
 
     check_file("gm-id", file)
     write(file, text(tables(process_of(pdk))))

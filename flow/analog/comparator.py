@@ -8,11 +8,10 @@ import numpy.typing as npt
 
 from talbot.cells.corner import Corner
 from talbot.cells.spice.engine import Points
+from talbot.flow.analog.deck import EDGE, Setup, clock, deck, simulator
 from talbot.pixels.circuits.comparator import comparator
 from talbot.pixels.circuits.lane import LaneSizes
 from talbot.pixels.circuits.netlist import Circuit
-
-from .deck import EDGE, Setup, clock, deck, simulator
 
 LOAD = 5e-15  # F at the decision
 BATCH = 10  # comparators of a deck of the Monte Carlo run

@@ -11,13 +11,12 @@ import numpy as np
 import numpy.typing as npt
 
 from talbot.cells.corner import Corner
+from talbot.flow.analog.column import FULL, QUIET, WELLS, bench, opened, sample, turn_of
+from talbot.flow.analog.deck import Setup
 from talbot.models.parameters import ColumnCurves
 from talbot.pixels.circuits import column as columns
 from talbot.pixels.circuits.column_sizes import ColumnSizes, ColumnSpec
 from talbot.pixels.circuits.netlist import Circuit
-
-from .column import FULL, QUIET, WELLS, bench, opened, sample, turn_of
-from .deck import Setup
 
 OF_TAP = "w", "f", "fn", "unasked"  # the lines that each tap has
 FILLS = (*WELLS, 0.85, 0.9, 0.94, FULL)  # of a full well: a bend begins at 0.85

@@ -2,16 +2,16 @@
 
 from dataclasses import dataclass
 
-from .amplifier import AmplifierResult
-from .column import ColumnResult
-from .comparator import Decisions
-from .curves import ColumnFit
-from .lane import LaneResult
-from .noise import Noise
-from .row_driver import RowDriverResult
-from .spread import AmplifierNoise, Drawn
-from .support import SupportResult
-from .turn import TurnResult
+from talbot.flow.analog.amplifier import AmplifierResult
+from talbot.flow.analog.column import ColumnResult
+from talbot.flow.analog.comparator import Decisions
+from talbot.flow.analog.curves import ColumnFit
+from talbot.flow.analog.lane import LaneResult
+from talbot.flow.analog.noise import Noise
+from talbot.flow.analog.row_driver import RowDriverResult
+from talbot.flow.analog.spread import AmplifierNoise, Drawn
+from talbot.flow.analog.support import SupportResult
+from talbot.flow.analog.turn import TurnResult
 
 TYPICAL = "tt_027C_1v80"  # the corner of typical values
 

@@ -14,6 +14,21 @@ from talbot.base.jobs import Job, run
 from talbot.base.paths import BUILD
 from talbot.base.records import from_json
 from talbot.cells.corner import Corner
+from talbot.flow.analog import amplifier, column, comparator, curves, lane, linearity, row_driver, spread, support, turn
+from talbot.flow.analog import noise as noises
+from talbot.flow.analog.amplifier import AmplifierResult
+from talbot.flow.analog.column import ColumnResult
+from talbot.flow.analog.comparator import BATCH, Decisions, interval
+from talbot.flow.analog.curves import ColumnFit
+from talbot.flow.analog.deck import Setup, deck, process_of
+from talbot.flow.analog.found import TYPICAL, Found
+from talbot.flow.analog.lane import LaneResult, inl
+from talbot.flow.analog.noise import Noise
+from talbot.flow.analog.row_driver import RowDriverResult
+from talbot.flow.analog.rows import datasheet
+from talbot.flow.analog.spread import AmplifierNoise, Drawn
+from talbot.flow.analog.support import SupportResult
+from talbot.flow.analog.turn import TurnResult
 from talbot.models.parameters import DIODE, STANDARD, ParameterError, SensorParameters, check_int
 from talbot.models.parameters.electrical import AMPLIFIER
 from talbot.pixels.circuits import amplifier as amplifiers
@@ -25,22 +40,6 @@ from talbot.pixels.circuits.lane import LaneSizes
 from talbot.pixels.circuits.row_driver import RowDriverSpec
 from talbot.pixels.circuits.specification import LaneSpec
 from talbot.pixels.circuits.support import SupportSpec
-
-from . import amplifier, column, comparator, curves, lane, linearity, row_driver, spread, support, turn
-from . import noise as noises
-from .amplifier import AmplifierResult
-from .column import ColumnResult
-from .comparator import BATCH, Decisions, interval
-from .curves import ColumnFit
-from .deck import Setup, deck, process_of
-from .found import TYPICAL, Found
-from .lane import LaneResult, inl
-from .noise import Noise
-from .row_driver import RowDriverResult
-from .rows import datasheet
-from .spread import AmplifierNoise, Drawn
-from .support import SupportResult
-from .turn import TurnResult
 
 STEPS = "check", "corners", "mismatch", "noise", "linearity", "report"
 STORE = BUILD / "analog" / "measured"
@@ -105,7 +104,7 @@ def make(
     sensor: SensorParameters = STANDARD,
 ) -> dict[str, Any]:
     """Measure, write the datasheet into ``out``, with ``table`` what frames need; returns the summary."""
-    from . import page  # Matplotlib: not before it is needed
+    from talbot.flow.analog import page  # Matplotlib: not before it is needed
 
     start = perf_counter()
     check_int("draws", draws, 2 * BATCH, 100_000)

@@ -8,12 +8,11 @@ import numpy as np
 from talbot.cells.corner import Corner
 from talbot.cells.spice.engine import Simulator
 from talbot.cells.spice.wave import Wave
+from talbot.flow.analog.deck import Setup, bits, clock, deck, references, settled, simulator
 from talbot.models.digital.sar import decisions as search
 from talbot.models.parameters import ParameterError
 from talbot.pixels.circuits.lane import PINS, LaneSizes, sar_lane
 from talbot.pixels.circuits.netlist import Circuit
-
-from .deck import Setup, bits, clock, deck, references, settled, simulator
 
 BITS = 8
 INPUTS = ("lane_a", "lane_b", "sample", "strobe", *(f"d{k}" for k in range(BITS)))

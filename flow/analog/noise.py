@@ -9,12 +9,11 @@ from scipy.special import ndtri
 
 from talbot.cells.corner import Corner
 from talbot.cells.spice.engine import Points
+from talbot.flow.analog.deck import Setup, clock, deck, patient, simulator
 from talbot.models.parameters import ParameterError
 from talbot.models.parameters.electrical import BOLTZMANN, ELEMENTARY_CHARGE
 from talbot.pixels.circuits.comparator import comparator
 from talbot.pixels.circuits.lane import LaneSizes
-
-from .deck import Setup, clock, deck, patient, simulator
 
 LOAD = 5e-15  # F at the decision
 PERIOD = 8e-9  # s, of decisions whose outcome alone counts: half of it decides

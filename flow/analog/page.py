@@ -8,10 +8,9 @@ from matplotlib.figure import Figure
 
 from talbot.base.charts import COLOURS, svg
 from talbot.base.page import TABLES, Section, Tile, render
-
-from .datasheet import HEAD, Row
-from .found import Found
-from .lane import inl
+from talbot.flow.analog.datasheet import HEAD, Row
+from talbot.flow.analog.found import Found
+from talbot.flow.analog.lane import inl
 
 NAMES = ("datasheet.html", "summary.json")
 AMPLIFIER = ("corner", "gain", "INL LSB", "settling ns", "left LSB", "ambient LSB", "energy pJ", "retries")

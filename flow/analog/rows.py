@@ -4,19 +4,18 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from talbot.flow.analog.comparator import interval
+from talbot.flow.analog.datasheet import Row, over_corners
+from talbot.flow.analog.found import TYPICAL, Found
+from talbot.flow.analog.lane import VALUE, inl
+from talbot.flow.analog.row_driver import RowDriverResult
+from talbot.flow.analog.support import SupportResult
 from talbot.models.parameters import STANDARD, SensorParameters
 from talbot.pixels.circuits.amplifier import BIAS, AmplifierSpec
 from talbot.pixels.circuits.column_sizes import ColumnSpec
 from talbot.pixels.circuits.row_driver import RowDriverSpec
 from talbot.pixels.circuits.specification import LaneSpec
 from talbot.pixels.circuits.support import SupportSpec
-
-from .comparator import interval
-from .datasheet import Row, over_corners
-from .found import TYPICAL, Found
-from .lane import VALUE, inl
-from .row_driver import RowDriverResult
-from .support import SupportResult
 
 
 def datasheet(spec: LaneSpec, found: Found, draws: int, sensor: SensorParameters = STANDARD) -> list[Row]:

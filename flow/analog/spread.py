@@ -9,12 +9,11 @@ import numpy as np
 
 from talbot.base.tools import ToolError, finish
 from talbot.cells.corner import Corner
+from talbot.flow.analog.amplifier import END, LANE_OHM, REACH, biased, load_of, opened, sample
+from talbot.flow.analog.deck import SETTINGS, Setup, deck, process_of
 from talbot.pixels.circuits.amplifier import TRIM_BITS, UNITS, AmplifierSizes, AmplifierSpec, amplifier
 from talbot.pixels.circuits.lane import LaneSizes
 from talbot.pixels.circuits.netlist import Circuit
-
-from .amplifier import END, LANE_OHM, REACH, biased, load_of, opened, sample
-from .deck import SETTINGS, Setup, deck, process_of
 
 BAND = "dec 5 1e5 1e10"  # Hz: what is slower, the reset takes away
 LOOP = 1e9  # ohm, without noise: an operating point for an input that floats in the signal's phase

@@ -7,10 +7,9 @@ import numpy as np
 from talbot.cells.corner import Corner
 from talbot.cells.spice.engine import Simulator
 from talbot.cells.spice.wave import Wave
+from talbot.flow.analog.deck import SETTINGS, Setup, clock, deck, simulator
 from talbot.pixels.circuits.netlist import Circuit, Instance, Resistor
 from talbot.pixels.circuits.support import SupportSpec, bias, non_overlap
-
-from .deck import SETTINGS, Setup, clock, deck, simulator
 
 RAMP, STARTED = 1e-6, 30e-6  # s, of the supply when the bias starts, and until which it is simulated
 NEAR = 0.02  # of its last current: the bias has started

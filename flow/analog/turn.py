@@ -16,14 +16,13 @@ import numpy as np
 
 from talbot.cells.corner import Corner
 from talbot.cells.spice.wave import Wave
+from talbot.flow.analog import amplifier as amplifiers
+from talbot.flow.analog.column import GAP, Beside, bench, opened, sample, trimmed, turn_of
+from talbot.flow.analog.deck import Setup, settling
 from talbot.pixels.circuits.amplifier import UNITS, AmplifierSizes, AmplifierSpec, amplifier
 from talbot.pixels.circuits.column_sizes import ColumnSizes, ColumnSpec
 from talbot.pixels.circuits.lane import LaneSizes
 from talbot.pixels.circuits.netlist import Circuit, Instance
-
-from . import amplifier as amplifiers
-from .column import GAP, Beside, bench, opened, sample, trimmed, turn_of
-from .deck import Setup, settling
 
 LIGHT = (0.2, 0.0), (0.0, 0.2), (0.9, 0.75)  # of a full well, of both diodes: differences within the converter's range
 LATER = 2  # cycles after the hold's begin: the line is at rest, and has lost little

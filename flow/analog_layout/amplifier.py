@@ -10,16 +10,15 @@ from talbot.flow.analog.amplifier import AmplifierResult
 from talbot.flow.analog.amplifier import measure as measure_amplifier
 from talbot.flow.analog.deck import Setup
 from talbot.flow.analog.support import BiasResult, bias_measured
+from talbot.flow.analog_layout.beside import Pair
+from talbot.flow.analog_layout.extract import Nets, unit_farad
+from talbot.flow.analog_layout.row import Row
 from talbot.pixels.analog_layout.cells import Cell
 from talbot.pixels.circuits.amplifier import BIAS, TRIM_BITS, AmplifierSizes, AmplifierSpec
 from talbot.pixels.circuits.lane import LaneSizes
 from talbot.pixels.circuits.netlist import Circuit
 from talbot.pixels.circuits.support import SupportSpec, bias
 from talbot.platforms.analog import AnalogMasks
-
-from .beside import Pair
-from .extract import Nets, unit_farad
-from .row import Row
 
 UNIT_OFF = 3.0  # %, most, of the drawn unit
 

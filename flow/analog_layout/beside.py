@@ -8,9 +8,8 @@ from talbot.base.jobs import Job, run
 from talbot.base.paths import BUILD
 from talbot.base.records import from_json
 from talbot.cells.corner import Corner
-
-from .extract import Extracted
-from .row import Row
+from talbot.flow.analog_layout.extract import Extracted
+from talbot.flow.analog_layout.row import Row
 
 STORE = BUILD / "analog-layout" / "measured"
 T = TypeVar("T")

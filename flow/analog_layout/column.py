@@ -7,11 +7,10 @@ from talbot.flow.analog import column
 from talbot.flow.analog.column import ColumnResult
 from talbot.flow.analog.deck import Setup
 from talbot.flow.analog.turn import TurnResult
+from talbot.flow.analog_layout.beside import Pair
+from talbot.flow.analog_layout.row import Row
 from talbot.pixels.circuits.column_sizes import ColumnSizes, ColumnSpec
 from talbot.pixels.circuits.netlist import Circuit
-
-from .beside import Pair
-from .row import Row
 
 
 def measure(

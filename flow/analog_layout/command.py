@@ -38,7 +38,7 @@ def run(options: Namespace) -> int:
 
     sensor = sensor_asked(options, VARIED)
     blocks(sensor.array, sensor.chip)  # has room for its pins
-    from .job import STEPS, make
+    from talbot.flow.analog_layout.job import STEPS, make
 
     out = options.out or RESULTS / "analog-layout" / labelled(options.pdk, options)
     with Steps(STEPS, lines=True) as steps:

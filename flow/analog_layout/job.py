@@ -22,6 +22,15 @@ from talbot.flow.analog.row_driver import RowDriverResult
 from talbot.flow.analog.row_driver import measure as measure_row
 from talbot.flow.analog.turn import TurnResult
 from talbot.flow.analog.turn import measure as measure_turn
+from talbot.flow.analog_layout import amplifier, column, row_driver, switch
+from talbot.flow.analog_layout.amplifier import Amplified
+from talbot.flow.analog_layout.beside import Pair, beside
+from talbot.flow.analog_layout.checks import differences, drc, lvs
+from talbot.flow.analog_layout.extract import Extracted, Nets, extract
+from talbot.flow.analog_layout.measure import Measured, measure
+from talbot.flow.analog_layout.row import Row
+from talbot.flow.analog_layout.switch import Gaps
+from talbot.flow.analog_layout.write import drawn_blocks
 from talbot.models.parameters import STANDARD, ArrayParameters, SensorParameters
 from talbot.pixels.analog_layout.amplifier import amplifier_cell
 from talbot.pixels.analog_layout.bias import bias_cell
@@ -41,16 +50,6 @@ from talbot.pixels.circuits.support import SupportSpec
 from talbot.platforms.analog import AnalogMasks, analog_masks
 from talbot.platforms.layout import layout_platform
 from talbot.platforms.wires import wire_corner
-
-from . import amplifier, column, row_driver, switch
-from .amplifier import Amplified
-from .beside import Pair, beside
-from .checks import differences, drc, lvs
-from .extract import Extracted, Nets, extract
-from .measure import Measured, measure
-from .row import Row
-from .switch import Gaps
-from .write import drawn_blocks
 
 STEPS = "draw", "drc", "lvs", "extract", "measure", "report"
 KINDS = "gds", "spice", "extracted.spice", "lyrdb", "lvsdb"
@@ -89,7 +88,7 @@ def make(
 
     table: file for the curves of the drawn amplifier and column at the first corner.
     """
-    from . import page  # Matplotlib: not before it is needed
+    from talbot.flow.analog_layout import page  # Matplotlib: not before it is needed
 
     start = perf_counter()
     check_folder("out", out)

@@ -3,10 +3,9 @@
 from collections.abc import Iterator
 
 from talbot.flow.analog.row_driver import RowDriverResult
+from talbot.flow.analog_layout.beside import Pair
+from talbot.flow.analog_layout.row import Row
 from talbot.pixels.circuits.row_driver import RowDriverSpec
-
-from .beside import Pair
-from .row import Row
 
 
 def rows(spec: RowDriverSpec, found: Pair[RowDriverResult]) -> Iterator[Row]:

@@ -6,11 +6,10 @@ from dataclasses import dataclass
 from talbot.cells.corner import Corner
 from talbot.flow.analog.deck import Setup
 from talbot.flow.analog.support import phases
+from talbot.flow.analog_layout.beside import Pair
+from talbot.flow.analog_layout.row import Row
 from talbot.pixels.circuits.netlist import Circuit
 from talbot.pixels.circuits.support import SupportSpec
-
-from .beside import Pair
-from .row import Row
 
 
 @dataclass(frozen=True)

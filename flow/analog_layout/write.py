@@ -12,6 +12,7 @@ from talbot.base.files import staged
 from talbot.base.gds import write_gds
 from talbot.base.steps import StepError
 from talbot.flow.analog.job import amplifier_of, column_of, setup_of
+from talbot.flow.analog_layout.checks import differences, lvs
 from talbot.models.parameters import STANDARD, SensorParameters
 from talbot.pixels.analog_layout.column_amplifiers import NAME as COLUMNS
 from talbot.pixels.analog_layout.column_amplifiers import draw_column_amplifiers
@@ -22,8 +23,6 @@ from talbot.pixels.analog_layout.row_drivers import NAME as ROWS
 from talbot.pixels.analog_layout.row_drivers import draw_row_drivers
 from talbot.pixels.blocks import AnalogSizes
 from talbot.platforms.analog import analog_masks
-
-from .checks import differences, lvs
 
 
 def drawn_blocks(pdk: str, sensor: SensorParameters = STANDARD) -> dict[str, DrawnBlock]:

@@ -29,8 +29,8 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Calibrate, write calibration.json and its page, and print the figures."""
-    from . import page  # Matplotlib: not before it is needed
-    from .measure import calibrate
+    from talbot.flow.calibrate import page  # Matplotlib: not before it is needed
+    from talbot.flow.calibrate.measure import calibrate
 
     holes = HOLES.value(options)
     typed = typed_of(options, add_arguments, OF_SENSOR | SIDES)
@@ -53,7 +53,7 @@ def run(options: Namespace) -> int:
 
 
 def _print(s: dict[str, Any], folder: Path) -> None:
-    from .page import lens_rows, picture_rows
+    from talbot.flow.calibrate.page import lens_rows, picture_rows
 
     print(f"calibration of {s['rows']} x {s['cols']} pixels by {s['holes']} places of the hole, noise {s['noise']:g}")
     errors = {

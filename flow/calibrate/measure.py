@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from talbot.flow.calibrate.bench import Bench
 from talbot.flow.frame.job import golden_result, see
 from talbot.flow.frame.light_field import prior_of
 from talbot.flow.frame.request import FrameRequest
@@ -16,8 +17,6 @@ from talbot.models.calibrate import Calibration, Sweep, TypeFit, calibrated
 from talbot.models.parameters import SensorParameters
 from talbot.models.pixel import optical_gains
 from talbot.models.pixel.weights import density
-
-from .bench import Bench
 
 Values = npt.NDArray[np.float64]
 

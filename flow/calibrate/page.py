@@ -9,11 +9,10 @@ from matplotlib.figure import Figure
 
 from talbot.base.charts import LINE, SCATTER, curves, svg
 from talbot.base.page import TABLES, Section, Tile, render
+from talbot.flow.calibrate.measure import Calibrated
 from talbot.flow.frame.reading import number
 from talbot.models.parameters import OpticsParameters
 from talbot.models.pixel.weights import density
-
-from .measure import Calibrated
 
 NAMES = ("calibrate.html", "calibration.json", "summary.json", "sweep.npz")
 NEAR = 0.12  # of the pupil's radius

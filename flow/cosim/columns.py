@@ -13,6 +13,9 @@ import numpy as np
 from talbot.cells.spice.engine import Simulator
 from talbot.flow.analog.amplifier import COLUMNS, EXACT
 from talbot.flow.analog.column import CURRENT, GAP, ROW, SETTLED, nearer
+from talbot.flow.cosim import extracted
+from talbot.flow.cosim.amplified import AFTER, Drive
+from talbot.flow.cosim.pixels import PixelSizes, pixel, row_line
 from talbot.models.parameters import DIODE, ELEMENTARY_CHARGE, AmpTiming
 from talbot.pixels.circuits.column import BIASES, PINS, TAPS, column, line
 from talbot.pixels.circuits.column_block import OUTSIDE, cascode_lines, clear_pulse, column_bias, lane_end, lane_line
@@ -22,10 +25,6 @@ from talbot.pixels.circuits.row_driver import THICK
 from talbot.pixels.circuits.specification import CODES
 from talbot.pixels.circuits.support import bias
 from talbot.platforms.sky130 import analog
-
-from . import extracted
-from .amplified import AFTER, Drive
-from .pixels import PixelSizes, pixel, row_line
 
 TIMING = AmpTiming()  # of a row with these columns: the holder has 16 cycles in each half
 CELSIUS = 25.0

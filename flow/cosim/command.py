@@ -62,11 +62,10 @@ def run(options: Namespace) -> int:
     """Read the rows, write the page and print the figures; 1 where a code is beyond its limit, a fault not found."""
     from talbot.base.files import check_folder, staged
     from talbot.base.paths import RESULTS
-
-    from . import page, study
-    from .accuracy import Accuracy
-    from .job import STEPS, model_alone, rows, summary
-    from .row import MODES, RowRequest
+    from talbot.flow.cosim import page, study
+    from talbot.flow.cosim.accuracy import Accuracy
+    from talbot.flow.cosim.job import STEPS, model_alone, rows, summary
+    from talbot.flow.cosim.row import MODES, RowRequest
 
     sensor = sensor_asked(options, VARIED)
     if options.sensor and (options.study or options.faults):

@@ -5,6 +5,10 @@ from dataclasses import dataclass, field
 from functools import partial
 
 from talbot.cells.corner import Corner
+from talbot.flow.cosim import amplified, extracted, pixels
+from talbot.flow.cosim import columns as own_columns
+from talbot.flow.cosim.accuracy import Accuracy
+from talbot.flow.cosim.faults import Fault
 from talbot.models.parameters import check_real
 from talbot.pixels.circuits import lane as lanes_of
 from talbot.pixels.circuits.amplifier import AmplifierSizes, AmplifierSpec
@@ -13,11 +17,6 @@ from talbot.pixels.circuits.gates import LENGTH, inverter
 from talbot.pixels.circuits.netlist import Circuit, Instance, Transistor
 from talbot.pixels.circuits.specification import CODES, LaneSpec
 from talbot.platforms.sky130 import analog
-
-from . import amplified, extracted, pixels
-from . import columns as own_columns
-from .accuracy import Accuracy
-from .faults import Fault
 
 SUBS = 4  # sub-samples of a column, as in front_end.sv
 BITS = 8

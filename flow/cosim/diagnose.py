@@ -3,11 +3,10 @@
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from talbot.flow.cosim.deck import BITS
+from talbot.flow.cosim.faults import Fault
+from talbot.flow.cosim.row import Row, RowRequest
 from talbot.models.digital.sar import decisions
-
-from .deck import BITS
-from .faults import Fault
-from .row import Row, RowRequest
 
 SOUND = "no fault"
 

@@ -5,11 +5,10 @@ from typing import Any
 
 import numpy as np
 
+from talbot.flow.cosim import extracted, lockstep
+from talbot.flow.cosim.row import Row, RowRequest, read_row
 from talbot.flow.frame.hardware import program as bench
 from talbot.flow.frame.hardware import simulate
-
-from . import extracted, lockstep
-from .row import Row, RowRequest, read_row
 
 STEPS = ("build", "rows", "study", "report")
 

@@ -16,15 +16,14 @@ import numpy.typing as npt
 from talbot.base.paths import PACKAGE
 from talbot.base.tools import ToolError
 from talbot.base.verilator import has_headers
+from talbot.flow.cosim.accuracy import Accuracy
+from talbot.flow.cosim.deck import Deck, Timing
 from talbot.flow.simulate.build import Build
 from talbot.flow.simulate.frame import host_script, run_frame
 from talbot.flow.simulate.verilator import FRAME, program_of
 from talbot.models.afe import FrontEnd, write_converter, write_samples
 from talbot.models.digital.host import command, frame_writes, write_transfers
 from talbot.models.parameters import FrameParameters, SensorParameters
-
-from .accuracy import Accuracy
-from .deck import Deck, Timing
 
 HERE = Path(__file__).parent
 GAVE_UP = 5  # exit status where ngspice gives up

@@ -10,9 +10,8 @@ from matplotlib.figure import Figure
 
 from talbot.base.charts import COLOURS, svg
 from talbot.base.page import TABLES, Section, Tile, render
-
-from .row import Row, Sample
-from .waves import write_vcd
+from talbot.flow.cosim.row import Row, Sample
+from talbot.flow.cosim.waves import write_vcd
 
 SHOWN = 12  # cycles in the picture of waves
 PAGE = "cosim.html"

@@ -13,10 +13,9 @@ import numpy as np
 import numpy.typing as npt
 
 from talbot.base.tools import ToolError, finish
-
-from .accuracy import Accuracy
-from .deck import Deck, Timing
-from .lockstep import Cycle, Run
+from talbot.flow.cosim.accuracy import Accuracy
+from talbot.flow.cosim.deck import Deck, Timing
+from talbot.flow.cosim.lockstep import Cycle, Run
 
 TIGHT = Accuracy(reltol=1e-5, chgtol=1e-17, step=0.2e-9, bodies=True)  # ten times tighter ngspice gives up at an edge
 FLAG = re.compile(r"(?P<kind>sample|strobe|d|select)(?P<a>\d+)(?:_(?P<b>\d+))?")

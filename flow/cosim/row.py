@@ -8,6 +8,11 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from talbot.flow.cosim import lockstep
+from talbot.flow.cosim.accuracy import Accuracy
+from talbot.flow.cosim.columns import TIMING
+from talbot.flow.cosim.deck import Deck, RowOfPixels, Timing, build
+from talbot.flow.cosim.faults import Fault
 from talbot.flow.frame.request import request
 from talbot.models.afe import Converter, FrontEnd
 from talbot.models.chip import golden_frame
@@ -27,12 +32,6 @@ from talbot.models.parameters import (
 from talbot.models.parameters.electrical import AMPLIFIER
 from talbot.pixels.circuits.amplifier import AmplifierSpec
 from talbot.pixels.circuits.specification import LaneSpec
-
-from . import lockstep
-from .accuracy import Accuracy
-from .columns import TIMING
-from .deck import Deck, RowOfPixels, Timing, build
-from .faults import Fault
 
 MODES = ("edge", "image", "tof")
 GAIN = 4.0

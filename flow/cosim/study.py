@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from .accuracy import Accuracy
-from .diagnose import diagnose
-from .faults import Fault
-from .replay import TIGHT, replay
-from .row import Row, RowRequest, decision_times, read_row
+from talbot.flow.cosim.accuracy import Accuracy
+from talbot.flow.cosim.diagnose import diagnose
+from talbot.flow.cosim.faults import Fault
+from talbot.flow.cosim.replay import TIGHT, replay
+from talbot.flow.cosim.row import Row, RowRequest, decision_times, read_row
 
 ONE = RowRequest(mode="image", cols=6, lanes=1, types=1, pixels=False)
 SETTINGS = {

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TextIO
 
-from .lockstep import Run
+from talbot.flow.cosim.lockstep import Run
 
 TICK = 1e-14  # s
 SMALLEST = 0.5e-3  # V, of a change that is written

@@ -46,9 +46,9 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Measure one depth field and print the figures; 1 where the chip and the golden model differ."""
-    from . import page  # Matplotlib: not before it is needed
-    from .capture import capture
-    from .measure import Depth, read_depth
+    from talbot.flow.depth import page  # Matplotlib: not before it is needed
+    from talbot.flow.depth.capture import capture
+    from talbot.flow.depth.measure import Depth, read_depth
 
     standard = STANDARD.electrical
     ours = replace(standard, f_mod=F_MOD, contrast=CONTRAST, ambient_current=AMBIENT * standard.white_current)
@@ -87,7 +87,7 @@ def _code(options: Namespace, file: ElectricalParameters) -> dict[str, Any]:
 
 
 def _print(s: dict[str, Any], folder: Path) -> None:
-    from .page import lead_line, rows
+    from talbot.flow.depth.page import lead_line, rows
 
     size, span = f"{s['rows']} x {s['cols']} pixels", f"{s['range_m']:.3f} m, {s['ambiguity_m']:.3f} m a turn"
     print(f"{s['scene']}: depth of {size} over {span}")

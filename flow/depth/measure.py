@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from talbot.flow.depth.capture import DepthFrames
 from talbot.flow.frame.light_field import estimator_of, full
 from talbot.flow.frame.reading import rms
 from talbot.flow.frame.result import PHASE_TURN, GoldenResult
@@ -19,8 +20,6 @@ from talbot.models.reconstruct.bayes import Estimate, FieldEstimator, FieldPrior
 from talbot.models.reconstruct.coded import Coded, coded_depth
 from talbot.models.reconstruct.depth_field import DepthField, depth_field, foreground, refocused, still, unwrap
 from talbot.models.scene import Sampling, camera
-
-from .capture import DepthFrames
 
 Values = npt.NDArray[np.floating]
 Bools = npt.NDArray[np.bool_]

@@ -6,11 +6,10 @@ from typing import Any
 import numpy as np
 
 from talbot.base.page import TABLES, Picture, Scale, Section, Tile, render
+from talbot.flow.depth.measure import SINE, Depth, Values
 from talbot.flow.frame import pictures
 from talbot.flow.frame.reading import agreement, line, number
 from talbot.models.reconstruct.depth_field import refocused
-
-from .measure import SINE, Depth, Values
 
 NAMES = ("depth.html", "summary.json", "depth.npz")
 HEAD = ("", "RMS where sure", "of the range", "sure", "RMS everywhere")

@@ -13,6 +13,9 @@ from talbot.base.cache import digest
 from talbot.base.paths import results_of
 from talbot.base.progress import Steps
 from talbot.base.sensor import Varied
+from talbot.flow.frame import arguments as text
+from talbot.flow.frame.arguments import Number, named
+from talbot.flow.frame.sensor import add_pixel, asked_sensor
 from talbot.flow.simulate.frame import WAVES
 from talbot.models.parameters import (
     COLS_MAX,
@@ -28,12 +31,8 @@ from talbot.models.parameters import (
     drawn_electrical,
 )
 
-from . import arguments as text
-from .arguments import Number, named
-from .sensor import add_pixel, asked_sensor
-
 if TYPE_CHECKING:
-    from .request import FrameRequest
+    from talbot.flow.frame.request import FrameRequest
 
 
 NAME_MAX = 120  # characters of a folder's name
@@ -141,7 +140,7 @@ def run(options: Namespace) -> int:
     typed = typed_of(options, add_arguments)
     options.out = options.out or results_of("sim") / name_of(typed)
     frame_request = request_of(options)
-    from .job import STEPS, run  # Matplotlib and more: not before the arguments are right
+    from talbot.flow.frame.job import STEPS, run  # Matplotlib and more: not before the arguments are right
 
     before = arguments_of(frame_request.folder)
     with Steps(STEPS) as steps:
@@ -201,9 +200,8 @@ def request_of(a: Namespace, sensor: SensorParameters | None = None, sequence: b
     The sensor has the size of a light field's views where neither rows, cols nor a sensor file are typed.
     sensor: in place of that of the options, their camera included. sequence: the scene is one, no light field.
     """
+    from talbot.flow.frame.request import light_field_of, request
     from talbot.models.calibrate import read_calibration
-
-    from .request import light_field_of, request
 
     no_file, sensor = a.sensor is None, sensor or asked_sensor(a)
     typed = {name: value for name, value in vars(a).items() if value is not None}
@@ -248,8 +246,8 @@ def camera_of(a: Namespace, camera: CameraParameters) -> CameraParameters:
 
 
 def _print_figures(s: dict[str, Any], folder: Path) -> None:
-    from .figures import camera_line, depth_line, energy_line, exposure_line, light_line, trims_line
-    from .merit import against, decibels, light_field, sent
+    from talbot.flow.frame.figures import camera_line, depth_line, energy_line, exposure_line, light_line, trims_line
+    from talbot.flow.frame.merit import against, decibels, light_field, sent
 
     print(
         f"{s['scene']}, {s['mode']} mode, {s['rows']} x {s['cols']}: "

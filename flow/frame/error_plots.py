@@ -14,13 +14,12 @@ from markupsafe import Markup
 
 from talbot.base.drawn import drawn
 from talbot.base.kept import kept
+from talbot.flow.frame import hardware
+from talbot.flow.frame.quality import decoding_error, snr
+from talbot.flow.frame.result import FrameResult
 from talbot.models.afe import FrontEnd
 from talbot.models.chip import golden_frame
 from talbot.models.parameters import FrameParameters, SensorParameters
-
-from . import hardware
-from .quality import decoding_error, snr
-from .result import FrameResult
 
 LADDER = (0, 1, 2, 4, 8, 16, 32, 64, 127)
 SIMULATORS = 2  # that run side by side

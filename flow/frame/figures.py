@@ -9,14 +9,13 @@ import numpy as np
 import numpy.typing as npt
 
 from talbot.base.verilator import verilator_version
+from talbot.flow.frame.quality import decoding_error, ideal_samples, quality
+from talbot.flow.frame.result import FrameResult, GoldenResult
 from talbot.models.afe.trim import TRIM_MAX, TRIM_MIN
 from talbot.models.digital.exposure import integration_cycles, slot_cycles
 from talbot.models.parameters import ELEMENTARY_CHARGE, EnergyParameters, LightParameters
 from talbot.models.parameters.energy import DECISIONS, EYE_LIMIT, WINDOW, DigitalEvents, Events
 from talbot.models.parameters.stream_format import HEADER_BYTES, MARK, TRAILER_BYTES
-
-from .quality import decoding_error, ideal_samples, quality
-from .result import FrameResult, GoldenResult
 
 Codes, Values = npt.NDArray[np.integer], npt.NDArray[np.float64]
 PEAK = 255.0  # span of the 8-bit codes

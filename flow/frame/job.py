@@ -15,6 +15,10 @@ from talbot.base.files import check_folder, staged
 from talbot.base.kept import kept
 from talbot.base.progress import say
 from talbot.base.tools import meanwhile
+from talbot.flow.frame import hardware
+from talbot.flow.frame.figures import summarize
+from talbot.flow.frame.request import FrameRequest
+from talbot.flow.frame.result import Exposed, FrameResult, GoldenResult
 from talbot.flow.simulate.frame import Waves
 from talbot.models.afe import FrontEnd, trim_codes, trim_gain
 from talbot.models.capture import Exposure, Region, Views, captured, exposed, instants, integrate, moving_currents
@@ -26,11 +30,6 @@ from talbot.models.parameters import FrameParameters, SensorParameters, TilePara
 from talbot.models.pixel import measured_gains
 from talbot.models.plan import Plan, plan
 from talbot.models.scene import Sampling, Scene, load
-
-from . import hardware
-from .figures import summarize
-from .request import FrameRequest
-from .result import Exposed, FrameResult, GoldenResult
 
 Values = npt.NDArray[np.float64]
 BENCH = 4  # the noise of a frame beside those of the four taps
@@ -242,7 +241,7 @@ def run(
     note: called with the name of each of `STEPS` as it starts, and with a line before each long part of one.
     arguments: of the command line, kept in the summary. Raises ParameterError, ToolError, OSError.
     """
-    from . import outputs  # Matplotlib: not before it is needed
+    from talbot.flow.frame import outputs  # Matplotlib: not before it is needed
 
     check_folder("out", request.folder, outputs.NAMES)
     clock = Clock(note=note)

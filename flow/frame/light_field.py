@@ -7,6 +7,7 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 import numpy.typing as npt
 
+from talbot.flow.frame.request import FrameRequest
 from talbot.models.capture import CaptureOperator, cells
 from talbot.models.digital.stream.frame import DecodedFrame
 from talbot.models.parameters import ParameterError, SensorParameters
@@ -15,8 +16,6 @@ from talbot.models.reconstruct.bad_pixels import dead_pixels, repaired
 from talbot.models.reconstruct.bayes import FieldEstimator, FieldPrior
 from talbot.models.reconstruct.methods import ANY_TYPES, DEFAULT, Found, check_method, measure
 from talbot.models.scene import Scene
-
-from .request import FrameRequest
 
 Values = npt.NDArray[np.floating]
 PUPIL = 7  # points across the pupil at which the estimators take a scene that can be seen from anywhere

@@ -11,18 +11,17 @@ from markupsafe import Markup
 from talbot.base.drawn import drawn
 from talbot.base.kept import kept
 from talbot.base.page import Picture, Scale, encoded
+from talbot.flow.frame import error_plots, pictures
+from talbot.flow.frame.chip_picture import chip_svg
+from talbot.flow.frame.figures import depth_line
+from talbot.flow.frame.merit import against, decibels, light_field
+from talbot.flow.frame.quality import Values, decoding_error, depth_error, depth_map, image_error, part_read
+from talbot.flow.frame.report import Views, render
+from talbot.flow.frame.result import FrameResult, GoldenResult
 from talbot.flow.simulate.frame import WAVES
 from talbot.models.parameters import EnergyParameters, LightParameters, sensor_text, sources
 from talbot.models.parameters.drawn import drawn_sources
 from talbot.models.parameters.sources import Sourced
-
-from . import error_plots, pictures
-from .chip_picture import chip_svg
-from .figures import depth_line
-from .merit import against, decibels, light_field
-from .quality import Values, decoding_error, depth_error, depth_map, image_error, part_read
-from .report import Views, render
-from .result import FrameResult, GoldenResult
 
 # Every name that some mode writes: those that this run does not write are of an earlier run and are removed
 PICTURES = ("overview", "scene", "differences", "image", "conversions", "depth", "edges", "views", "views_decoded")

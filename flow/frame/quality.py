@@ -12,14 +12,13 @@ import numpy.typing as npt
 from PIL import __version__ as VERSION
 
 from talbot.base.kept import kept
+from talbot.flow.frame.codecs import CODECS, absent, coded
+from talbot.flow.frame.result import GoldenResult
 from talbot.models.capture import cells
 from talbot.models.chip import golden_frame
 from talbot.models.parameters import FrameParameters
 from talbot.models.pixel import depth_of
 from talbot.models.reconstruct import psnr_db, psnr_without_mean_db, sum_image
-
-from .codecs import CODECS, absent, coded
-from .result import GoldenResult
 
 Codes, Values = npt.NDArray[np.integer], npt.NDArray[np.float64]
 TURN = 256  # codes of a phase

@@ -15,17 +15,16 @@ from talbot.base.files import check_folder, staged
 from talbot.base.page import Tile
 from talbot.base.paths import results_of
 from talbot.base.progress import Steps
+from talbot.flow.frame import report
+from talbot.flow.frame.command import add_frame_arguments, arguments_of, name_of, request_of, tell_replaced, typed_of
+from talbot.flow.frame.figures import mismatches
+from talbot.flow.frame.job import golden_result, simulate_frame
+from talbot.flow.frame.request import FrameRequest
+from talbot.flow.frame.result import FrameResult, GoldenResult
+from talbot.flow.frame.sensor import asked_sensor
 from talbot.flow.simulate.frame import WAVES
 from talbot.models.parameters import CameraParameters, SensorParameters
 from talbot.models.scene.rendered import RENDERED
-
-from . import report
-from .command import add_frame_arguments, arguments_of, name_of, request_of, tell_replaced, typed_of
-from .figures import mismatches
-from .job import golden_result, simulate_frame
-from .request import FrameRequest
-from .result import FrameResult, GoldenResult
-from .sensor import asked_sensor
 
 # All of a frame is read
 WHOLE = {"threshold": "0", "phase": False, "types": "all", "window": "full", "decimation": "0"}

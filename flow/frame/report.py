@@ -11,11 +11,10 @@ from PIL.Image import Image
 
 from talbot.base import page
 from talbot.base.page import Picture, Scale, Tile
+from talbot.flow.frame.figures import camera_line, digital_line, energy_line, exposure_line, light_line, trims_line
+from talbot.flow.frame.merit import decibels, nothing_sent, table
+from talbot.flow.frame.pictures import sprite
 from talbot.models.parameters.sources import Sourced
-
-from .figures import camera_line, digital_line, energy_line, exposure_line, light_line, trims_line
-from .merit import decibels, nothing_sent, table
-from .pictures import sprite
 
 VIEW = 256  # px, width of a view on a page at most
 SHEET = 1600  # px, width of all views on a page at most

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from talbot.base.paths import results_of
+from talbot.flow.frame.arguments import named
 from talbot.flow.simulate.frame import WAVES
 from talbot.models import parameters
 from talbot.models.calibrate import Calibration
@@ -25,8 +26,6 @@ from talbot.models.parameters import (
 )
 from talbot.models.plan.exposure import exposed_for, fitting
 from talbot.models.scene import LightField, light_field_file, scenes
-
-from .arguments import named
 
 CONVERTERS = {
     "typical": TYPICAL_CONVERTER,

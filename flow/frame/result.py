@@ -9,6 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from talbot.base.kept import kept
+from talbot.flow.frame.hardware import HardwareFrame
+from talbot.flow.frame.request import FrameRequest
 from talbot.models.afe import FrontEnd
 from talbot.models.capture import Views
 from talbot.models.chip import GoldenFrame
@@ -19,9 +21,6 @@ from talbot.models.plan import Plan
 from talbot.models.reconstruct import edge_images, rebuild, sum_image
 from talbot.models.reconstruct.rebuild import Rebuilt
 from talbot.models.scene import Scene
-
-from .hardware import HardwareFrame
-from .request import FrameRequest
 
 if TYPE_CHECKING:
     from talbot.models.reconstruct.methods import Found
@@ -113,14 +112,14 @@ class GoldenResult:
     @property
     def light_field_method(self) -> str:
         """Name of the method of `estimate`; raw mode only."""
-        from . import light_field  # it imports for long
+        from talbot.flow.frame import light_field  # it imports for long
 
         return light_field.method_of(self)
 
     @cached_property
     def estimate(self) -> "Found":
         """The light field from the decoded diodes, relative radiance, by `light_field_method`; raw mode only."""
-        from . import light_field
+        from talbot.flow.frame import light_field
 
         return light_field.estimate(self, self.light_field_method)
 

@@ -7,13 +7,12 @@ from talbot.base.command import failures
 from talbot.base.files import staged
 from talbot.base.paths import RESULTS
 from talbot.base.sensor import add_sensor, sensor_asked
+from talbot.flow.handoff.archive import archive, sha256
+from talbot.flow.handoff.contents import Broken, contents, manifest, waived
 from talbot.flow.layout.design import DESIGNS, design, folder_name
 from talbot.flow.layout.varied import VARIED
 from talbot.models.parameters import check_choice
 from talbot.platforms.processes import PROCESSES
-
-from .archive import archive, sha256
-from .contents import Broken, contents, manifest, waived
 
 
 def add_arguments(parser: ArgumentParser) -> None:

@@ -6,6 +6,9 @@ from collections.abc import Mapping, Sequence
 from importlib.metadata import version
 from pathlib import Path
 
+from talbot.flow.handoff.archive import sha256
+from talbot.flow.handoff.pages import datasheet, pinout
+from talbot.flow.handoff.power import powered
 from talbot.flow.layout.block import SCRIPTS
 from talbot.flow.layout.design import Design
 from talbot.flow.layout.netlist.netlist import SUPPLIES
@@ -13,10 +16,6 @@ from talbot.flow.layout.report.metrics import broken
 from talbot.flow.openroad.tinytapeout import PROJECTS, project_files
 from talbot.models.parameters import ParameterError
 from talbot.platforms.layout import layout_platform
-
-from .archive import sha256
-from .pages import datasheet, pinout
-from .power import powered
 
 WAIVERS = Path(__file__).parent / "waivers.json"
 # suffix of build/layout/<design>/<design>.* -> folder in the archive

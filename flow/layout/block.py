@@ -10,18 +10,17 @@ from typing import Any
 from talbot.base.files import staged
 from talbot.base.page import Picture
 from talbot.base.steps import Runner
+from talbot.flow.layout.chain import input_files, scripts_of
+from talbot.flow.layout.design import Design, folder_name
+from talbot.flow.layout.netlist.netlist import Netlist
+from talbot.flow.layout.options import Options
+from talbot.flow.layout.power.energy import blocks
+from talbot.flow.layout.report.metrics import broken, summarize
+from talbot.flow.layout.report.page import picture, write_report
+from talbot.flow.layout.report.picture import LayoutPicture, by_block, clock_tree, congestion, render
+from talbot.flow.layout.search import lay_out_smallest
 from talbot.platforms.layout import layout_platform
 from talbot.platforms.wires import wire_corner
-
-from .chain import input_files, scripts_of
-from .design import Design, folder_name
-from .netlist.netlist import Netlist
-from .options import Options
-from .power.energy import blocks
-from .report.metrics import broken, summarize
-from .report.page import picture, write_report
-from .report.picture import LayoutPicture, by_block, clock_tree, congestion, render
-from .search import lay_out_smallest
 
 RESULTS = {"gds": "fill.gds", "v": "stream_out.verilog", "lef": "lef.lef", "spef": "extraction.typ", "sdc": "sdc"}
 RESULTS |= {"drc.lyrdb": "drc.report", "foundry.lyrdb": "foundry_drc.report", "magic_drc.txt": "magic_drc.report"}

@@ -7,36 +7,35 @@ from pathlib import Path
 from talbot.base.files import write
 from talbot.base.liberty.read import plain, text_of
 from talbot.base.steps import Step
+from talbot.flow.layout.design import Design
+from talbot.flow.layout.options import LEAST_UTILIZATION, Options, corner_of
+from talbot.flow.layout.steps.antenna import Antenna
+from talbot.flow.layout.steps.block_liberty import BlockLiberty, BlockLibertyParameters
+from talbot.flow.layout.steps.compiled import Compiled
+from talbot.flow.layout.steps.drc import Drc
+from talbot.flow.layout.steps.equivalence import Equivalence, EquivalenceParameters
+from talbot.flow.layout.steps.extraction import Extraction
+from talbot.flow.layout.steps.fill import Fill
+from talbot.flow.layout.steps.foundry_drc import FoundryDrc, FoundryDrcParameters, MagicDrc
+from talbot.flow.layout.steps.gate_delays import GateDelays, GateDelaysParameters
+from talbot.flow.layout.steps.gate_frames import GateFrames
+from talbot.flow.layout.steps.gate_tests import GateTests, GateTestsParameters
+from talbot.flow.layout.steps.ir_drop import IrDrop, IrDropParameters
+from talbot.flow.layout.steps.lef import Lef
+from talbot.flow.layout.steps.library import Library
+from talbot.flow.layout.steps.lvs import Lvs
+from talbot.flow.layout.steps.parameters import PdkParameters
+from talbot.flow.layout.steps.power import Power, PowerParameters
+from talbot.flow.layout.steps.sta import Sta, StaParameters
+from talbot.flow.layout.steps.stage import STAGES, Stage, StageParameters, called, design_tcl, scripts
+from talbot.flow.layout.steps.stimulus import Stimulus, StimulusParameters
+from talbot.flow.layout.steps.stream_out import StreamOut, StreamOutParameters
+from talbot.flow.layout.steps.synthesis import SynthesisParameters, TimedSynthesis
+from talbot.flow.layout.steps.timing import Timing, TimingParameters
+from talbot.flow.layout.timing.constraints import sdc
+from talbot.flow.layout.variables import Floor
 from talbot.platforms.wires import wire_corner
 from talbot.rtl.verilog import export_verilog
-
-from .design import Design
-from .options import LEAST_UTILIZATION, Options, corner_of
-from .steps.antenna import Antenna
-from .steps.block_liberty import BlockLiberty, BlockLibertyParameters
-from .steps.compiled import Compiled
-from .steps.drc import Drc
-from .steps.equivalence import Equivalence, EquivalenceParameters
-from .steps.extraction import Extraction
-from .steps.fill import Fill
-from .steps.foundry_drc import FoundryDrc, FoundryDrcParameters, MagicDrc
-from .steps.gate_delays import GateDelays, GateDelaysParameters
-from .steps.gate_frames import GateFrames
-from .steps.gate_tests import GateTests, GateTestsParameters
-from .steps.ir_drop import IrDrop, IrDropParameters
-from .steps.lef import Lef
-from .steps.library import Library
-from .steps.lvs import Lvs
-from .steps.parameters import PdkParameters
-from .steps.power import Power, PowerParameters
-from .steps.sta import Sta, StaParameters
-from .steps.stage import STAGES, Stage, StageParameters, called, design_tcl, scripts
-from .steps.stimulus import Stimulus, StimulusParameters
-from .steps.stream_out import StreamOut, StreamOutParameters
-from .steps.synthesis import SynthesisParameters, TimedSynthesis
-from .steps.timing import Timing, TimingParameters
-from .timing.constraints import sdc
-from .variables import Floor
 
 Signoff = Callable[[Design, Options], list[Step]]
 

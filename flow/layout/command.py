@@ -8,19 +8,18 @@ from talbot.base.command import failures
 from talbot.base.paths import RESULTS
 from talbot.base.progress import Steps
 from talbot.base.sensor import add_sensor, sensor_asked
+from talbot.flow.layout.block import lay_out
+from talbot.flow.layout.chain import all_steps
+from talbot.flow.layout.design import DESIGNS, Design, design, folder_name
+from talbot.flow.layout.options import Options
+from talbot.flow.layout.report.metrics import broken
+from talbot.flow.layout.report.page import closing
+from talbot.flow.layout.sensor.die import CHIP, SENSOR, die_steps, lay_out_sensor
+from talbot.flow.layout.sensor.plan import BLOCKS
+from talbot.flow.layout.varied import VARIED
 from talbot.models.parameters import ParameterError, check_choice
 from talbot.platforms.foundry import installed
 from talbot.platforms.processes import PROCESSES
-
-from .block import lay_out
-from .chain import all_steps
-from .design import DESIGNS, Design, design, folder_name
-from .options import Options
-from .report.metrics import broken
-from .report.page import closing
-from .sensor.die import CHIP, SENSOR, die_steps, lay_out_sensor
-from .sensor.plan import BLOCKS
-from .varied import VARIED
 
 
 def add_arguments(parser: ArgumentParser) -> None:

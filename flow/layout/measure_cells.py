@@ -7,13 +7,12 @@ from talbot.base.files import check_folder
 from talbot.base.paths import RESULTS
 from talbot.base.progress import Steps
 from talbot.base.steps import Runner
+from talbot.flow.layout.steps.library import Library
+from talbot.flow.layout.steps.parameters import PdkParameters
+from talbot.flow.layout.steps.timing import Timing, TimingParameters
+from talbot.flow.layout.tables import SHIPPED, write
 from talbot.platforms.layout import layout_platform
 from talbot.platforms.processes import PROCESSES
-
-from .steps.library import Library
-from .steps.parameters import PdkParameters
-from .steps.timing import Timing, TimingParameters
-from .tables import SHIPPED, write
 
 
 def add_arguments(parser: ArgumentParser) -> None:

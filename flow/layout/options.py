@@ -5,11 +5,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from talbot.base.liberty.read import is_library, is_whole, names, text_of
+from talbot.flow.layout import tables
 from talbot.models.parameters import ParameterError, check_real
 from talbot.platforms.layout import layout_platform
 from talbot.platforms.place_and_route import place_and_route
-
-from . import tables
 
 LEAST_UTILIZATION = 0.20  # of the search's last attempt
 

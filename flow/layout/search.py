@@ -4,12 +4,11 @@ from collections.abc import Sequence
 
 from talbot.base.steps import Runner, Step, StepError
 from talbot.base.steps.versions import version
+from talbot.flow.layout.chain import Signoff, all_steps, checks, floors, signoff_steps, stages, synthesis_steps
+from talbot.flow.layout.design import Design
+from talbot.flow.layout.options import Options
+from talbot.flow.layout.report.metrics import Attempt
 from talbot.platforms.layout import layout_platform
-
-from .chain import Signoff, all_steps, checks, floors, signoff_steps, stages, synthesis_steps
-from .design import Design
-from .options import Options
-from .report.metrics import Attempt
 
 FIRST = "floorplan", "power"  # stages that no other outline helps
 

@@ -50,10 +50,10 @@ def prior_asked(options: Namespace, request: "FrameRequest") -> "Callable[[Golde
 
 def run(options: Namespace) -> int:
     """Read one frame back and print the figures; 1 where the chip and the golden model differ."""
-    from .fields import Fields, methods_of, read_back
+    from talbot.flow.lightfield.fields import Fields, methods_of, read_back
 
     methods = methods_of(options.method)
-    from . import page  # Matplotlib: not before it is needed
+    from talbot.flow.lightfield import page  # Matplotlib: not before it is needed
 
     frame_request, typed = reading.asked(options, "lightfield", add_arguments)
     prior = prior_asked(options, frame_request)
@@ -67,7 +67,7 @@ def run(options: Namespace) -> int:
 
 
 def _print(s: dict[str, Any], folder: Path) -> None:
-    from .page import table
+    from talbot.flow.lightfield.page import table
 
     print(f"{s['scene']}: {s['views']} x {s['views']} views of {s['rows']} x {s['cols']} pixels from a raw frame")
     for name, psnr, gain, _, slope, *_, seconds, once in table(s):

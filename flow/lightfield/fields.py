@@ -11,6 +11,7 @@ from talbot.base.progress import each
 from talbot.flow.frame.light_field import SURE, estimator_of, pair_of, reached, sent_pair, unsure
 from talbot.flow.frame.reading import about, rms
 from talbot.flow.frame.result import GoldenResult
+from talbot.flow.lightfield.figures import figures
 from talbot.models.capture import CaptureOperator
 from talbot.models.parameters import ParameterError, check_choice
 from talbot.models.reconstruct import psnr_db
@@ -18,8 +19,6 @@ from talbot.models.reconstruct.bayes import Estimate, FieldPrior
 from talbot.models.reconstruct.methods import METHODS, Found, applicable, check_method, measure
 from talbot.models.scene import Sampling
 from talbot.models.scene.camera import depth as depth_of_disparity
-
-from .figures import figures
 
 Values = npt.NDArray[np.floating]
 BEST = "mixture"  # the method whose pictures and disparity are shown

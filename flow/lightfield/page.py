@@ -14,9 +14,8 @@ from talbot.flow.frame.light_field import SURE
 from talbot.flow.frame.merit import decibels
 from talbot.flow.frame.reading import agreement, line, number
 from talbot.flow.frame.report import Views
+from talbot.flow.lightfield.fields import Fields, depth_map
 from talbot.models.reconstruct.refocus import refocus
-
-from .fields import Fields, depth_map
 
 Values = npt.NDArray[np.floating]
 MOVING = "views.webp"

@@ -15,13 +15,12 @@ from talbot.base.tools import ToolError
 from talbot.flow.layout.design import DESIGNS, flat_design
 from talbot.flow.layout.geometry.merge import merge
 from talbot.flow.layout.varied import VARIED
+from talbot.flow.openroad.results import broken, summarize
+from talbot.flow.openroad.signoff import check, checks
+from talbot.flow.openroad.stages import missing_tools, pdk_root, stages, wire_corners
+from talbot.flow.openroad.stages import run as run_stages
+from talbot.flow.openroad.write import write
 from talbot.platforms.openroad import openroad_platform
-
-from .results import broken, summarize
-from .signoff import check, checks
-from .stages import missing_tools, pdk_root, stages, wire_corners
-from .stages import run as run_stages
-from .write import write
 
 # Suffixes of the contract of flow.layout -> file of the run, or of a check
 FINAL = {"lef": "final.lef", "v": "final.v", "power.v": "final.power.v", "spef": "nom.spef", "def": "final.def"}

@@ -9,8 +9,7 @@ from typing import Any
 from talbot.base.files import insert, marked
 from talbot.base.paths import RESULTS
 from talbot.flow.layout.design import DESIGNS, design
-
-from .results import broken
+from talbot.flow.openroad.results import broken
 
 FOUNDRY = "quad_divider", "amp_ctrl", "asp_chip"  # designs with a row of the foundry's cells, run or not
 HEAD = (

@@ -15,13 +15,12 @@ from talbot.base.command import failures
 from talbot.base.files import insert, marked
 from talbot.base.progress import each
 from talbot.flow.layout.design import design
+from talbot.flow.openroad.stat import counted
+from talbot.flow.openroad.tinytapeout import PROJECTS
+from talbot.flow.openroad.write import rtl
 from talbot.platforms.sky130 import cells as sky130_hd
 from talbot.platforms.sky130 import functions
 from talbot.platforms.sky130.tinytapeout import FRAME, FULL, core_um2
-
-from .stat import counted
-from .tinytapeout import PROJECTS
-from .write import rtl
 
 SCRIPT = """
 read_verilog -sv {sources}

@@ -22,13 +22,12 @@ from talbot.flow.layout.steps.parameters import PdkParameters
 from talbot.flow.layout.steps.power import Power
 from talbot.flow.layout.steps.sta import Sta
 from talbot.flow.layout.timing.constraints import sdc
+from talbot.flow.openroad.drc import Drc
+from talbot.flow.openroad.ir_drop import IrDrop, IrDropParameters
+from talbot.flow.openroad.lvs import Lvs
+from talbot.flow.openroad.netlists import routed_netlist
 from talbot.platforms.openroad import WIRES, OpenRoadPlatform
 from talbot.platforms.wires import CORNERS
-
-from .drc import Drc
-from .ir_drop import IrDrop, IrDropParameters
-from .lvs import Lvs
-from .netlists import routed_netlist
 
 ELSEWHERE = Sta, MeshDrop  # OpenROAD itself times all corners and solves the power grid
 

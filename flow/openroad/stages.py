@@ -17,10 +17,9 @@ from talbot.base.steps.alone import alone
 from talbot.base.steps.versions import version
 from talbot.base.tools import ToolError, finish
 from talbot.flow.layout.steps.stage import ENVIRONMENT, figures
+from talbot.flow.openroad.netlists import write_synthesized
 from talbot.models.parameters import ParameterError
 from talbot.platforms.openroad import WIRES, OpenRoadPlatform
-
-from .netlists import write_synthesized
 
 TCL_YOSYS = shutil.which("yosys") or "yosys"  # the system's: the Python package has no Tcl
 

@@ -8,13 +8,12 @@ from talbot.flow.layout.netlist.gating import ClockGate
 from talbot.flow.layout.steps.stage import SCRIPTS
 from talbot.flow.layout.timing.constraints import sdc
 from talbot.flow.layout.variables import Floor, variables
+from talbot.flow.openroad.librelane import librelane
+from talbot.flow.openroad.orfs import orfs
+from talbot.flow.openroad.tinytapeout import PROJECTS, project_files
 from talbot.platforms.openroad import OpenRoadPlatform
 from talbot.platforms.sky130.tinytapeout import FRAME
 from talbot.rtl.verilog import export_verilog
-
-from .librelane import librelane
-from .orfs import orfs
-from .tinytapeout import PROJECTS, project_files
 
 
 def rtl(design: Design, folder: Path) -> str:

@@ -49,12 +49,11 @@ def add_arguments(parser: ArgumentParser) -> None:
 def run(options: Namespace) -> int:
     """Search, write the page and print the figures; 1 where no beta of the tile can be made. Or solve one geometry."""
     from talbot.base.paths import RESULTS
+    from talbot.flow.pixel import one
+    from talbot.flow.pixel.job import STEPS, make
+    from talbot.flow.pixel.search import offered
     from talbot.pixels.optics.geometry import KINDS
     from talbot.platforms.optics import optical_stack
-
-    from . import one
-    from .job import STEPS, make
-    from .search import offered
 
     sensor = sensor_asked(options, VARIED)
     for kind in sensor.tile.types:

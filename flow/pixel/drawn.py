@@ -3,12 +3,11 @@
 from pathlib import Path
 
 from talbot.base.gds import db, write_gds
+from talbot.flow.pixel.search import Plan
+from talbot.flow.pixel.types import nearest
 from talbot.models.parameters import ArrayParameters, ParameterError, TileParameters
 from talbot.pixels.layout.array import ArrayLayout, draw_pixels, draw_tile
 from talbot.pixels.layout.pixel import pixel_layout
-
-from .search import Plan
-from .types import nearest
 
 
 def write_tile(plan: Plan, tile: TileParameters, gds: Path, pitch: float = ArrayParameters.pitch) -> str:

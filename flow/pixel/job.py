@@ -13,15 +13,10 @@ from talbot.base.files import check_folder, staged
 from talbot.base.jobs import Job, run
 from talbot.base.paths import BUILD
 from talbot.base.records import from_json
-from talbot.models.parameters import OpticsParameters, PixelType, SensorParameters
-from talbot.pixels.optics.design import Design
-from talbot.pixels.optics.solve import Floats
-from talbot.platforms.optics import OpticalStack, tables
-
-from .drawn import write_tile
-from .errors import Kept, errors
-from .search import Plan, search
-from .types import (
+from talbot.flow.pixel.drawn import write_tile
+from talbot.flow.pixel.errors import Kept, errors
+from talbot.flow.pixel.search import Plan, search
+from talbot.flow.pixel.types import (
     Measured,
     at_heights,
     axes_of,
@@ -33,6 +28,10 @@ from .types import (
     stacked,
     wavelengths_of,
 )
+from talbot.models.parameters import OpticsParameters, PixelType, SensorParameters
+from talbot.pixels.optics.design import Design
+from talbot.pixels.optics.solve import Floats
+from talbot.platforms.optics import OpticalStack, tables
 
 STEPS = "candidates", "refine", "curves", "report"
 STORE = BUILD / "pixel" / "solved"
@@ -49,7 +48,7 @@ def make(
 
     Raises ParameterError.
     """
-    from . import page  # Matplotlib: not before it is needed
+    from talbot.flow.pixel import page  # Matplotlib: not before it is needed
 
     start = perf_counter()
     check_folder("out", out, page.NAMES)

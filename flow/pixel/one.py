@@ -9,11 +9,10 @@ from typing import Any
 import numpy as np
 
 from talbot.base.files import check_folder, staged
+from talbot.flow.pixel.types import DEGREES, axes_of
 from talbot.pixels.optics.fit import fit
 from talbot.pixels.optics.geometry import PixelGeometry
 from talbot.pixels.optics.response import respond
-
-from .types import DEGREES, axes_of
 
 NAMES = "summary.json", "response.npz"
 

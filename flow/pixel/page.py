@@ -11,6 +11,10 @@ from PIL import Image
 from talbot.base import page
 from talbot.base.charts import LINE, SCATTER, curves, front, save, svg
 from talbot.base.page import TABLES, Section, Tile
+from talbot.flow.pixel.errors import BAND_ALL, NODES_ALL, ORDERS_ALL, SAMPLES_ALL, STEP_LEAST, Kept
+from talbot.flow.pixel.pictures import around, cross_section, responses
+from talbot.flow.pixel.search import Found, Plan
+from talbot.flow.pixel.types import CURVE_ORDERS, RAY_DEGREES, Measured, beside
 from talbot.models.parameters import TileParameters
 from talbot.pixels.optics.closed_form import angular_frequency, talbot_depth
 from talbot.pixels.optics.design import SEARCH_ORDERS, Design
@@ -18,11 +22,6 @@ from talbot.pixels.optics.geometry import PixelGeometry
 from talbot.pixels.optics.scalar import crosstalk
 from talbot.pixels.optics.solve import Floats
 from talbot.platforms.materials import refractive_index
-
-from .errors import BAND_ALL, NODES_ALL, ORDERS_ALL, SAMPLES_ALL, STEP_LEAST, Kept
-from .pictures import around, cross_section, responses
-from .search import Found, Plan
-from .types import CURVE_ORDERS, RAY_DEGREES, Measured, beside
 
 NAMES = ("pixel.html", "summary.json", "response.npz", "cross_section.png", "response.png", "types.png", "tile.gds")
 CROSSING = 0, 10, 20  # degrees

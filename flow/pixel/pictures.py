@@ -9,14 +9,13 @@ from matplotlib.patches import Rectangle
 from matplotlib.ticker import MaxNLocator
 
 from talbot.base.charts import COLOURS
+from talbot.flow.pixel.search import Plan
+from talbot.flow.pixel.types import AZIMUTHS, Measured, across_lines, name_of, nearest
 from talbot.models.parameters import TileParameters
 from talbot.pixels.optics.design import Design
 from talbot.pixels.optics.field import field_between
 from talbot.pixels.optics.solve import Floats
 from talbot.pixels.tabled import rows
-
-from .search import Plan
-from .types import AZIMUTHS, Measured, across_lines, name_of, nearest
 
 MATERIALS = {"silica": "#dfe6ee", "nitride": "#b9d3b0", "aluminium": "#8a8f99", "silicon": "#a8664f"}
 WIDTH_UM = 2.4  # of the cross-section

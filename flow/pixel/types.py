@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from talbot.flow.pixel.search import Plan, bandwidth
 from talbot.models.parameters import PixelType
 from talbot.pixels.optics.design import Design, measure
 from talbot.pixels.optics.fit import Fit, fit
@@ -14,8 +15,6 @@ from talbot.pixels.optics.geometry import PixelGeometry
 from talbot.pixels.optics.response import Response, respond
 from talbot.pixels.optics.scalar import scalar_shares
 from talbot.pixels.tabled import rows
-
-from .search import Plan, bandwidth
 
 DEGREES = np.arange(-20, 20.01, 0.5)
 CURVE_ORDERS = 31

@@ -31,8 +31,8 @@ def run(options: Namespace) -> int:
     from talbot.base.paths import RESULTS
 
     sensor = sensor_asked(options, VARIED)
-    from .deck import Bench
-    from .job import STEPS, make
+    from talbot.flow.pixel_circuit.deck import Bench
+    from talbot.flow.pixel_circuit.job import STEPS, make
 
     bench = Bench(sink_a=options.sink, gate_v=options.gate, rows=sensor.array.rows + 2 * DUMMIES)
     out = options.out or RESULTS / "pixel-circuit" / labelled(options.pdk, options)

@@ -3,14 +3,13 @@
 from functools import lru_cache
 
 from talbot.cells.corner import Corner
+from talbot.flow.pixel_circuit.deck import Bench
+from talbot.flow.pixel_circuit.measure import PixelFound, Spread, measure, spread
 from talbot.models.parameters import TileParameters
 from talbot.pixels.designs import gratings
 from talbot.pixels.layout.pixel import PixelLayout, pixel_layout
 from talbot.pixels.layout.write import fitted
 from talbot.platforms.pixel import pixel_process
-
-from .deck import Bench
-from .measure import PixelFound, Spread, measure, spread
 
 
 @lru_cache(maxsize=4)

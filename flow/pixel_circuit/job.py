@@ -12,6 +12,10 @@ from talbot.base.jobs import Job, run
 from talbot.base.paths import BUILD
 from talbot.base.records import from_json
 from talbot.cells.corner import Corner
+from talbot.flow.pixel_circuit.deck import Bench
+from talbot.flow.pixel_circuit.drawn import drawn, measured, spread_of
+from talbot.flow.pixel_circuit.emva import emva
+from talbot.flow.pixel_circuit.measure import PixelFound, Spread
 from talbot.models.parameters import (
     ELEMENTARY_CHARGE,
     STANDARD,
@@ -24,11 +28,6 @@ from talbot.pixels.designs import gratings
 from talbot.pixels.layout.circuit import spice
 from talbot.pixels.layout.write import fitted
 from talbot.platforms.pixel import pixel_process
-
-from .deck import Bench
-from .drawn import drawn, measured, spread_of
-from .emva import emva
-from .measure import PixelFound, Spread
 
 STEPS = "corners", "mismatch", "exposures", "report"
 STORE = BUILD / "pixel" / "circuit"
@@ -73,7 +72,7 @@ def make(
 
     Raises ParameterError, ToolError.
     """
-    from . import page  # Matplotlib: not before it is needed
+    from talbot.flow.pixel_circuit import page  # Matplotlib: not before it is needed
 
     start = perf_counter()
     check_folder("out", out)

@@ -7,11 +7,10 @@ import numpy as np
 
 from talbot.base.tools import ToolError
 from talbot.cells.corner import Corner
+from talbot.flow.pixel_circuit.deck import LINEAR, OPTIONS, Bench, Floats, analyse, pixel_deck, pulses
 from talbot.models.parameters import ELEMENTARY_CHARGE, AmpTiming, ParameterError
 from talbot.models.parameters.electrical import BOLTZMANN
 from talbot.pixels.layout.pixel import PixelLayout
-
-from .deck import LINEAR, OPTIONS, Bench, Floats, analyse, pixel_deck, pulses
 
 F_CLK = 10e6  # Hz, of the chip
 LEVELS = 0.25, 0.5, 0.75, 0.95  # of the full well, a frame each; a dark one follows the last

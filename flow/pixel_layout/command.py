@@ -29,7 +29,7 @@ def run(options: Namespace) -> int:
     from talbot.base.paths import RESULTS
 
     sensor = sensor_asked(options, VARIED, ARRAY_FIELDS)
-    from .job import STEPS, make
+    from talbot.flow.pixel_layout.job import STEPS, make
 
     out = options.out or RESULTS / "pixel-layout" / labelled(options.pdk, options)
     with Steps(STEPS, lines=True) as steps:
@@ -39,7 +39,7 @@ def run(options: Namespace) -> int:
 
 
 def _print(s: dict[str, Any], folder: Path) -> None:
-    from .page import waivers
+    from talbot.flow.pixel_layout.page import waivers
 
     print(f"{s['process']}: {s['rows']} x {s['cols']} pixels, {s['width_um']:g} x {s['height_um']:g} um")
     print(f"  GDS of {s['gds_bytes'] / 1e6:.2f} MB in {s['gds_s']:.1f} s; {s['misplaced']} pixels not of their type")

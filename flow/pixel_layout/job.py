@@ -12,6 +12,13 @@ import numpy as np
 from talbot.base.files import check_file, check_folder, staged, write
 from talbot.base.gds import db, write_gds
 from talbot.flow.pixel.types import name_of
+from talbot.flow.pixel_layout import foundry
+from talbot.flow.pixel_layout.checks import WAIVERS, densities, drc, lvs, placed, unwaived
+from talbot.flow.pixel_layout.curves import curves, kept
+from talbot.flow.pixel_layout.curves import table as curve_table
+from talbot.flow.pixel_layout.lines import extracted
+from talbot.flow.pixel_layout.lines import table as line_table
+from talbot.flow.pixel_layout.made import SMALL, Made
 from talbot.models.parameters import PixelType, SensorParameters
 from talbot.pixels.designs import gratings
 from talbot.pixels.layout.array import DUMMIES, SOUTH, WEST, draw_array, draw_pixels, draw_tile
@@ -19,14 +26,6 @@ from talbot.pixels.layout.circuit import Diode, spice, spice_array
 from talbot.pixels.layout.pixel import PixelLayout
 from talbot.pixels.layout.write import array_layout, array_lef, fitted
 from talbot.platforms.foundry import installed
-
-from . import foundry
-from .checks import WAIVERS, densities, drc, lvs, placed, unwaived
-from .curves import curves, kept
-from .curves import table as curve_table
-from .lines import extracted
-from .lines import table as line_table
-from .made import SMALL, Made
 
 STEPS = "optics", "draw", "count", "drc", "foundry", "lvs", "lines", "curves", "report"
 FILES = "pixel_array.gds", "pixel_array.lef", "tile.gds", "pixel.gds", "small_array.gds", "pixel.spice", "summary.json"
@@ -46,7 +45,7 @@ def make(
 
     Raises ParameterError, StepError.
     """
-    from . import page  # Matplotlib: not before it is needed
+    from talbot.flow.pixel_layout import page  # Matplotlib: not before it is needed
 
     start = perf_counter()
     check_folder("out", out)

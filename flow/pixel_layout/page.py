@@ -8,12 +8,11 @@ from PIL import Image
 from talbot.base import page
 from talbot.base.charts import save, svg
 from talbot.base.page import TABLES, Picture, Section, Tile
+from talbot.flow.pixel_layout import pictures
+from talbot.flow.pixel_layout.made import SMALL, Made
 from talbot.pixels.designs import gratings
 from talbot.pixels.layout.array import DUMMIES
 from talbot.platforms.wires import CORNERS
-
-from . import pictures
-from .made import SMALL, Made
 
 PICTURES = {
     "cross_section": (

@@ -22,8 +22,8 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Read one frame and print the figures; 1 where the chip and the golden model differ."""
-    from . import page  # Matplotlib: not before it is needed
-    from .measure import PolarFrame, read_polarization
+    from talbot.flow.polar import page  # Matplotlib: not before it is needed
+    from talbot.flow.polar.measure import PolarFrame, read_polarization
 
     highlight = HIGHLIGHT.value(options)
     frame_request, typed = reading.asked(options, "polar", add_arguments)

@@ -8,9 +8,8 @@ import numpy as np
 from talbot.base.page import TABLES, Picture, Scale, Section, Tile, render
 from talbot.flow.frame import pictures
 from talbot.flow.frame.reading import agreement, line, number
+from talbot.flow.polar.measure import PolarFrame, Values
 from talbot.models.pixel.polarization import angle
-
-from .measure import PolarFrame, Values
 
 NAMES = ("polar.html", "summary.json", "polar.npz")
 METHOD = "each pixel's fit of light, gradient and polarization"

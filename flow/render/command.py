@@ -48,9 +48,9 @@ def run(options: Namespace) -> int:
     views, size, samples, seed, threads = (n.value(options) for n in (VIEWS, SIZE, SAMPLES, SEED, THREADS))
     out = Path(options.out)
     check_folder("out", out)
-    from .trace import Tracer
-    from .variant import mitsuba
-    from .worlds import WORLDS
+    from talbot.flow.render.trace import Tracer
+    from talbot.flow.render.variant import mitsuba
+    from talbot.flow.render.worlds import WORLDS
 
     mitsuba()  # is missed before a scene begins
     known = _manifest(out)

@@ -10,9 +10,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from talbot.flow.render.variant import mitsuba
 from talbot.models.scene import Sampling
-
-from .variant import mitsuba
 
 Floats = npt.NDArray[np.float64]
 

@@ -7,12 +7,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from talbot.flow.render import variant
+from talbot.flow.render.frustum import perspective, rays
+from talbot.flow.render.variant import mitsuba
+from talbot.flow.render.worlds import GLOSSY, Objects, World, flash, mirror
 from talbot.models.scene import Sampling, camera
-
-from . import variant
-from .frustum import perspective, rays
-from .variant import mitsuba
-from .worlds import GLOSSY, Objects, World, flash, mirror
 
 Floats = npt.NDArray[np.float64]
 Note = Callable[[str], None]

@@ -6,11 +6,10 @@ from typing import Any
 
 import numpy as np
 
+from talbot.flow.render.frustum import focal
+from talbot.flow.render.variant import mitsuba
 from talbot.models.scene import Sampling, polarized
 from talbot.models.scene.camera import PLANE
-
-from .frustum import focal
-from .variant import mitsuba
 
 Objects = dict[str, Any]
 SEED = 18  # of the textures and the leaves

@@ -31,7 +31,7 @@ def run(options: Namespace) -> int:
     options.out = options.out or results_of("sequence") / name_of(typed)
     frame_request = request_of(options, sequence=True)
     clip, before = open_clip(options.scene, Sampling.of(frame_request.sensor)), arguments_of(frame_request.folder)
-    from .outputs import run  # Matplotlib and more: not before the arguments are right
+    from talbot.flow.sequence.outputs import run  # Matplotlib and more: not before the arguments are right
 
     with Frames(clip.count) as progress:
         summary = run(frame_request, clip, progress, typed)
@@ -48,8 +48,7 @@ def _with_scene(parser: ArgumentParser) -> None:
 
 def _print_figures(s: dict[str, Any], folder: Path) -> None:
     from talbot.flow.frame.figures import exposure_line
-
-    from .outputs import rate_line, size_line
+    from talbot.flow.sequence.outputs import rate_line, size_line
 
     print(
         f"{s['scene']}, {s['mode']} mode, {s['rows']} x {s['cols']}, {s['frames']} frames: "

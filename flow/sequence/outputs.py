@@ -23,11 +23,10 @@ from talbot.flow.frame.merit import decibels
 from talbot.flow.frame.report import agreement
 from talbot.flow.frame.request import FrameRequest
 from talbot.flow.frame.result import FrameResult
+from talbot.flow.sequence.figures import of_all, of_frame
+from talbot.flow.sequence.job import results
 from talbot.models.parameters import sensor_text
 from talbot.models.scene import Clip
-
-from .figures import of_all, of_frame
-from .job import results
 
 ANIMATIONS = {"edge": "edges.webp", "raw": "edges.webp", "image": "image.webp", "tof": "image.webp"}
 NAMES = ("stream.bin", "sensor.toml", "scene.png", "report.html", "summary.json", *ANIMATIONS.values())

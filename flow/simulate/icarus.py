@@ -5,9 +5,8 @@ from pathlib import Path
 
 from talbot.base.paths import PACKAGE
 from talbot.base.tools import run
-
-from .build import Build
-from .verilator import FRAME
+from talbot.flow.simulate.build import Build
+from talbot.flow.simulate.verilator import FRAME
 
 
 def icarus_program(build: Build, folder: Path, chip: Sequence[Path] = (), tops: Sequence[str] = ()) -> Path:

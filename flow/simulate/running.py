@@ -13,8 +13,7 @@ from pathlib import Path
 from time import perf_counter
 
 from talbot.base.tools import ToolError, started
-
-from .frame import NO_FRAME_END, STOP, WAIT, FrameRun, simulator, transfers
+from talbot.flow.simulate.frame import NO_FRAME_END, STOP, WAIT, FrameRun, simulator, transfers
 
 NEXT_EXPOSURE, REPORT = b"\x03", b"\x04"  # of the script (bench.sv)
 CHUNK = 1 << 20  # bytes

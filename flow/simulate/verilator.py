@@ -8,8 +8,7 @@ from talbot.base.paths import BUILD, PACKAGE
 from talbot.base.sources import code
 from talbot.base.tools import ToolError, meanwhile
 from talbot.base.verilator import FAST, compile_program, has_headers, runtime, verilate, verilator_version
-
-from .build import Build
+from talbot.flow.simulate.build import Build
 
 FRAME = Path(__file__).parent
 READ = FRAME / "read_words.cpp"  # in place of Verilator's VL_FREAD_I, in all that is compiled here

@@ -11,11 +11,10 @@ from talbot.base.files import insert, marked, staged
 from talbot.base.paths import RESULTS
 from talbot.base.progress import each
 from talbot.base.sensor import add_sensor
+from talbot.flow.sizes.measure import measure
+from talbot.flow.sizes.table import blocks_table, markdown
 from talbot.rtl import export
 from talbot.rtl.verilog import export_verilog
-
-from .measure import measure
-from .table import blocks_table, markdown
 
 
 def add_arguments(parser: ArgumentParser) -> None:

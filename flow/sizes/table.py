@@ -3,7 +3,7 @@
 import re
 from collections.abc import Sequence
 
-from .measure import Size
+from talbot.flow.sizes.measure import Size
 
 
 def markdown(sizes: Sequence[Size]) -> str:

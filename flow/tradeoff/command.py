@@ -5,8 +5,7 @@ from pathlib import Path
 
 from talbot.base.jobs import worker_count
 from talbot.base.sensor import Varied, add_sensor, sensor_asked
-
-from .sweeps import SWEEPS, run_sweeps
+from talbot.flow.tradeoff.sweeps import SWEEPS, run_sweeps
 
 PARTS = "tile", "array", "optics", "electrical", "converter", "chip"
 VARIED = Varied(fixed=dict.fromkeys(PARTS, "each sweep varies one field of the standard sensor"))

@@ -11,8 +11,7 @@ from talbot.base.charts import curves
 from talbot.flow.frame import job
 from talbot.flow.frame.figures import summarize
 from talbot.flow.frame.request import FrameRequest, request
-
-from .threshold import costs
+from talbot.flow.tradeoff.threshold import costs
 
 ROWS = (0, 4, 16, 48, 96, 144, 192, 240, 288, 384)
 

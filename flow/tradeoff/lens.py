@@ -13,9 +13,8 @@ from talbot.base.kept import afresh
 from talbot.flow.frame import hardware, job
 from talbot.flow.frame.figures import summarize
 from talbot.flow.frame.request import request
+from talbot.flow.tradeoff.threshold import costs
 from talbot.models.parameters import CameraParameters
-
-from .threshold import costs
 
 F_NUMBERS = (1.2, 1.7, 2.4, 3.4, 4.8)
 FOCUS = (0.15, 0.17, 0.19, 0.23, 0.27, 0.33)  # m: over the scene's depth, the default left out

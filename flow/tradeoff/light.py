@@ -8,8 +8,7 @@ from matplotlib.figure import Figure
 
 from talbot.base.charts import curves
 from talbot.flow.frame.request import request
-
-from .exposure import exposed
+from talbot.flow.tradeoff.exposure import exposed
 
 LUX = (20.0, 50.0, 100.0, 200.0, 500.0, 2000.0, 10000.0, 50000.0)
 

@@ -10,8 +10,7 @@ from talbot.base.charts import curves
 from talbot.flow.frame import job
 from talbot.flow.frame.figures import summarize
 from talbot.flow.frame.request import request
-
-from .threshold import costs
+from talbot.flow.tradeoff.threshold import costs
 
 LEVELS = (0.0, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0)
 

@@ -13,10 +13,7 @@ from talbot.base.jobs import Job, run
 from talbot.base.page import TABLES, Section, render
 from talbot.base.paths import BUILD
 from talbot.base.table import read_csv, write_csv
-from talbot.models.parameters import check_choice
-from talbot.models.reconstruct import branches, sparse
-
-from . import (
+from talbot.flow.tradeoff import (
     depth,
     divider,
     exposure,
@@ -31,6 +28,8 @@ from . import (
     threshold,
     views,
 )
+from talbot.models.parameters import check_choice
+from talbot.models.reconstruct import branches, sparse
 
 STORE = BUILD / "tradeoff" / "measured"
 

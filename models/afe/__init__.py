@@ -3,11 +3,11 @@
 The same arithmetic is in real-number Verilog in pixels/afe.sv; both agree sample for sample.
 """
 
-from .converter import Converter
-from .files import sample_words, write_converter, write_samples
-from .front_end import FrontEnd
-from .noise import KTC_DECISION, NOISE_SCALE, noise_counts
-from .trim import TRIM_BITS, trim_codes, trim_gain
+from talbot.models.afe.converter import Converter
+from talbot.models.afe.files import sample_words, write_converter, write_samples
+from talbot.models.afe.front_end import FrontEnd
+from talbot.models.afe.noise import KTC_DECISION, NOISE_SCALE, noise_counts
+from talbot.models.afe.trim import TRIM_BITS, trim_codes, trim_gain
 
 __all__ = [
     "KTC_DECISION",

@@ -6,11 +6,10 @@ from typing import Self
 import numpy as np
 import numpy.typing as npt
 
+from talbot.models.afe.noise import KTC_DECISION, NOISE_SCALE, noise_counts
+from talbot.models.afe.search import BIPOLAR, search
 from talbot.models.parameters import ConverterParameters, check_int
 from talbot.models.parameters.electrical import AMPLIFIER
-
-from .noise import KTC_DECISION, NOISE_SCALE, noise_counts
-from .search import BIPOLAR, search
 
 CODES = 256
 

@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from .converter import Converter
-from .front_end import FrontEnd
+from talbot.models.afe.converter import Converter
+from talbot.models.afe.front_end import FrontEnd
 
 
 def sample_words(samples: npt.NDArray[np.float64]) -> memoryview:

@@ -5,11 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from talbot.models.afe.converter import Converter
+from talbot.models.afe.trim import trim_gain
 from talbot.models.digital.sar import Conversion, convert
 from talbot.models.parameters import MODES, ParameterError, TileParameters, check_choice, check_int, check_real
-
-from .converter import Converter
-from .trim import trim_gain
 
 
 @dataclass(frozen=True, eq=False)

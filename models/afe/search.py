@@ -5,9 +5,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from talbot.models.afe.noise import DECISIONS, KTC_DECISION, MOST
 from talbot.models.compiled import njit
-
-from .noise import DECISIONS, KTC_DECISION, MOST
 
 Floats, Ints = npt.NDArray[np.float64], npt.NDArray[np.int64]
 BITS, BIPOLAR = 8, 128

@@ -8,11 +8,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from talbot.models.calibrate.calibration import VIGNETTING, Calibration
+from talbot.models.calibrate.sweep import Floats, Sweep
+from talbot.models.calibrate.table import ROUGH, Samples, tables
 from talbot.models.parameters import ParameterError, PixelType
-
-from .calibration import VIGNETTING, Calibration
-from .sweep import Floats, Sweep
-from .table import ROUGH, Samples, tables
 
 BETA_MAX = 50.0
 STEP = 2.0  # rad of response per rad of angle, of the first search for a grating

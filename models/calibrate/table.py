@@ -12,11 +12,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from talbot.models.calibrate.sweep import Floats
 from talbot.models.parameters import PixelType
 from talbot.models.pixel.response import aperture
 from talbot.models.pixel.table import TableResponse
-
-from .sweep import Floats
 
 ROUGH = 0.03  # RMS of difference over sum that Eq. 3.1 leaves, of the middle type, from which on types have tables
 ALONG = 0.012, 0.02, 0.035, 0.06, 0.12  # rad: lengths over which a response changes, across and along its lines

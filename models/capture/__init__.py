@@ -1,12 +1,12 @@
 """Capture: the light field becomes the samples that the analog front end converts."""
 
-from .expose import Exposure, expose
-from .frame import capture, currents, exposed
-from .moving import instants, moving_currents
-from .operator import CaptureOperator
-from .pupil import Region, cells, integrate
-from .ratio import capture_ratio
-from .views import Views, captured, choose_views
+from talbot.models.capture.expose import Exposure, expose
+from talbot.models.capture.frame import capture, currents, exposed
+from talbot.models.capture.moving import instants, moving_currents
+from talbot.models.capture.operator import CaptureOperator
+from talbot.models.capture.pupil import Region, cells, integrate
+from talbot.models.capture.ratio import capture_ratio
+from talbot.models.capture.views import Views, captured, choose_views
 
 __all__ = [
     "CaptureOperator",

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from talbot.models.capture.shot import PHOTONS_MAX, Pixels, collect, read
 from talbot.models.digital.exposure import integration_cycles
 from talbot.models.parameters import (
     ELEMENTARY_CHARGE,
@@ -16,8 +17,6 @@ from talbot.models.parameters import (
     check_int,
     check_real,
 )
-
-from .shot import PHOTONS_MAX, Pixels, collect, read
 
 NOISE_MAX = 100.0
 

@@ -5,6 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
+from talbot.models.capture.expose import Exposure, expose
+from talbot.models.capture.pupil import Region, Wave, integrate
 from talbot.models.parameters import ParameterError, SensorParameters
 from talbot.models.pixel.polarization import transmission
 from talbot.models.pixel.time_of_flight import phase_of, tap_functions
@@ -12,9 +14,6 @@ from talbot.models.plan import Plan
 from talbot.models.scene import Scene
 from talbot.models.scene.depth_field import depth_of_surface
 from talbot.models.scene.echo import Correlation
-
-from .expose import Exposure, expose
-from .pupil import Region, Wave, integrate
 
 Floats = npt.NDArray[np.floating]
 

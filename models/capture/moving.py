@@ -6,13 +6,12 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
+from talbot.models.capture.frame import currents
+from talbot.models.capture.pupil import Region
 from talbot.models.digital.exposure import windows
 from talbot.models.parameters import AmpTiming, ParameterError, SensorParameters
 from talbot.models.plan import Plan
 from talbot.models.scene import Scene
-
-from .frame import currents
-from .pupil import Region
 
 STEP = 0.5  # px that the scene moves at most between two instants
 INSTANTS_MAX = 2000

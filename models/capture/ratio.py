@@ -5,9 +5,8 @@ from time import perf_counter
 
 import numpy as np
 
+from talbot.models.capture.operator import CaptureOperator
 from talbot.models.parameters import SensorParameters
-
-from .operator import CaptureOperator
 
 
 def capture_ratio(sensor: SensorParameters | None = None, dtype: str = "float64", repeats: int = 5) -> float:

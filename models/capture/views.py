@@ -6,13 +6,12 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from talbot.models.capture.moving import moving_currents
+from talbot.models.capture.pupil import Region, cells, integrate
 from talbot.models.parameters import AmpTiming, ParameterError, SensorParameters, check_int, check_real
 from talbot.models.pixel.trim import optical_gains
 from talbot.models.plan import LeftOut, Plan, codes_per_unit
 from talbot.models.scene import Scene
-
-from .moving import moving_currents
-from .pupil import Region, cells, integrate
 
 Values = npt.NDArray[np.float64]
 

@@ -16,10 +16,9 @@ to even.
 import numpy as np
 import numpy.typing as npt
 
+from talbot.models.digital.divider import QuadResult, fold, operands, unfold
 from talbot.models.parameters import check_int
 from talbot.models.parameters.divider import ITERATIONS_MAX, ITERATIONS_MIN, cordic_angles
-
-from .divider import QuadResult, fold, operands, unfold
 
 Ints = npt.NDArray[np.integer]
 

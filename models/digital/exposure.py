@@ -5,9 +5,8 @@ cycle of the slot's first integration to the end of that in the slot of its read
 its read: the column's amplifier serves the row that is read, no other.
 """
 
+from talbot.models.digital.amp_ctrl import row_cycles
 from talbot.models.parameters import AmpTiming
-
-from .amp_ctrl import row_cycles
 
 
 def slot_cycles(timing: AmpTiming, four_tap: bool = False) -> int:

@@ -1,21 +1,35 @@
 """All parameters: frozen, validated, with unit, range and source."""
 
-from .array import COLS_MAX, ROWS_MAX, ArrayParameters
-from .camera import FOCUS_MAX, LIFE_SIZE, CameraParameters
-from .checks import ParameterError, check_choice, check_int, check_real
-from .chip import ASYNCHRONOUS, LANES, SPI_INPUTS, ChipParameters
-from .circuit import DIODE, DRAWN, ColumnCurves, circuit_columns, circuit_converter
-from .divider import DIVIDERS
-from .drawn import LineParameters, drawn_curves, drawn_electrical, drawn_lines
-from .electrical import ELEMENTARY_CHARGE, TYPICAL_CONVERTER, ConverterParameters, ElectricalParameters
-from .energy import EnergyParameters, LightParameters
-from .frame import ALL_TYPES, EXPOSURE_MAX, MODES, SAMPLES_PER_PIXEL, SHORT_TIMING, AmpTiming, FrameParameters, Window
-from .optics import OpticsParameters
-from .room import RoomParameters
-from .sensor import SensorParameters
-from .sensor_file import STANDARD, read_sensor, sensor_of, sensor_text
-from .sources import sources
-from .tile import PixelType, Response, TileParameters
+from talbot.models.parameters.array import COLS_MAX, ROWS_MAX, ArrayParameters
+from talbot.models.parameters.camera import FOCUS_MAX, LIFE_SIZE, CameraParameters
+from talbot.models.parameters.checks import ParameterError, check_choice, check_int, check_real
+from talbot.models.parameters.chip import ASYNCHRONOUS, LANES, SPI_INPUTS, ChipParameters
+from talbot.models.parameters.circuit import DIODE, DRAWN, ColumnCurves, circuit_columns, circuit_converter
+from talbot.models.parameters.divider import DIVIDERS
+from talbot.models.parameters.drawn import LineParameters, drawn_curves, drawn_electrical, drawn_lines
+from talbot.models.parameters.electrical import (
+    ELEMENTARY_CHARGE,
+    TYPICAL_CONVERTER,
+    ConverterParameters,
+    ElectricalParameters,
+)
+from talbot.models.parameters.energy import EnergyParameters, LightParameters
+from talbot.models.parameters.frame import (
+    ALL_TYPES,
+    EXPOSURE_MAX,
+    MODES,
+    SAMPLES_PER_PIXEL,
+    SHORT_TIMING,
+    AmpTiming,
+    FrameParameters,
+    Window,
+)
+from talbot.models.parameters.optics import OpticsParameters
+from talbot.models.parameters.room import RoomParameters
+from talbot.models.parameters.sensor import SensorParameters
+from talbot.models.parameters.sensor_file import STANDARD, read_sensor, sensor_of, sensor_text
+from talbot.models.parameters.sources import sources
+from talbot.models.parameters.tile import PixelType, Response, TileParameters
 
 __all__ = [
     "ALL_TYPES",

@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-from .checks import check_int, check_real
-from .sources import sourced
+from talbot.models.parameters.checks import check_int, check_real
+from talbot.models.parameters.sources import sourced
 
 ROWS_MAX, COLS_MAX = 1024, 1536  # 256 tiles each way: tile addresses are 8 bits
 

@@ -17,8 +17,8 @@ chief-ray angle. An exit pupil at the lens itself is the textbook's thin lens wi
 from dataclasses import dataclass
 from math import sqrt
 
-from .checks import check_real
-from .sources import sourced
+from talbot.models.parameters.checks import check_real
+from talbot.models.parameters.sources import sourced
 
 FOCUS_MAX = 1000.0  # m: represents infinity
 

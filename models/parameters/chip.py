@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-from .checks import check_choice, check_int, check_real
-from .divider import DIVIDERS, ITERATIONS_MAX, ITERATIONS_MIN, N_FRAC_MAX, N_FRAC_MIN
+from talbot.models.parameters.checks import check_choice, check_int, check_real
+from talbot.models.parameters.divider import DIVIDERS, ITERATIONS_MAX, ITERATIONS_MIN, N_FRAC_MAX, N_FRAC_MIN
 
 LANES = (1, 2, 4, 8, 16, 32)
 SPI_INPUTS = ("sclk", "csn", "mosi")

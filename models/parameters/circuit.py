@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from .checks import ParameterError, check_real
-from .electrical import ConverterParameters
+from talbot.models.parameters.checks import ParameterError, check_real
+from talbot.models.parameters.electrical import ConverterParameters
 
 TABLE = Path(__file__).with_name("circuit.json")
 OFFSETS = 0xC01  # of the seed of columns' offsets

@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from .checks import check_real
-from .electrical import ElectricalParameters
+from talbot.models.parameters.checks import check_real
+from talbot.models.parameters.electrical import ElectricalParameters
 
 LINES = Path(__file__).with_name("pixel_lines.json")
 PIXEL = Path(__file__).with_name("pixel.json")

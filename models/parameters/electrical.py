@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from math import sqrt
 
-from .checks import ParameterError, check_int, check_real
-from .sources import sourced
+from talbot.models.parameters.checks import ParameterError, check_int, check_real
+from talbot.models.parameters.sources import sourced
 
 ELEMENTARY_CHARGE = 1.602176634e-19  # C
 PHOTON = 1.98644586e-25  # J m: Planck's constant times the speed of light

@@ -3,9 +3,9 @@
 from dataclasses import dataclass, fields
 from typing import NamedTuple
 
-from .checks import check_real
-from .electrical import ELEMENTARY_CHARGE, PHOTON
-from .sources import sourced
+from talbot.models.parameters.checks import check_real
+from talbot.models.parameters.electrical import ELEMENTARY_CHARGE, PHOTON
+from talbot.models.parameters.sources import sourced
 
 TABLE = "[Jayasuriya2017], Table 6.1"
 LAYOUT = "make layout-energy, tt, 1.8 V: flow/layout"

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, fields, replace
 
-from .checks import ParameterError, check_choice, check_int
+from talbot.models.parameters.checks import ParameterError, check_choice, check_int
 
 MODES = ("edge", "image", "raw", "tof")  # in the order of the register's code
 SAMPLES_PER_PIXEL = {"edge": 1, "image": 1, "raw": 2, "tof": 4}

@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass
 
-from .camera import CameraParameters
-from .checks import check_int, check_real
-from .sources import sourced
+from talbot.models.parameters.camera import CameraParameters
+from talbot.models.parameters.checks import check_int, check_real
+from talbot.models.parameters.sources import sourced
 
 
 @dataclass(frozen=True)

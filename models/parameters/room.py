@@ -3,11 +3,11 @@
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
-from .checks import check_real
-from .electrical import ELEMENTARY_CHARGE, PHOTON
-from .energy import LightParameters
-from .sensor import SensorParameters
-from .sources import sourced
+from talbot.models.parameters.checks import check_real
+from talbot.models.parameters.electrical import ELEMENTARY_CHARGE, PHOTON
+from talbot.models.parameters.energy import LightParameters
+from talbot.models.parameters.sensor import SensorParameters
+from talbot.models.parameters.sources import sourced
 
 
 class Lit(NamedTuple):

@@ -3,13 +3,13 @@
 from dataclasses import dataclass
 from math import hypot
 
-from .array import ArrayParameters
-from .checks import ParameterError, check_real
-from .chip import ChipParameters
-from .electrical import ConverterParameters, ElectricalParameters
-from .frame import Window
-from .optics import OpticsParameters
-from .tile import TileParameters
+from talbot.models.parameters.array import ArrayParameters
+from talbot.models.parameters.checks import ParameterError, check_real
+from talbot.models.parameters.chip import ChipParameters
+from talbot.models.parameters.electrical import ConverterParameters, ElectricalParameters
+from talbot.models.parameters.frame import Window
+from talbot.models.parameters.optics import OpticsParameters
+from talbot.models.parameters.tile import TileParameters
 
 CORNER = 1.75  # tangent under which a lens at most sees the array's corners, and these the lens: 60 degrees
 

@@ -15,10 +15,10 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from .checks import ParameterError
-from .electrical import TYPICAL_CONVERTER
-from .sensor import SensorParameters
-from .tile import PixelType, TileParameters
+from talbot.models.parameters.checks import ParameterError
+from talbot.models.parameters.electrical import TYPICAL_CONVERTER
+from talbot.models.parameters.sensor import SensorParameters
+from talbot.models.parameters.tile import PixelType, TileParameters
 
 STANDARD = SensorParameters(converter=TYPICAL_CONVERTER)
 BYTES_MAX = 1 << 20

@@ -8,7 +8,7 @@ from typing import Self
 import numpy as np
 import numpy.typing as npt
 
-from .checks import ParameterError, check_int, check_real
+from talbot.models.parameters.checks import ParameterError, check_int, check_real
 
 # From incidence angles theta_x and theta_y, arrays (n,) in rad, |theta| <= pi/2, to the response of both diodes,
 # (2, n), finite, 0 or more, the aperture A(theta) included: 1 is as sensitive as a plain diode on the axis.

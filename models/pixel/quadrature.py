@@ -8,8 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from talbot.models.parameters import OpticsParameters, PixelType
-
-from .weights import density, raw_weights
+from talbot.models.pixel.weights import density, raw_weights
 
 Floats = npt.NDArray[np.float64]
 Light = Callable[[Floats, Floats, float], Floats]

@@ -8,8 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from talbot.models.parameters import OpticsParameters, ParameterError, TileParameters
-
-from .weights import view_weights
+from talbot.models.pixel.weights import view_weights
 
 GAIN_MAX = 64.0  # limit for a diode that receives nothing of a flat field (m = 1, beta = 0)
 

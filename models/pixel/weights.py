@@ -14,8 +14,7 @@ import numpy.typing as npt
 from numpy.polynomial.legendre import leggauss
 
 from talbot.models.parameters import OpticsParameters, ParameterError, PixelType, SensorParameters, TileParameters
-
-from .response import response, vignetting
+from talbot.models.pixel.response import response, vignetting
 
 
 def density(

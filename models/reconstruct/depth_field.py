@@ -16,8 +16,7 @@ from scipy.sparse.linalg import splu
 
 from talbot.models.parameters import ParameterError
 from talbot.models.pixel.time_of_flight import quadrature
-
-from .bayes import Estimate, FieldEstimator
+from talbot.models.reconstruct.bayes import Estimate, FieldEstimator
 
 Floats = npt.NDArray[np.floating]
 Complexes = npt.NDArray[np.complexfloating]

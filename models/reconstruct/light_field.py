@@ -5,8 +5,7 @@ import numpy.typing as npt
 
 from talbot.models.capture import CaptureOperator
 from talbot.models.parameters import ParameterError
-
-from .demosaic import demosaic
+from talbot.models.reconstruct.demosaic import demosaic
 
 
 def light_field_estimate(operator: CaptureOperator, pair: npt.NDArray[np.floating]) -> npt.NDArray[np.floating]:

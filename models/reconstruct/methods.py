@@ -17,11 +17,10 @@ import numpy.typing as npt
 
 from talbot.models.capture import CaptureOperator
 from talbot.models.parameters import ParameterError, SensorParameters
-
-from .bayes import FieldEstimator
-from .branches import KINDS, Branches
-from .light_field import light_field_estimate
-from .sparse import Coding, Dictionary, SparseEstimator
+from talbot.models.reconstruct.bayes import FieldEstimator
+from talbot.models.reconstruct.branches import KINDS, Branches
+from talbot.models.reconstruct.light_field import light_field_estimate
+from talbot.models.reconstruct.sparse import Coding, Dictionary, SparseEstimator
 
 Values = npt.NDArray[np.floating]
 DEFAULT = "linear"  # as fast as direct once its filters are there, and it has parallax

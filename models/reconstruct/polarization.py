@@ -16,8 +16,7 @@ import numpy.typing as npt
 from talbot.models.compiled import njit
 from talbot.models.parameters import ParameterError, TileParameters, check_int, check_real
 from talbot.models.pixel.polarization import angle, stokes
-
-from .demosaic import demosaic
+from talbot.models.reconstruct.demosaic import demosaic
 
 Floats = npt.NDArray[np.floating]
 REACH = 5  # px from a pixel to the farthest that count

@@ -8,10 +8,9 @@ import numpy.typing as npt
 from talbot.models.afe import trim_gain
 from talbot.models.parameters import AmpTiming, SensorParameters
 from talbot.models.plan.codes import codes_per_unit
+from talbot.models.reconstruct.edges import EdgeOperator, Solver, image_from_edges
+from talbot.models.reconstruct.psnr import psnr_without_mean_db
 from talbot.models.scene import Scene
-
-from .edges import EdgeOperator, Solver, image_from_edges
-from .psnr import psnr_without_mean_db
 
 
 @dataclass(frozen=True, eq=False)

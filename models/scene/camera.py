@@ -7,8 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from talbot.models.parameters import FOCUS_MAX, CameraParameters
-
-from .sampling import Sampling
+from talbot.models.scene.sampling import Sampling
 
 REFERENCE = 3.0  # m of the scene: middle of the motorcycle and of the tilted plane
 PLANE = 3.72  # m of the scene: where pictures without depth stand, 1 px a view step behind the default focal plane

@@ -10,12 +10,11 @@ import numpy as np
 import numpy.typing as npt
 
 from talbot.models.parameters import ParameterError
-
-from .file_form import is_video
-from .light_field import LightField
-from .picture_file import header_of, luminance_of, read_frames, read_pixels
-from .sampling import Sampling
-from .video_file import RATE, VIDEOS, Video
+from talbot.models.scene.file_form import is_video
+from talbot.models.scene.light_field import LightField
+from talbot.models.scene.picture_file import header_of, luminance_of, read_frames, read_pixels
+from talbot.models.scene.sampling import Sampling
+from talbot.models.scene.video_file import RATE, VIDEOS, Video
 
 SAME = {".jpeg": ".jpg", ".jpe": ".jpg", ".jfif": ".jpg", ".tiff": ".tif"}  # suffixes of one kind of picture
 SHORTEST = 0.02  # s that a frame is shown: browsers take less, in a GIF, for "not said"

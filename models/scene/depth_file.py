@@ -14,11 +14,10 @@ import numpy as np
 import numpy.typing as npt
 
 from talbot.models.parameters import ParameterError
-
-from . import camera, resample
-from .picture_file import read_codes
-from .sampling import Sampling
-from .scene import check_values
+from talbot.models.scene import camera, resample
+from talbot.models.scene.picture_file import read_codes
+from talbot.models.scene.sampling import Sampling
+from talbot.models.scene.scene import check_values
 
 NEAR, FAR = 2.0, 6.0  # m, of 8-bit images
 BYTES_MAX = 2**30  # of an array in an .npz

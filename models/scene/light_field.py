@@ -11,12 +11,11 @@ import numpy as np
 import numpy.typing as npt
 
 from talbot.models.parameters import FOCUS_MAX, ParameterError, check_int
-
-from . import camera, resample
-from .echo import Echo
-from .picture_file import decode16
-from .sampling import Sampling
-from .scene import RADIANCE_MAX, Scene, check_values
+from talbot.models.scene import camera, resample
+from talbot.models.scene.echo import Echo
+from talbot.models.scene.picture_file import decode16
+from talbot.models.scene.sampling import Sampling
+from talbot.models.scene.scene import RADIANCE_MAX, Scene, check_values
 
 CODES = ("uint8", "uint16")
 FLOATS = ("float16", "float32", "float64")

@@ -24,11 +24,10 @@ import numpy.typing as npt
 from PIL import Image
 
 from talbot.models.parameters import ParameterError, check_int, check_real
-
-from .echo import Echo
-from .light_field import LightField
-from .picture_file import FLOAT_MAX, encode16, read_picture
-from .scene import RADIANCE_MAX
+from talbot.models.scene.echo import Echo
+from talbot.models.scene.light_field import LightField
+from talbot.models.scene.picture_file import FLOAT_MAX, encode16, read_picture
+from talbot.models.scene.scene import RADIANCE_MAX
 
 SUFFIXES = ".npy", ".npz"
 PICTURES = "png|jpe?g|tiff?|webp|bmp|ppm|pgm"

@@ -10,11 +10,10 @@ import numpy as np
 import numpy.typing as npt
 
 from talbot.models.parameters import check_real
-
-from . import camera, resample, warp
-from .sampling import Sampling
-from .scene import Scene
-from .views import Pictured, Second
+from talbot.models.scene import camera, resample, warp
+from talbot.models.scene.sampling import Sampling
+from talbot.models.scene.scene import Scene
+from talbot.models.scene.views import Pictured, Second
 
 FOCAL_LENGTH_PX = 994.978
 BASELINE = 0.193001  # m

@@ -5,13 +5,13 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from . import camera, resample
-from .depth_file import read_depth
-from .picture_file import read_luminance
-from .sampling import Sampling
-from .scene import Scene
-from .targets import IN_FOCUS, plane
-from .views import Pictured, Shifted
+from talbot.models.scene import camera, resample
+from talbot.models.scene.depth_file import read_depth
+from talbot.models.scene.picture_file import read_luminance
+from talbot.models.scene.sampling import Sampling
+from talbot.models.scene.scene import Scene
+from talbot.models.scene.targets import IN_FOCUS, plane
+from talbot.models.scene.views import Pictured, Shifted
 
 PHOTOGRAPHS = ("astronaut", "camera", "chelsea", "coffee", "coins", "moon", "page", "rocket", "text")
 

@@ -13,10 +13,9 @@ import numpy.typing as npt
 from PIL import Image, PngImagePlugin
 
 from talbot.models.parameters import ParameterError
-
-from .file_form import form_of
-from .pixels import Pixels, deep_pixels, image_pixels, upright
-from .resample import linear
+from talbot.models.scene.file_form import form_of
+from talbot.models.scene.pixels import Pixels, deep_pixels, image_pixels, upright
+from talbot.models.scene.resample import linear
 
 PIXELS_MAX = 2 * 89_478_485  # Pillow's limit against decompression bombs
 FORMATS = "PNG", "JPEG", "TIFF", "WEBP", "AVIF", "JPEG2000", "GIF", "BMP", "PPM"  # named to users, where built in
@@ -184,7 +183,7 @@ def header_of(path: str | Path, field: str) -> Header:
     """
     with _opened(path, field) as (picture, pages):
         if pages is not None:
-            from .tiff_file import tiff_orientation, tiff_shape
+            from talbot.models.scene.tiff_file import tiff_orientation, tiff_shape
 
             return Header(tiff_shape(pages[0][1]), len(pages), tiff_orientation(pages[0][1]))
         orientation = int(picture.getexif().get(274, 1))
@@ -221,7 +220,7 @@ def read_pixels(path: str | Path, field: str, size: tuple[int, int] | None = Non
             hint = "; talbot sequence takes all" if field == "scene" else ""
             raise ParameterError(f"{field} = {str(path)!r}: {what}: must be one picture{hint}")
         if pages is not None:
-            from .tiff_file import tiff_pixels
+            from talbot.models.scene.tiff_file import tiff_pixels
 
             return tiff_pixels(Path(path), field, *pages[0])
         if size:
@@ -253,7 +252,7 @@ def read_frames(path: str | Path, field: str) -> Iterator[tuple[Pixels, float]]:
         for number in range(len(pages) if pages is not None else _frames_of(picture)):
             with _undamaged(field, path, f"frame {number}"):
                 if pages is not None:
-                    from .tiff_file import tiff_pixels
+                    from talbot.models.scene.tiff_file import tiff_pixels
 
                     pixels, seconds = tiff_pixels(Path(path), field, *pages[number]), 0.0
                 else:
@@ -279,7 +278,7 @@ def _opened(path: str | Path, field: str) -> Iterator[tuple[Any, Any]]:
             with path.open("rb") as file:
                 tiff = file.read(4) in TIFF
             if tiff:
-                from .tiff_file import tiff_pages
+                from talbot.models.scene.tiff_file import tiff_pages
 
                 opened = None, stack.enter_context(tiff_pages(path, field))
                 if any(not 0 < page.imagelength * page.imagewidth <= PIXELS_MAX for _, page in opened[1]):

@@ -7,10 +7,10 @@ light that is polarized along it (`models/pixel/polarization.py`).
 import numpy as np
 import numpy.typing as npt
 
-from . import camera
-from .sampling import Sampling
-from .scene import Scene
-from .targets import places, uniform
+from talbot.models.scene import camera
+from talbot.models.scene.sampling import Sampling
+from talbot.models.scene.scene import Scene
+from talbot.models.scene.targets import places, uniform
 
 Floats = npt.NDArray[np.float64]
 

@@ -5,17 +5,16 @@ from functools import partial
 from pathlib import Path
 
 from talbot.models.parameters import ParameterError
-
-from . import polarized, solids, targets
-from .leaves import leaves
-from .light_field import LightField
-from .light_field_file import named
-from .motorcycle import motorcycle
-from .photograph import PHOTOGRAPHS, photograph, picture
-from .rendered import RENDERED, rendered
-from .sampling import Sampling
-from .scene import Scene
-from .video_file import VIDEOS
+from talbot.models.scene import polarized, solids, targets
+from talbot.models.scene.leaves import leaves
+from talbot.models.scene.light_field import LightField
+from talbot.models.scene.light_field_file import named
+from talbot.models.scene.motorcycle import motorcycle
+from talbot.models.scene.photograph import PHOTOGRAPHS, photograph, picture
+from talbot.models.scene.rendered import RENDERED, rendered
+from talbot.models.scene.sampling import Sampling
+from talbot.models.scene.scene import Scene
+from talbot.models.scene.video_file import VIDEOS
 
 # Each is a function of a Sampling; `name:number` on the command line adds the number (edge:30 is 30 degrees).
 scenes: dict[str, Callable[..., Scene]] = {

@@ -13,9 +13,8 @@ import numpy as np
 import numpy.typing as npt
 
 from talbot.models.parameters import FOCUS_MAX, ParameterError, check_choice, check_int, check_real
-
-from .echo import Echo
-from .sampling import DTYPES
+from talbot.models.scene.echo import Echo
+from talbot.models.scene.sampling import DTYPES
 
 Bools = npt.NDArray[np.bool_]
 # Radiance and disparity (rows, cols) of the view at an offset (dv, du) in view steps, at most views / 2 each way

@@ -15,10 +15,10 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from . import camera
-from .sampling import Sampling
-from .scene import Scene
-from .targets import places
+from talbot.models.scene import camera
+from talbot.models.scene.sampling import Sampling
+from talbot.models.scene.scene import Scene
+from talbot.models.scene.targets import places
 
 Floats = npt.NDArray[np.float64]
 Texture = Callable[[Floats, Floats], Floats]  # radiance at metres along both sides; NaN: a hole

@@ -10,9 +10,9 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from . import camera
-from .sampling import Sampling
-from .scene import Scene
+from talbot.models.scene import camera
+from talbot.models.scene.sampling import Sampling
+from talbot.models.scene.scene import Scene
 
 Floats = npt.NDArray[np.float64]
 

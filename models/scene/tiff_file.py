@@ -16,9 +16,8 @@ from PIL import Image, UnidentifiedImageError
 from tifffile import TiffFile, TiffPage
 
 from talbot.models.parameters import ParameterError
-
-from .file_form import DEVELOP
-from .pixels import Pixels, deep_pixels, image_pixels, over_white, upright
+from talbot.models.scene.file_form import DEVELOP
+from talbot.models.scene.pixels import Pixels, deep_pixels, image_pixels, over_white, upright
 
 logging.getLogger("tifffile").addHandler(logging.NullHandler())  # what is odd but read is no concern of ours
 REDUCED = 1 | 4  # subfile types of thumbnails and masks

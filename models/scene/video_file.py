@@ -15,11 +15,10 @@ import numpy as np
 import numpy.typing as npt
 
 from talbot.models.parameters import ParameterError
-
-from . import resample
-from .picture_file import luminance_of
-from .pixels import Pixels, over_white
-from .sampling import Sampling
+from talbot.models.scene import resample
+from talbot.models.scene.picture_file import luminance_of
+from talbot.models.scene.pixels import Pixels, over_white
+from talbot.models.scene.sampling import Sampling
 
 VIDEOS = (".mp4", ".m4v", ".mov", ".mkv", ".webm", ".avi", ".ts", ".mts", ".m2ts", ".wmv", ".3gp", ".3g2", ".ogv")
 VIDEOS += (".flv", ".mpg", ".mpeg", ".vob", ".asf", ".mxf", ".y4m")

@@ -5,9 +5,9 @@ from functools import cached_property, lru_cache, partial
 import numpy as np
 import numpy.typing as npt
 
-from . import warp
-from .sampling import Sampling
-from .scene import RADIANCE_MAX, Bools, View
+from talbot.models.scene import warp
+from talbot.models.scene.sampling import Sampling
+from talbot.models.scene.scene import RADIANCE_MAX, Bools, View
 
 Floats = npt.NDArray[np.float64]
 

@@ -16,17 +16,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from talbot.models.parameters import ParameterError
-from talbot.pixels.circuits.amplifier import PINS, TRIM_BITS, AmplifierSizes, amplifier
-from talbot.pixels.layout.canvas import Canvas
-from talbot.platforms.analog import AnalogMasks
-
-from . import flat
-from .amplifier_bank import BankPlan, draw_bank, units
-from .cells import MARGIN, Cell, new_canvas
-from .comparator import BETWEEN_STRIPS
-from .device import Device, snap
-from .rows import dummies, row
-from .strip import (
+from talbot.pixels.analog_layout import flat
+from talbot.pixels.analog_layout.amplifier_bank import BankPlan, draw_bank, units
+from talbot.pixels.analog_layout.cells import MARGIN, Cell, new_canvas
+from talbot.pixels.analog_layout.comparator import BETWEEN_STRIPS
+from talbot.pixels.analog_layout.device import Device, snap
+from talbot.pixels.analog_layout.rows import dummies, row
+from talbot.pixels.analog_layout.strip import (
     FOURTH,
     RAIL_ENDS,
     RAIL_HALF,
@@ -41,6 +37,9 @@ from .strip import (
     join_rails,
     trunk,
 )
+from talbot.pixels.circuits.amplifier import PINS, TRIM_BITS, AmplifierSizes, amplifier
+from talbot.pixels.layout.canvas import Canvas
+from talbot.platforms.analog import AnalogMasks
 
 # um
 STRIP_LENGTH = 92.0

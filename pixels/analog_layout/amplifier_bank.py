@@ -12,11 +12,10 @@ side of the bank's middle. Both inputs of the amplifier have the same bank: what
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
+from talbot.pixels.analog_layout.device import Strap, snap
+from talbot.pixels.analog_layout.strip import FIRST, SECOND, THIRD, TRACK, TRACK_PITCH
 from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.layers import GdsLayer
-
-from .device import Strap, snap
-from .strip import FIRST, SECOND, THIRD, TRACK, TRACK_PITCH
 
 FINGERS = 8  # units of a comb
 COLUMNS = 13  # combs of a row

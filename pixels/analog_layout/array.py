@@ -16,14 +16,13 @@ import numpy as np
 import numpy.typing as npt
 
 from talbot.models.parameters import ParameterError
+from talbot.pixels.analog_layout.device import GRID, Strap, snap
+from talbot.pixels.analog_layout.flat import Plate, Tap
+from talbot.pixels.analog_layout.pattern import SIDE
+from talbot.pixels.analog_layout.strip import FOURTH, SECOND, THIRD, TRACK, TRACK_PITCH
 from talbot.pixels.circuits.dac import DacSizes
 from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.analog import AnalogMasks
-
-from .device import GRID, Strap, snap
-from .flat import Plate, Tap
-from .pattern import SIDE
-from .strip import FOURTH, SECOND, THIRD, TRACK, TRACK_PITCH
 
 # um
 LOWER_ENCLOSURE = 0.14  # of the upper plate by the lower one

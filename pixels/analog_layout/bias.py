@@ -9,16 +9,26 @@ Both halves of an output are at the same distance from the middle, on opposite s
 
 from itertools import pairwise
 
+from talbot.pixels.analog_layout import flat
+from talbot.pixels.analog_layout.cells import MARGIN, Cell, new_canvas
+from talbot.pixels.analog_layout.comparator import BETWEEN_STRIPS
+from talbot.pixels.analog_layout.device import IMPLANT, Device, snap
+from talbot.pixels.analog_layout.rows import dummies, row
+from talbot.pixels.analog_layout.strip import (
+    FIRST,
+    FOURTH,
+    RAIL_ENDS,
+    RAIL_HALF,
+    THIRD,
+    WELL_ENDS,
+    Plan,
+    draw_strip,
+    join_rails,
+    trunk,
+)
 from talbot.pixels.circuits.support import bias
 from talbot.pixels.layout.canvas import CONTACT_UM, Canvas
 from talbot.platforms.analog import AnalogMasks
-
-from . import flat
-from .cells import MARGIN, Cell, new_canvas
-from .comparator import BETWEEN_STRIPS
-from .device import IMPLANT, Device, snap
-from .rows import dummies, row
-from .strip import FIRST, FOURTH, RAIL_ENDS, RAIL_HALF, THIRD, WELL_ENDS, Plan, draw_strip, join_rails, trunk
 
 # um
 RESISTOR_WIDTH = 1.0

@@ -6,15 +6,14 @@ from pathlib import Path
 from typing import ClassVar
 
 from talbot.base.gds import db, write_gds
+from talbot.pixels.analog_layout import flat
+from talbot.pixels.analog_layout.comparator import comparator_plans, devices, draw_comparator, least_half
+from talbot.pixels.analog_layout.device import Device, Strap
+from talbot.pixels.analog_layout.strip import RAIL_ENDS, THIRD, Strip, Terminal, join_rails
 from talbot.pixels.circuits.comparator import ComparatorSizes, comparator
 from talbot.pixels.circuits.netlist import Resistor, Transistor
 from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.analog import AnalogMasks
-
-from . import flat
-from .comparator import comparator_plans, devices, draw_comparator, least_half
-from .device import Device, Strap
-from .strip import RAIL_ENDS, THIRD, Strip, Terminal, join_rails
 
 MARGIN = 2.0  # of a cell beyond its rails, um
 

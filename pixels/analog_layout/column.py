@@ -17,19 +17,12 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from talbot.models.parameters import ParameterError
-from talbot.pixels.circuits.column import CONTROLS, OF_TAPS, PINS, TAPS, TWICE, column
-from talbot.pixels.circuits.column_block import GROUPS, PLACES
-from talbot.pixels.circuits.column_sizes import FINGER, ColumnSizes
-from talbot.pixels.drawn import DRAWN_PITCH_UM
-from talbot.pixels.layout.canvas import Canvas
-from talbot.platforms.analog import AnalogMasks
-
-from . import flat
-from .array import LOWER_ENCLOSURE, VIA_INSET
-from .cells import Cell, new_canvas
-from .device import Device, snap
-from .flat import Plate, Tap
-from .strip import (
+from talbot.pixels.analog_layout import flat
+from talbot.pixels.analog_layout.array import LOWER_ENCLOSURE, VIA_INSET
+from talbot.pixels.analog_layout.cells import Cell, new_canvas
+from talbot.pixels.analog_layout.device import Device, snap
+from talbot.pixels.analog_layout.flat import Plate, Tap
+from talbot.pixels.analog_layout.strip import (
     FOURTH,
     RAIL_AT,
     RAIL_HALF,
@@ -46,6 +39,12 @@ from .strip import (
     join_rails,
     name_track,
 )
+from talbot.pixels.circuits.column import CONTROLS, OF_TAPS, PINS, TAPS, TWICE, column
+from talbot.pixels.circuits.column_block import GROUPS, PLACES
+from talbot.pixels.circuits.column_sizes import FINGER, ColumnSizes
+from talbot.pixels.drawn import DRAWN_PITCH_UM
+from talbot.pixels.layout.canvas import Canvas
+from talbot.platforms.analog import AnalogMasks
 
 # um
 PITCH = DRAWN_PITCH_UM  # of the columns

@@ -15,6 +15,14 @@ from typing import ClassVar
 
 from talbot.base.gds import db
 from talbot.models.parameters import ArrayParameters, ChipParameters, ParameterError
+from talbot.pixels.analog_layout.cells import new_canvas
+from talbot.pixels.analog_layout.column import EXIT_Y, LANES, LINE_WIDTH, PITCH
+from talbot.pixels.analog_layout.column_band import Band, draw_band
+from talbot.pixels.analog_layout.columns import WAY_END, Columns, column_nets, draw_columns, draw_grounds, draw_way
+from talbot.pixels.analog_layout.device import snap
+from talbot.pixels.analog_layout.drawn_block import DrawnBlock
+from talbot.pixels.analog_layout.row_drivers import TOP, VIA, VIA_PAD, VIA_PITCH, chip_pin
+from talbot.pixels.analog_layout.strip import FOURTH, TRUNK
 from talbot.pixels.blocks import DEEP_UM, AnalogSizes, Block, Pin, blocks
 from talbot.pixels.circuits.column import BIASES
 from talbot.pixels.circuits.column_block import BANK_INPUTS, BANK_OUTPUTS
@@ -22,15 +30,6 @@ from talbot.pixels.circuits.column_sizes import ColumnSizes
 from talbot.pixels.footprints import draw_pins
 from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.analog import AnalogMasks
-
-from .cells import new_canvas
-from .column import EXIT_Y, LANES, LINE_WIDTH, PITCH
-from .column_band import Band, draw_band
-from .columns import WAY_END, Columns, column_nets, draw_columns, draw_grounds, draw_way
-from .device import snap
-from .drawn_block import DrawnBlock
-from .row_drivers import TOP, VIA, VIA_PAD, VIA_PITCH, chip_pin
-from .strip import FOURTH, TRUNK
 
 NAME = "column_amplifiers"
 # Nets that a column or the band has from outside of the chip; lines across that no column is on

@@ -12,21 +12,14 @@ from dataclasses import dataclass, field
 
 from talbot.base.gds import db
 from talbot.models.parameters import ParameterError
-from talbot.pixels.circuits.column import BIASES
-from talbot.pixels.circuits.column_block import band
-from talbot.pixels.circuits.column_sizes import FINGER, ColumnSizes
-from talbot.pixels.circuits.netlist import Transistor
-from talbot.pixels.layout.canvas import Canvas
-from talbot.platforms.analog import AnalogMasks
-
-from . import flat
-from .array import LOWER_ENCLOSURE, LOWER_TAB, VIA_INSET
-from .cells import Cell
-from .column import PATCH_INSET, PITCH, draw_patch, length_um, steps
-from .comparator import BETWEEN_STRIPS
-from .device import Device, snap
-from .row_driver import legs
-from .strip import (
+from talbot.pixels.analog_layout import flat
+from talbot.pixels.analog_layout.array import LOWER_ENCLOSURE, LOWER_TAB, VIA_INSET
+from talbot.pixels.analog_layout.cells import Cell
+from talbot.pixels.analog_layout.column import PATCH_INSET, PITCH, draw_patch, length_um, steps
+from talbot.pixels.analog_layout.comparator import BETWEEN_STRIPS
+from talbot.pixels.analog_layout.device import Device, snap
+from talbot.pixels.analog_layout.row_driver import legs
+from talbot.pixels.analog_layout.strip import (
     FOURTH,
     RAIL_AT,
     RAIL_HALF,
@@ -41,6 +34,12 @@ from .strip import (
     in_columns,
     trunk,
 )
+from talbot.pixels.circuits.column import BIASES
+from talbot.pixels.circuits.column_block import band
+from talbot.pixels.circuits.column_sizes import FINGER, ColumnSizes
+from talbot.pixels.circuits.netlist import Transistor
+from talbot.pixels.layout.canvas import Canvas
+from talbot.platforms.analog import AnalogMasks
 
 # um
 SOUTH = 4.0  # from the block's edge to the lowest rail

@@ -7,14 +7,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from talbot.base.gds import db
-from talbot.pixels.circuits.column import PINS, SUPPLIES, line
-from talbot.pixels.circuits.column_block import LINES, taken
-from talbot.pixels.circuits.column_sizes import ColumnSizes
-from talbot.pixels.layout.canvas import Canvas
-from talbot.platforms.analog import AnalogMasks
-
-from .cells import Cell
-from .column import (
+from talbot.pixels.analog_layout.cells import Cell
+from talbot.pixels.analog_layout.column import (
     EXIT_Y,
     GROUPED,
     LANES,
@@ -30,7 +24,12 @@ from .column import (
     line_um,
     names,
 )
-from .strip import FOURTH, SECOND, THIRD, name_track
+from talbot.pixels.analog_layout.strip import FOURTH, SECOND, THIRD, name_track
+from talbot.pixels.circuits.column import PINS, SUPPLIES, line
+from talbot.pixels.circuits.column_block import LINES, taken
+from talbot.pixels.circuits.column_sizes import ColumnSizes
+from talbot.pixels.layout.canvas import Canvas
+from talbot.platforms.analog import AnalogMasks
 
 WAY_WIDTH = 0.2  # um, of a line to the south
 WAY_END = 1.0  # um, beyond the columns, where it goes up

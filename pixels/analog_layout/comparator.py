@@ -8,13 +8,12 @@ The pair and the n latch have dummies at their ends. In a lane the switches of t
 
 from collections.abc import Mapping, Sequence
 
+from talbot.pixels.analog_layout import flat
+from talbot.pixels.analog_layout.device import Device, swapped
+from talbot.pixels.analog_layout.strip import Placed, Plan, Strip, draw_strip, mirrored, trunk
 from talbot.pixels.circuits.netlist import Circuit
 from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.analog import AnalogMasks
-
-from . import flat
-from .device import Device, swapped
-from .strip import Placed, Plan, Strip, draw_strip, mirrored, trunk
 
 WITH_DUMMIES = "inp", "inn", "latch_np", "latch_nn"
 ROOM = 0.6  # um next to each device, for its drops

@@ -18,6 +18,13 @@ from dataclasses import dataclass, replace
 
 from talbot.base.gds import db
 from talbot.models.parameters import ChipParameters, ParameterError
+from talbot.pixels.analog_layout.amplifier import amplifier_cell
+from talbot.pixels.analog_layout.bias import bias_cell
+from talbot.pixels.analog_layout.cells import Cell, new_canvas
+from talbot.pixels.analog_layout.channel import Channel, up
+from talbot.pixels.analog_layout.drawn_block import DrawnBlock
+from talbot.pixels.analog_layout.lane import lane_cell
+from talbot.pixels.analog_layout.strip import FOURTH, RAIL_AT, SECOND, THIRD, TRUNK
 from talbot.pixels.blocks import DIODES, AnalogSizes, Block, Pin, blocks
 from talbot.pixels.circuits.amplifier import TRIM_BITS, AmplifierSizes
 from talbot.pixels.circuits.dac import BITS
@@ -25,14 +32,6 @@ from talbot.pixels.circuits.lane import LaneSizes
 from talbot.pixels.footprints import WIDE_UM, draw_pins
 from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.analog import AnalogMasks
-
-from .amplifier import amplifier_cell
-from .bias import bias_cell
-from .cells import Cell, new_canvas
-from .channel import Channel, up
-from .drawn_block import DrawnBlock
-from .lane import lane_cell
-from .strip import FOURTH, RAIL_AT, SECOND, THIRD, TRUNK
 
 NAME = "adc_lanes"
 TOP = 5

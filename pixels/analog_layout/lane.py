@@ -13,18 +13,12 @@ Between strips and arrays nets run on the fourth metal: next to an array or over
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from talbot.pixels.circuits.dac import BITS
-from talbot.pixels.circuits.interface import CHIP, SLOW, interface
-from talbot.pixels.circuits.lane import PINS, LaneSizes, sar_lane
-from talbot.pixels.layout.canvas import Canvas
-from talbot.platforms.analog import AnalogMasks
-
-from .array import Array, ArrayPlan, draw_array, edges
-from .cells import MARGIN, Cell, new_canvas
-from .comparator import BETWEEN_STRIPS, comparator_plans, devices, draw_comparator, pair
-from .device import Device, Strap
-from .pattern import binary, halves
-from .strip import (
+from talbot.pixels.analog_layout.array import Array, ArrayPlan, draw_array, edges
+from talbot.pixels.analog_layout.cells import MARGIN, Cell, new_canvas
+from talbot.pixels.analog_layout.comparator import BETWEEN_STRIPS, comparator_plans, devices, draw_comparator, pair
+from talbot.pixels.analog_layout.device import Device, Strap
+from talbot.pixels.analog_layout.pattern import binary, halves
+from talbot.pixels.analog_layout.strip import (
     FOURTH,
     RAIL_AT,
     RAIL_ENDS,
@@ -39,7 +33,12 @@ from .strip import (
     join_rails,
     trunk,
 )
-from .switch import ORDER
+from talbot.pixels.analog_layout.switch import ORDER
+from talbot.pixels.circuits.dac import BITS
+from talbot.pixels.circuits.interface import CHIP, SLOW, interface
+from talbot.pixels.circuits.lane import PINS, LaneSizes, sar_lane
+from talbot.pixels.layout.canvas import Canvas
+from talbot.platforms.analog import AnalogMasks
 
 # um
 CHANNEL = 9.0  # width next to the arrays, for lines that pass them

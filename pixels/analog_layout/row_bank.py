@@ -5,14 +5,23 @@ All nets between strips, and from the pins in the south, are on the fourth metal
 
 from collections.abc import Iterator, Sequence
 
+from talbot.pixels.analog_layout.cells import Cell
+from talbot.pixels.analog_layout.comparator import BETWEEN_STRIPS, devices
+from talbot.pixels.analog_layout.row_driver import LINE_PITCH, ROOM, RowPlan, legs
+from talbot.pixels.analog_layout.strip import (
+    FOURTH,
+    RAIL_HALF,
+    SECOND,
+    THIRD,
+    Plan,
+    Strip,
+    draw_strip,
+    in_columns,
+    trunk,
+)
 from talbot.pixels.circuits.row_driver import ADDRESS, BANK_INPUTS, BANK_OUTPUTS, CODES, CONTROLS, LATE, SIDES, bank
 from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.analog import AnalogMasks
-
-from .cells import Cell
-from .comparator import BETWEEN_STRIPS, devices
-from .row_driver import LINE_PITCH, ROOM, RowPlan, legs
-from .strip import FOURTH, RAIL_HALF, SECOND, THIRD, Plan, Strip, draw_strip, in_columns, trunk
 
 NORTH = 2.0  # um, of the strips
 SOUTH = 3.0  # um, of the strips

@@ -12,14 +12,9 @@ from dataclasses import dataclass, replace
 from itertools import permutations
 
 from talbot.models.parameters import ParameterError
-from talbot.pixels.circuits.row_driver import CODES, CONTROLS, ROW_INPUTS, ROW_LINES, SIDES, SUPPLIES
-from talbot.pixels.drawn import DRAWN_PITCH_UM
-from talbot.pixels.layout.canvas import Canvas
-from talbot.platforms.analog import AnalogMasks
-
-from .cells import Cell
-from .device import Device
-from .strip import (
+from talbot.pixels.analog_layout.cells import Cell
+from talbot.pixels.analog_layout.device import Device
+from talbot.pixels.analog_layout.strip import (
     FOURTH,
     RAIL_AT,
     RAIL_ENDS,
@@ -38,6 +33,10 @@ from .strip import (
     in_columns,
     join_rails,
 )
+from talbot.pixels.circuits.row_driver import CODES, CONTROLS, ROW_INPUTS, ROW_LINES, SIDES, SUPPLIES
+from talbot.pixels.drawn import DRAWN_PITCH_UM
+from talbot.pixels.layout.canvas import Canvas
+from talbot.platforms.analog import AnalogMasks
 
 # um
 PITCH = DRAWN_PITCH_UM  # of the rows

@@ -14,6 +14,13 @@ from typing import ClassVar
 
 from talbot.base.gds import db
 from talbot.models.parameters import ArrayParameters, ParameterError
+from talbot.pixels.analog_layout.cells import Cell, new_canvas
+from talbot.pixels.analog_layout.comparator import devices
+from talbot.pixels.analog_layout.device import Device
+from talbot.pixels.analog_layout.drawn_block import DrawnBlock
+from talbot.pixels.analog_layout.row_bank import draw_bank
+from talbot.pixels.analog_layout.row_driver import LINE_WIDTH, PITCH, RowPlan, as_cell, draw_row, row_plan
+from talbot.pixels.analog_layout.strip import FOURTH, RAIL_ENDS, THIRD, name_track
 from talbot.pixels.blocks import AnalogSizes, Block, row_driver
 from talbot.pixels.circuits.row_driver import (
     BANK_INPUTS,
@@ -30,14 +37,6 @@ from talbot.pixels.circuits.row_driver import (
 from talbot.pixels.footprints import draw_pins
 from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.analog import AnalogMasks
-
-from .cells import Cell, new_canvas
-from .comparator import devices
-from .device import Device
-from .drawn_block import DrawnBlock
-from .row_bank import draw_bank
-from .row_driver import LINE_WIDTH, PITCH, RowPlan, as_cell, draw_row, row_plan
-from .strip import FOURTH, RAIL_ENDS, THIRD, name_track
 
 NAME = "row_driver"
 TOP = 5

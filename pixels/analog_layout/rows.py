@@ -2,10 +2,9 @@
 
 from collections.abc import Iterable, Mapping
 
+from talbot.pixels.analog_layout.device import Device, snap
+from talbot.pixels.analog_layout.strip import DROP_PITCH, GAP, Placed
 from talbot.pixels.circuits.netlist import Transistor
-
-from .device import Device, snap
-from .strip import DROP_PITCH, GAP, Placed
 
 
 def dummies(name: str, like: Device) -> dict[str, Device]:

@@ -16,10 +16,9 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from talbot.models.parameters import ParameterError
+from talbot.pixels.analog_layout.device import IMPLANT, RAIL, STRAP, WELL_AROUND, Device, Strap, draw_device
 from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.analog import AnalogMasks
-
-from .device import IMPLANT, RAIL, STRAP, WELL_AROUND, Device, Strap, draw_device
 
 # um
 GAP = 0.40  # between adjacent diffusions

@@ -1,12 +1,11 @@
 """The switch drivers, in one strip: two loops of a gate and its delays, each the image of the other."""
 
+from talbot.pixels.analog_layout.cells import MARGIN, Cell, finish, new_canvas
+from talbot.pixels.analog_layout.comparator import devices
+from talbot.pixels.analog_layout.row_driver import ROOM, legs
+from talbot.pixels.analog_layout.strip import Plan, draw_strip, in_columns
 from talbot.pixels.circuits.support import DELAYS, non_overlap
 from talbot.platforms.analog import AnalogMasks
-
-from .cells import MARGIN, Cell, finish, new_canvas
-from .comparator import devices
-from .row_driver import ROOM, legs
-from .strip import Plan, draw_strip, in_columns
 
 LOOP = "nor", *(f"delay{k}" for k in range(DELAYS))
 ORDER = *(f"phi1_{name}" for name in reversed(LOOP)), "not", *(f"phi2_{name}" for name in LOOP)

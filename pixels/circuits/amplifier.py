@@ -25,10 +25,9 @@ from types import ModuleType
 from typing import Self
 
 from talbot.models.parameters import EnergyParameters, SensorParameters, check_int, check_real
-
-from .gates import inverter
-from .netlist import Capacitor, Circuit, Instance, Transistor
-from .specification import one_digit
+from talbot.pixels.circuits.gates import inverter
+from talbot.pixels.circuits.netlist import Capacitor, Circuit, Instance, Transistor
+from talbot.pixels.circuits.specification import one_digit
 
 TRIM_BITS = 10
 UNITS = 512  # of the first diode's capacitor

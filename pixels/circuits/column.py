@@ -25,9 +25,9 @@ In the modes with codes 0..255 (edgen) a quarter of the first diode's Cin is at 
 half at none: lane_a is dark - (a + b) / 2 then, and its reference a quarter of the swing below dark.
 """
 
-from .column_sizes import BACK_TOP, CASCODE, CASCODE_P, FRONT, LANE, TOP, ColumnSizes
-from .gates import LENGTH, inverter, nand, nor
-from .netlist import Capacitor, Circuit, Instance, Transistor
+from talbot.pixels.circuits.column_sizes import BACK_TOP, CASCODE, CASCODE_P, FRONT, LANE, TOP, ColumnSizes
+from talbot.pixels.circuits.gates import LENGTH, inverter, nand, nor
+from talbot.pixels.circuits.netlist import Capacitor, Circuit, Instance, Transistor
 
 TAPS = 4
 # Roles and lengths (um) of switches: regular n transistors do not conduct at half of 1.62 V

@@ -2,12 +2,22 @@
 
 from itertools import pairwise
 
-from .amplifier import BIAS
-from .column import BIASES, CONTROLS, OF_TAPS, SUPPLIES, SWITCH, SWITCH_P, TAPS, n, p, source
-from .column_sizes import CASCODE, CASCODE_P, FRONT, LANE_TOP, PARTS, TOP, ColumnSizes, ColumnSpec, drawn
-from .gates import LENGTH, inverter, nand, nor
-from .netlist import Capacitor, Circuit, Instance, Resistor, Transistor
-from .row_driver import nand_of
+from talbot.pixels.circuits.amplifier import BIAS
+from talbot.pixels.circuits.column import BIASES, CONTROLS, OF_TAPS, SUPPLIES, SWITCH, SWITCH_P, TAPS, n, p, source
+from talbot.pixels.circuits.column_sizes import (
+    CASCODE,
+    CASCODE_P,
+    FRONT,
+    LANE_TOP,
+    PARTS,
+    TOP,
+    ColumnSizes,
+    ColumnSpec,
+    drawn,
+)
+from talbot.pixels.circuits.gates import LENGTH, inverter, nand, nor
+from talbot.pixels.circuits.netlist import Capacitor, Circuit, Instance, Resistor, Transistor
+from talbot.pixels.circuits.row_driver import nand_of
 
 POWER = ("p", LENGTH)
 BRANCH = 1.25e-6  # A, of each branch of the bias

@@ -15,10 +15,9 @@ from talbot.models.parameters import (
     check_real,
     drawn_lines,
 )
-
-from .amplifier import GAIN, UNITS
-from .amplifier import UNIT as CELL
-from .specification import LaneSpec, one_digit
+from talbot.pixels.circuits.amplifier import GAIN, UNITS
+from talbot.pixels.circuits.amplifier import UNIT as CELL
+from talbot.pixels.circuits.specification import LaneSpec, one_digit
 
 # Roles and lengths (um): inputs of the charge amplifier and of the holder, which drives the lane; cascodes, sources
 FRONT, LANE, CASCODE = ("n", 2.0), ("n", 0.5), ("n_lvt", 0.5)

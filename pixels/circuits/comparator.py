@@ -10,10 +10,9 @@ from math import ceil
 from types import ModuleType
 
 from talbot.models.parameters import check_real
-
-from .gates import inverter, nor
-from .netlist import Circuit, Instance, Transistor
-from .specification import LaneSpec
+from talbot.pixels.circuits.gates import inverter, nor
+from talbot.pixels.circuits.netlist import Circuit, Instance, Transistor
+from talbot.pixels.circuits.specification import LaneSpec
 
 PAIR_SHARE = 0.5  # of the offset's variance for the input pair; the latch behind it has the rest
 INPUT_LENGTH = 0.5  # um: at 0.15 um the same area is three times as wide, and its drains take the energy

@@ -15,10 +15,9 @@ from math import ceil
 from types import ModuleType
 
 from talbot.models.parameters import ParameterError, check_real
-
-from .gates import SWITCH_LENGTH, nand, nor
-from .netlist import Capacitor, Circuit, Instance, Transistor
-from .specification import CODES, LaneSpec
+from talbot.pixels.circuits.gates import SWITCH_LENGTH, nand, nor
+from talbot.pixels.circuits.netlist import Capacitor, Circuit, Instance, Transistor
+from talbot.pixels.circuits.specification import CODES, LaneSpec
 
 BITS = 8
 PARASITIC = 0.1  # of the array's capacitance, at its top plate: assumed until there is a layout

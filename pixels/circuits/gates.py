@@ -1,6 +1,6 @@
 """Logic gates inside the analog circuits: static CMOS of one width, p transistors twice that of n."""
 
-from .netlist import Circuit, Transistor
+from talbot.pixels.circuits.netlist import Circuit, Transistor
 
 LENGTH = 0.25  # um: at 0.15 um the p transistors leak 0.6 uA/um at ff, 125 degrees, 1.98 V
 SWITCH_LENGTH = 0.15  # um, of switches

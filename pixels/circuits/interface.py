@@ -10,9 +10,9 @@ The chip lets a lane sample in the cycle of its last decision. `late` follows th
 several decisions, and the sample waits for both.
 """
 
-from .gates import inverter, nand, nor
-from .netlist import Circuit, Instance
-from .support import non_overlap
+from talbot.pixels.circuits.gates import inverter, nand, nor
+from talbot.pixels.circuits.netlist import Circuit, Instance
+from talbot.pixels.circuits.support import non_overlap
 
 CHIP = "hold", "en", "clk"
 SLOW, SLOW_UM = 4, 1.4  # inverters between strobe and sample, and the length of their gates

@@ -16,11 +16,11 @@ they leave does not depend on the input.
 from dataclasses import dataclass
 from types import ModuleType
 
-from . import comparator as comparators
-from . import dac as dacs
-from .gates import SWITCH_LENGTH, inverter, nor
-from .netlist import Circuit, Instance, Transistor
-from .specification import LaneSpec
+from talbot.pixels.circuits import comparator as comparators
+from talbot.pixels.circuits import dac as dacs
+from talbot.pixels.circuits.gates import SWITCH_LENGTH, inverter, nor
+from talbot.pixels.circuits.netlist import Circuit, Instance, Transistor
+from talbot.pixels.circuits.specification import LaneSpec
 
 PINS = ("lane_a", "lane_b", "sample", "strobe", *(f"d{k}" for k in reversed(range(dacs.BITS))))
 PINS += ("comparator", "refp", "refn", "vcm", "vdd", "vss")

@@ -17,9 +17,8 @@ from itertools import pairwise
 from typing import Self
 
 from talbot.models.parameters import ArrayParameters, SensorParameters, check_int, check_real, drawn_lines
-
-from .gates import LENGTH, UNIT, inverter, nand
-from .netlist import Capacitor, Circuit, Instance, Resistor, Transistor
+from talbot.pixels.circuits.gates import LENGTH, UNIT, inverter, nand
+from talbot.pixels.circuits.netlist import Capacitor, Circuit, Instance, Resistor, Transistor
 
 GROUPS = {"high": (6, 10), "mid": (3, 6), "low": (0, 3)}  # bits of a row's number, from the lowest on
 SIDES = "amp", "reset"

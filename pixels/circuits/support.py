@@ -9,9 +9,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from talbot.models.parameters import check_int, check_real
-
-from .gates import inverter, nor
-from .netlist import Circuit, Instance, Resistor, Transistor
+from talbot.pixels.circuits.gates import inverter, nor
+from talbot.pixels.circuits.netlist import Circuit, Instance, Resistor, Transistor
 
 BIAS_OHM, BARS = 46e3, 4  # of the bias, in so many parts: 5.4 uA in each branch at 27 degrees
 DELAYS = 4  # inverters in each loop of the switch drivers

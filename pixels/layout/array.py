@@ -13,10 +13,8 @@ from talbot.models.parameters import ArrayParameters, ParameterError, TileParame
 from talbot.pixels.blocks import AnalogSizes, Block, pixel_array
 from talbot.pixels.drawn import DUMMIES
 from talbot.pixels.footprints import draw_pins
-from talbot.platforms.layers import GdsLayer
-
-from .canvas import CONTACT_UM, Canvas
-from .pixel import (
+from talbot.pixels.layout.canvas import CONTACT_UM, Canvas
+from talbot.pixels.layout.pixel import (
     COLUMN,
     COLUMNS,
     IMPLANT,
@@ -31,6 +29,7 @@ from .pixel import (
     PixelLayout,
     draw,
 )
+from talbot.platforms.layers import GdsLayer
 
 WEST, SOUTH, EAST, NORTH = 10.0, 10.0, 30.0, 10.0  # um from the outline to the dummies
 GROUND_RING, SUPPLY_RING = (1.0, 1.6), (3.5, 4.1)  # um from the dummies: taps

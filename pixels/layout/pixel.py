@@ -20,15 +20,14 @@ import numpy as np
 from talbot.base.gds import db
 from talbot.models.parameters import ParameterError, PixelType, check_real
 from talbot.pixels.drawn import DRAWN_PITCH_UM
+from talbot.pixels.layout.canvas import Canvas
+from talbot.pixels.layout.circuit import Circuit, circuit
+from talbot.pixels.layout.gratings import Lines, Point, lines, polygons
 from talbot.pixels.optics.fit import Fit
 from talbot.pixels.optics.geometry import QUADRATURE, PixelGeometry
 from talbot.pixels.tabled import rows
 from talbot.platforms.optics import Metal
 from talbot.platforms.pixel import PixelProcess, pixel_process
-
-from .canvas import Canvas
-from .circuit import Circuit, circuit
-from .gratings import Lines, Point, lines, polygons
 
 UPPER, COLUMNS, PLATES, ROWS_ON = 4, 2, 3, 1  # metals by their place in the process's table
 # um. Of the wells: half of the space between two, the strip of transistors below, the space to the next pixel's strip

@@ -13,10 +13,9 @@ import numpy as np
 
 from talbot.base.gds import db
 from talbot.models.parameters import ParameterError
+from talbot.pixels.layout.pixel import PixelLayout, draw, openings
 from talbot.pixels.optics.solve import Floats
 from talbot.pixels.optics.supercell import Section, Spans, section_shares
-
-from .pixel import PixelLayout, draw, openings
 
 DIRECTIONS = {0.0: (1, 0), 22.5: (2, 1), 45.0: (1, 1), 67.5: (1, 2), 90.0: (0, 1)}  # of cuts, in pixels
 CUTS = 3  # of an oblique type, side by side; one of each opening where lines are upright or level

@@ -14,13 +14,12 @@ from talbot.pixels.blocks import AnalogSizes
 from talbot.pixels.designs import gratings
 from talbot.pixels.drawn import ARRAY_FIELDS, DRAWN_ARRAY
 from talbot.pixels.footprints import lef
+from talbot.pixels.layout.array import ArrayLayout, draw_array, draw_pixels
+from talbot.pixels.layout.pixel import PixelLayout, pixel_layout
 from talbot.pixels.optics.design import REACHED, measure
 from talbot.pixels.optics.fit import Fit
 from talbot.pixels.optics.geometry import PixelGeometry
 from talbot.platforms.pixel import pixel_process
-
-from .array import ArrayLayout, draw_array, draw_pixels
-from .pixel import PixelLayout, pixel_layout
 
 NAME = "pixel_array"
 

@@ -6,11 +6,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from talbot.models.parameters import ParameterError
+from talbot.pixels.optics.fit import Fit, fit
+from talbot.pixels.optics.geometry import KINDS, PixelGeometry
+from talbot.pixels.optics.response import respond
 from talbot.platforms.optics import OpticalStack
-
-from .fit import Fit, fit
-from .geometry import KINDS, PixelGeometry
-from .response import respond
 
 WAVELENGTHS_UM = tuple(round(0.45 + 0.025 * k, 3) for k in range(11))
 PERIODS_UM = 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.2

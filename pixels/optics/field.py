@@ -2,12 +2,11 @@
 
 import numpy as np
 
+from talbot.pixels.optics.geometry import PixelGeometry
+from talbot.pixels.optics.grating import moved
+from talbot.pixels.optics.scattering import Orders, admittance
+from talbot.pixels.optics.solve import Floats, scatter
 from talbot.platforms.materials import refractive_index
-
-from .geometry import PixelGeometry
-from .grating import moved
-from .scattering import Orders, admittance
-from .solve import Floats, scatter
 
 ORDERS = 41
 DEEPEST = 30.0  # exponents of evanescent waves beyond this are left out: they have died away

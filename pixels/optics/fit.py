@@ -4,9 +4,9 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from .geometry import QUADRATURE
-from .response import Response
-from .solve import Floats
+from talbot.pixels.optics.geometry import QUADRATURE
+from talbot.pixels.optics.response import Response
+from talbot.pixels.optics.solve import Floats
 
 BETA_MAX = 40.0
 BETAS = np.arange(2.0, BETA_MAX, 0.5)

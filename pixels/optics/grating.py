@@ -9,8 +9,8 @@ fields that are even and odd in z, two linear systems, with no matrix of a thick
 import numpy as np
 import numpy.typing as npt
 
-from .geometry import Slab
-from .scattering import Complexes, Orders, Scattering, admittance, normal_wave, spread
+from talbot.pixels.optics.geometry import Slab
+from talbot.pixels.optics.scattering import Complexes, Orders, Scattering, admittance, normal_wave, spread
 
 
 def grating(slab: Slab, thickness: float, orders: Orders) -> Scattering:

@@ -6,11 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from talbot.pixels.optics.geometry import QUADRATURE, PixelGeometry, Slab
+from talbot.pixels.optics.solve import ORDERS, Floats, Illumination, solve
 from talbot.platforms.materials import refractive_index
 from talbot.platforms.optics import OpticalStack
-
-from .geometry import QUADRATURE, PixelGeometry, Slab
-from .solve import ORDERS, Floats, Illumination, solve
 
 
 @dataclass(frozen=True)

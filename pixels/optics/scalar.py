@@ -10,11 +10,10 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
+from talbot.pixels.optics.geometry import QUADRATURE, PixelGeometry
+from talbot.pixels.optics.scattering import normal_wave
+from talbot.pixels.optics.solve import Floats
 from talbot.platforms.materials import refractive_index
-
-from .geometry import QUADRATURE, PixelGeometry
-from .scattering import normal_wave
-from .solve import Floats
 
 ORDERS = 41
 SAMPLES = 8192

@@ -7,10 +7,9 @@ import numpy as np
 import numpy.typing as npt
 
 from talbot.models.parameters import ParameterError, check_int, check_real
-
-from .geometry import Slab
-from .grating import grating, moved
-from .scattering import Complexes, Orders, Scattering, admittance, films
+from talbot.pixels.optics.geometry import Slab
+from talbot.pixels.optics.grating import grating, moved
+from talbot.pixels.optics.scattering import Complexes, Orders, Scattering, admittance, films
 
 ORDERS = 41  # kept, the even number of evanescent and travelling ones about order 0
 BATCH = 24  # angles at once: memory

@@ -11,12 +11,11 @@ import numpy as np
 import numpy.typing as npt
 
 from talbot.models.parameters import check_int, check_real
+from talbot.pixels.optics.geometry import Cutter, Slab
+from talbot.pixels.optics.scattering import Complexes, Orders, admittance
+from talbot.pixels.optics.solve import Floats, SolverError, scatter
 from talbot.platforms.materials import refractive_index
 from talbot.platforms.optics import OpticalStack
-
-from .geometry import Cutter, Slab
-from .scattering import Complexes, Orders, admittance
-from .solve import Floats, SolverError, scatter
 
 Spans = tuple[tuple[float, float], ...]  # in um, along the cut
 

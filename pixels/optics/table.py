@@ -4,9 +4,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from .geometry import PixelGeometry
-from .response import respond
-from .solve import Floats
+from talbot.pixels.optics.geometry import PixelGeometry
+from talbot.pixels.optics.response import respond
+from talbot.pixels.optics.solve import Floats
 
 ORDERS = 21
 ALONG_DEGREES = np.arange(0.0, 33.1, 1.0)  # f/1.2 has 22.6

@@ -6,8 +6,7 @@ N diffusion is what has no pSD; taps are in the layer of all diffusion.
 from collections.abc import Collection
 
 from talbot.platforms.extraction import ExtractionPlatform
-
-from . import layers
+from talbot.platforms.ihp_sg13g2 import layers
 
 
 def model(kind: str, width: float, marks: Collection[str]) -> str:

@@ -1,8 +1,7 @@
 """SG13G2 for the layout flow: KLayout and the steps of flow.layout. Densities: sg13g2_tech.lef."""
 
+from talbot.platforms.ihp_sg13g2 import layers, wires
 from talbot.platforms.layout import Fill, LayoutPlatform
-
-from . import layers, wires
 
 PLATFORM = LayoutPlatform(
     name="ihp-sg13g2",

@@ -4,10 +4,9 @@ Capacitance: those of IHP's technology file for Magic (IHP-Open-PDK, ihp-sg13g2.
 klayout-pex has them. Resistance of poly and contacts: there, too; of metals and vias: platforms.ihp_sg13g2.layers.
 """
 
+from talbot.platforms.ihp_sg13g2 import layers
 from talbot.platforms.layers import Crossing
 from talbot.platforms.wires import CORNERS, Wires, rows
-
-from . import layers
 
 # Upper and lower layer | aF/um2 of their overlap | aF/um of an edge of the upper one to the lower
 # | aF/um of an edge of the lower one to the upper

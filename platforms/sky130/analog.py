@@ -17,8 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from talbot.models.parameters import check_real
-
-from . import models
+from talbot.platforms.sky130 import models
 
 SUPPLY = 1.8  # V, nominal; the models hold for 10 % around it
 ROLES = {

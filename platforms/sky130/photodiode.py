@@ -10,8 +10,7 @@ from collections.abc import Collection
 from functools import cache
 
 from talbot.base.tools import ToolError
-
-from . import models
+from talbot.platforms.sky130 import models
 
 TRANSISTOR = "sky130_fd_pr__nfet_g5v0d10v5"
 JUNCTION = "sky130_fd_pr__model__parasitic__diode_ps2nw"

@@ -9,8 +9,7 @@ nwdiode (junction capacitance by area and perimeter).
 from pathlib import Path
 
 from talbot.platforms.pixel import PixelProcess
-
-from . import layers
+from talbot.platforms.sky130 import layers
 
 HVI, HVNTM, NPC = (75, 20), (125, 20), (95, 20)
 

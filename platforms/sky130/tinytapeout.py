@@ -5,9 +5,8 @@ the edge for every number of tiles; precheck/pin_check.py) and src/config.json o
 """
 
 from talbot.platforms.frame import Frame
-
-from . import layers
-from .cells import SITE
+from talbot.platforms.sky130 import layers
+from talbot.platforms.sky130.cells import SITE
 
 SIZES_UM = {"1x1": (161.00, 111.52), "1x2": (161.00, 225.76), "2x2": (334.88, 225.76), "4x4": (682.64, 511.36)}
 BYTES = "ui_in", "uio_in", "uo_out", "uio_out", "uio_oe"

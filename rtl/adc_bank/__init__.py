@@ -1,7 +1,7 @@
 """AdcBank: the converter lanes of a row and what drives them."""
 
-from .adc_bank_cl import AdcBankCL
-from .adc_bank_fl import AdcBankFL
-from .adc_bank_rtl import AdcBank
+from talbot.rtl.adc_bank.adc_bank_cl import AdcBankCL
+from talbot.rtl.adc_bank.adc_bank_fl import AdcBankFL
+from talbot.rtl.adc_bank.adc_bank_rtl import AdcBank
 
 __all__ = ["AdcBank", "AdcBankCL", "AdcBankFL"]

@@ -2,10 +2,9 @@
 
 from pymtl3 import Component, update, update_ff
 
+from talbot.rtl.adc_bank.ports import declare_ports
 from talbot.rtl.edge_adc.edge_adc_cl import LaneCycles
 from talbot.rtl.messages import FRAME, SAMPLE, ScanMsg
-
-from .ports import declare_ports
 
 
 class AdcBankCL(Component):

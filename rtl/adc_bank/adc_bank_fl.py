@@ -5,9 +5,8 @@ from collections import deque
 from pymtl3 import Component, update_ff
 
 from talbot.models.digital.sar import decisions
+from talbot.rtl.adc_bank.ports import declare_ports
 from talbot.rtl.messages import FRAME, SAMPLE, ScanMsg
-
-from .ports import declare_ports
 
 
 class AdcBankFL(Component):

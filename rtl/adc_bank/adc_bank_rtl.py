@@ -6,10 +6,9 @@ sent while the next step converts.
 
 from pymtl3 import Bits1, Bits2, Bits8, Bits10, Component, InPort, OutPort, Wire, concat, mk_bits, update, update_ff
 
+from talbot.rtl.adc_bank.ports import declare_ports
 from talbot.rtl.edge_adc import EdgeAdc
 from talbot.rtl.messages import FRAME, SAMPLE
-
-from .ports import declare_ports
 
 
 class LaneResult(Component):

@@ -4,8 +4,7 @@ from pymtl3 import Component, update_ff
 
 from talbot.models.digital.amp_ctrl import AmpPins, Slot, row_waveform
 from talbot.models.parameters import AmpTiming
-
-from .ports import DURATIONS, SLOT, declare_ports
+from talbot.rtl.amp_ctrl.ports import DURATIONS, SLOT, declare_ports
 
 
 class AmpCtrlFL(Component):

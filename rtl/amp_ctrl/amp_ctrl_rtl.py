@@ -2,7 +2,7 @@
 
 from pymtl3 import Component, Wire, update, update_ff
 
-from .ports import declare_ports
+from talbot.rtl.amp_ctrl.ports import declare_ports
 
 IDLE, GUARD, RESET, INTEGRATE, CM_RESET, REFERENCE, SIGNAL = range(7)
 

@@ -18,10 +18,9 @@ from talbot.models.parameters import (
 )
 from talbot.models.parameters.registers import register_map
 from talbot.rtl.amp_ctrl.ports import TIMING
+from talbot.rtl.asp_chip.golden_run import GoldenRun, idle_pins
+from talbot.rtl.asp_chip.pins import declare_pins
 from talbot.rtl.reg_file import RegFileFL, chip_status
-
-from .golden_run import GoldenRun, idle_pins
-from .pins import declare_pins
 
 
 def frame_of(cfg: Any) -> FrameParameters:

@@ -7,20 +7,19 @@ from talbot.models.parameters.registers import register_map
 from talbot.rtl.adc_bank import AdcBank
 from talbot.rtl.amp_ctrl import AmpCtrl
 from talbot.rtl.amp_ctrl.ports import SLOT, TIMING
+from talbot.rtl.asp_chip.balance_rtl import Balance
+from talbot.rtl.asp_chip.gate_rtl import Gate
+from talbot.rtl.asp_chip.link_rtl import Link
+from talbot.rtl.asp_chip.pattern_rtl import Pattern
+from talbot.rtl.asp_chip.pins import declare_pins
+from talbot.rtl.asp_chip.resets_rtl import Resets, children_reset_by
+from talbot.rtl.asp_chip.state_rtl import State
+from talbot.rtl.asp_chip.status_rtl import Status
 from talbot.rtl.messages import ScanMsg
 from talbot.rtl.phase_path import PhasePath
 from talbot.rtl.readout_seq import ReadoutSeq
 from talbot.rtl.reg_file import RegFile
 from talbot.rtl.run_length import RunLength
-
-from .balance_rtl import Balance
-from .gate_rtl import Gate
-from .link_rtl import Link
-from .pattern_rtl import Pattern
-from .pins import declare_pins
-from .resets_rtl import Resets, children_reset_by
-from .state_rtl import State
-from .status_rtl import Status
 
 PHASES = ("pixel_reset", "shutter", "ref_ctl", "integrate", "expose", "cm_reset", "read", "sample", "tap")
 ADDRESS = ("row", "group", "k", "sub", "en")

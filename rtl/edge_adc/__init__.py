@@ -1,7 +1,7 @@
 """EdgeAdc: control of one successive-approximation lane."""
 
-from .edge_adc_cl import EdgeAdcCL
-from .edge_adc_fl import EdgeAdcFL
-from .edge_adc_rtl import EdgeAdc
+from talbot.rtl.edge_adc.edge_adc_cl import EdgeAdcCL
+from talbot.rtl.edge_adc.edge_adc_fl import EdgeAdcFL
+from talbot.rtl.edge_adc.edge_adc_rtl import EdgeAdc
 
 __all__ = ["EdgeAdc", "EdgeAdcCL", "EdgeAdcFL"]

@@ -3,8 +3,7 @@
 from pymtl3 import Component, update_ff
 
 from talbot.models.digital.sar import BITS, decisions
-
-from .ports import declare_ports
+from talbot.rtl.edge_adc.ports import declare_ports
 
 
 class LaneCycles:

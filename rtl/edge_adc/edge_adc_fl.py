@@ -5,8 +5,7 @@ from collections import deque
 from pymtl3 import Component, update_ff
 
 from talbot.models.digital.sar import decisions
-
-from .ports import declare_ports
+from talbot.rtl.edge_adc.ports import declare_ports
 
 
 class EdgeAdcFL(Component):

@@ -4,7 +4,7 @@ Nested conditions let a simulator skip the logic of an idle lane."""
 
 from pymtl3 import Bits3, Bits8, Component, Wire, update, update_ff, zext
 
-from .ports import declare_ports
+from talbot.rtl.edge_adc.ports import declare_ports
 
 # ABOVE and BELOW: first and second decision of the window; OUTSIDE: the second, after the first found "above".
 # WAIT, WAIT_ZERO: a result waits until the previous one is taken; the code of WAIT is in `trial`.

@@ -12,8 +12,7 @@ from pymtl3 import Component, InPort, Interface, OutPort, Wire, mk_bits, update,
 
 from talbot.base.environment import of_tools
 from talbot.base.tools import ToolError
-
-from .ports import Port, places, port_signals, ports_of, split
+from talbot.rtl.harness.ports import Port, places, port_signals, ports_of, split
 
 SOURCE = """
 def pack({names}):

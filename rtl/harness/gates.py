@@ -20,9 +20,8 @@ from talbot.base.paths import BUILD
 from talbot.base.sources import code
 from talbot.base.tools import located, run
 from talbot.base.verilator import CXX, accepted
-
-from .ports import ports_of, split
-from .translate import translate_component
+from talbot.rtl.harness.ports import ports_of, split
+from talbot.rtl.harness.translate import translate_component
 
 Words = npt.NDArray[np.uint64]
 ALL = np.uint64(2**64 - 1)

@@ -12,9 +12,8 @@ from talbot.base.cache import cached, digest
 from talbot.base.files import atomic
 from talbot.base.paths import BUILD
 from talbot.base.tools import finish
-
-from .driven import Driven, SimulationError
-from .ports import Port, places, split, total_width
+from talbot.rtl.harness.driven import Driven, SimulationError
+from talbot.rtl.harness.ports import Port, places, split, total_width
 
 PROGRAMS, PROGRAM = BUILD / "icarus", "program.vvp"
 MISSING = "iverilog: not found; install it with: make tools (Debian: apt-get install iverilog)"

@@ -9,10 +9,9 @@ from typing import Any
 from pymtl3 import Component
 
 from talbot.models.parameters import ParameterError
-
-from .driven import Driven
-from .icarus import IcarusError, in_icarus
-from .ports import ports_of
+from talbot.rtl.harness.driven import Driven
+from talbot.rtl.harness.icarus import IcarusError, in_icarus
+from talbot.rtl.harness.ports import ports_of
 
 
 @dataclass(frozen=True)

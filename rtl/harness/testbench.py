@@ -14,13 +14,13 @@ from typing import Any
 from pymtl3 import Component, DefaultPassGroup
 from pymtl3.passes.backends.verilog import VerilogTBGenPass
 
-from .activity import quicken
-from .bits import quicken_bits
-from .driven import Simulation, driven_level
-from .icarus import in_icarus
-from .ports import ports_of
-from .translate import translate_component
-from .verilated import in_verilator
+from talbot.rtl.harness.activity import quicken
+from talbot.rtl.harness.bits import quicken_bits
+from talbot.rtl.harness.driven import Simulation, driven_level
+from talbot.rtl.harness.icarus import in_icarus
+from talbot.rtl.harness.ports import ports_of
+from talbot.rtl.harness.translate import translate_component
+from talbot.rtl.harness.verilated import in_verilator
 
 quicken_bits()
 

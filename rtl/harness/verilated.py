@@ -12,9 +12,8 @@ from pathlib import Path
 from talbot.base.cache import cached, digest
 from talbot.base.paths import BUILD
 from talbot.base.verilator import CXX, FAST, accepted, compile_program, runtime, verilate, verilator_version
-
-from .icarus import instance
-from .ports import Port, split, total_width
+from talbot.rtl.harness.icarus import instance
+from talbot.rtl.harness.ports import Port, split, total_width
 
 FOLDER, LIBRARY = BUILD / "verilated", "library.so"
 # Warnings are errors, but those that PyMTL's Verilog gives everywhere

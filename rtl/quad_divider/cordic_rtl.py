@@ -5,9 +5,8 @@ from pymtl3 import Bits4, Component, InPort, OutPort, Wire, clog2, concat, mk_bi
 from talbot.models.parameters import check_int
 from talbot.models.parameters.divider import ITERATIONS_MAX, ITERATIONS_MIN, cordic_angles
 from talbot.rtl.messages import DivReq, div_resp
-
-from .angle_rtl import Fold, Unfold
-from .iterative_rtl import IterativeDivider
+from talbot.rtl.quad_divider.angle_rtl import Fold, Unfold
+from talbot.rtl.quad_divider.iterative_rtl import IterativeDivider
 
 RATIO_BITS = 8  # of the response; the ratio of CORDIC is 0
 

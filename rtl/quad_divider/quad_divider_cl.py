@@ -4,9 +4,8 @@ from pymtl3 import Component, InPort, Wire, update, update_ff
 from pymtl3.stdlib.stream.ifcs import RecvIfcRTL, SendIfcRTL
 
 from talbot.rtl.messages import DivReq, div_resp
-
-from .quad_divider_fl import response
-from .variants import ratio_bits, timing
+from talbot.rtl.quad_divider.quad_divider_fl import response
+from talbot.rtl.quad_divider.variants import ratio_bits, timing
 
 
 class QuadDividerCL(Component):

@@ -7,8 +7,7 @@ from pymtl3.stdlib.stream.ifcs import RecvIfcRTL, SendIfcRTL
 
 from talbot.models.digital.phase import divide
 from talbot.rtl.messages import DivReq, div_resp
-
-from .variants import check_variant, ratio_bits
+from talbot.rtl.quad_divider.variants import check_variant, ratio_bits
 
 
 def response(variant: str, n_frac: int, iterations: int, request: Any, noise_floor: int) -> Any:

@@ -6,10 +6,9 @@ from pymtl3.stdlib.stream.ifcs import RecvIfcRTL, SendIfcRTL
 from talbot.models.parameters import check_int
 from talbot.models.parameters.divider import N_FRAC_MAX, N_FRAC_MIN
 from talbot.rtl.messages import DivReq, div_resp
-
-from .angle_rtl import Fold, PhaseIndex, Unfold
-from .digit_rtl import Radix2Digit, Radix4Digit, div_state
-from .iterative_rtl import IterativeDivider
+from talbot.rtl.quad_divider.angle_rtl import Fold, PhaseIndex, Unfold
+from talbot.rtl.quad_divider.digit_rtl import Radix2Digit, Radix4Digit, div_state
+from talbot.rtl.quad_divider.iterative_rtl import IterativeDivider
 
 
 class Operands(Component):

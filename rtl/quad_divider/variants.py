@@ -4,9 +4,8 @@ from pymtl3 import Component
 
 from talbot.models.parameters import DIVIDERS, check_choice, check_int
 from talbot.models.parameters.divider import ITERATIONS_MAX, ITERATIONS_MIN, N_FRAC_MAX, N_FRAC_MIN
-
-from .cordic_rtl import RATIO_BITS, Cordic
-from .quad_divider_rtl import QuadDividerPipelined, QuadDividerRadix2, QuadDividerRadix4
+from talbot.rtl.quad_divider.cordic_rtl import RATIO_BITS, Cordic
+from talbot.rtl.quad_divider.quad_divider_rtl import QuadDividerPipelined, QuadDividerRadix2, QuadDividerRadix4
 
 DIVIDING = {"radix2": QuadDividerRadix2, "radix4": QuadDividerRadix4, "pipelined": QuadDividerPipelined}
 

@@ -1,7 +1,7 @@
 """ReadoutSeq: ASP readout sequencing."""
 
-from .readout_seq_cl import ReadoutSeqCL
-from .readout_seq_fl import ReadoutSeqFL
-from .readout_seq_rtl import ReadoutSeq
+from talbot.rtl.readout_seq.readout_seq_cl import ReadoutSeqCL
+from talbot.rtl.readout_seq.readout_seq_fl import ReadoutSeqFL
+from talbot.rtl.readout_seq.readout_seq_rtl import ReadoutSeq
 
 __all__ = ["ReadoutSeq", "ReadoutSeqCL", "ReadoutSeqFL"]

@@ -6,8 +6,7 @@ from typing import Any
 from talbot.models.digital.scan import Scan
 from talbot.models.parameters import MODES, FrameParameters, TileParameters, Window
 from talbot.rtl.messages import SAMPLE, step_msg
-
-from .ports import WINDOW
+from talbot.rtl.readout_seq.ports import WINDOW
 
 
 def configured_scan(s, rows: int, cols: int, lanes: int, tile: TileParameters) -> Scan:

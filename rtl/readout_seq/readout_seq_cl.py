@@ -4,9 +4,8 @@ from pymtl3 import Component, update, update_ff
 
 from talbot.models.parameters import MODES, ParameterError
 from talbot.rtl.messages import END, FRAME, ROW
-
-from .golden import configured_scan, lead, mark, row_steps, tile_of
-from .ports import declare_ports, edges
+from talbot.rtl.readout_seq.golden import configured_scan, lead, mark, row_steps, tile_of
+from talbot.rtl.readout_seq.ports import declare_ports, edges
 
 
 class ReadoutSeqCL(Component):

@@ -3,10 +3,9 @@
 from pymtl3 import Component, Wire, concat, update, update_ff, zext
 
 from talbot.rtl.messages import END, FRAME, ROW, SAMPLE
-
-from .ports import declare_ports, edges
-from .row_walk_rtl import RowWalk
-from .step_walk_rtl import StepWalk
+from talbot.rtl.readout_seq.ports import declare_ports, edges
+from talbot.rtl.readout_seq.row_walk_rtl import RowWalk
+from talbot.rtl.readout_seq.step_walk_rtl import StepWalk
 
 IDLE, CHECK, WAIT, DRAIN = range(4)
 OFFER = 4  # and the message's kind in the lower bits

@@ -5,8 +5,7 @@ from pymtl3.stdlib.stream.ifcs import SendIfcRTL
 
 from talbot.models.digital.registers import ADDRESS_MAX, RegisterBank
 from talbot.models.parameters.registers import array_resets, register_map
-
-from .config import chip_config, chip_state, chip_status
+from talbot.rtl.reg_file.config import chip_config, chip_state, chip_status
 
 
 class RegFileFL(Component):

@@ -21,9 +21,8 @@ from pymtl3 import (
 from pymtl3.stdlib.stream.ifcs import SendIfcRTL
 
 from talbot.models.parameters.registers import array_resets, register_map
-
-from .config import chip_config, chip_state, chip_status
-from .spi_slave_rtl import SpiSlave
+from talbot.rtl.reg_file.config import chip_config, chip_state, chip_status
+from talbot.rtl.reg_file.spi_slave_rtl import SpiSlave
 
 TOP = 0x60  # from here on, bytes are read from one table: the state and the identity
 

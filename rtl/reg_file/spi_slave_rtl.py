@@ -2,7 +2,7 @@
 
 from pymtl3 import Bits1, Bits3, Bits8, Component, InPort, OutPort, Wire, concat, update, update_ff
 
-from .synchronizer_rtl import Synchronizer
+from talbot.rtl.reg_file.synchronizer_rtl import Synchronizer
 
 
 class SpiSlave(Component):

@@ -6,11 +6,10 @@ from pathlib import Path
 
 from talbot.base.command import main
 from talbot.models.parameters import ParameterError
+from talbot.rtl.replay.record import record
+from talbot.rtl.replay.replay import replay_files
+from talbot.rtl.replay.trace import load
 from talbot.rtl.tops import TOPS
-
-from .record import record
-from .replay import replay_files
-from .trace import load
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

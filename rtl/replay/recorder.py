@@ -8,8 +8,7 @@ import pytest
 
 from talbot.rtl.harness.ports import packed, ports_of, split
 from talbot.rtl.harness.testbench import Level, hooked
-
-from .trace import Trace
+from talbot.rtl.replay.trace import Trace
 
 LEVELS = ("cls", "component", "level")  # names under which a test class holds the component of its level
 

@@ -9,8 +9,7 @@ from typing import Any
 from talbot.base.tools import ToolTimeout, finish
 from talbot.rtl.harness.icarus import TIMESCALE, IcarusError, compile_program, instance
 from talbot.rtl.harness.ports import Port, places, split, total_width, validity
-
-from .trace import Trace, load
+from talbot.rtl.replay.trace import Trace, load
 
 SECONDS = 300.0  # a simulation that takes longer hangs
 

@@ -1,7 +1,7 @@
 """RunLength: the encoder between the scan and the link."""
 
-from .run_length_cl import RunLengthCL
-from .run_length_fl import RunLengthFL
-from .run_length_rtl import RunLength
+from talbot.rtl.run_length.run_length_cl import RunLengthCL
+from talbot.rtl.run_length.run_length_fl import RunLengthFL
+from talbot.rtl.run_length.run_length_rtl import RunLength
 
 __all__ = ["RunLength", "RunLengthCL", "RunLengthFL"]

@@ -3,8 +3,7 @@
 from pymtl3 import Bits1, Bits5, Bits8, Bits32, Component, InPort, OutPort, Wire, concat, update, zext
 
 from talbot.models.parameters.stream_format import MAGIC, VERSION
-
-from .ports import declare_header_ports
+from talbot.rtl.run_length.ports import declare_header_ports
 
 
 class HeaderBytes(Component):

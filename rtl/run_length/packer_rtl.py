@@ -2,7 +2,7 @@
 
 from pymtl3 import Bits6, Bits7, Bits8, Bits34, Component, InPort, OutPort, Wire, concat, update, update_ff, zext
 
-from .token_rtl import TokenCoder
+from talbot.rtl.run_length.token_rtl import TokenCoder
 
 
 def declare_packer_ports(s) -> None:

@@ -7,10 +7,9 @@ from pymtl3 import Component, update_ff
 from talbot.models.digital.stream.payload import base_of, code_sample, start
 from talbot.models.digital.stream.trailer import row_mark, trailer
 from talbot.rtl.messages import END, FRAME, ROW, SAMPLE
-
-from .control_rtl import DRAIN, HEADER, IDLE, MARK, ROWS, TRAILER
-from .ports import declare_ports
-from .run_length_fl import header_of
+from talbot.rtl.run_length.control_rtl import DRAIN, HEADER, IDLE, MARK, ROWS, TRAILER
+from talbot.rtl.run_length.ports import declare_ports
+from talbot.rtl.run_length.run_length_fl import header_of
 
 QUEUE = 2  # bytes between the encoder and the link
 

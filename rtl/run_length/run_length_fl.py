@@ -8,8 +8,7 @@ from talbot.models.digital.stream import StreamHeader, encode_marked, whole_byte
 from talbot.models.digital.stream.trailer import trailer
 from talbot.models.parameters import MODES, Window
 from talbot.rtl.messages import END, FRAME, ROW, SAMPLE
-
-from .ports import declare_ports
+from talbot.rtl.run_length.ports import declare_ports
 
 
 def header_of(s, rows: int, cols: int, lanes: int, tile_rows: int, tile_cols: int) -> StreamHeader:

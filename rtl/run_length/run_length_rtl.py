@@ -2,12 +2,12 @@
 
 from pymtl3 import Bits2, Bits6, Bits8, Bits10, Bits16, Bits32, Component, Wire, concat, connect, update, update_ff
 
-from .byte_queue_rtl import ByteQueue
-from .control_rtl import COUNTS, HEADER, HEADER_FIELDS, MARK, TRAILER, RunLengthCtrl
-from .crc_rtl import Crc16, Crc32
-from .header_rtl import HeaderBytes
-from .packer_rtl import PayloadPacker
-from .ports import HEADER_PORTS, declare_ports
+from talbot.rtl.run_length.byte_queue_rtl import ByteQueue
+from talbot.rtl.run_length.control_rtl import COUNTS, HEADER, HEADER_FIELDS, MARK, TRAILER, RunLengthCtrl
+from talbot.rtl.run_length.crc_rtl import Crc16, Crc32
+from talbot.rtl.run_length.header_rtl import HeaderBytes
+from talbot.rtl.run_length.packer_rtl import PayloadPacker
+from talbot.rtl.run_length.ports import HEADER_PORTS, declare_ports
 
 MARK_PLACE = COUNTS // 2  # upper bits of the index of the trailer's mark
 

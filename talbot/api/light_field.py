@@ -8,6 +8,7 @@ from typing import Any, Self
 import numpy as np
 import numpy.typing as npt
 
+from talbot.api.image import Image, png
 from talbot.base.files import atomic, check_file, staged
 from talbot.base.progress import say
 from talbot.flow.frame import pictures
@@ -15,8 +16,6 @@ from talbot.flow.frame.light_field import SURE
 from talbot.models import reconstruct, scene
 from talbot.models.parameters import ParameterError, check_int, check_real
 from talbot.models.scene.echo import Echo
-
-from .image import Image, png
 
 NEAR, FAR = 2.5, -2.5  # px per view step: as `make lightfield` tries them
 MOST = 2000  # disparities that are tried

@@ -6,6 +6,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from talbot.api.image import Image, embedded, png, table
+from talbot.api.light_field import LightField
 from talbot.flow.depth.capture import capture
 from talbot.flow.depth.measure import read_depth
 from talbot.flow.frame import pictures
@@ -14,9 +16,6 @@ from talbot.flow.frame.result import FrameResult, GoldenResult
 from talbot.flow.polar.measure import read_polarization
 from talbot.models.parameters import ParameterError, check_int, check_real
 from talbot.models.scene import RADIANCE_MAX
-
-from .image import Image, embedded, png, table
-from .light_field import LightField
 
 DISPARITIES = 21  # as `make depth` tries them
 

@@ -8,6 +8,10 @@ from typing import Any, Self
 import numpy as np
 import numpy.typing as npt
 
+from talbot.api.image import Image, embedded, png, table
+from talbot.api.light_field import LightField
+from talbot.api.measured import DISPARITIES, DepthResult, PolarizationResult, depth_of, polarization_of
+from talbot.api.run_file import read_run, write_run
 from talbot.flow.frame import outputs, pictures
 from talbot.flow.frame.figures import summarize, summarize_golden
 from talbot.flow.frame.light_field import SURE, estimate
@@ -15,11 +19,6 @@ from talbot.flow.frame.result import FrameResult, GoldenResult
 from talbot.models.parameters import ParameterError
 from talbot.models.pixel import depth_of as depth_of_phase
 from talbot.models.scene import RADIANCE_MAX
-
-from .image import Image, embedded, png, table
-from .light_field import LightField
-from .measured import DISPARITIES, DepthResult, PolarizationResult, depth_of, polarization_of
-from .run_file import read_run, write_run
 
 WHAT = {"edge": ("image", "edges"), "image": ("image",), "raw": ("image", "edges", "light_field", "disparity")} | {
     "tof": ("image", "depth")

@@ -8,6 +8,8 @@ from typing import Any, Self, TypedDict, Unpack
 
 import numpy.typing as npt
 
+from talbot.api.light_field import LightField
+from talbot.api.run import Run
 from talbot.base.files import check_file, write
 from talbot.base.progress import Steps, line
 from talbot.flow.frame import job
@@ -35,9 +37,6 @@ from talbot.models.scene import Sampling, open_clip
 from talbot.models.scene import scenes as named_scenes
 from talbot.pixels.designs import IDEAL
 from talbot.pixels.tabled import pixel_of, tabled, untabled
-
-from .light_field import LightField
-from .run import Run
 
 scenes = tuple(named_scenes)
 

@@ -7,11 +7,10 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
+from talbot.api.image import embedded, text
 from talbot.base.charts import own_style, save
 from talbot.flow.tradeoff.sweeps import SWEEPS, measured
 from talbot.models.parameters import check_choice
-
-from .image import embedded, text
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -13,9 +13,8 @@ from pymtl3.dsl.Connectable import Const
 from talbot.base.paths import ROOT
 from talbot.models.parameters import SensorParameters
 from talbot.rtl.tops import build_top
+from talbot.site import diagrams
 from talbot.verif.coverage.testplan import TestPlan, load_plan
-
-from . import diagrams
 
 CHIP, PINS = "AspChip", "pins"
 CLOCKED = "clk", "reset"  # to every block; their resets come from `resets`

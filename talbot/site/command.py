@@ -15,9 +15,8 @@ from talbot.base.files import staged
 from talbot.base.paths import RESULTS, ROOT
 from talbot.base.progress import Steps
 from talbot.models.parameters import ParameterError
-
-from . import api, architecture, gallery
-from .collect import collect, contents
+from talbot.site import api, architecture, gallery
+from talbot.site.collect import collect, contents
 
 STEPS = "documents", "API", "architecture", "gallery", "HTML"
 COLOUR = re.compile(r"\x1b\[[\d;]*m")

@@ -8,8 +8,7 @@ import numpy as np
 from talbot.models.digital.sar import convert
 from talbot.models.parameters import MODES
 from talbot.rtl.messages import END, FRAME, ROW, SAMPLE, ScanMsg, step_msg
-
-from .agents import Bench, Driver, Monitor, Stream, check, known
+from talbot.verif.bench.agents import Bench, Driver, Monitor, Stream, check, known
 
 LANES = 8
 LAST, LIMIT = 1 << 9, 30_000

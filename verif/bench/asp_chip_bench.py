@@ -11,9 +11,8 @@ from talbot.models.chip import golden_frame
 from talbot.models.digital.host import command, decode_status, frame_writes, status_transfers, write_transfers
 from talbot.models.digital.pattern import PatternEnd
 from talbot.models.parameters.registers import register_map
-
-from .agents import Bench, Monitor, Spi, Stopped, Stream, check, known
-from .exposure import FRAMES, FRONT_END, SENSOR, TRIMS, samples
+from talbot.verif.bench.agents import Bench, Monitor, Spi, Stopped, Stream, check, known
+from talbot.verif.bench.exposure import FRAMES, FRONT_END, SENSOR, TRIMS, samples
 
 CHIP = register_map()
 LIMIT = 60_000

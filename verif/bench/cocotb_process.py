@@ -5,7 +5,7 @@ from pathlib import Path
 
 from cocotb_tools.runner import get_runner
 
-from .simulation import BUILD_ARGS, TOP
+from talbot.verif.bench.simulation import BUILD_ARGS, TOP
 
 
 def main(simulator: str, module: str, folder: str, results: str, seed: str, tests: str, *rest: str) -> None:

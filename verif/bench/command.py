@@ -12,11 +12,10 @@ from talbot.base.jobs import Job, worker_count
 from talbot.base.jobs import run as run_jobs
 from talbot.base.records import from_json
 from talbot.rtl.harness.icarus import MISSING, installed
+from talbot.verif.bench.cross import ARRAYS, Crossed, crossed, every
+from talbot.verif.bench.exposure import FRAMES
+from talbot.verif.bench.simulation import DESIGNS, SIMULATORS, BenchError, BenchTest, simulate
 from talbot.verif.results import OUT, SEED, BlockResults, Tests, write_step
-
-from .cross import ARRAYS, Crossed, crossed, every
-from .exposure import FRAMES
-from .simulation import DESIGNS, SIMULATORS, BenchError, BenchTest, simulate
 
 CHIP, SHOWN = "AspChip", "edge"
 SAME = "the same bytes in PyMTL, Icarus and Verilator"
@@ -44,7 +43,7 @@ def bench(block: str, simulator: str, seed: int) -> BenchRun:
 
 def in_pymtl() -> BenchRun:
     """Run the shown frame in PyMTL."""
-    from .pymtl_frame import pymtl_stream
+    from talbot.verif.bench.pymtl_frame import pymtl_stream
 
     return BenchRun([], pymtl_stream(FRAMES[SHOWN]).hex())
 

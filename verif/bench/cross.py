@@ -21,10 +21,9 @@ from talbot.models.afe import write_converter, write_samples
 from talbot.models.chip import front_end_of, golden_frame
 from talbot.models.digital.host import command, frame_writes, write_transfers
 from talbot.models.parameters import MODES, ArrayParameters, ChipParameters, FrameParameters, SensorParameters, Window
-
-from .exposure import FAST, TAPS, TRIMS
-from .exposure import SENSOR as SMALL
-from .simulation import BenchTest
+from talbot.verif.bench.exposure import FAST, TAPS, TRIMS
+from talbot.verif.bench.exposure import SENSOR as SMALL
+from talbot.verif.bench.simulation import BenchTest
 
 ARRAYS = {1: ArrayParameters(9, 13), 2: ArrayParameters(10, 23), 8: ArrayParameters(8, 59)}  # by lanes
 STALLS = {"none": 0, "some": 100, "most": 230}  # of 256 cycles

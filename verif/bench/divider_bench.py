@@ -7,8 +7,7 @@ import cocotb
 
 from talbot.rtl.messages import DivReq
 from talbot.rtl.quad_divider.quad_divider_fl import response
-
-from .agents import Bench, Driver, Monitor, Stream, check
+from talbot.verif.bench.agents import Bench, Driver, Monitor, Stream, check
 
 VARIANT, N_FRAC, ITERATIONS = os.environ.get("BENCH_VARIANT", "radix4"), 8, 10
 EDGES = (-256, -255, -128, -127, -1, 0, 1, 127, 128, 254, 255)

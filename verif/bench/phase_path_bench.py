@@ -8,8 +8,7 @@ import numpy as np
 from talbot.models.digital.phase import phase_samples
 from talbot.models.parameters import ChipParameters
 from talbot.rtl.messages import END, FRAME, ROW, SAMPLE, ScanMsg
-
-from .agents import Bench, Driver, Monitor, Stream, check
+from talbot.verif.bench.agents import Bench, Driver, Monitor, Stream, check
 
 CHIP = ChipParameters(8, "radix4", 8)
 LAST, LIMIT = 1 << 9, 20_000

@@ -9,8 +9,7 @@ from talbot.models.parameters import FrameParameters
 from talbot.rtl.asp_chip.test.chip_bench import ChipBench
 from talbot.rtl.harness.testbench import build
 from talbot.rtl.tops import build_top
-
-from .exposure import FRONT_END, SENSOR, TRIMS, samples
+from talbot.verif.bench.exposure import FRONT_END, SENSOR, TRIMS, samples
 
 LAST_DECISION = 14  # the noise of a sample has this many values (pixels/README.md)
 

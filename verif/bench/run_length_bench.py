@@ -8,8 +8,7 @@ from talbot.models.digital.stream import StreamHeader, encode_frame
 from talbot.models.digital.stream.test.frames import ports_of, samples_of
 from talbot.models.parameters import MODES, FrameParameters, Window
 from talbot.rtl.messages import END, FRAME, ROW, SAMPLE, ScanMsg
-
-from .agents import Bench, Driver, Monitor, Stream, check
+from talbot.verif.bench.agents import Bench, Driver, Monitor, Stream, check
 
 ROWS, COLS, LANES = 12, 36, 4
 LIMIT = 60_000

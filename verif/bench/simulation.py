@@ -19,8 +19,7 @@ from talbot.rtl.export import translate
 from talbot.rtl.harness.icarus import MISSING, installed
 from talbot.rtl.harness.ports import ports_of
 from talbot.rtl.tops import build_top
-
-from . import exposure
+from talbot.verif.bench import exposure
 
 CACHE = BUILD / "bench"
 SIMULATORS = "icarus", "verilator"

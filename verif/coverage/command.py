@@ -12,13 +12,12 @@ from talbot.base.records import from_json
 from talbot.models.parameters import ParameterError
 from talbot.rtl.replay import load
 from talbot.rtl.tops import TOPS
+from talbot.verif.coverage.constants import constants
+from talbot.verif.coverage.measure import Measurement, measure
+from talbot.verif.coverage.testplan import TestPlan, folder_of, load_plan, plan_file
+from talbot.verif.coverage.traces import recorded
+from talbot.verif.coverage.verdict import Verdict, judge
 from talbot.verif.results import OUT, BlockResults, write_step
-
-from .constants import constants
-from .measure import Measurement, measure
-from .testplan import TestPlan, folder_of, load_plan, plan_file
-from .traces import recorded
-from .verdict import Verdict, judge
 
 
 def measure_jobs(plans: dict[str, TestPlan], traces: dict[str, list[Path]]) -> list[tuple[str, Job]]:

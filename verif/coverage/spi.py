@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .ports import Mask, Recorded
+from talbot.verif.coverage.ports import Mask, Recorded
 
 
 @dataclass(frozen=True)

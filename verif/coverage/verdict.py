@@ -7,8 +7,8 @@ from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from .measure import Measurement, Point
-from .testplan import KINDS, Exclusion, Machine, TestPlan
+from talbot.verif.coverage.measure import Measurement, Point
+from talbot.verif.coverage.testplan import KINDS, Exclusion, Machine, TestPlan
 
 
 @dataclass

@@ -19,8 +19,7 @@ from talbot.models.parameters import AmpTiming, ArrayParameters, ChipParameters,
 from talbot.models.parameters.registers import register_map
 from talbot.rtl.export import translate
 from talbot.rtl.harness.icarus import kept_program
-
-from .waveform import BUSY, Trace, Wave, reset, rest, transfer, transfers
+from talbot.verif.faults.waveform import BUSY, Trace, Wave, reset, rest, transfer, transfers
 
 ROWS, COLS, LANES = 8, 13, 2
 SENSOR = SensorParameters(array=ArrayParameters(ROWS, COLS), chip=ChipParameters(lanes=LANES))

@@ -11,7 +11,7 @@ import pytest
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Collector | None:
     """Collect rtl/<block>/formal/proofs.yaml."""
     if file_path.name == "proofs.yaml" and file_path.parent.name == "formal":
-        from .items import ProofsFile  # where it is needed only
+        from talbot.verif.formal.items import ProofsFile  # where it is needed only
 
         return ProofsFile.from_parent(parent, path=file_path)
     return None

@@ -17,15 +17,14 @@ from talbot.base.records import from_json
 from talbot.base.tools import located
 from talbot.models.parameters import ParameterError
 from talbot.rtl.tops import TOPS
+from talbot.verif.formal import manifest
+from talbot.verif.formal.engine import UNKNOWN, version
+from talbot.verif.formal.freedom import FreedomResult
+from talbot.verif.formal.necessity import NecessityResult
+from talbot.verif.formal.plan import pieces
+from talbot.verif.formal.proof import Proof
+from talbot.verif.formal.prove import CoverResult, ProofResult, TwinResult
 from talbot.verif.results import OUT, PROVEN, BlockResults, Property, write_step
-
-from . import manifest
-from .engine import UNKNOWN, version
-from .freedom import FreedomResult
-from .necessity import NecessityResult
-from .plan import pieces
-from .proof import Proof
-from .prove import CoverResult, ProofResult, TwinResult
 
 
 @dataclass(frozen=True)

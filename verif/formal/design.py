@@ -5,9 +5,8 @@ from functools import cache
 
 from talbot.models.parameters import ParameterError, SensorParameters
 from talbot.rtl.export import translate
-
-from . import tables
-from .proof import Proof
+from talbot.verif.formal import tables
+from talbot.verif.formal.proof import Proof
 
 
 def without_comments(verilog: str) -> str:

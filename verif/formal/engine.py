@@ -14,8 +14,7 @@ from typing import Any, Self
 
 from talbot.base.environment import of_tools
 from talbot.base.tools import ToolError, finish, located
-
-from .netlist import Netlist
+from talbot.verif.formal.netlist import Netlist
 
 PASSED, FAILED, UNKNOWN = "passed", "failed", "unknown"
 

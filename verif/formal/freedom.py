@@ -5,9 +5,9 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from itertools import combinations
 
-from .engine import UNKNOWN, Workplace
-from .netlist import Bit, Netlist
-from .proof import Proof
+from talbot.verif.formal.engine import UNKNOWN, Workplace
+from talbot.verif.formal.netlist import Bit, Netlist
+from talbot.verif.formal.proof import Proof
 
 PAIR = " & "
 SMALL = 2  # bits of a signal all values of which count

@@ -8,12 +8,11 @@ import pytest
 
 from talbot.base.jobs import run
 from talbot.base.records import from_json
+from talbot.verif.formal import manifest
+from talbot.verif.formal.plan import pieces
+from talbot.verif.formal.proof import Proof
+from talbot.verif.formal.prove import ProofResult
 from talbot.verif.results import OUT, PROVEN
-
-from . import manifest
-from .plan import pieces
-from .proof import Proof
-from .prove import ProofResult
 
 
 def failure(proof: Proof, store: Path) -> str:

@@ -10,8 +10,7 @@ import yaml
 from talbot.base.paths import PACKAGE
 from talbot.models.parameters import ParameterError
 from talbot.rtl.tops import TOPS
-
-from .proof import ENGINES, RESET, Proof, Twin, labels
+from talbot.verif.formal.proof import ENGINES, RESET, Proof, Twin, labels
 
 SIZE = "rows", "cols", "lanes", "tile_rows", "tile_cols"
 

@@ -4,12 +4,11 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+from talbot.verif.formal.engine import Workplace
+from talbot.verif.formal.netlist import Conjunct, Netlist
+from talbot.verif.formal.proof import Proof
+from talbot.verif.formal.prove import prove
 from talbot.verif.results import PROVEN
-
-from .engine import Workplace
-from .netlist import Conjunct, Netlist
-from .proof import Proof
-from .prove import prove
 
 
 @dataclass(frozen=True)

@@ -4,13 +4,12 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from talbot.base.jobs import Job
-
-from . import design
-from .engine import version
-from .freedom import FreedomResult, freedom
-from .necessity import NecessityResult, necessity
-from .proof import Proof
-from .prove import CoverResult, ProofResult, TwinResult, cover, prove, twin
+from talbot.verif.formal import design
+from talbot.verif.formal.engine import version
+from talbot.verif.formal.freedom import FreedomResult, freedom
+from talbot.verif.formal.necessity import NecessityResult, necessity
+from talbot.verif.formal.proof import Proof
+from talbot.verif.formal.prove import CoverResult, ProofResult, TwinResult, cover, prove, twin
 
 
 @dataclass(frozen=True)

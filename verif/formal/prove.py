@@ -4,11 +4,10 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from talbot.verif.formal.engine import FAILED, PASSED, UNKNOWN, Workplace
+from talbot.verif.formal.netlist import Netlist
+from talbot.verif.formal.proof import Proof, labels
 from talbot.verif.results import PROVEN
-
-from .engine import FAILED, PASSED, UNKNOWN, Workplace
-from .netlist import Netlist
-from .proof import Proof, labels
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,7 @@ from talbot.models.digital.divider import quad_divide
 from talbot.models.parameters.divider import cordic_angles
 from talbot.models.parameters.registers import array_resets, register_map
 from talbot.rtl.quad_divider import timing
-
-from .proof import Proof
+from talbot.verif.formal.proof import Proof
 
 
 def case(name: str, in_bits: int, out_bits: int, values: Iterable[int]) -> str:

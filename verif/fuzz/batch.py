@@ -13,10 +13,9 @@ from pathlib import Path
 import numpy as np
 
 from talbot.models.digital.stream import decode_stream
-
-from .checks import check_file, check_stream
-from .host import TARGETS
-from .streams import Case, Sent, make_case, random_frame
+from talbot.verif.fuzz.checks import check_file, check_stream
+from talbot.verif.fuzz.host import TARGETS
+from talbot.verif.fuzz.streams import Case, Sent, make_case, random_frame
 
 BATCH = 10_000  # inputs of a batch
 POOL = 24  # good frames that a batch damages

@@ -12,8 +12,7 @@ from talbot.base.command import main
 from talbot.flow import decode
 from talbot.models.digital.stream import DecodedFrame, StreamError, decode_stream
 from talbot.models.parameters import TileParameters
-
-from .streams import Case, Sent
+from talbot.verif.fuzz.streams import Case, Sent
 
 
 class Broken(AssertionError):

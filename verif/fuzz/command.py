@@ -17,10 +17,9 @@ from talbot.base.jobs import Job
 from talbot.base.jobs import run as run_jobs
 from talbot.base.records import from_json
 from talbot.models.parameters import check_int
+from talbot.verif.fuzz.batch import BATCH, Batch, make_input, run_batch, try_input
+from talbot.verif.fuzz.resync import AROUND, FRAMES, sweep
 from talbot.verif.results import OUT, SEED, BlockResults, Fuzz, Resync, Sweep, write_step
-
-from .batch import BATCH, Batch, make_input, run_batch, try_input
-from .resync import AROUND, FRAMES, sweep
 
 CHANGES = 16  # wrong values tried at each byte of a real frame
 

@@ -9,8 +9,7 @@ from talbot.models.digital.host import decode_status, frame_writes, read_transfe
 from talbot.models.digital.registers import ADDRESS_MAX, RegisterBank
 from talbot.models.parameters import MODES, AmpTiming, FrameParameters, ParameterError, Window
 from talbot.models.parameters.registers import register_map, trim_range
-
-from .checks import demand
+from talbot.verif.fuzz.checks import demand
 
 WRITE = 0x80
 

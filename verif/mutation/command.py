@@ -23,12 +23,20 @@ from talbot.rtl.tops import TOPS
 from talbot.verif.coverage.program import compile_program
 from talbot.verif.coverage.testplan import folder_of
 from talbot.verif.coverage.traces import recorded
+from talbot.verif.mutation.judge import (
+    EQUIVALENT,
+    KILLED,
+    SURVIVED,
+    Judgement,
+    judge,
+    proofs_of,
+    try_original,
+    try_tests,
+)
+from talbot.verif.mutation.mutants import Mutant, generate, with_mutants
+from talbot.verif.mutation.operators import rewritten
+from talbot.verif.mutation.planted import jobs as bugs
 from talbot.verif.results import OUT, SEED, BlockResults, Mutants, write_step
-
-from .judge import EQUIVALENT, KILLED, SURVIVED, Judgement, judge, proofs_of, try_original, try_tests
-from .mutants import Mutant, generate, with_mutants
-from .operators import rewritten
-from .planted import jobs as bugs
 
 NUMBERS = {  # of mutants of bits, and as many of the text
     "AmpCtrl": 12,

@@ -9,8 +9,7 @@ from talbot.base.paths import PACKAGE
 from talbot.base.tools import ToolTimeout
 from talbot.rtl.harness.ports import Port, split, validity
 from talbot.verif.coverage.program import tool
-
-from .mutants import BITS, yosys
+from talbot.verif.mutation.mutants import BITS, yosys
 
 # What scorr has reduced to a constant without registers, pdr leaves undecided: iprove, of a few conflicts, says so
 REDUCE = "scorr; dc2; scorr; iprove -N 1 -C 10"

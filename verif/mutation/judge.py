@@ -15,11 +15,10 @@ from talbot.verif.coverage.program import compile_program
 from talbot.verif.formal import design, manifest
 from talbot.verif.formal.proof import Proof
 from talbot.verif.formal.prove import prove
+from talbot.verif.mutation.equivalence import DIFFERENT, EQUIVALENT, UNKNOWN, compare, the_same
+from talbot.verif.mutation.mutants import Mutant, yosys
+from talbot.verif.mutation.trial import attempt
 from talbot.verif.results import PROVEN
-
-from .equivalence import DIFFERENT, EQUIVALENT, UNKNOWN, compare, the_same
-from .mutants import Mutant, yosys
-from .trial import attempt
 
 KILLED, SURVIVED = "killed", "survived"
 SPARE = 1000  # cycles that a failing test may run longer

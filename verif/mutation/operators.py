@@ -13,8 +13,7 @@ from typing import NamedTuple
 
 from talbot.flow.layout.netlist.verilog import modules
 from talbot.verif.coverage.measure import sources_of
-
-from .mutants import BITS, PREPARE, Mutant, own_modules, yosys
+from talbot.verif.mutation.mutants import BITS, PREPARE, Mutant, own_modules, yosys
 
 OTHER = {"+": "-", "-": "+", "&": "|", "|": "&", "^": "|", "<": "<=", "<=": "<", ">": ">=", ">=": ">"}
 OTHER |= {"==": "!=", "!=": "==", "<<": "<< 1 <<", ">>": ">> 1 >>"}

@@ -19,8 +19,7 @@ from talbot.rtl.harness.translate import translate_component
 from talbot.rtl.replay import Trace, whole_level
 from talbot.rtl.replay.recorder import OneLevel
 from talbot.verif.coverage.program import compile_program
-
-from .mutants import Mutant
+from talbot.verif.mutation.mutants import Mutant
 
 OPTIONS = (
     "-x",

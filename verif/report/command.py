@@ -14,12 +14,11 @@ from time import perf_counter
 
 from talbot.base.command import failures
 from talbot.base.files import staged
+from talbot.verif.report import limits
+from talbot.verif.report.merge import summarize
+from talbot.verif.report.page import render
+from talbot.verif.report.steps import STEPS, Outcome, read_step, run_step
 from talbot.verif.results import OUT, SEED, BlockResults
-
-from . import limits
-from .merge import summarize
-from .page import render
-from .steps import STEPS, Outcome, read_step, run_step
 
 BY_NAME = {step.name: step for step in STEPS}
 

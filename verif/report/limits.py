@@ -9,9 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from talbot.models.parameters import ParameterError
+from talbot.verif.report.merge import figures, is_rtl, totals
 from talbot.verif.results import BlockResults
-
-from .merge import figures, is_rtl, totals
 
 FILE = Path(__file__).parent / "limits.json"
 EVERY, RTL, TOTAL = "every block", "rtl", "total"

@@ -7,11 +7,10 @@ from pathlib import Path
 
 from talbot.base import page
 from talbot.base.page import Tile
+from talbot.verif.report.limits import Limits, check, limit_text, of_block
+from talbot.verif.report.merge import figures
+from talbot.verif.report.steps import Outcome
 from talbot.verif.results import COVERAGE, BlockResults, Property
-
-from .limits import Limits, check, limit_text, of_block
-from .merge import figures
-from .steps import Outcome
 
 NOT_RUN, NONE = "not run", "none"  # none: the block cannot have it, or nothing is asked of it
 

@@ -20,11 +20,10 @@ from talbot.models.parameters import ArrayParameters, ChipParameters, SensorPara
 from talbot.rtl.export import translate
 from talbot.verif.formal.engine import version
 from talbot.verif.results import OUT, SEED, BlockResults, StuckAt, write_step
-
-from .faults import OUTPUT, collapsed
-from .netlist import OPERATORS, synthesize
-from .simulate import Simulator
-from .stimulus import RESET, bits, frames, functional_test
+from talbot.verif.stuck_at.faults import OUTPUT, collapsed
+from talbot.verif.stuck_at.netlist import OPERATORS, synthesize
+from talbot.verif.stuck_at.simulate import Simulator
+from talbot.verif.stuck_at.stimulus import RESET, bits, frames, functional_test
 
 ROWS, COLS = 8, 13
 SENSOR = SensorParameters(array=ArrayParameters(ROWS, COLS), chip=ChipParameters(lanes=2))

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .netlist import AND, BUF, NAND, NOR, NOT, OR, PINS, Gates
+from talbot.verif.stuck_at.netlist import AND, BUF, NAND, NOR, NOT, OR, PINS, Gates
 
 OUTPUT = 3  # the pin after the inputs
 # Kind -> (value of an input, value of the output that it forces): a fault at the one is a fault at the other

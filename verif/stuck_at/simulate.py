@@ -10,9 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from talbot.base.tools import run
-
-from .faults import OUTPUT, Fault
-from .netlist import ONE, Gates
+from talbot.verif.stuck_at.faults import OUTPUT, Fault
+from talbot.verif.stuck_at.netlist import ONE, Gates
 
 WORDS = 8
 LANES = 64 * WORDS

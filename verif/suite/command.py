@@ -18,9 +18,8 @@ from talbot.base.sources import code
 from talbot.base.tools import located
 from talbot.models.parameters import ParameterError
 from talbot.verif.results import OUT, SEED, BlockResults, Fault, Tests, write_step
-
-from .blocks import blocks_of, level_of
-from .pytest_folder import Case, FolderRun, folders, run_folder
+from talbot.verif.suite.blocks import blocks_of, level_of
+from talbot.verif.suite.pytest_folder import Case, FolderRun, folders, run_folder
 
 PASSED, FAILED, SKIPPED = "passed", "failed", "skipped"
 TOOLS = "iverilog", "yosys", "g++", "z3"  # where one is missing, tests are skipped

@@ -13,9 +13,7 @@ import joblib
 import pytest
 
 from talbot.base.steps import Runner, StepError
-from talbot.models.parameters import ParameterError
-
-from .steps import (
+from talbot.base.steps.test.steps import (
     Again,
     Both,
     Careless,
@@ -35,6 +33,7 @@ from .steps import (
     Turn,
     waited,
 )
+from talbot.models.parameters import ParameterError
 
 
 @pytest.fixture

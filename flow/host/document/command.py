@@ -11,10 +11,9 @@ from pathlib import Path
 from talbot.base.files import check_file, check_folder, insert, write
 from talbot.base.paths import RESULTS, ROOT
 from talbot.base.sensor import Varied, add_sensor, sensor_asked
+from talbot.flow.host.document import exports, registers, tables
+from talbot.flow.host.document.c_header import c_header
 from talbot.models.parameters import ParameterError
-
-from . import exports, registers, tables
-from .c_header import c_header
 
 DOCUMENT, MAPS = "host.md", ("registers.md", "registers.html")
 HEADER = Path(__file__).parents[1] / "asp_chip_registers.h"

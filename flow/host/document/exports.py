@@ -4,10 +4,9 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from talbot.base.files import staged
+from talbot.flow.host.document import registers
 from talbot.models.parameters.registers import register_map
 from talbot.models.parameters.registers.map import compiled
-
-from . import registers
 
 PAGE, IPXACT, HEADER = "registers.html", "asp_chip.xml", "asp_chip_peakrdl.h"
 SITE = "html"  # of earlier releases

@@ -2,9 +2,8 @@
 
 from collections.abc import Iterator
 
+from talbot.flow.host.document.markdown import table
 from talbot.rtl.asp_chip.pins import pins
-
-from .markdown import table
 
 MEANING = {
     "clk": "System clock. All pins except SPI's and `reset` are synchronous to its rising edge.",

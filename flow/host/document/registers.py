@@ -5,9 +5,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from talbot.base.page import render
+from talbot.flow.host.document.markdown import table
 from talbot.models.parameters.registers import Field, RegisterMap
-
-from .markdown import table
 
 NOTE = (
     "Generated from models/parameters/registers/asp_chip.rdl by talbot document. Byte addresses; a field of more than "

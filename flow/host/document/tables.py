@@ -6,15 +6,14 @@ from textwrap import fill
 
 import numpy as np
 
+from talbot.flow.host.document.markdown import table
+from talbot.flow.host.document.pins import host_pins
 from talbot.models.chip import golden_frame
 from talbot.models.digital.host import command, frame_values, read_transfer, write_transfers
 from talbot.models.digital.pattern import PatternEnd, pattern_value
 from talbot.models.digital.phase import phase_samples
 from talbot.models.parameters import AmpTiming, FrameParameters, SensorParameters, Window
 from talbot.models.parameters.registers import RegisterMap, array_resets, register_map
-
-from .markdown import table
-from .pins import host_pins
 
 
 def example(sensor: SensorParameters) -> FrameParameters:

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from talbot.flow.host.driver import Code, Host, HostError
+from talbot.flow.host.test.bench import NEVER, Bench
+from talbot.flow.host.test.c_host import FOLDER, OUT_OF_ROOM, TRANSFER, CHost
 from talbot.models.chip import golden_frame
 from talbot.models.digital.amp_ctrl import TAPS
 from talbot.models.digital.host import command, frame_values
@@ -21,9 +23,6 @@ from talbot.models.parameters import (
     Window,
 )
 from talbot.models.parameters.registers import register_map
-
-from .bench import NEVER, Bench
-from .c_host import FOLDER, OUT_OF_ROOM, TRANSFER, CHost
 
 ROWS, COLS, LANES = 10, 17, 2  # partial tiles at both edges
 SENSOR = SensorParameters(array=ArrayParameters(ROWS, COLS), chip=ChipParameters(lanes=LANES))

@@ -12,20 +12,19 @@ from talbot.base.files import staged, write
 from talbot.base.paths import RESULTS
 from talbot.base.progress import Steps
 from talbot.base.steps import Runner, Step, StepError
+from talbot.flow.layout.chain import all_steps, input_files, timing_steps
+from talbot.flow.layout.design import Design, design, folder_name
+from talbot.flow.layout.energy.frames import EVERY, HELD_BACK, RECORDED, frame_named
+from talbot.flow.layout.energy.measure import CountingBench, FrameParameters, Light, Measure, Slews, Transitions
+from talbot.flow.layout.energy.report import page, text
+from talbot.flow.layout.energy.result import WORST, Frame, evaluate
+from talbot.flow.layout.options import Options
+from talbot.flow.layout.search import lay_out_smallest
+from talbot.flow.layout.steps.extraction import Extraction
+from talbot.flow.layout.steps.parameters import PdkParameters
+from talbot.flow.layout.steps.power import PowerParameters
 from talbot.models.parameters import ParameterError
 from talbot.platforms.processes import PROCESSES
-
-from ..chain import all_steps, input_files, timing_steps
-from ..design import Design, design, folder_name
-from ..options import Options
-from ..search import lay_out_smallest
-from ..steps.extraction import Extraction
-from ..steps.parameters import PdkParameters
-from ..steps.power import PowerParameters
-from .frames import EVERY, HELD_BACK, RECORDED, frame_named
-from .measure import CountingBench, FrameParameters, Light, Measure, Slews, Transitions
-from .report import page, text
-from .result import WORST, Frame, evaluate
 
 DESIGN = "asp_chip"
 WITH_DELAYS = "stimulus", "sta", "gate_delays", "power"  # what the frame with delays takes, at the first corner

@@ -4,10 +4,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from talbot.flow.layout.energy.fit import Fit, fit
+from talbot.flow.layout.energy.frames import EnergyFrame
 from talbot.models.parameters.energy import DigitalEvents
-
-from .fit import Fit, fit
-from .frames import EnergyFrame
 
 WORST = 0.1  # share by which the held-back frame may be off
 

@@ -8,9 +8,8 @@ from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 
 from talbot.base.gds import db
+from talbot.flow.layout.geometry.boxes import Box, corners
 from talbot.platforms.layout import LayoutPlatform
-
-from .boxes import Box, corners
 
 SAFE = 1e9  # um2 of metal an um2 of diffusion, in the check of nets without one
 

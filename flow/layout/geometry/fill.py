@@ -4,10 +4,9 @@ import numpy as np
 import numpy.typing as npt
 
 from talbot.base.gds import db
+from talbot.flow.layout.geometry.boxes import Box, Boxes, boxes
 from talbot.platforms.layers import Layer
 from talbot.platforms.layout import Fill
-
-from .boxes import Box, Boxes, boxes
 
 GRID = 200  # nm, of what is free
 Pixels = npt.NDArray[np.int64]  # (n, 2)

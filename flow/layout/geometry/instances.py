@@ -1,8 +1,7 @@
 """Instances of cells in a layout, by the places of a placement."""
 
 from talbot.base.gds import db
-
-from ..netlist.placed import TURNS
+from talbot.flow.layout.netlist.placed import TURNS
 
 
 def transformation(layout: "db.Layout", x: float, y: float, orientation: str) -> "db.Trans":

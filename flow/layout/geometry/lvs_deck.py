@@ -4,9 +4,8 @@ import re
 from collections.abc import Sequence
 
 from talbot.base.steps import StepError
+from talbot.flow.layout.netlist.netlist import SUPPLIES, Netlist
 from talbot.platforms.layers import GdsLayer
-
-from ..netlist.netlist import SUPPLIES, Netlist
 
 
 def hierarchical(deck: str, *active: GdsLayer) -> str:

@@ -6,12 +6,11 @@ from typing import Any
 
 from talbot.base.lef import write
 from talbot.cells.lef.abstract import PinKind, abstract
+from talbot.flow.layout.netlist.netlist import DIODE, OUTPUT_PINS
 from talbot.platforms.extraction import ExtractionPlatform
 from talbot.platforms.layers import Layer, Via
 from talbot.platforms.layout import LayoutPlatform
 from talbot.platforms.place_and_route import PlaceAndRoute
-
-from ..netlist.netlist import DIODE, OUTPUT_PINS
 
 WIDE_UM = 3.0  # from this width on a layer's wide spacing holds
 LEAST_AREA_UM2 = 0.0561  # where a layer has no rule: a via's pad with its enclosures

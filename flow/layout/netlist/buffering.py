@@ -12,7 +12,7 @@ import numpy.typing as npt
 from scipy.sparse import coo_array, diags_array
 from scipy.sparse.linalg import cg
 
-from .netlist import OUTPUT_PINS, Buffer, Instance, Netlist
+from talbot.flow.layout.netlist.netlist import OUTPUT_PINS, Buffer, Instance, Netlist
 
 PULL = 1e-4  # of every cell to the middle, a net's being 1: a cell without a path to a port needs a position, too
 TOLERANCE = 1e-8  # of the equations' right side

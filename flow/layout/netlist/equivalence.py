@@ -6,9 +6,8 @@ from pathlib import Path
 
 from talbot.base.steps import StepError
 from talbot.base.tools import run
-
-from .netlist import REGISTER, Netlist, is_register
-from .registers import ANY, Bit, Cut, active_low
+from talbot.flow.layout.netlist.netlist import REGISTER, Netlist, is_register
+from talbot.flow.layout.netlist.registers import ANY, Bit, Cut, active_low
 
 PROOF = "cec -T {seconds} -C 100000000 {gold} {gate}"
 

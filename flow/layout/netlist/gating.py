@@ -10,8 +10,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
-from .buffering import clusters, estimated
-from .netlist import Buffer, Instance, Netlist, is_register
+from talbot.flow.layout.netlist.buffering import clusters, estimated
+from talbot.flow.layout.netlist.netlist import Buffer, Instance, Netlist, is_register
 
 LEAST = 2  # flip-flops behind a gate: it takes as much energy as one of them
 GATES = "gates.ys"  # file of the commands

@@ -1,6 +1,6 @@
 """Short names of nets for tools that do not take every name that Verilog allows."""
 
-from .netlist import Netlist
+from talbot.flow.layout.netlist.netlist import Netlist
 
 
 def plain_names(netlist: Netlist) -> dict[str, str]:

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterable
 
-from .netlist import Port
+from talbot.flow.layout.netlist.netlist import Port
 
 SIDES = ("west", "east")  # the router gives up on some pins on the other two
 

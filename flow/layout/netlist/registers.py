@@ -13,9 +13,8 @@ from pathlib import Path
 from typing import Any
 
 from talbot.base.steps import StepError
-
-from .enables import LATCHES, REGISTER, pins_of, with_enables
-from .netlist import named_bits
+from talbot.flow.layout.netlist.enables import LATCHES, REGISTER, pins_of, with_enables
+from talbot.flow.layout.netlist.netlist import named_bits
 
 Bit = int | str  # of Yosys's JSON: a net, or a constant '0', '1', 'x'
 ANY = "x"

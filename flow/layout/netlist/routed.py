@@ -6,8 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from talbot.base.steps import StepError
-
-from .netlist import DIODE, Instance, Netlist, Port
+from talbot.flow.layout.netlist.netlist import DIODE, Instance, Netlist, Port
 
 # DEF's orientations: the number that `placed.TURNS` has, and whether the cell's origin is at its right, and its top
 ORIENTATIONS = {"N": ("0", 0, 0), "S": ("2", 1, 1), "FN": ("4", 1, 0), "FS": ("6", 0, 1)}

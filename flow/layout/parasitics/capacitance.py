@@ -22,12 +22,11 @@ import numpy.typing as npt
 from numba import types
 from numba.typed import Dict
 
+from talbot.flow.layout.parasitics.bins import Bins, Ints
+from talbot.flow.layout.parasitics.shapes import METAL_LEVEL, POLY_LEVEL, Shapes
 from talbot.models.compiled import njit
 from talbot.platforms.layers import Crossing
 from talbot.platforms.wires import Wires
-
-from .bins import Bins, Ints
-from .shapes import METAL_LEVEL, POLY_LEVEL, Shapes
 
 STEP_UM, REACH_UM = 0.2, 8.0
 MOST = 4096  # conductors that one ray may pass

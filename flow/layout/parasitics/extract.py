@@ -13,16 +13,15 @@ from pathlib import Path
 import numpy as np
 
 from talbot.base.gds import db
+from talbot.flow.layout.netlist.netlist import OUTPUT_PINS, Netlist
+from talbot.flow.layout.parasitics.capacitance import Capacitances, Flags, Floats, Numbers, capacitances
+from talbot.flow.layout.parasitics.nets import Place, places
+from talbot.flow.layout.parasitics.shapes import METAL_LEVEL, Shapes, labels, shapes
+from talbot.flow.layout.parasitics.trees import Trees, trees
+from talbot.flow.layout.timing.spef import Tree
 from talbot.platforms.extraction import ExtractionPlatform
 from talbot.platforms.layout import LayoutPlatform
 from talbot.platforms.wires import Wires
-
-from ..netlist.netlist import OUTPUT_PINS, Netlist
-from ..timing.spef import Tree
-from .capacitance import Capacitances, Flags, Floats, Numbers, capacitances
-from .nets import Place, places
-from .shapes import METAL_LEVEL, Shapes, labels, shapes
-from .trees import Trees, trees
 
 
 def extract(

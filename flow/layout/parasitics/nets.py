@@ -7,11 +7,10 @@ from pathlib import Path
 
 from talbot.base.gds import db
 from talbot.base.steps import StepError
+from talbot.flow.layout.geometry.instances import transformation
+from talbot.flow.layout.netlist.netlist import Netlist
+from talbot.flow.layout.parasitics.shapes import Labels, Shapes, labels
 from talbot.platforms.layout import LayoutPlatform
-
-from ..geometry.instances import transformation
-from ..netlist.netlist import Netlist
-from .shapes import Labels, Shapes, labels
 
 Pin = tuple[str, str]  # instance and its pin, or "" and a port's bit
 

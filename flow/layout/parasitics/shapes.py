@@ -7,13 +7,12 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from talbot.base.gds import db
+from talbot.flow.layout.parasitics.bins import Bins, Ints, at, binned
 from talbot.models.compiled import njit
 from talbot.platforms.extraction import ExtractionPlatform
 from talbot.platforms.layers import DIFFUSION
 from talbot.platforms.layout import LayoutPlatform
 from talbot.platforms.wires import SUBSTRATE
-
-from .bins import Bins, Ints, at, binned
 
 BIN_UM = 1.0
 DIFFUSION_LEVEL, POLY_LEVEL, METAL_LEVEL = 1, 2, 3  # the substrate is 0

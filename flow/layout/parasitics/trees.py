@@ -14,11 +14,10 @@ import numpy.typing as npt
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 
+from talbot.flow.layout.parasitics.capacitance import Floats, Numbers
+from talbot.flow.layout.parasitics.shapes import Shapes
 from talbot.models.compiled import njit
 from talbot.platforms.wires import Wires
-
-from .capacitance import Floats, Numbers
-from .shapes import Shapes
 
 LEAST_OHM = 1e-3  # of every resistor, also where two boxes touch
 

@@ -7,7 +7,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from .text import as_text
+from talbot.flow.layout.report.text import as_text
 
 # Names in summary.json; of a dict by corner the least counts, of power, its first
 FIGURES = {

@@ -8,10 +8,9 @@ from typing import Any
 from PIL import Image
 
 from talbot.base.page import Picture, Tile, render
-
-from .history import history, table
-from .picture import LayoutPicture
-from .text import as_text
+from talbot.flow.layout.report.history import history, table
+from talbot.flow.layout.report.picture import LayoutPicture
+from talbot.flow.layout.report.text import as_text
 
 NOT_FIGURES = {"design", "top", "backend", "pdk", "attempts", "wall_s", "peak_mib", "tools", "timing_rests_on"}
 NOT_FIGURES |= {"table_6_1", "not_checked", "power_by_block_uw"}

@@ -7,9 +7,8 @@ from typing import NamedTuple
 from talbot.base.lef.read import read_macro
 from talbot.base.paths import ROOT
 from talbot.base.tools import run
+from talbot.flow.layout.sensor.plan import BLOCKS
 from talbot.models.parameters import ParameterError
-
-from .plan import BLOCKS
 
 KINDS = "lef", "gds"
 

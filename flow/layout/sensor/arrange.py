@@ -4,10 +4,19 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from talbot.base.steps import StepError
-
-from .plan import CORE, ORIENTATIONS, Block, DieParameters, Terminal, nets, nm, stack, with_core
-from .ring import Pads
-from .routing import Branch, Tracks, branches, length, raised, side_room, split_nets, trunks
+from talbot.flow.layout.sensor.plan import (
+    CORE,
+    ORIENTATIONS,
+    Block,
+    DieParameters,
+    Terminal,
+    nets,
+    nm,
+    stack,
+    with_core,
+)
+from talbot.flow.layout.sensor.ring import Pads
+from talbot.flow.layout.sensor.routing import Branch, Tracks, branches, length, raised, side_room, split_nets, trunks
 
 
 @dataclass(frozen=True)

@@ -4,11 +4,10 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from talbot.flow.layout.sensor.plan import Terminal
 from talbot.platforms.die import TopMetal
 from talbot.platforms.layers import GdsLayer
 from talbot.platforms.layout import LayoutPlatform
-
-from .plan import Terminal
 
 if TYPE_CHECKING:
     import klayout.db as kdb

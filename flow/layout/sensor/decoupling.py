@@ -8,14 +8,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from talbot.base.gds import db
+from talbot.flow.layout.sensor import shapes
+from talbot.flow.layout.sensor.plan import CIRCUITS, SUPPLIES, Block, Box, DieParameters, nm
 from talbot.flow.layout.sensor.rules import RoutingRules
+from talbot.flow.layout.sensor.shapes import Shape
+from talbot.flow.layout.sensor.supplies import vias
 from talbot.platforms.die import TopMetal
 from talbot.platforms.pads import Capacitor
-
-from . import shapes
-from .plan import CIRCUITS, SUPPLIES, Block, Box, DieParameters, nm
-from .shapes import Shape
-from .supplies import vias
 
 SUPPLY, GROUND = CIRCUITS
 # um: side of a top plate, from one to the next in a column; of a column and from one to the next; less than 60 % of

@@ -15,6 +15,21 @@ from talbot.flow.layout.options import Options
 from talbot.flow.layout.report.metrics import broken
 from talbot.flow.layout.report.page import picture, write_report
 from talbot.flow.layout.report.picture import render
+from talbot.flow.layout.sensor import package
+from talbot.flow.layout.sensor.analog import files
+from talbot.flow.layout.sensor.metrics import RULES, summarize
+from talbot.flow.layout.sensor.picture import by_block
+from talbot.flow.layout.sensor.plan import DieParameters
+from talbot.flow.layout.sensor.steps.die_antenna import DieAntenna
+from talbot.flow.layout.sensor.steps.die_connectivity import DieConnectivity
+from talbot.flow.layout.sensor.steps.die_drc import DieDrc, DieFoundryDrc
+from talbot.flow.layout.sensor.steps.die_gds import DieGds, DieGdsParameters
+from talbot.flow.layout.sensor.steps.die_ir_drop import DieIrDrop, DieIrDropParameters
+from talbot.flow.layout.sensor.steps.die_pads import DiePads, DiePadsDrc, DiePadsLvs
+from talbot.flow.layout.sensor.steps.die_parasitics import DieParasitics, DieParasiticsParameters
+from talbot.flow.layout.sensor.steps.die_plan import DiePlan, DiePlanParameters
+from talbot.flow.layout.sensor.steps.die_sta import DieSta
+from talbot.flow.layout.sensor.steps.drawing import ARRAY, DrawnCircuits, DrawnPixels
 from talbot.flow.layout.steps.foundry_drc import FoundryDrcParameters
 from talbot.flow.layout.steps.parameters import PdkParameters
 from talbot.flow.layout.steps.sta import StaParameters
@@ -23,22 +38,6 @@ from talbot.platforms.layout import layout_platform
 from talbot.platforms.pads import pad_process
 from talbot.platforms.pixel import pixel_process
 from talbot.platforms.wires import CORNERS
-
-from . import package
-from .analog import files
-from .metrics import RULES, summarize
-from .picture import by_block
-from .plan import DieParameters
-from .steps.die_antenna import DieAntenna
-from .steps.die_connectivity import DieConnectivity
-from .steps.die_drc import DieDrc, DieFoundryDrc
-from .steps.die_gds import DieGds, DieGdsParameters
-from .steps.die_ir_drop import DieIrDrop, DieIrDropParameters
-from .steps.die_pads import DiePads, DiePadsDrc, DiePadsLvs
-from .steps.die_parasitics import DieParasitics, DieParasiticsParameters
-from .steps.die_plan import DiePlan, DiePlanParameters
-from .steps.die_sta import DieSta
-from .steps.drawing import ARRAY, DrawnCircuits, DrawnPixels
 
 SENSOR, CHIP = "asp_sensor", "asp_chip"
 # Files of the chip's run that the die is given

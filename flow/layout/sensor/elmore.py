@@ -3,11 +3,10 @@
 from collections.abc import Hashable, Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
+from talbot.flow.layout.sensor.plan import CORE, Terminal
+from talbot.flow.layout.sensor.routing import BRANCH, STUB, TRUNK
 from talbot.flow.layout.timing.parasitics import parasitics
 from talbot.platforms.layout import LayoutPlatform
-
-from .plan import CORE, Terminal
-from .routing import BRANCH, STUB, TRUNK
 
 Branches = Sequence[Mapping[str, Any]]
 

@@ -8,10 +8,9 @@ from typing import Any
 from talbot.base.steps import Runner
 from talbot.flow.layout.options import Options
 from talbot.flow.layout.report.metrics import timing_basis
-
-from .package import leads
-from .plan import BLOCKS
-from .steps.die_sta import DieSta
+from talbot.flow.layout.sensor.package import leads
+from talbot.flow.layout.sensor.plan import BLOCKS
+from talbot.flow.layout.sensor.steps.die_sta import DieSta
 
 RULES = json.loads((Path(__file__).parent / "rules.json").read_text(encoding="utf-8"))
 ROUTED = "nets", "routed", "abutted", "tracks", "wire_um", "pads", "decoupling_pf"

@@ -9,9 +9,8 @@ from typing import Any
 
 from talbot.base.steps import StepError
 from talbot.base.style import own_style
+from talbot.flow.layout.sensor.ring import OUTSIDE
 from talbot.platforms.pads import PadProcess
-
-from .ring import OUTSIDE
 
 LEADS = 48, 64, 80, 100, 128, 144  # of a QFN, as many on each side
 PITCH_MM, CORNER_MM, LEAD_MM = 0.5, 1.0, 0.6  # of the leads; from the body's corner to the first; length of a lead

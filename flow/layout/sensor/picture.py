@@ -5,9 +5,8 @@ from pathlib import Path
 from typing import Any
 
 from talbot.base.style import own_style
-
-from .package import signal
-from .plan import BLOCKS, CORE
+from talbot.flow.layout.sensor.package import signal
+from talbot.flow.layout.sensor.plan import BLOCKS, CORE
 
 COLORS = dict(zip((*BLOCKS, CORE), ("#7fb3d5", "#f5b041", "#82c99a", "#c39bd3", "#e6837a"), strict=True))
 

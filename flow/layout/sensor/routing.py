@@ -4,11 +4,23 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from talbot.base.steps import StepError
+from talbot.flow.layout.sensor.channel import check_apart, left_edge
+from talbot.flow.layout.sensor.plan import (
+    CORE,
+    SIGNALS,
+    SUPPLIES,
+    Block,
+    Box,
+    DieParameters,
+    Terminal,
+    bar,
+    check_way,
+    driver,
+    nm,
+    touching,
+)
+from talbot.flow.layout.sensor.ring import BESIDE_CHIP, CIRCUITS_ON_SIDE, GAP, UM, Pads, function
 from talbot.flow.layout.sensor.rules import RoutingRules
-
-from .channel import check_apart, left_edge
-from .plan import CORE, SIGNALS, SUPPLIES, Block, Box, DieParameters, Terminal, bar, check_way, driver, nm, touching
-from .ring import BESIDE_CHIP, CIRCUITS_ON_SIDE, GAP, UM, Pads, function
 
 # Places in RoutingRules.layers. Branches are the highest: a net is connected only there, with its driver, so that no
 # gate has a trunk or a branch as an antenna before. Stubs are where the chip's ports are

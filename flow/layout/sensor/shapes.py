@@ -3,11 +3,10 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from talbot.flow.layout.sensor.plan import CORE, Box
+from talbot.flow.layout.sensor.routing import BRANCH, STUB, TRUNK, Branch, Tracks
 from talbot.flow.layout.sensor.rules import Layer, RoutingRules, Via
 from talbot.platforms import layers
-
-from .plan import CORE, Box
-from .routing import BRANCH, STUB, TRUNK, Branch, Tracks
 
 PAD = 1  # place in RoutingRules.layers of the pads' pins
 

@@ -4,15 +4,25 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from talbot.base.steps import StepError
+from talbot.flow.layout.sensor import plan, shapes
+from talbot.flow.layout.sensor.arrange import Arranged
+from talbot.flow.layout.sensor.plan import (
+    ANALOG,
+    CIRCUITS,
+    CORE,
+    DIGITAL,
+    SUPPLIES,
+    Block,
+    Box,
+    DieParameters,
+    check_way,
+    nm,
+)
+from talbot.flow.layout.sensor.ring import Pads, Way
+from talbot.flow.layout.sensor.routing import Tracks
 from talbot.flow.layout.sensor.rules import Layer, RoutingRules
+from talbot.flow.layout.sensor.shapes import Shape
 from talbot.platforms.die import TopMetal
-
-from . import plan, shapes
-from .arrange import Arranged
-from .plan import ANALOG, CIRCUITS, CORE, DIGITAL, SUPPLIES, Block, Box, DieParameters, check_way, nm
-from .ring import Pads, Way
-from .routing import Tracks
-from .shapes import Shape
 
 
 class Line(NamedTuple):

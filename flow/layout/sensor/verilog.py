@@ -2,8 +2,8 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from .plan import CORE, SUPPLIES, Block, Terminal
-from .ring import DIGITAL, OUTSIDE, Place
+from talbot.flow.layout.sensor.plan import CORE, SUPPLIES, Block, Terminal
+from talbot.flow.layout.sensor.ring import DIGITAL, OUTSIDE, Place
 
 INSIDE = "inside"
 

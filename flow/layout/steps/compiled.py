@@ -6,14 +6,13 @@ import numpy as np
 
 from talbot.base.gds import db
 from talbot.base.steps import Files, Step
+from talbot.flow.layout.parasitics.capacitance import capacitances
+from talbot.flow.layout.parasitics.extract import floating, with_fill_floating
+from talbot.flow.layout.parasitics.shapes import METAL_LEVEL, shapes
+from talbot.flow.layout.parasitics.trees import trees
+from talbot.flow.layout.steps.parameters import PdkParameters
 from talbot.platforms.extraction import extraction_platform
 from talbot.platforms.layout import layout_platform
-
-from ..parasitics.capacitance import capacitances
-from ..parasitics.extract import floating, with_fill_floating
-from ..parasitics.shapes import METAL_LEVEL, shapes
-from ..parasitics.trees import trees
-from .parameters import PdkParameters
 
 HALF_NM, ENDS_NM = 150, ((5_000, 5_000), (25_000, 20_000))  # half the width of a segment; where the net's ends are
 

@@ -3,10 +3,9 @@
 from typing import Any
 
 from talbot.base.steps import Files, Step
+from talbot.flow.layout.geometry.decks import check_rules, hole_rules, via_rules
+from talbot.flow.layout.steps.parameters import PdkParameters
 from talbot.platforms.layout import layout_platform
-
-from ..geometry.decks import check_rules, hole_rules, via_rules
-from .parameters import PdkParameters
 
 WARNING = "[Warning]"
 

@@ -7,9 +7,8 @@ from typing import Any
 
 from talbot.base.steps import Files, Step, StepError
 from talbot.base.tools import finish
+from talbot.flow.layout.geometry.decks import run_deck, violations
 from talbot.platforms.foundry import FoundryChecks, foundry_checks
-
-from ..geometry.decks import run_deck, violations
 
 # A line for every broken rule: how often, a tabulator, Magic's message
 MAGIC = """

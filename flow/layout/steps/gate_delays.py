@@ -5,12 +5,11 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from talbot.base.steps import Files, StepError
+from talbot.flow.layout.netlist.netlist import Netlist
+from talbot.flow.layout.steps.corner import CornerStep
+from talbot.flow.layout.timing.delays import read
+from talbot.flow.layout.timing.replay import Timing, replay
 from talbot.models.parameters import check_real
-
-from ..netlist.netlist import Netlist
-from ..timing.delays import read
-from ..timing.replay import Timing, replay
-from .corner import CornerStep
 
 CONSTANTS = {"zero", "one", "HI", "LO", "DIODE"}  # pins of cells without a path
 

@@ -4,12 +4,11 @@ import json
 from typing import Any
 
 from talbot.base.steps import Files, Step, StepError
+from talbot.flow.layout.geometry.decks import run_exported
+from talbot.flow.layout.geometry.lvs_deck import hierarchical, with_ports
+from talbot.flow.layout.netlist.netlist import Netlist, supplies
+from talbot.flow.layout.steps.parameters import PdkParameters
 from talbot.platforms.layout import layout_platform
-
-from ..geometry.decks import run_exported
-from ..geometry.lvs_deck import hierarchical, with_ports
-from ..netlist.netlist import Netlist, supplies
-from .parameters import PdkParameters
 
 
 class Lvs(Step[PdkParameters]):

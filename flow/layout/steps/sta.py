@@ -5,9 +5,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from talbot.base.steps import Files
-
-from ..timing.opensta import TIMED, opensta, worst_slack
-from .corner import CornerStep
+from talbot.flow.layout.steps.corner import CornerStep
+from talbot.flow.layout.timing.opensta import TIMED, opensta, worst_slack
 
 SCRIPT = (
     TIMED

@@ -17,11 +17,10 @@ import joblib
 from talbot.base import openroad
 from talbot.base.steps import Files, Step, StepError
 from talbot.base.tools import started
+from talbot.flow.layout.variables import Floor, variables
 from talbot.models.parameters import check_choice
 from talbot.platforms.layout import layout_platform
 from talbot.platforms.place_and_route import place_and_route
-
-from ..variables import Floor, variables
 
 SCRIPTS = Path(__file__).parents[1] / "tcl"
 # Stages in their order, with the figures that their scripts print

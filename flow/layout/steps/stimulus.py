@@ -15,13 +15,12 @@ from typing import TYPE_CHECKING, Any
 from talbot.base.paths import ROOT
 from talbot.base.steps import Files, Step, StepError
 from talbot.base.tools import ToolError, finish, run
+from talbot.flow.layout.netlist.verilog import modules
 from talbot.flow.simulate.build import Build
 from talbot.flow.simulate.icarus import icarus_program
 from talbot.rtl.tinytapeout.golden import EXAMPLES
 from talbot.rtl.tinytapeout.host import simulate as simulate_host
 from talbot.rtl.verilog import export_verilog
-
-from ..netlist.verilog import modules
 
 if TYPE_CHECKING:
     from talbot.models.parameters import Window

@@ -8,9 +8,8 @@ from talbot.base import jobs
 from talbot.base.liberty.read import read
 from talbot.base.liberty.write import text
 from talbot.base.steps import Files, Step, StepError
+from talbot.flow.layout import tables
 from talbot.platforms.extraction import ExtractionPlatform, device_models, extraction_platform
-
-from .. import tables
 
 if TYPE_CHECKING:
     from talbot.cells.characterize.conditions import Conditions

@@ -10,10 +10,9 @@ from talbot.base.files import staged
 from talbot.base.jobs import Job, worker_count
 from talbot.base.jobs import run as run_jobs
 from talbot.base.paths import RESULTS
+from talbot.flow.layout.sweep.plots import pareto_plot
+from talbot.flow.layout.sweep.points import candidates, variant_point
 from talbot.models.parameters import ParameterError
-
-from .plots import pareto_plot
-from .points import candidates, variant_point
 
 
 def add_arguments(parser: ArgumentParser) -> None:

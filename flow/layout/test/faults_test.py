@@ -9,8 +9,7 @@ from talbot.flow.layout.search import lay_out_smallest
 from talbot.flow.layout.steps.drc import Drc
 from talbot.flow.layout.steps.lvs import Lvs
 from talbot.flow.layout.steps.parameters import PdkParameters
-
-from . import counter
+from talbot.flow.layout.test import counter
 
 pytestmark = [pytest.mark.slow, pytest.mark.needs(*counter.NEEDS)]
 

@@ -15,8 +15,7 @@ from talbot.base.steps import StepError
 from talbot.base.tools import ToolError, finish, run
 from talbot.flow.layout.netlist.names import plain_names
 from talbot.flow.layout.netlist.netlist import Instance, Netlist
-
-from .delays import Delays, constrained, icarus, specified
+from talbot.flow.layout.timing.delays import Delays, constrained, icarus, specified
 
 BENCH = """`timescale 1ns/1ps
 module Replay;

@@ -3,7 +3,7 @@
 from collections.abc import Container, Mapping, Sequence
 from typing import NamedTuple
 
-from ..netlist.netlist import OUTPUT_PINS, Netlist
+from talbot.flow.layout.netlist.netlist import OUTPUT_PINS, Netlist
 
 Node = int | tuple[str, str]
 

@@ -13,10 +13,9 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from talbot.base.progress import each
 from talbot.base.tools import ToolError
+from talbot.flow.lightfield.learn.samples import Shot, noisy, sensor, shots
 from talbot.models.pixel.weights import view_weights
 from talbot.models.reconstruct.branches import AFTER, CHANNELS, DENSE, KINDS, NOISE, PATCH, VIEWS, Seen, shapes
-
-from .samples import Shot, noisy, sensor, shots
 
 PATCHES = 6  # of a crop, along each side
 RATE = 2e-3  # of Adam, falling to 0 as a cosine

@@ -36,11 +36,11 @@ def run(options: Namespace) -> int:
     check_folder("out", out)
     seeds = range(FIRST, FIRST + scenes)
     if options.what == "dictionary":
-        from .dictionary import learned
+        from talbot.flow.lightfield.learn.dictionary import learned
 
         result = learned(seeds, atoms, steps, seed)
     else:
-        from .branches import learned
+        from talbot.flow.lightfield.learn.branches import learned
 
         result = learned(seeds, steps, seed)
     with staged(out) as part:

@@ -9,9 +9,8 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from talbot.base.progress import each
+from talbot.flow.lightfield.learn.samples import light_fields
 from talbot.models.reconstruct.sparse import Dictionary, learn
-
-from .samples import light_fields
 
 PATCH = 9, 9  # px, as the thesis's
 PATCHES = 800  # of a scene

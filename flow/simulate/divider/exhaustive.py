@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 from tqdm import tqdm
 
+from talbot.flow.simulate.divider.simulator import DividerRun, program, simulate
 from talbot.models.digital.divider import QuadResult, phase_error
 from talbot.models.digital.phase import divide
 from talbot.models.parameters import DIVIDERS, ChipParameters, SensorParameters, check_int
@@ -27,8 +28,6 @@ from talbot.models.parameters.divider import (
 )
 from talbot.rtl.export import translate
 from talbot.rtl.quad_divider import quad_divider, ratio_bits, timing
-
-from .simulator import DividerRun, program, simulate
 
 SEED, NOISE_FLOOR = 2**62 + 5, 100  # of the second run
 SCRAMBLE = 0x2545F  # odd: i -> i * SCRAMBLE mod 2^18 visits every input once

@@ -1,10 +1,10 @@
 """The byte stream that leaves the chip: golden encoder, decoder, and the command that decodes a file."""
 
-from .decode import decode_stream, iterate_frames
-from .encode import encode_frame, encode_marked, encode_payload, segments, whole_bytes
-from .file import decode_file
-from .frame import DecodedFrame
-from .header import StreamError, StreamHeader
+from talbot.models.digital.stream.decode import decode_stream, iterate_frames
+from talbot.models.digital.stream.encode import encode_frame, encode_marked, encode_payload, segments, whole_bytes
+from talbot.models.digital.stream.file import decode_file
+from talbot.models.digital.stream.frame import DecodedFrame
+from talbot.models.digital.stream.header import StreamError, StreamHeader
 
 __all__ = [
     "DecodedFrame",

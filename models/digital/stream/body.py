@@ -3,11 +3,10 @@
 import numpy as np
 import numpy.typing as npt
 
+from talbot.models.digital.stream.frame import DecodedFrame
+from talbot.models.digital.stream.payload import base_of, decode_rows, one_byte_changes
+from talbot.models.digital.stream.trailer import Trailer, frame_crc, read_trailer
 from talbot.models.parameters.stream_format import CRC, HEADER_BYTES, TRAILER_BYTES
-
-from .frame import DecodedFrame
-from .payload import base_of, decode_rows, one_byte_changes
-from .trailer import Trailer, frame_crc, read_trailer
 
 
 class Body:

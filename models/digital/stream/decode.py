@@ -5,15 +5,14 @@ from typing import NamedTuple
 
 import numpy as np
 
+from talbot.models.digital.stream.body import Body
+from talbot.models.digital.stream.frame import DecodedFrame
+from talbot.models.digital.stream.header import Layout, StreamError, StreamHeader, read_header
+from talbot.models.digital.stream.payload import frame_ends
+from talbot.models.digital.stream.resync import Search
+from talbot.models.digital.stream.trailer import Trailer
 from talbot.models.parameters import ParameterError, TileParameters
 from talbot.models.parameters.stream_format import COUNTED_BYTES, HEADER_BYTES, MAGIC, TRAILER_BYTES
-
-from .body import Body
-from .frame import DecodedFrame
-from .header import Layout, StreamError, StreamHeader, read_header
-from .payload import frame_ends
-from .resync import Search
-from .trailer import Trailer
 
 MEMORY_MAX = 1 << 30  # bytes of samples that decode_stream returns at most
 SEARCH_MAX = 1 << 28, 64  # tokens decoded on trial to find segments again, at most: a constant, and for each byte

@@ -5,11 +5,10 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 import numpy.typing as npt
 
+from talbot.models.digital.stream.header import StreamHeader
+from talbot.models.digital.stream.payload import base_of, encode_rows, encode_segment, row_bytes_max
+from talbot.models.digital.stream.trailer import row_mark, trailer
 from talbot.models.parameters import ParameterError, TileParameters
-
-from .header import StreamHeader
-from .payload import base_of, encode_rows, encode_segment, row_bytes_max
-from .trailer import row_mark, trailer
 
 
 def encode_frame(

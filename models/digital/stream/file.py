@@ -2,11 +2,10 @@
 
 from pathlib import Path
 
+from talbot.models.digital.stream.decode import decode_stream
+from talbot.models.digital.stream.frame import DecodedFrame
+from talbot.models.digital.stream.header import StreamError
 from talbot.models.parameters import TileParameters
-
-from .decode import decode_stream
-from .frame import DecodedFrame
-from .header import StreamError
 
 
 def decode_file(path: str | Path, tile: TileParameters = TileParameters()) -> list[DecodedFrame]:

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from .header import Layout, StreamHeader
+from talbot.models.digital.stream.header import Layout, StreamHeader
 
 
 @dataclass(eq=False)

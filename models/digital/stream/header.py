@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from talbot.models.digital.scan import Scan
+from talbot.models.digital.stream.crc import one_byte_errors
 from talbot.models.parameters import (
     COLS_MAX,
     LANES,
@@ -32,8 +33,6 @@ from talbot.models.parameters.stream_format import (
     SEGMENT_BYTES,
     VERSION,
 )
-
-from .crc import one_byte_errors
 
 
 class StreamError(ParameterError):

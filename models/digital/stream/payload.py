@@ -11,9 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 from talbot.models.compiled import njit
+from talbot.models.digital.stream.crc import CRC16_AFTER, CRC16_START, CRC32_BACK, CRC32_TABLE
 from talbot.models.parameters.stream_format import COUNTED_BYTES, COUNTS, MAGIC, TRAILER_BYTES, TRAILER_ROW
-
-from .crc import CRC16_AFTER, CRC16_START, CRC32_BACK, CRC32_TABLE
 
 DENSE = 4  # a smaller threshold is under the noise, where a zero is about as frequent as the values next to it
 K_MAX, R2_MAX, CREDIT_MAX = 48, 7, 255

@@ -8,11 +8,10 @@ trial is accepted when that row is plausible and the segment (or trailer) after 
 import numpy as np
 import numpy.typing as npt
 
+from talbot.models.digital.stream.header import Layout
+from talbot.models.digital.stream.payload import check_segment, find_segment, row_bytes_max, segment_fits
 from talbot.models.parameters import ROWS_MAX
 from talbot.models.parameters.stream_format import COUNTED_BYTES
-
-from .header import Layout
-from .payload import check_segment, find_segment, row_bytes_max, segment_fits
 
 
 class Search:

@@ -3,6 +3,7 @@
 import zlib
 from typing import NamedTuple
 
+from talbot.models.digital.stream.crc import crc16
 from talbot.models.parameters import check_int
 from talbot.models.parameters.stream_format import (
     COUNTED_BYTES,
@@ -13,8 +14,6 @@ from talbot.models.parameters.stream_format import (
     TRAILER_BYTES,
     TRAILER_ROW,
 )
-
-from .crc import crc16
 
 
 class Trailer(NamedTuple):

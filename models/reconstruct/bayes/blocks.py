@@ -10,8 +10,7 @@ import numpy.typing as npt
 from numpy.lib.stride_tricks import sliding_window_view
 
 from talbot.models.parameters import TileParameters
-
-from .windows import Axis, Group, even
+from talbot.models.reconstruct.bayes.windows import Axis, Group, even
 
 Floats = npt.NDArray[np.floating]
 Ints = npt.NDArray[np.int64]

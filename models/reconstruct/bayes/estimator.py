@@ -18,16 +18,15 @@ from threadpoolctl import threadpool_limits
 
 from talbot.models.parameters import ParameterError, SensorParameters
 from talbot.models.pixel.weights import view_weights
-
-from .blocks import Blocks, Kind, Pair, kind
-from .covariance import Covariances, Tables
-from .evidence import REACH, Residuals, badness, pooled, probability, whitener
-from .hypotheses import Hypotheses
-from .planes import Plane, Window, texture_points
-from .prior import FieldPrior
-from .scene import Factor, Solver, Ways, factor, raised, shares_of
-from .slants import Slant, slants_of
-from .windows import Axis, Group, Windows
+from talbot.models.reconstruct.bayes.blocks import Blocks, Kind, Pair, kind
+from talbot.models.reconstruct.bayes.covariance import Covariances, Tables
+from talbot.models.reconstruct.bayes.evidence import REACH, Residuals, badness, pooled, probability, whitener
+from talbot.models.reconstruct.bayes.hypotheses import Hypotheses
+from talbot.models.reconstruct.bayes.planes import Plane, Window, texture_points
+from talbot.models.reconstruct.bayes.prior import FieldPrior
+from talbot.models.reconstruct.bayes.scene import Factor, Solver, Ways, factor, raised, shares_of
+from talbot.models.reconstruct.bayes.slants import Slant, slants_of
+from talbot.models.reconstruct.bayes.windows import Axis, Group, Windows
 
 Floats = npt.NDArray[np.floating]
 # What differs between the views, times its mean over what is not known, which shrinks it: by leaves and a tilted plane

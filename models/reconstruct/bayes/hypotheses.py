@@ -5,12 +5,12 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
-from .blocks import Blocks, Kind, Pair, kind
-from .evidence import Residuals, badness, pooled
-from .prior import FieldPrior
-from .scene import Solver
-from .slants import Slant, along, moved
-from .windows import Windows
+from talbot.models.reconstruct.bayes.blocks import Blocks, Kind, Pair, kind
+from talbot.models.reconstruct.bayes.evidence import Residuals, badness, pooled
+from talbot.models.reconstruct.bayes.prior import FieldPrior
+from talbot.models.reconstruct.bayes.scene import Solver
+from talbot.models.reconstruct.bayes.slants import Slant, along, moved
+from talbot.models.reconstruct.bayes.windows import Windows
 
 Floats = npt.NDArray[np.floating]
 

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from .prior import FieldPrior
+from talbot.models.reconstruct.bayes.prior import FieldPrior
 
 Floats = npt.NDArray[np.floating]
 Ints = npt.NDArray[np.int64]

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from scipy.linalg import cho_factor, cho_solve
 from scipy.ndimage import gaussian_filter
 
-from .evidence import Residuals
+from talbot.models.reconstruct.bayes.evidence import Residuals
 
 Floats = npt.NDArray[np.floating]
 Ints = npt.NDArray[np.int64]

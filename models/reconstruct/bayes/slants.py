@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.ndimage import gaussian_filter, gaussian_filter1d
 
-from .evidence import REACH
+from talbot.models.reconstruct.bayes.evidence import REACH
 
 Floats = npt.NDArray[np.floating]
 Slant = tuple[float, float]

@@ -9,11 +9,10 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from talbot.models.parameters import LIFE_SIZE, CameraParameters
-
-from ..light_field import LightField
-from ..light_field_file import read_light_field
-from ..sampling import Sampling
-from ..scene import Scene
+from talbot.models.scene.light_field import LightField
+from talbot.models.scene.light_field_file import read_light_field
+from talbot.models.scene.sampling import Sampling
+from talbot.models.scene.scene import Scene
 
 FOLDER = Path(__file__).parent
 MANIFEST = "rendered.json"

@@ -9,8 +9,7 @@ from PIL import Image
 
 from talbot.models.parameters import CameraParameters, ParameterError
 from talbot.models.scene import Sampling, load
-
-from .focused import focused
+from talbot.models.scene.test.focused import focused
 
 SMALL = focused(Sampling(rows=16, cols=24), 0.0)
 TIFF = b"II*\0\x08\0\0\0"  # of a TIFF or DNG, whose directory is cut

@@ -14,8 +14,7 @@ from PIL import Image
 from talbot.models.parameters import ParameterError
 from talbot.models.scene import Sampling, load, open_clip, tiff_file
 from talbot.models.scene.picture_file import decode16, header_of, read_codes, read_luminance, read_picture
-
-from .focused import focused
+from talbot.models.scene.test.focused import focused
 
 SHAPE = 10, 14
 Y, X = np.mgrid[: SHAPE[0], : SHAPE[1]]

@@ -6,8 +6,7 @@ import pytest
 from talbot.models.parameters import CameraParameters, ParameterError
 from talbot.models.scene import Sampling, Scene, load, scenes
 from talbot.models.scene.rendered import RENDERED
-
-from .focused import focused
+from talbot.models.scene.test.focused import focused
 
 OWN = [name for name in scenes if name not in RENDERED]  # whose views are as many as asked
 SMALL = Sampling(rows=24, cols=36)

@@ -22,9 +22,8 @@ from talbot.models.parameters import (
 )
 from talbot.models.parameters.registers import register_map
 from talbot.rtl.asp_chip import AspChip, AspChipFL
+from talbot.rtl.asp_chip.test.chip_bench import ChipBench
 from talbot.rtl.harness.testbench import build
-
-from .chip_bench import ChipBench
 
 ROWS, COLS, LANES = 8, 13, 2
 SENSOR = SensorParameters(array=ArrayParameters(ROWS, COLS), chip=ChipParameters(lanes=LANES))

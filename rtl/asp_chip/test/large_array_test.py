@@ -13,9 +13,8 @@ from talbot.models.parameters import (
     Window,
 )
 from talbot.rtl.asp_chip import AspChip
+from talbot.rtl.asp_chip.test.chip_bench import ChipBench
 from talbot.rtl.harness.testbench import build
-
-from .chip_bench import ChipBench
 
 TILES = [(255, 255), (0, 85), (170, 0)]  # every bit of an address rises and falls
 

@@ -20,9 +20,8 @@ from talbot.models.parameters import (
 )
 from talbot.models.parameters.registers import array_resets, register_map
 from talbot.rtl.asp_chip import AspChip
+from talbot.rtl.asp_chip.test.chip_bench import ChipBench
 from talbot.rtl.harness.testbench import build
-
-from .chip_bench import ChipBench
 
 CHIP = register_map()
 STATUS, OPTIONS, LOOP = (CHIP[name].byte for name in ("busy", "loop_enable", "loop_back"))

@@ -8,9 +8,8 @@ import pytest
 from talbot.models.digital.sar import convert
 from talbot.rtl.edge_adc import EdgeAdc
 from talbot.rtl.edge_adc.edge_adc_cl import LaneCycles
+from talbot.rtl.edge_adc.test.many_lanes import ManyLanes
 from talbot.rtl.harness.gates import Gates, packed, unpacked
-
-from .many_lanes import ManyLanes
 
 COPIES = 1 << 17
 

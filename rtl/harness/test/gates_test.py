@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 from talbot.rtl.harness.gates import WIDE, Gates, packed, unpacked
+from talbot.rtl.harness.test.driven_test import Counter
 from talbot.rtl.harness.testbench import build
-
-from .driven_test import Counter
 
 
 @pytest.mark.parametrize("width", [1, 8, 30])

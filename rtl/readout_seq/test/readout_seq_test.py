@@ -11,8 +11,7 @@ from talbot.models.parameters import AmpTiming, ParameterError
 from talbot.rtl.harness.reset import outputs_after_reset
 from talbot.rtl.messages import END, FRAME, ROW, SAMPLE
 from talbot.rtl.readout_seq import ReadoutSeq, ReadoutSeqCL, ReadoutSeqFL
-
-from .bench import (
+from talbot.rtl.readout_seq.test.bench import (
     AFTER_RESET,
     SMALL_TILE,
     Bench,

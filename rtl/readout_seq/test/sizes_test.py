@@ -11,8 +11,17 @@ import pytest
 
 from talbot.models.parameters import LANES, TileParameters
 from talbot.rtl.readout_seq import ReadoutSeq
-
-from .bench import AFTER_RESET, Bench, Record, Size, check, check_given_up, messages, randomly, simulator
+from talbot.rtl.readout_seq.test.bench import (
+    AFTER_RESET,
+    Bench,
+    Record,
+    Size,
+    check,
+    check_given_up,
+    messages,
+    randomly,
+    simulator,
+)
 
 OFFSETS = [(decimation, offset) for decimation in (1, 2, 3) for offset in range(1 << decimation)]
 

@@ -20,8 +20,7 @@ from talbot.models.parameters.registers import array_resets, register_map
 from talbot.rtl.harness.reset import outputs_after_reset
 from talbot.rtl.harness.testbench import build
 from talbot.rtl.reg_file import RegFile, RegFileFL, chip_config
-
-from .spi_host import SpiHost
+from talbot.rtl.reg_file.test.spi_host import SpiHost
 
 CHIP = register_map()
 FIRST = min(CHIP.writable())

@@ -1,6 +1,16 @@
 """Functional cover points by folder of rtl/: conditions on ports, true in the cycles that reach the point."""
 
-from . import adc_bank, amp_ctrl, asp_chip, edge_adc, phase_path, quad_divider, readout_seq, reg_file, run_length
+from talbot.verif.coverage.points import (
+    adc_bank,
+    amp_ctrl,
+    asp_chip,
+    edge_adc,
+    phase_path,
+    quad_divider,
+    readout_seq,
+    reg_file,
+    run_length,
+)
 
 POINTS = {
     "adc_bank": adc_bank.POINTS,

@@ -1,8 +1,7 @@
 """Cover points of AdcBank."""
 
 from talbot.rtl.messages import END, FRAME, ROW, SAMPLE
-
-from ..ports import Mask, Points, Recorded
+from talbot.verif.coverage.ports import Mask, Points, Recorded
 
 
 def _taken(p: Recorded) -> Mask:

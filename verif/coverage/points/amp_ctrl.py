@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..ports import Mask, Points, Recorded, Values
+from talbot.verif.coverage.ports import Mask, Points, Recorded, Values
 
 DURATIONS = "t_reset", "t_int", "t_cm", "t_settle", "t_read", "t_guard"
 

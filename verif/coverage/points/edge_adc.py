@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..ports import Mask, Points, Recorded
+from talbot.verif.coverage.ports import Mask, Points, Recorded
 
 
 def _taken(p: Recorded) -> Mask:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..ports import Mask, Points, Recorded, Values
+from talbot.verif.coverage.ports import Mask, Points, Recorded, Values
 
 
 def _signed(values: Values) -> Values:

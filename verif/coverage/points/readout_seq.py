@@ -1,8 +1,7 @@
 """Cover points of ReadoutSeq."""
 
 from talbot.rtl.messages import END, FRAME, ROW, SAMPLE
-
-from ..ports import Mask, Points, Recorded
+from talbot.verif.coverage.ports import Mask, Points, Recorded
 
 
 def _started(p: Recorded) -> Mask:

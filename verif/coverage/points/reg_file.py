@@ -3,9 +3,8 @@
 from collections.abc import Callable
 
 from talbot.models.parameters.registers import register_map
-
-from ..ports import Mask, Points, Recorded
-from ..spi import transfers, where
+from talbot.verif.coverage.ports import Mask, Points, Recorded
+from talbot.verif.coverage.spi import transfers, where
 
 CHIP = register_map()
 

@@ -3,8 +3,7 @@
 import numpy as np
 
 from talbot.rtl.messages import END, FRAME, ROW, SAMPLE
-
-from ..ports import Mask, Points, Recorded, Values
+from talbot.verif.coverage.ports import Mask, Points, Recorded, Values
 
 
 def _in(p: Recorded) -> Mask:

@@ -7,8 +7,7 @@ import pytest
 
 from talbot.flow.layout.parasitics.capacitance import capacitances
 from talbot.flow.layout.parasitics.extract import floating, with_fill_floating
-
-from .planted import M1, M2, M3, TECH, VIA, net, planted
+from talbot.flow.layout.parasitics.test.planted import M1, M2, M3, TECH, VIA, net, planted
 
 TYPICAL = TECH.wires["typ"]
 AS_MAGIC = replace(TYPICAL, rate=0.02, screening=0.0, norm=1.0)  # Magic's model: everything adds

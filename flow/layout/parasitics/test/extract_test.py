@@ -11,9 +11,8 @@ from talbot.flow.layout.netlist.netlist import Instance, Netlist, Port
 from talbot.flow.layout.parasitics.capacitance import capacitances
 from talbot.flow.layout.parasitics.extract import extract
 from talbot.flow.layout.parasitics.shapes import shapes
+from talbot.flow.layout.parasitics.test.planted import CONTACT, DEVICES, LI, M1, M2, POLY, TECH, VIA, draw, net
 from talbot.flow.layout.timing.spef import spef
-
-from .planted import CONTACT, DEVICES, LI, M1, M2, POLY, TECH, VIA, draw, net
 
 MCON = TECH.vias[0].gds
 CORNERS = [TECH.wires[name] for name in ("typ", "min", "max")]

@@ -11,8 +11,7 @@ from talbot.base.gds import write_gds
 from talbot.base.tools import finish
 from talbot.flow.layout.parasitics.capacitance import capacitances
 from talbot.flow.layout.parasitics.shapes import shapes
-
-from .planted import DEVICES, M1, M2, M3, TECH, layout
+from talbot.flow.layout.parasitics.test.planted import DEVICES, M1, M2, M3, TECH, layout
 
 TECHNOLOGY = Path(os.environ.get("PDK_ROOT", "/nowhere")) / "sky130A" / "libs.tech" / "magic" / "sky130A.tech"
 SCRIPT = """drc off

@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
+from talbot.flow.layout.parasitics.test.planted import DEVICES, M1, M2, M3, TECH, VIA, VIA2, planted
 from talbot.flow.layout.parasitics.trees import LEAST_OHM, trees
-
-from .planted import DEVICES, M1, M2, M3, TECH, VIA, VIA2, planted
 
 WIRES = TECH.wires["typ"]
 VIAS = [DEVICES.vias[0].lef, *(via.lef for via in TECH.vias)]

@@ -2,10 +2,9 @@
 
 from dataclasses import replace
 
+from talbot.flow.layout.sensor.routing import BRANCH
 from talbot.flow.layout.steps.antenna import Antenna
 from talbot.platforms.layout import LayoutPlatform
-
-from ..routing import BRANCH
 
 
 class DieAntenna(Antenna):

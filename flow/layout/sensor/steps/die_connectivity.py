@@ -4,15 +4,14 @@ import json
 from typing import Any
 
 from talbot.base.steps import Files, Step
+from talbot.flow.layout.sensor import connectivity
+from talbot.flow.layout.sensor.decoupling import CELL
+from talbot.flow.layout.sensor.ring import Frame
+from talbot.flow.layout.sensor.steps.die_gds import corners, turned
 from talbot.flow.layout.steps.parameters import PdkParameters
 from talbot.platforms.die import top_metal
 from talbot.platforms.layout import layout_platform
 from talbot.platforms.pads import pad_process
-
-from .. import connectivity
-from ..decoupling import CELL
-from ..ring import Frame
-from .die_gds import corners, turned
 
 
 class DieConnectivity(Step[PdkParameters]):

@@ -8,15 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 from talbot.base.gds import read_gds, write_gds
 from talbot.base.steps import Files, Step, StepError
+from talbot.flow.layout.sensor import decoupling
+from talbot.flow.layout.sensor.plan import BLOCKS, CORE, ORIENTATIONS
+from talbot.flow.layout.sensor.ring import Frame
 from talbot.flow.layout.sensor.rules import RoutingRules
+from talbot.flow.layout.sensor.steps.die_plan import TOP
 from talbot.platforms.die import top_metal
 from talbot.platforms.layout import layout_platform
 from talbot.platforms.pads import pad_process
-
-from .. import decoupling
-from ..plan import BLOCKS, CORE, ORIENTATIONS
-from ..ring import Frame
-from .die_plan import TOP
 
 if TYPE_CHECKING:
     import klayout.db as kdb

@@ -7,11 +7,10 @@ from typing import Any
 import numpy as np
 
 from talbot.base.steps import Files, Step
+from talbot.flow.layout.sensor.array_drop import drops, mesh
 from talbot.models.parameters import ArrayParameters
 from talbot.platforms.die import top_metal
 from talbot.platforms.layout import layout_platform
-
-from ..array_drop import drops, mesh
 
 
 @dataclass(frozen=True)

@@ -6,11 +6,10 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from talbot.base.steps import Files, Step
+from talbot.flow.layout.sensor import coupling, elmore
+from talbot.flow.layout.sensor.plan import CORE
 from talbot.platforms.extraction import extraction_platform
 from talbot.platforms.layout import layout_platform
-
-from .. import coupling, elmore
-from ..plan import CORE
 
 
 @dataclass(frozen=True)

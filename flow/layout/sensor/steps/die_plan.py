@@ -6,18 +6,17 @@ from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
 from talbot.base.steps import Files, Step
+from talbot.flow.layout.sensor import arrange, decoupling, ring, routing, supplies, verilog
+from talbot.flow.layout.sensor.analog import check
+from talbot.flow.layout.sensor.arrange import Arranged
+from talbot.flow.layout.sensor.plan import BLOCKS, CORE, Block, DieParameters, driver, nm
+from talbot.flow.layout.sensor.ring import Frame, Pads, Place
 from talbot.flow.layout.sensor.rules import RoutingRules
+from talbot.flow.layout.sensor.shapes import Shape, drawn
 from talbot.platforms.die import top_metal
 from talbot.platforms.layers import Layer
 from talbot.platforms.layout import layout_platform
 from talbot.platforms.pads import pad_process
-
-from .. import arrange, decoupling, ring, routing, supplies, verilog
-from ..analog import check
-from ..arrange import Arranged
-from ..plan import BLOCKS, CORE, Block, DieParameters, driver, nm
-from ..ring import Frame, Pads, Place
-from ..shapes import Shape, drawn
 
 TOP = "asp_sensor"
 COUNTS = "utilization", "nets", "routed", "abutted", "tracks", "pads"

@@ -10,9 +10,8 @@ from typing import Any, ClassVar
 from talbot.base.paths import ROOT
 from talbot.base.steps import Files, Step
 from talbot.base.tools import run
+from talbot.flow.layout.sensor.plan import BLOCKS
 from talbot.flow.layout.steps.parameters import PdkParameters
-
-from ..plan import BLOCKS
 
 ARRAY = "pixel_array"
 

@@ -10,11 +10,10 @@ from talbot.base.steps import Runner, StepError
 from talbot.flow.layout.sensor.analog import check, files
 from talbot.flow.layout.sensor.plan import BLOCKS
 from talbot.flow.layout.sensor.steps.drawing import DrawnCircuits, DrawnPixels
+from talbot.flow.layout.sensor.test import small
 from talbot.models.parameters import ParameterError
 from talbot.platforms.layout import layout_platform
 from talbot.platforms.pads import pad_process
-
-from . import small
 
 pytestmark = pytest.mark.needs("layout")
 

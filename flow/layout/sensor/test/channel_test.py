@@ -10,9 +10,8 @@ from talbot.flow.layout.sensor.plan import DieParameters
 from talbot.flow.layout.sensor.routing import Branch, Tracks, trunks
 from talbot.flow.layout.sensor.rules import RoutingRules
 from talbot.flow.layout.sensor.shapes import signal
+from talbot.flow.layout.sensor.test import small
 from talbot.platforms.layout import layout_platform
-
-from . import small
 
 KNOWN = layout_platform("sky130")
 ROUTING_RULES = RoutingRules.of(KNOWN, small.RULES)

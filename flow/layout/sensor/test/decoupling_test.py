@@ -7,9 +7,8 @@ import pytest
 from talbot.base.gds import db, read_gds
 from talbot.flow.layout.sensor import decoupling
 from talbot.flow.layout.sensor.plan import Block, DieParameters
+from talbot.flow.layout.sensor.test import small
 from talbot.platforms.pads import pad_process
-
-from . import small
 
 pytestmark = pytest.mark.needs("layout")
 

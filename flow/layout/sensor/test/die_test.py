@@ -15,10 +15,9 @@ from talbot.base.tools import finish
 from talbot.flow.layout.geometry.abstract import ports
 from talbot.flow.layout.sensor import arrange
 from talbot.flow.layout.sensor.plan import CORE, ORIENTATIONS, SIGNALS, SUPPLIES, DieParameters
+from talbot.flow.layout.sensor.test import small
 from talbot.models.parameters import ParameterError
 from talbot.pixels.blocks import blocks
-
-from . import small
 
 pytestmark = pytest.mark.needs("layout")
 

@@ -11,10 +11,9 @@ from talbot.flow.layout.report.metrics import broken
 from talbot.flow.layout.sensor.die import lay_out_die
 from talbot.flow.layout.sensor.metrics import RULES
 from talbot.flow.layout.sensor.plan import BLOCKS, DieParameters
+from talbot.flow.layout.sensor.test import small
 from talbot.flow.layout.steps.library import Library
 from talbot.platforms.wires import CORNERS
-
-from . import small
 
 pytestmark = pytest.mark.needs("layout")
 

@@ -11,11 +11,10 @@ from talbot.flow.layout.sensor.routing import STUB
 from talbot.flow.layout.sensor.steps.die_antenna import DieAntenna
 from talbot.flow.layout.sensor.steps.die_parasitics import DieParasitics, DieParasiticsParameters
 from talbot.flow.layout.sensor.steps.die_sta import over
+from talbot.flow.layout.sensor.test import small
 from talbot.flow.layout.steps.parameters import PdkParameters
 from talbot.platforms.extraction import extraction_platform
 from talbot.platforms.layout import layout_platform
-
-from . import small
 
 pytestmark = pytest.mark.needs("layout")
 

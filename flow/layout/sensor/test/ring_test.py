@@ -21,9 +21,8 @@ from talbot.flow.layout.sensor.ring import (
     ring,
     signal,
 )
+from talbot.flow.layout.sensor.test import small
 from talbot.platforms.pads import pad_process
-
-from . import small
 
 pytestmark = pytest.mark.needs("layout")
 
