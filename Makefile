@@ -10,7 +10,7 @@ TESTS_READY := $(VENV)/.tests-ready
 RENDER_READY := $(VENV)/.render-ready
 LAYOUT_READY := $(VENV)/.layout-ready
 LINT_READY := $(VENV)/.lint-ready
-# A user's own settings change nothing here (base/environment.py), PYTHONDONTWRITEBYTECODE of containers' images among
+# A user's own settings change nothing here (talbot/base/environment.py), PYTHONDONTWRITEBYTECODE of containers' images among
 # them: each of the tests' many processes would compile every module again
 unexport $(filter-out PYTHON PYTHONPYCACHEPREFIX PYTHONUNBUFFERED,$(filter PYTHON% PYTEST_%,$(.VARIABLES)))
 unexport MPLBACKEND BASH_ENV ENV CDPATH GREP_OPTIONS GREP_COLOR POSIXLY_CORRECT LD_PRELOAD LANGUAGE
@@ -46,7 +46,7 @@ help:
 $(READY): requirements/run.lock pyproject.toml requirements/venv.sh
 	@bash requirements/venv.sh '$(PYTHON)' '$(VENV)' '$@' requirements/run.lock
 
-# Before packages or tools are installed for them, a command's arguments are checked (base/check.py): the target's recipe
+# Before packages or tools are installed for them, a command's arguments are checked (talbot/base/check.py): the target's recipe
 # once more, with everything taken for ready
 HAVE := $(READY) $(VIDEO_READY) $(TESTS_READY) $(RENDER_READY) $(LAYOUT_READY) $(LINT_READY) have-tools
 CHECK = $(if $(filter-out $(PLAIN),$(GOALS)),MAKELEVEL=0 TALBOT_CHECK=1 $(MAKE) -s $(HAVE:%=-o %) $(filter-out $(PLAIN),$(GOALS)),true)

@@ -1,1 +1,1 @@
-"""Steps from files to files: Verilog -> simulator -> stream -> pictures -> report. Knows no object of rtl."""
+"""Place and route: Verilog to GDS, sign-off of it, energy, die and hand-off."""

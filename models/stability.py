@@ -1,6 +1,6 @@
 """Stiff and extreme cases of the optical models: what is expected of each, and what is measured.
 
-Run with NumPy's warnings as errors (as flow/stability.py does): no case may warn or produce a NaN.
+Run with NumPy's warnings as errors (as verif/stability.py does): no case may warn or produce a NaN.
 """
 
 import tempfile

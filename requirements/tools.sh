@@ -3,7 +3,7 @@
 # ngspice, OpenSTA and KLayout; for a foundry's cells a Yosys with Tcl; for tests Magic and Tcl; for waves
 # as FST the headers of zlib and lz4; for make cosim ngspice as a library.
 # As root they are installed. As another user apt fetches and verifies them with folders of its own, and they are
-# unpacked in the user's cache: the system is not touched. base/environment.py adds them to PATH.
+# unpacked in the user's cache: the system is not touched. talbot/base/environment.py adds them to PATH.
 # With --missing [COMMAND ...] only where one of the commands, by default those of cells and layouts, is missing; the
 # command line BEFORE, which checks what they are for, must succeed then. With --library PACKAGE FOLDER alone the
 # libraries of PACKAGE of another release, unpacked in FOLDER, for a program that asks for them (venv.sh).

@@ -71,7 +71,7 @@ done < <("$folder/bin/python" -m pip config list | "$folder/bin/python" -c "$reg
 export PIP_CONFIG_FILE=/dev/null
 
 # OpenROAD's wheel is for x86-64 with glibc 2.38 and later. A system with an older one gets the wheel and the C library of
-# its next release in a folder of the environment, from which base/openroad.py runs it
+# its next release in a folder of the environment, from which talbot/base/openroad.py runs it
 openroad_fits() { [ "$(printf '%s\n' 2.38 "$1" | sort -V | sed -n 1p)" = 2.38 ]; }
 requirements=() unpacked="" native=""
 for lock in "$@"; do

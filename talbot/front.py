@@ -22,31 +22,35 @@ class Command(NamedTuple):
 
 GROUPS: dict[str, dict[str, Command]] = {
     "Start here": {
-        "sim": Command("a photograph through the models and the chip's Verilog", "flow.frame.command"),
-        "sensor": Command("write the default sensor as a file to edit, for SENSOR= of other commands", "flow.sensor"),
+        "sim": Command("a photograph through the models and the chip's Verilog", "imaging.frame.command"),
+        "sensor": Command(
+            "write the default sensor as a file to edit, for SENSOR= of other commands", "imaging.sensor"
+        ),
         "setup": Command("install all packages that tests need into .venv"),
         "test": Command("the fast tests of every model and block"),
     },
     "Pictures": {
-        "lightfield": Command("light field, refocused pictures and depth of a frame", "flow.lightfield.command"),
-        "depth": Command("time of flight: a depth map, unwrapped by the light field", "flow.depth.command"),
-        "polar": Command("angle and degree of polarization, highlights separated", "flow.polar.command"),
-        "sequence": Command("a clip or a folder of pictures, frame after frame", "flow.sequence.command"),
-        "calibrate": Command("pixel types, offsets and lens estimated from bench frames", "flow.calibrate.command"),
-        "tradeoff": Command("error against run time: tables and plots", "flow.tradeoff.command"),
-        "stability": Command("stiff and extreme cases of all subjects: bounds and measured figures", "flow.stability"),
-        "decode": Command("the chip's byte stream to samples, as .npz", "flow.decode"),
-        "render": Command("render the shipped scenes again with Mitsuba 3", "flow.render.command"),
+        "lightfield": Command("light field, refocused pictures and depth of a frame", "imaging.lightfield.command"),
+        "depth": Command("time of flight: a depth map, unwrapped by the light field", "imaging.depth.command"),
+        "polar": Command("angle and degree of polarization, highlights separated", "imaging.polar.command"),
+        "sequence": Command("a clip or a folder of pictures, frame after frame", "imaging.sequence.command"),
+        "calibrate": Command("pixel types, offsets and lens estimated from bench frames", "imaging.calibrate.command"),
+        "tradeoff": Command("error against run time: tables and plots", "imaging.tradeoff.command"),
+        "stability": Command("stiff and extreme cases of all subjects: bounds and measured figures", "verif.stability"),
+        "decode": Command("the chip's byte stream to samples, as .npz", "imaging.decode"),
+        "render": Command("render the shipped scenes again with Mitsuba 3", "imaging.render.command"),
     },
     "Pixel and analog": {
-        "pixel": Command("search and solve the gratings of a pixel in a process's metal", "flow.pixel.command"),
+        "pixel": Command("search and solve the gratings of a pixel in a process's metal", "pixels.response.command"),
         "pixel-layout": Command(
-            "layout of the 24 pixel types and the array, with DRC and LVS", "flow.pixel_layout.command"
+            "layout of the 24 pixel types and the array, with DRC and LVS", "pixels.pixel_layout.command"
         ),
-        "pixel-circuit": Command("the pixel in ngspice: full well, gain, noise, lag", "flow.pixel_circuit.command"),
-        "analog": Command("amplifier and converter in ngspice: corners, mismatch, datasheet", "flow.analog.command"),
-        "analog-layout": Command("their layout, with DRC, LVS and extracted parasitics", "flow.analog_layout.command"),
-        "cosim": Command("a row of pixels: Verilog and ngspice in lock-step", "flow.cosim.command"),
+        "pixel-circuit": Command("the pixel in ngspice: full well, gain, noise, lag", "pixels.pixel_circuit.command"),
+        "analog": Command(
+            "amplifier and converter in ngspice: corners, mismatch, datasheet", "pixels.datasheet.command"
+        ),
+        "analog-layout": Command("their layout, with DRC, LVS and extracted parasitics", "pixels.post_layout.command"),
+        "cosim": Command("a row of pixels: Verilog and ngspice in lock-step", "verif.cosim.command"),
         "footprints": Command("LEF and GDS outlines of the analog blocks", "pixels.footprints"),
     },
     "Silicon": {
@@ -71,7 +75,7 @@ GROUPS: dict[str, dict[str, Command]] = {
     },
     "Documents": {
         "index": Command("the page with links to all results: build/index.html", "base.page.command"),
-        "document": Command("register map, pin tables and C header for a host", "flow.host.document.command"),
+        "document": Command("register map, pin tables and C header for a host", "rtl.host.document.command"),
         "site": Command("the documentation as a web site: build/site/index.html", "site.command"),
     },
     "Developers": {
@@ -83,13 +87,13 @@ GROUPS: dict[str, dict[str, Command]] = {
         "locks": Command("renew requirements/*.lock from pyproject.toml"),
         "librelane": Command("LibreLane itself on our designs"),
         "learn": Command(
-            "learn the dictionary or the two-branch network of light fields", "flow.lightfield.learn.command"
+            "learn the dictionary or the two-branch network of light fields", "imaging.lightfield.learn.command"
         ),
         "layout-sweep": Command("layouts of divider variants, plotted", "flow.layout.sweep.command"),
         "openroad-compare": Command("layouts with both cell libraries in one table", "flow.openroad.compare"),
         "cells-report": Command("the characterizer compared with a foundry's tables", "cells.report.command"),
         "cells-compact": Command("draw and check the cell library Compact", "cells.compact.command"),
-        "divider": Command("every input of a divider through its Verilog", "flow.simulate.divider.exhaustive"),
+        "divider": Command("every input of a divider through its Verilog", "imaging.simulate.divider.exhaustive"),
         "layout-timing": Command("measure the shipped cell timing again in ngspice", "flow.layout.measure_cells"),
         "cells-compact-area": Command("blocks on Compact and on SKY130's cells", "cells.compact.area"),
         "cells-compact-search": Command("search for narrower cells of Compact", "cells.compact.search"),

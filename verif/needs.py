@@ -71,7 +71,7 @@ def fst() -> bool:
     """Return whether the headers for waves as FST are installed."""
     from talbot.base.verilator import has_headers
 
-    # As flow.simulate.verilator.PACKED. What is imported here, conftest.py and with it every trace depends on
+    # As imaging.simulate.verilator.PACKED. What is imported here, conftest.py and with it every trace depends on
     return has_headers(["zlib.h", "lz4.h"])
 
 

@@ -11,11 +11,11 @@ from talbot.flow.handoff.pages import datasheet, pinout
 from talbot.flow.handoff.power import powered
 from talbot.flow.layout.block import SCRIPTS
 from talbot.flow.layout.design import Design
-from talbot.flow.layout.netlist.netlist import SUPPLIES
 from talbot.flow.layout.report.metrics import broken
 from talbot.flow.openroad.tinytapeout import PROJECTS, project_files
 from talbot.models.parameters import ParameterError
 from talbot.platforms.layout import layout_platform
+from talbot.signoff.netlist.netlist import SUPPLIES
 
 WAIVERS = Path(__file__).parent / "waivers.json"
 # suffix of build/layout/<design>/<design>.* -> folder in the archive

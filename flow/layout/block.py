@@ -12,7 +12,6 @@ from talbot.base.page import Picture
 from talbot.base.steps import Runner
 from talbot.flow.layout.chain import input_files, scripts_of
 from talbot.flow.layout.design import Design, folder_name
-from talbot.flow.layout.netlist.netlist import Netlist
 from talbot.flow.layout.options import Options
 from talbot.flow.layout.power.energy import blocks
 from talbot.flow.layout.report.metrics import broken, summarize
@@ -21,6 +20,7 @@ from talbot.flow.layout.report.picture import LayoutPicture, by_block, clock_tre
 from talbot.flow.layout.search import lay_out_smallest
 from talbot.platforms.layout import layout_platform
 from talbot.platforms.wires import wire_corner
+from talbot.signoff.netlist.netlist import Netlist
 
 RESULTS = {"gds": "fill.gds", "v": "stream_out.verilog", "lef": "lef.lef", "spef": "extraction.typ", "sdc": "sdc"}
 RESULTS |= {"drc.lyrdb": "drc.report", "foundry.lyrdb": "foundry_drc.report", "magic_drc.txt": "magic_drc.report"}

@@ -16,7 +16,6 @@ from talbot.flow.layout.steps.drc import Drc
 from talbot.flow.layout.steps.equivalence import Equivalence, EquivalenceParameters
 from talbot.flow.layout.steps.extraction import Extraction
 from talbot.flow.layout.steps.fill import Fill
-from talbot.flow.layout.steps.foundry_drc import FoundryDrc, FoundryDrcParameters, MagicDrc
 from talbot.flow.layout.steps.gate_delays import GateDelays, GateDelaysParameters
 from talbot.flow.layout.steps.gate_frames import GateFrames
 from talbot.flow.layout.steps.gate_tests import GateTests, GateTestsParameters
@@ -36,6 +35,7 @@ from talbot.flow.layout.timing.constraints import sdc
 from talbot.flow.layout.variables import Floor
 from talbot.platforms.wires import wire_corner
 from talbot.rtl.verilog import export_verilog
+from talbot.signoff.foundry_drc import FoundryDrc, FoundryDrcParameters, MagicDrc
 
 Signoff = Callable[[Design, Options], list[Step]]
 

@@ -13,7 +13,6 @@ from talbot.base.progress import Steps
 from talbot.base.sensor import add_sensor, sensor_asked
 from talbot.base.tools import ToolError
 from talbot.flow.layout.design import DESIGNS, flat_design
-from talbot.flow.layout.geometry.merge import merge
 from talbot.flow.layout.varied import VARIED
 from talbot.flow.openroad.results import broken, summarize
 from talbot.flow.openroad.signoff import check, checks
@@ -21,6 +20,7 @@ from talbot.flow.openroad.stages import missing_tools, pdk_root, stages, wire_co
 from talbot.flow.openroad.stages import run as run_stages
 from talbot.flow.openroad.write import write
 from talbot.platforms.openroad import openroad_platform
+from talbot.signoff.geometry.merge import merge
 
 # Suffixes of the contract of flow.layout -> file of the run, or of a check
 FINAL = {"lef": "final.lef", "v": "final.v", "power.v": "final.power.v", "spef": "nom.spef", "def": "final.def"}

@@ -11,8 +11,8 @@ from typing import Any
 from talbot.base import openroad
 from talbot.base.steps import Files, StepError
 from talbot.base.tools import finish
-from talbot.flow.layout.netlist.netlist import OUTPUT_PINS, Netlist
 from talbot.flow.layout.steps.corner import CornerStep
+from talbot.signoff.netlist.netlist import OUTPUT_PINS, Netlist
 
 SCRIPT = """
 read_liberty {liberty}

@@ -6,11 +6,11 @@ from pathlib import Path
 from typing import Any
 
 from talbot.base.steps import Files, Step, StepError
-from talbot.flow.layout.geometry.decks import run_deck
-from talbot.flow.layout.netlist.netlist import Instance, Netlist
 from talbot.flow.layout.steps.parameters import PdkParameters
 from talbot.flow.openroad.netlists import routed_netlist
 from talbot.platforms.openroad import openroad_platform
+from talbot.signoff.geometry.decks import run_deck
+from talbot.signoff.netlist.netlist import Instance, Netlist
 
 DEVICE = re.compile(r"^[XR](\S+) (.*) (\S+) w=(\S+) l=(\S+)$", re.I | re.M)
 SUBCIRCUIT = re.compile(r"^\.subckt (\S+) (.*?)$(.*?)^\.ends", re.I | re.M | re.S)

@@ -7,8 +7,8 @@ from typing import Any
 
 from talbot.base.steps import StepError
 from talbot.base.tools import plain, run
-from talbot.flow.layout.netlist.netlist import Buffer, Instance, Netlist, Port, named_bits, register_names
 from talbot.platforms.openroad import OpenRoadPlatform
+from talbot.signoff.netlist.netlist import Buffer, Instance, Netlist, Port, named_bits, register_names
 
 
 def write_synthesized(folder: Path, top: str, tech: OpenRoadPlatform) -> None:

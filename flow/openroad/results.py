@@ -9,7 +9,6 @@ from talbot.base.liberty.read import areas
 from talbot.base.steps import Runner
 from talbot.base.steps.versions import version
 from talbot.flow.layout.design import Design
-from talbot.flow.layout.netlist.netlist import Netlist, is_register
 from talbot.flow.layout.options import Options
 from talbot.flow.layout.report.metrics import RULES as LAYOUT_RULES
 from talbot.flow.layout.report.metrics import Attempt
@@ -17,6 +16,7 @@ from talbot.flow.layout.report.metrics import broken as breaks
 from talbot.flow.layout.report.metrics import summarize as of_steps
 from talbot.flow.layout.steps.power import wire_pf
 from talbot.platforms.openroad import WIRES, OpenRoadPlatform
+from talbot.signoff.netlist.netlist import Netlist, is_register
 
 ROUTE = re.compile(r"(?:\+ ROUTED|NEW) ([^+;]*?)(?=\bNEW\b|[+;])")
 RULES = LAYOUT_RULES | {

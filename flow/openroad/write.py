@@ -4,7 +4,6 @@ from pathlib import Path
 
 from talbot.base.files import staged
 from talbot.flow.layout.design import DESIGNS, Design
-from talbot.flow.layout.netlist.gating import ClockGate
 from talbot.flow.layout.steps.stage import SCRIPTS
 from talbot.flow.layout.timing.constraints import sdc
 from talbot.flow.layout.variables import Floor, variables
@@ -14,6 +13,7 @@ from talbot.flow.openroad.tinytapeout import PROJECTS, project_files
 from talbot.platforms.openroad import OpenRoadPlatform
 from talbot.platforms.sky130.tinytapeout import FRAME
 from talbot.rtl.verilog import export_verilog
+from talbot.signoff.netlist.gating import ClockGate
 
 
 def rtl(design: Design, folder: Path) -> str:

@@ -13,7 +13,7 @@ from talbot.platforms.optics import OpticalStack
 
 WAVELENGTHS_UM = tuple(round(0.45 + 0.025 * k, 3) for k in range(11))
 PERIODS_UM = 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.2
-SEARCH_ORDERS = 21  # shares of light within 0.007 to 0.021 of those of 101 orders: flow/pixel/README.md
+SEARCH_ORDERS = 21  # shares of light within 0.007 to 0.021 of those of 101 orders: pixels/response/README.md
 SEARCH_DEGREES = np.arange(-20, 20.1, 1.0)  # resonances between the gratings are a degree wide
 STEPS = {"period_um": 0.04, "fill": 0.07, "analyzer_fill": 0.07}
 GATES = 0.45  # share of gates: the space between two is wider than they must be

@@ -6,8 +6,8 @@ import numpy as np
 
 from talbot.api.image import png
 from talbot.api.sensor import Sensor
-from talbot.flow.decode import describe
-from talbot.flow.frame import pictures
+from talbot.imaging.decode import describe
+from talbot.imaging.frame import pictures
 from talbot.models.digital import stream
 from talbot.models.digital.stream.frame import DecodedFrame as Decoded
 from talbot.models.parameters import TileParameters

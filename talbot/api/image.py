@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 from PIL.Image import Image as Picture
 
-from talbot.flow.frame import pictures
+from talbot.imaging.frame import pictures
 
 WIDTH = 288  # px that a picture has at least
 

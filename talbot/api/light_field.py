@@ -11,11 +11,12 @@ import numpy.typing as npt
 from talbot.api.image import Image, png
 from talbot.base.files import atomic, check_file, staged
 from talbot.base.progress import say
-from talbot.flow.frame import pictures
-from talbot.flow.frame.light_field import SURE
+from talbot.imaging.frame import pictures
+from talbot.imaging.frame.light_field import SURE
 from talbot.models import reconstruct, scene
 from talbot.models.parameters import ParameterError, check_int, check_real
 from talbot.models.scene.echo import Echo
+from talbot.models.scene.light_field_file import DISPARITY
 
 NEAR, FAR = 2.5, -2.5  # px per view step: as `make lightfield` tries them
 MOST = 2000  # disparities that are tried
@@ -97,7 +98,7 @@ class LightField:
                 part = stack.enter_context(atomic(path))
             else:
                 old = [entry.name for entry in path.glob("input_Cam*")] if path.is_dir() else []
-                part = stack.enter_context(staged(path, [*old, scene.light_field_file.DISPARITY]))
+                part = stack.enter_context(staged(path, [*old, DISPARITY]))
             clipped = scene.write_light_field(self.data, part, white)
         if clipped:
             say(f"{path}: {clipped}")

@@ -8,12 +8,12 @@ import numpy.typing as npt
 
 from talbot.api.image import Image, embedded, png, table
 from talbot.api.light_field import LightField
-from talbot.flow.depth.capture import capture
-from talbot.flow.depth.measure import read_depth
-from talbot.flow.frame import pictures
-from talbot.flow.frame.light_field import prior_of
-from talbot.flow.frame.result import FrameResult, GoldenResult
-from talbot.flow.polar.measure import read_polarization
+from talbot.imaging.depth.capture import capture
+from talbot.imaging.depth.measure import read_depth
+from talbot.imaging.frame import pictures
+from talbot.imaging.frame.light_field import prior_of
+from talbot.imaging.frame.result import FrameResult, GoldenResult
+from talbot.imaging.polar.measure import read_polarization
 from talbot.models.parameters import ParameterError, check_int, check_real
 from talbot.models.scene import RADIANCE_MAX
 

@@ -12,10 +12,10 @@ from talbot.api.image import Image, embedded, png, table
 from talbot.api.light_field import LightField
 from talbot.api.measured import DISPARITIES, DepthResult, PolarizationResult, depth_of, polarization_of
 from talbot.api.run_file import read_run, write_run
-from talbot.flow.frame import outputs, pictures
-from talbot.flow.frame.figures import summarize, summarize_golden
-from talbot.flow.frame.light_field import SURE, estimate
-from talbot.flow.frame.result import FrameResult, GoldenResult
+from talbot.imaging.frame import outputs, pictures
+from talbot.imaging.frame.figures import summarize, summarize_golden
+from talbot.imaging.frame.light_field import SURE, estimate
+from talbot.imaging.frame.result import FrameResult, GoldenResult
 from talbot.models.parameters import ParameterError
 from talbot.models.pixel import depth_of as depth_of_phase
 from talbot.models.scene import RADIANCE_MAX
@@ -31,7 +31,7 @@ SHOWN = ("scene", "mode", "rows", "cols", "stream_bytes", "raw_bytes", "conversi
 class Run:
     """One frame that was read out, by the chip's Verilog or by the golden model.
 
-    result: everything that was computed on the way (flow/frame/result.py).
+    result: everything that was computed on the way (imaging/frame/result.py).
     """
 
     def __init__(self, result: GoldenResult) -> None:
@@ -114,7 +114,7 @@ class Run:
         disparity (raw mode): px of the array per view step, Image (rows, cols), NaN where the mixture is not sure.
         depth (tof mode): in m, Image (rows, cols), NaN where there is no amplitude.
 
-        method: of a light field (flow/lightfield/README.md), by the name that it has in `make lightfield` and in the
+        method: of a light field (imaging/lightfield/README.md), by the name that it has in `make lightfield` and in the
         summary of `make sim`: linear (the default), direct (the thesis's), sparse, autoencoder, convolutions,
         two_branch, mixture. Of a decimated frame, and of more than 17 x 17 views, direct is the default.
         disparity: (rows, cols), px of the array per view step, for an image from edges; by default the scene's own.

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from talbot.base.files import atomic, check_file, staged
-from talbot.flow.frame.result import GoldenResult
+from talbot.imaging.frame.result import GoldenResult
 from talbot.models.parameters import ParameterError, sensor_text
 
 FORMAT = "talbot run 1"

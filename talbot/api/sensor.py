@@ -12,10 +12,10 @@ from talbot.api.light_field import LightField
 from talbot.api.run import Run
 from talbot.base.files import check_file, write
 from talbot.base.progress import Steps, line
-from talbot.flow.frame import job
-from talbot.flow.frame.chip_picture import chip_svg
-from talbot.flow.frame.request import CONVERTERS, FrameRequest, light_field_of, request
-from talbot.flow.sequence.job import results as sequence_results
+from talbot.imaging.frame import job
+from talbot.imaging.frame.chip_picture import chip_svg
+from talbot.imaging.frame.request import CONVERTERS, FrameRequest, light_field_of, request
+from talbot.imaging.sequence.job import results as sequence_results
 from talbot.models.parameters import (
     STANDARD,
     AmpTiming,

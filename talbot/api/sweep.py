@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from talbot.api.image import embedded, text
 from talbot.base.charts import own_style, save
-from talbot.flow.tradeoff.sweeps import SWEEPS, measured
+from talbot.imaging.tradeoff.sweeps import SWEEPS, measured
 from talbot.models.parameters import check_choice
 
 

@@ -10,7 +10,7 @@ import shutil
 from collections.abc import Iterator
 from pathlib import Path
 
-FOLDERS = "docs", "models", "base", "platforms", "rtl", "pixels", "cells", "flow", "verif"
+FOLDERS = "docs", "models", "rtl", "imaging", "pixels", "cells", "signoff", "flow", "verif", "talbot"
 IMAGE = re.compile(r"!\[[^\]]*\]\(([^)\s]+)\)")
 # Code, which stays as it is, or a link, perhaps with code for its words
 LINK = re.compile(r"(?ms)^```.*?^```|^ {4}.*?$|(?<!!)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)\s]+)\)|`[^`\n]+`")
@@ -21,10 +21,19 @@ PARTS = {
     "Results": ("gallery", "docs/gallery", "docs/results"),
     "Models": ("models",),
     "The chip, block by block": ("rtl",),
-    "Analog and cells": ("pixels", "cells", "platforms"),
-    "Flows": ("flow", "base"),
+    "Pictures": ("imaging",),
+    "Pixels and cells": ("pixels", "cells"),
+    "Layout": ("flow", "signoff", "talbot/platforms"),
     "Verification": ("verif",),
-    "Project": ("docs/limits", "CONTRIBUTING", "CHANGELOG", "docs/bibliography", "docs/decisions", "docs/licences"),
+    "Project": (
+        "talbot",
+        "docs/limits",
+        "CONTRIBUTING",
+        "CHANGELOG",
+        "docs/bibliography",
+        "docs/decisions",
+        "docs/licences",
+    ),
 }
 
 

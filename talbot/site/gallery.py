@@ -11,9 +11,9 @@ from skimage import data
 from talbot import Run, Sensor
 from talbot.base.animation import Animation
 from talbot.base.page import index
-from talbot.flow.frame import pictures
-from talbot.flow.lightfield.page import MOVING as VIEWS
-from talbot.flow.sequence.outputs import ANIMATIONS, SCALE
+from talbot.imaging.frame import pictures
+from talbot.imaging.lightfield.page import MOVING as VIEWS
+from talbot.imaging.sequence.outputs import ANIMATIONS, SCALE
 
 SIDE = 192
 FRAMES, STEP, FRAME_S = 16, 6, 0.1  # of the animation: px a frame, s

@@ -16,8 +16,8 @@ import talbot
 from talbot.api.run_file import BESIDE, FILE
 from talbot.base.paths import ROOT
 from talbot.commands import main
-from talbot.flow.frame import light_field as frame_light_field
-from talbot.flow.tradeoff.sweeps import SWEEPS
+from talbot.imaging.frame import light_field as frame_light_field
+from talbot.imaging.tradeoff.sweeps import SWEEPS
 from talbot.models.parameters import AmpTiming
 from talbot.models.reconstruct.methods import METHODS
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from talbot import LightField, Sensor
-from talbot.flow.frame import command
-from talbot.flow.frame.light_field import prior_of
+from talbot.imaging.frame import command
+from talbot.imaging.frame.light_field import prior_of
 
 
 @pytest.fixture

@@ -12,7 +12,7 @@ from PIL import Image
 import talbot
 from talbot.base.test.supervise_test import running, started
 from talbot.commands import main
-from talbot.flow.sequence.outputs import NAMES
+from talbot.imaging.sequence.outputs import NAMES
 from talbot.models.digital.stream import decode_file
 from talbot.test.signals_test import begun
 

@@ -13,10 +13,10 @@ from PIL import Image
 
 from talbot.base.paths import ROOT
 from talbot.commands import main
-from talbot.flow.frame.command import NAME_MAX, name_of
-from talbot.flow.frame.hardware import program
-from talbot.flow.frame.outputs import NAMES
-from talbot.flow.frame.request import request
+from talbot.imaging.frame.command import NAME_MAX, name_of
+from talbot.imaging.frame.hardware import program
+from talbot.imaging.frame.outputs import NAMES
+from talbot.imaging.frame.request import request
 
 SMALL = ("--rows", "13", "--cols", "50", "--lanes", "4")
 KEYS = {

@@ -14,9 +14,9 @@ from typing import NamedTuple
 import numpy as np
 
 from talbot.base.tools import ToolError
-from talbot.flow.simulate.build import Build
-from talbot.flow.simulate.frame import STOP, host_script, run_frame
-from talbot.flow.simulate.verilator import bench_program
+from talbot.imaging.simulate.build import Build
+from talbot.imaging.simulate.frame import STOP, host_script, run_frame
+from talbot.imaging.simulate.verilator import bench_program
 from talbot.models.afe import write_converter, write_samples
 from talbot.models.chip import front_end_of, golden_frame
 from talbot.models.digital.host import command, frame_writes, write_transfers

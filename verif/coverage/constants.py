@@ -11,9 +11,9 @@ from collections import defaultdict
 from collections.abc import Sequence
 from pathlib import Path
 
-from talbot.flow.layout.netlist.verilog import modules
 from talbot.rtl.harness.ports import Port, split
 from talbot.rtl.replay import load
+from talbot.signoff.netlist.verilog import modules
 from talbot.verif.coverage.program import tool
 
 STARTED = "started"

@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from talbot.base.tools import ToolError, finish
-from talbot.flow.simulate.build import Build
-from talbot.flow.simulate.verilator import bare_program
+from talbot.imaging.simulate.build import Build
+from talbot.imaging.simulate.verilator import bare_program
 from talbot.models.chip import GoldenFrame, golden_frame
 from talbot.models.digital.host import command, frame_writes, write_transfers
 from talbot.models.digital.pattern import PatternEnd

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from talbot.base.command import main
-from talbot.flow import decode
+from talbot.imaging import decode
 from talbot.models.digital.stream import DecodedFrame, StreamError, decode_stream
 from talbot.models.parameters import TileParameters
 from talbot.verif.fuzz.streams import Case, Sent

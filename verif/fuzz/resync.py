@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from talbot.flow.frame import job
-from talbot.flow.frame.request import request
+from talbot.imaging.frame import job
+from talbot.imaging.frame.request import request
 from talbot.models.chip import golden_frame
 from talbot.models.digital.stream import decode_stream, segments
 from talbot.models.parameters import MODES

@@ -7,10 +7,10 @@ from pathlib import Path
 
 from talbot.base.paths import PACKAGE
 from talbot.base.tools import ToolError
-from talbot.flow.layout.netlist.verilog import modules
-from talbot.flow.simulate.divider import exhaustive, simulator
+from talbot.imaging.simulate.divider import exhaustive, simulator
 from talbot.models.parameters import SensorParameters
 from talbot.rtl.replay import Trace, load
+from talbot.signoff.netlist.verilog import modules
 from talbot.verif.coverage.program import compile_program
 from talbot.verif.formal import design, manifest
 from talbot.verif.formal.proof import Proof
@@ -100,7 +100,7 @@ def judge(path: str, folder: str, mutant: Mutant) -> Judgement:
     head, verilog = mutated(path, folder)
     number = mutant.number
     if head.cls in VARIANTS and not divides_right(verilog, head, number):
-        return Judgement(KILLED, "flow/simulate/divider/test/exhaustive_test.py")
+        return Judgement(KILLED, "imaging/simulate/divider/test/exhaustive_test.py")
     if mutant.module != head.cls and the_same(verilog, mutant.module, number):
         return Judgement(EQUIVALENT)
     holding = []

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from talbot.flow.layout.netlist.verilog import modules
+from talbot.signoff.netlist.verilog import modules
 from talbot.verif.coverage.measure import sources_of
 from talbot.verif.mutation.mutants import BITS, PREPARE, Mutant, own_modules, yosys
 

@@ -11,13 +11,13 @@ import pytest
 from hypothesis import Phase, settings
 
 from talbot.base.paths import ROOT
-from talbot.flow.layout.netlist.verilog import modules
 from talbot.rtl.harness.driven import Driven
 from talbot.rtl.harness.ports import Port, ports_of
 from talbot.rtl.harness.testbench import hooked
 from talbot.rtl.harness.translate import translate_component
 from talbot.rtl.replay import Trace, whole_level
 from talbot.rtl.replay.recorder import OneLevel
+from talbot.signoff.netlist.verilog import modules
 from talbot.verif.coverage.program import compile_program
 from talbot.verif.mutation.mutants import Mutant
 

@@ -18,17 +18,17 @@ FOLDERS = (
     ("rtl/edge_adc", ("EdgeAdc",)),
     ("rtl/adc_bank", ("AdcBank",)),
     ("rtl/quad_divider", tuple(DIVIDERS.values())),
-    ("flow/simulate/divider", tuple(DIVIDERS.values())),
+    ("imaging/simulate/divider", tuple(DIVIDERS.values())),
     ("rtl/phase_path", ("PhasePath",)),
     ("rtl/run_length", ("RunLength",)),
     ("rtl/reg_file", ("RegFile",)),
     ("rtl/asp_chip", ("AspChip",)),
-    ("flow/simulate", ("AspChip",)),
+    ("imaging/simulate", ("AspChip",)),
     ("verif/faults", ("AspChip",)),
     ("models/digital/stream", (DECODER,)),
     ("verif/fuzz", (DECODER,)),
     ("models/parameters", (HOST,)),
-    ("flow/host", (HOST,)),
+    ("rtl/host", (HOST,)),
     ("models", (MODELS,)),
     ("pixels", (MODELS,)),
     ("", (FLOW,)),
@@ -52,12 +52,12 @@ def blocks_of(folder: str, test: str = "") -> tuple[str, ...]:
 def level_of(test: str) -> str:
     """Return the level of a test by its class ('...::TestVerilog::test_x'): a name of LEVELS, or ''.
 
-    What flow/simulate and verif/faults run is Verilog in Verilator, or in Icarus where the test's name says so.
+    What imaging/simulate and verif/faults run is Verilog in Verilator, or in Icarus where the test's name says so.
     """
     parts = test.split("::")
     for word, level in LEVELS if len(parts) > 2 else ():
         if word in parts[1]:
             return level
-    if parts[0].removeprefix("talbot/").startswith(("flow/simulate", "verif/faults", "flow/simulate/divider")):
+    if parts[0].removeprefix("talbot/").startswith(("imaging/simulate", "verif/faults", "imaging/simulate/divider")):
         return "Icarus" if "icarus" in parts[-1].lower() else "Verilator"
     return ""

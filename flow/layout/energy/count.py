@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from talbot.base.steps import StepError
-from talbot.flow.layout.netlist.names import plain_names
-from talbot.flow.layout.netlist.netlist import Instance, Netlist
+from talbot.signoff.netlist.names import plain_names
+from talbot.signoff.netlist.netlist import Instance, Netlist
 
 PARTS = "host", "frame", "after"  # before the chip is busy, while it is, and then
 COUNTERS = """

@@ -7,9 +7,9 @@ from functools import partial
 import numpy as np
 import numpy.typing as npt
 
-from talbot.flow.frame.job import expose, see
-from talbot.flow.frame.request import FrameRequest, request
 from talbot.flow.layout.steps.stimulus import SCENE, middle
+from talbot.imaging.frame.job import expose, see
+from talbot.imaging.frame.request import FrameRequest, request
 from talbot.models.afe import FrontEnd
 from talbot.models.afe.trim import trim_gain
 from talbot.models.chip import front_end_of

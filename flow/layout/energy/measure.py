@@ -13,23 +13,23 @@ import numpy as np
 from talbot.base.liberty.read import read
 from talbot.base.steps import Files, Step, StepError
 from talbot.base.steps.step import NoParameters
-from talbot.flow.frame.hardware import simulate
-from talbot.flow.frame.request import FrameRequest
 from talbot.flow.layout.energy.count import PARTS, counted_verilog, nets_of, read_counts
 from talbot.flow.layout.energy.frames import EVERY, EnergyFrame, Values, frame_named
-from talbot.flow.layout.netlist.netlist import Netlist
 from talbot.flow.layout.power.energy import Cells, Energy, blocks, powers
 from talbot.flow.layout.steps.corner import CornerStep
 from talbot.flow.layout.steps.power import Power as PowerStep
 from talbot.flow.layout.steps.power import PowerParameters, wire_pf
-from talbot.flow.simulate.build import Build
-from talbot.flow.simulate.frame import FrameRun, host_script, run_frame
-from talbot.flow.simulate.icarus import icarus_program
+from talbot.imaging.frame.hardware import simulate
+from talbot.imaging.frame.request import FrameRequest
+from talbot.imaging.simulate.build import Build
+from talbot.imaging.simulate.frame import FrameRun, host_script, run_frame
+from talbot.imaging.simulate.icarus import icarus_program
 from talbot.models.afe import FrontEnd, write_converter, write_samples
 from talbot.models.chip import golden_frame
 from talbot.models.digital.host import command, frame_writes, write_transfers
 from talbot.models.parameters import SensorParameters
 from talbot.models.parameters.registers import array_resets, register_map
+from talbot.signoff.netlist.netlist import Netlist
 
 UNIT_NS = 1000.0  # a "cycle" of `powers` in which uW are pJ
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from talbot.base.liberty.group import Group
 from talbot.base.steps import StepError
-from talbot.flow.layout.netlist.netlist import OUTPUT_PINS, Instance, Netlist, is_register
+from talbot.signoff.netlist.netlist import OUTPUT_PINS, Instance, Netlist, is_register
 
 CLOCK = re.compile("clk|ck|CLK")  # pins
 SLEW_NS = 0.1  # of a pin that OpenSTA has no slew for: constants

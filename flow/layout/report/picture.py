@@ -13,9 +13,9 @@ from PIL.Image import Image
 from talbot.base.gds import db, read_gds
 from talbot.base.page import data_url
 from talbot.base.style import own_style
-from talbot.flow.layout.netlist.netlist import OUTPUT_PINS, Instance, Netlist, is_register
-from talbot.flow.layout.netlist.placed import MIRRORED
 from talbot.platforms.layout import LayoutPlatform
+from talbot.signoff.netlist.netlist import OUTPUT_PINS, Instance, Netlist, is_register
+from talbot.signoff.netlist.placed import MIRRORED
 
 PALETTE = (0x43A047, 0xE53935, 0x1E88E5, 0x8E24AA, 0xF9A825, 0xEF6C00)  # metal layers, from the lowest up
 OTHERS = {"fill": 0x707A86, "diffusion": 0x6D4C41, "poly": 0xA1887F}

@@ -4,11 +4,11 @@ import sys
 from pathlib import Path
 from typing import NamedTuple
 
-from talbot.base.lef.read import read_macro
 from talbot.base.paths import ROOT
 from talbot.base.tools import run
 from talbot.flow.layout.sensor.plan import BLOCKS
 from talbot.models.parameters import ParameterError
+from talbot.signoff.black_box import extra_pins
 
 KINDS = "lef", "gds"
 
@@ -33,7 +33,7 @@ def files(folder: Path, pdk: str, analog: Path | None = None) -> AnalogFiles:
     found = {f"{block}.black_box": folder / f"{block}.lef" for block in BLOCKS}
     for block, place in circuits.items():
         found |= {f"{block}.{kind}": place / f"{block}.{kind}" for kind in KINDS}
-        check(found[f"{block}.lef"], found[f"{block}.black_box"])
+        extra_pins(found[f"{block}.lef"], found[f"{block}.black_box"])
     return AnalogFiles(found, tuple(block for block in BLOCKS if block not in circuits))
 
 
@@ -47,23 +47,3 @@ def _circuits(folder: Path) -> list[str]:
         wanted = ", ".join(lacking) or f"<block>.lef and <block>.gds of {', '.join(BLOCKS)}, or of some of them"
         raise ParameterError(f"analog = {folder}: must have {wanted}")
     return present
-
-
-def check(path: Path, black_box: Path) -> list[str]:
-    """Names of the pins that only the LEF ``path`` has: references and biases, which lead to pins of the die.
-
-    Raises ParameterError unless it has the pins of ``black_box`` with their directions.
-    """
-    own, wanted = (
-        {
-            pin.name: pin.direction.upper()
-            for pin in read_macro(file.read_text(errors="replace", encoding="utf-8")).pins.values()
-        }
-        for file in (path, black_box)
-    )
-    if lacking := [pin for pin in wanted if pin not in own]:
-        more = f" and {len(lacking) - 5} more" if len(lacking) > 5 else ""
-        raise ParameterError(f"analog = {path}: must have the pins {', '.join(lacking[:5])}{more}")
-    if other := [pin for pin in wanted if own[pin] != wanted[pin]]:
-        raise ParameterError(f"analog = {path}: its pin {other[0]} must be of DIRECTION {wanted[other[0]]}")
-    return [pin for pin in own if pin not in wanted]

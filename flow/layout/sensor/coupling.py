@@ -4,10 +4,10 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+from talbot.signoff.parasitics.capacitance import capacitances
+from talbot.signoff.parasitics.shapes import METAL_LEVEL, shapes
 
 from talbot.base.gds import db
-from talbot.flow.layout.parasitics.capacitance import capacitances
-from talbot.flow.layout.parasitics.shapes import METAL_LEVEL, shapes
 from talbot.platforms.extraction import ExtractionPlatform
 from talbot.platforms.layout import LayoutPlatform
 from talbot.platforms.wires import CORNERS

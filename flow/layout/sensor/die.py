@@ -30,7 +30,6 @@ from talbot.flow.layout.sensor.steps.die_parasitics import DieParasitics, DiePar
 from talbot.flow.layout.sensor.steps.die_plan import DiePlan, DiePlanParameters
 from talbot.flow.layout.sensor.steps.die_sta import DieSta
 from talbot.flow.layout.sensor.steps.drawing import ARRAY, DrawnCircuits, DrawnPixels
-from talbot.flow.layout.steps.foundry_drc import FoundryDrcParameters
 from talbot.flow.layout.steps.parameters import PdkParameters
 from talbot.flow.layout.steps.sta import StaParameters
 from talbot.platforms.die import top_metal
@@ -38,6 +37,7 @@ from talbot.platforms.layout import layout_platform
 from talbot.platforms.pads import pad_process
 from talbot.platforms.pixel import pixel_process
 from talbot.platforms.wires import CORNERS
+from talbot.signoff.foundry_drc import FoundryDrcParameters
 
 SENSOR, CHIP = "asp_sensor", "asp_chip"
 # Files of the chip's run that the die is given

@@ -5,9 +5,9 @@ from typing import Any
 
 from talbot.base.gds import read_gds
 from talbot.base.steps import Files, Step
-from talbot.flow.layout.geometry.antenna import violations
 from talbot.flow.layout.steps.parameters import PdkParameters
 from talbot.platforms.layout import LayoutPlatform, layout_platform
+from talbot.signoff.geometry.antenna import violations
 
 
 class Antenna(Step[PdkParameters]):

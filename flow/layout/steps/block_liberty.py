@@ -13,10 +13,10 @@ from talbot.base.liberty.read import read
 from talbot.base.liberty.write import text
 from talbot.base.steps import Files, StepError
 from talbot.base.tools import run
-from talbot.flow.layout.netlist.netlist import SUPPLIES, Netlist, supplies
 from talbot.flow.layout.power.energy import Cells
 from talbot.flow.layout.steps.corner import CornerStep
 from talbot.flow.layout.timing.boundary import CHECK_LOAD_PF, CHECK_SLEW_NS, Boundary, Sources, measure
+from talbot.signoff.netlist.netlist import SUPPLIES, Netlist, supplies
 
 SLEWS = 0.02, 0.07, 0.25, 1.0  # ns
 LOADS = 0.001, 0.006, 0.02, 0.035, 0.06, 0.2  # pF

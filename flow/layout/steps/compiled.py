@@ -3,13 +3,13 @@
 from typing import Any
 
 import numpy as np
+from talbot.signoff.parasitics.capacitance import capacitances
+from talbot.signoff.parasitics.extract import floating, with_fill_floating
+from talbot.signoff.parasitics.shapes import METAL_LEVEL, shapes
+from talbot.signoff.parasitics.trees import trees
 
 from talbot.base.gds import db
 from talbot.base.steps import Files, Step
-from talbot.flow.layout.parasitics.capacitance import capacitances
-from talbot.flow.layout.parasitics.extract import floating, with_fill_floating
-from talbot.flow.layout.parasitics.shapes import METAL_LEVEL, shapes
-from talbot.flow.layout.parasitics.trees import trees
 from talbot.flow.layout.steps.parameters import PdkParameters
 from talbot.platforms.extraction import extraction_platform
 from talbot.platforms.layout import layout_platform

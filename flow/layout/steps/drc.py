@@ -3,9 +3,9 @@
 from typing import Any
 
 from talbot.base.steps import Files, Step
-from talbot.flow.layout.geometry.decks import check_rules, hole_rules, via_rules
 from talbot.flow.layout.steps.parameters import PdkParameters
 from talbot.platforms.layout import layout_platform
+from talbot.signoff.geometry.decks import check_rules, hole_rules, via_rules
 
 WARNING = "[Warning]"
 

@@ -8,9 +8,9 @@ from typing import Any
 
 from talbot.base.steps import Files, Step
 from talbot.base.tools import run
-from talbot.flow.layout.netlist.equivalence import Pair, match
-from talbot.flow.layout.netlist.netlist import Netlist
-from talbot.flow.layout.netlist.registers import ANY, Cut
+from talbot.signoff.netlist.equivalence import Pair, match
+from talbot.signoff.netlist.netlist import Netlist
+from talbot.signoff.netlist.registers import ANY, Cut
 
 # A Liberty's flip-flop is read as two, of IQ and IQN: of these the first opt_clean keeps what its pins show
 # Registers without a load stay: a macro has those, too, that the design around it does not use

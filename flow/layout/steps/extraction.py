@@ -2,14 +2,15 @@
 
 from typing import Any
 
+from talbot.signoff.parasitics.extract import extract
+
 from talbot.base.gds import read_gds
 from talbot.base.steps import Files, Step
-from talbot.flow.layout.netlist.netlist import Netlist
-from talbot.flow.layout.parasitics.extract import extract
 from talbot.flow.layout.steps.parameters import PdkParameters
-from talbot.flow.layout.timing.spef import spef
 from talbot.platforms.extraction import extraction_platform
 from talbot.platforms.layout import layout_platform
+from talbot.signoff.netlist.netlist import Netlist
+from talbot.signoff.parasitics.spef import spef
 
 
 class Extraction(Step[PdkParameters]):

@@ -5,9 +5,9 @@ from typing import Any
 
 from talbot.base.gds import read_gds, write_gds
 from talbot.base.steps import Files, Step
-from talbot.flow.layout.geometry.fill import fill, peak_density
 from talbot.flow.layout.steps.parameters import PdkParameters
 from talbot.platforms.layout import layout_platform
+from talbot.signoff.geometry.fill import fill, peak_density
 
 
 class Fill(Step[PdkParameters]):

@@ -5,11 +5,11 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from talbot.base.steps import Files, StepError
-from talbot.flow.layout.netlist.netlist import Netlist
 from talbot.flow.layout.steps.corner import CornerStep
 from talbot.flow.layout.timing.delays import read
 from talbot.flow.layout.timing.replay import Timing, replay
 from talbot.models.parameters import check_real
+from talbot.signoff.netlist.netlist import Netlist
 
 CONSTANTS = {"zero", "one", "HI", "LO", "DIODE"}  # pins of cells without a path
 

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 from talbot.base.steps import Files, Step
 from talbot.base.steps.step import NoParameters
-from talbot.flow.simulate.build import Build
-from talbot.flow.simulate.icarus import icarus_program
+from talbot.imaging.simulate.build import Build
+from talbot.imaging.simulate.icarus import icarus_program
 
 if TYPE_CHECKING:
     import numpy as np
@@ -29,7 +29,7 @@ class GateFrames(Step[NoParameters]):
     tools = ("iverilog",)
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
-        from talbot.flow.frame.hardware import simulate
+        from talbot.imaging.frame.hardware import simulate
         from talbot.models.chip import front_end_of, golden_frame
         from talbot.models.parameters import FrameParameters, SensorParameters, Window
 

@@ -11,11 +11,11 @@ import numpy.typing as npt
 
 from talbot.base.steps import Files
 from talbot.base.style import own_style
-from talbot.flow.layout.netlist.netlist import Netlist
-from talbot.flow.layout.netlist.placed import MIRRORED
 from talbot.flow.layout.power.mesh import Tap, drops, metal
 from talbot.flow.layout.steps.corner import CornerStep
 from talbot.platforms.layout import LayoutPlatform, layout_platform
+from talbot.signoff.netlist.netlist import Netlist
+from talbot.signoff.netlist.placed import MIRRORED
 
 Rows = Sequence[Sequence[Any]]  # of the placement's JSON
 Point = tuple[float, float]  # um

@@ -4,10 +4,10 @@ import json
 from typing import Any
 
 from talbot.base.steps import Files, Step, StepError
-from talbot.flow.layout.geometry.abstract import abstract, ports, read_back
-from talbot.flow.layout.netlist.netlist import supplies
 from talbot.flow.layout.steps.parameters import PdkParameters
 from talbot.platforms.layout import layout_platform
+from talbot.signoff.geometry.abstract import abstract, ports, read_back
+from talbot.signoff.netlist.netlist import supplies
 
 
 class Lef(Step[PdkParameters]):

@@ -6,15 +6,15 @@ from typing import Any
 from talbot.base.liberty.verilog import write_models
 from talbot.base.steps import Files, Step
 from talbot.cells.standard import standard_cells
-from talbot.flow.layout import pdkmaster
-from talbot.flow.layout.geometry import process_lef
-from talbot.flow.layout.netlist.netlist import SUPPLIES
 from talbot.flow.layout.steps.parameters import PdkParameters
 from talbot.flow.layout.timing import liberty
 from talbot.platforms.extraction import device_models, extraction_platform
 from talbot.platforms.layout import layout_platform
 from talbot.platforms.patience import imported
 from talbot.platforms.place_and_route import place_and_route
+from talbot.signoff import pdkmaster
+from talbot.signoff.geometry import process_lef
+from talbot.signoff.netlist.netlist import SUPPLIES
 
 UNUSED = ("fill", "tie", "decap", "diode", "nsnrlatch")  # by synthesis
 

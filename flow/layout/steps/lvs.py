@@ -4,11 +4,11 @@ import json
 from typing import Any
 
 from talbot.base.steps import Files, Step, StepError
-from talbot.flow.layout.geometry.decks import run_exported
-from talbot.flow.layout.geometry.lvs_deck import hierarchical, with_ports
-from talbot.flow.layout.netlist.netlist import Netlist, supplies
 from talbot.flow.layout.steps.parameters import PdkParameters
 from talbot.platforms.layout import layout_platform
+from talbot.signoff.geometry.decks import run_exported
+from talbot.signoff.geometry.lvs_deck import hierarchical, with_ports
+from talbot.signoff.netlist.netlist import Netlist, supplies
 
 
 class Lvs(Step[PdkParameters]):

@@ -7,11 +7,11 @@ from typing import Any
 
 from talbot.base.liberty.read import read
 from talbot.base.steps import Files
-from talbot.flow.layout.netlist.netlist import Netlist
 from talbot.flow.layout.power.energy import Cells, blocks, powers
 from talbot.flow.layout.steps.corner import CornerStep
 from talbot.flow.layout.timing.opensta import TIMED, opensta
 from talbot.models.parameters import check_real
+from talbot.signoff.netlist.netlist import Netlist
 
 SLEWS = (
     TIMED

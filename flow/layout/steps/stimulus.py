@@ -15,12 +15,12 @@ from typing import TYPE_CHECKING, Any
 from talbot.base.paths import ROOT
 from talbot.base.steps import Files, Step, StepError
 from talbot.base.tools import ToolError, finish, run
-from talbot.flow.layout.netlist.verilog import modules
-from talbot.flow.simulate.build import Build
-from talbot.flow.simulate.icarus import icarus_program
+from talbot.imaging.simulate.build import Build
+from talbot.imaging.simulate.icarus import icarus_program
 from talbot.rtl.tinytapeout.golden import EXAMPLES
 from talbot.rtl.tinytapeout.host import simulate as simulate_host
 from talbot.rtl.verilog import export_verilog
+from talbot.signoff.netlist.verilog import modules
 
 if TYPE_CHECKING:
     from talbot.models.parameters import Window
@@ -100,9 +100,9 @@ class Stimulus(Step[StimulusParameters]):
 
 def in_frame(parameters: StimulusParameters, folder: Path, trace: Path) -> dict[str, Any]:
     """Record the block's first instance in the chip in ``folder`` through a frame, to the file ``trace``; the head."""
-    from talbot.flow.frame.hardware import simulate
-    from talbot.flow.frame.job import expose, see
-    from talbot.flow.frame.request import request
+    from talbot.imaging.frame.hardware import simulate
+    from talbot.imaging.frame.job import expose, see
+    from talbot.imaging.frame.request import request
     from talbot.models.chip import golden_frame
 
     design = folder / "hierarchy.json"

@@ -7,11 +7,11 @@ from typing import Any
 
 from talbot.base.gds import db, read_gds, write_gds
 from talbot.base.steps import Files, Step, StepError
-from talbot.flow.layout.geometry.merge import merge
-from talbot.flow.layout.netlist.netlist import SUPPLIES, Netlist, is_register, with_diodes
-from talbot.flow.layout.netlist.routed import Routed
 from talbot.platforms.layout import LayoutPlatform, layout_platform
 from talbot.platforms.place_and_route import place_and_route
+from talbot.signoff.geometry.merge import merge
+from talbot.signoff.netlist.netlist import SUPPLIES, Netlist, is_register, with_diodes
+from talbot.signoff.netlist.routed import Routed
 
 
 @dataclass(frozen=True)

@@ -8,12 +8,12 @@ from typing import Any
 from talbot.base.liberty.read import areas, most_loads
 from talbot.base.steps import Files, Step
 from talbot.base.tools import run
-from talbot.flow.layout.netlist.buffering import buffer_fan_out, buffer_outputs
-from talbot.flow.layout.netlist.gating import GATES, ClockCells, ClockGate, drive_registers
-from talbot.flow.layout.netlist.netlist import Buffer, Netlist, is_register, register_names
-from talbot.flow.layout.netlist.pins import pins
 from talbot.flow.layout.timing.estimate import UNLOADED, setup_slack, unplaced
 from talbot.models.parameters import check_int, check_real
+from talbot.signoff.netlist.buffering import buffer_fan_out, buffer_outputs
+from talbot.signoff.netlist.gating import GATES, ClockCells, ClockGate, drive_registers
+from talbot.signoff.netlist.netlist import Buffer, Netlist, is_register, register_names
+from talbot.signoff.netlist.pins import pins
 
 BUFFER, DRIVER = Buffer("buf_x1", "i", "q"), Buffer("buf_x4", "i", "q")
 CLOCK_CELLS = [ClockCells(ClockGate(f"cg_{x}", "i", "clk", "q"), Buffer(f"buf_{x}", "i", "q")) for x in ("x1", "x2")]

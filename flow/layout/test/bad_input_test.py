@@ -11,9 +11,9 @@ from talbot.base.command import main, one_line
 from talbot.base.liberty.read import read
 from talbot.base.steps import versions
 from talbot.flow.layout import chain, command, search, tables
-from talbot.flow.layout.netlist.test import shift_register as small
 from talbot.flow.layout.options import Options
 from talbot.models.parameters import ParameterError
+from talbot.signoff.netlist.test import shift_register as small
 
 
 def reported(capsys, arguments):

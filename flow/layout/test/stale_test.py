@@ -12,7 +12,7 @@ from talbot.flow.layout.design import design
 from talbot.flow.layout.options import Options
 
 OPTIONS = Options()
-FOLDERS = "models", "base", "rtl", "platforms", "cells", "pixels", "flow", "verif", "talbot"
+FOLDERS = "models", "rtl", "imaging", "pixels", "cells", "signoff", "flow", "verif", "talbot"
 FRAMES = {"gate_frames", "stimulus"}
 
 
@@ -76,14 +76,14 @@ EXACTLY = [
     ("flow/layout/steps/drc.py", {"drc"}),
     ("models/chip.py", FRAMES),
     ("models/capture/operator.py", {"stimulus"}),
-    ("flow/simulate/bench.sv", FRAMES),
+    ("imaging/simulate/bench.sv", FRAMES),
     ("pixels/afe.sv", FRAMES),
-    ("flow/layout/netlist/routed.py", {"stream_out"}),
+    ("signoff/netlist/routed.py", {"stream_out"}),
     ("flow/layout/power/mesh.py", {"ir_drop"}),
     ("cells/characterize/constraint.py", {"timing"}),
     ("cells/report/curve.py", set()),
     ("cells/compact/route.py", {"library"}),
-    ("platforms/ihp_sg13g2/layers.py", set()),
+    ("talbot/platforms/ihp_sg13g2/layers.py", set()),
     ("verif/formal/engine.py", set()),
     ("talbot/__main__.py", set()),
 ]
@@ -97,9 +97,13 @@ def test_exactly_these_steps_run_again(step_keys, tree, file, expected):
 @pytest.mark.parametrize(
     "file, some, others",
     [
-        ("platforms/sky130/layout.py", {"library", "stream_out", "fill", "drc", "extraction"}, {"gate_frames", "sta"}),
+        (
+            "talbot/platforms/sky130/layout.py",
+            {"library", "stream_out", "fill", "drc", "extraction"},
+            {"gate_frames", "sta"},
+        ),
         ("rtl/quad_divider/test/quad_divider_test.py", {"gate_tests_final_icarus"}, {"drc", "gate_frames"}),
-        ("flow/layout/netlist/netlist.py", {"synthesis", "lvs", "stream_out"}, {"drc", "timing"}),
+        ("signoff/netlist/netlist.py", {"synthesis", "lvs", "stream_out"}, {"drc", "timing"}),
         ("models/parameters/checks.py", {"drc", "sta", "gate_frames", "timing"}, set()),
     ],
 )
@@ -110,8 +114,8 @@ def test_these_steps_run_again_and_those_do_not(step_keys, tree, file, some, oth
 
 # What the keys of the other caches are made of: modules, and tests of a block, whose code decides a kept result
 CACHES = {
-    "simulator": ("talbot.flow.simulate.verilator",),
-    "divider": ("talbot.flow.simulate.divider.simulator",),
+    "simulator": ("talbot.imaging.simulate.verilator",),
+    "divider": ("talbot.imaging.simulate.divider.simulator",),
     "cell": ("talbot.cells.characterize.job",),
     "proof": ("talbot.verif.formal.prove",),
     "mutant": ("talbot.verif.mutation.judge", "rtl/edge_adc/test"),
@@ -127,8 +131,8 @@ CACHES = {
         ("rtl/edge_adc/edge_adc_rtl.py", {"simulator", "mutant", "trace"}),
         ("models/digital/sar.py", {"mutant", "trace"}),
         ("models/digital/stream/decode.py", {"fuzz"}),
-        ("flow/simulate/bench.sv", {"simulator"}),
-        ("flow/simulate/divider/main.cpp", {"divider", "mutant"}),
+        ("imaging/simulate/bench.sv", {"simulator"}),
+        ("imaging/simulate/divider/main.cpp", {"divider", "mutant"}),
         ("cells/spice/engine.py", {"cell"}),
         ("verif/formal/engine.py", {"proof", "mutant"}),
         ("verif/coverage/main.cpp", {"coverage", "mutant", "trace"}),  # conftest.py can run netlists in that program

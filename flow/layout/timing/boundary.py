@@ -8,8 +8,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from talbot.flow.layout.netlist.netlist import OUTPUT_PINS, Netlist, is_register
 from talbot.flow.layout.timing.opensta import LINK, opensta
+from talbot.signoff.netlist.netlist import OUTPUT_PINS, Netlist, is_register
 
 FAR_NS = 100.0  # clock period of the measurement; OpenSTA computes in single precision
 CHECK_SLEW_NS, CHECK_LOAD_PF = 0.09, 0.027  # off every grid: where a model is compared with its netlist

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
-from talbot.flow.layout.netlist.netlist import Instance, Netlist
+from talbot.signoff.netlist.netlist import Instance, Netlist
 
 TOKEN = re.compile(r'\(|\)|"[^"]*"|[^\s()]+')
 

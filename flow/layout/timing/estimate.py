@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
-from talbot.flow.layout.netlist.netlist import OUTPUT_PINS, Netlist
 from talbot.flow.layout.timing.opensta import TIMED, opensta, worst_slack
-from talbot.flow.layout.timing.spef import spef
+from talbot.signoff.netlist.netlist import OUTPUT_PINS, Netlist
+from talbot.signoff.parasitics.spef import spef
 
 # Of a net that is not placed: fF a driven pin, as many at most; what drives more gets a buffer once it is placed
 SINK_FF, MOST = 3.0, 6

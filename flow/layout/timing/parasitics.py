@@ -1,7 +1,7 @@
 """Parasitics estimated from a net's segments alone.
 
 Each segment counts with its area and its two long edges to the substrate, each via with its
-resistance; there is no coupling. `flow.layout.parasitics` extracts a finished layout.
+resistance; there is no coupling. `signoff.parasitics` extracts a finished layout.
 """
 
 from collections.abc import Iterable

@@ -13,9 +13,9 @@ from typing import Any
 
 from talbot.base.steps import StepError
 from talbot.base.tools import ToolError, finish, run
-from talbot.flow.layout.netlist.names import plain_names
-from talbot.flow.layout.netlist.netlist import Instance, Netlist
 from talbot.flow.layout.timing.delays import Delays, constrained, icarus, specified
+from talbot.signoff.netlist.names import plain_names
+from talbot.signoff.netlist.netlist import Instance, Netlist
 
 BENCH = """`timescale 1ns/1ps
 module Replay;

@@ -1,4 +1,4 @@
-"""Circuits as data: their pins, sizes and faults; what ngspice says of them is tested in flow/analog."""
+"""Circuits as data: their pins, sizes and faults; what ngspice says of them is tested in pixels/datasheet."""
 
 from dataclasses import replace
 

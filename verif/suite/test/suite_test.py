@@ -93,7 +93,7 @@ def test_every_folder_has_a_block():
         ("rtl/x/test/x_test.py::TestRTL::test_a", "RTL"),
         ("rtl/x/test/x_test.py::TestCL::test_a", "CL"),
         ("rtl/x/test/x_test.py::test_verilog", ""),
-        ("flow/simulate/test/f.py::test_icarus_same", "Icarus"),
+        ("imaging/simulate/test/f.py::test_icarus_same", "Icarus"),
         ("verif/faults/test/f.py::test_x", "Verilator"),
         ("models/test/x_test.py::TestThing::test_a", ""),
     ],

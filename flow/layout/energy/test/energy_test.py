@@ -25,12 +25,12 @@ from talbot.flow.layout.energy.frames import (
 from talbot.flow.layout.energy.measure import FrameParameters, Transitions
 from talbot.flow.layout.energy.report import page, text
 from talbot.flow.layout.energy.result import Frame, evaluate
-from talbot.flow.layout.netlist.netlist import Instance, Netlist, Port
 from talbot.flow.layout.options import Options
 from talbot.flow.layout.steps.stimulus import middle
 from talbot.models.chip import front_end_of, golden_frame
 from talbot.models.parameters import ParameterError
 from talbot.models.parameters.energy import DigitalEvents
+from talbot.signoff.netlist.netlist import Instance, Netlist, Port
 
 PJ = dict(zip(DigitalEvents._fields, (20.0, 300.0, 9.0, 4.0, 11.0, 50.0), strict=True))
 

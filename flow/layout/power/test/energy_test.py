@@ -6,9 +6,9 @@ import pytest
 
 from talbot.base.liberty.read import parse
 from talbot.base.steps import StepError
-from talbot.flow.layout.netlist.netlist import Instance, Netlist, is_register
-from talbot.flow.layout.netlist.test import shift_register as small
 from talbot.flow.layout.power.energy import Cells, blocks, powers
+from talbot.signoff.netlist.netlist import Instance, Netlist, is_register
+from talbot.signoff.netlist.test import shift_register as small
 
 ACTIVITY = {"clk": (2.0, 0.5), "a": (0.5, 0.5), "w0": (0.4, 0.5), "w1": (0.3, 0.5), "y": (0.2, 0.5), "n": (0.5, 0.5)}
 

@@ -5,9 +5,9 @@ import pytest
 from PIL import Image
 
 from talbot.base.gds import db, write_gds
-from talbot.flow.layout.netlist.netlist import Instance, Netlist
 from talbot.flow.layout.report.picture import BACKGROUND, by_block, clock_tree, congestion, render
 from talbot.platforms.layout import layout_platform
+from talbot.signoff.netlist.netlist import Instance, Netlist
 
 pytestmark = pytest.mark.needs("layout")
 

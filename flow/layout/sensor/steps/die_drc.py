@@ -1,10 +1,10 @@
 """Design rules of the die, by PDKMaster's deck and by the foundry's."""
 
-from talbot.flow.layout.geometry.decks import with_taps, without_rules
 from talbot.flow.layout.steps.drc import Drc
-from talbot.flow.layout.steps.foundry_drc import FoundryDrc
 from talbot.platforms.analog import analog_masks
 from talbot.platforms.pixel import PROCESSES
+from talbot.signoff.foundry_drc import FoundryDrc
+from talbot.signoff.geometry.decks import with_taps, without_rules
 
 
 class DieDrc(Drc):

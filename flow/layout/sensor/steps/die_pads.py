@@ -6,13 +6,13 @@ from typing import Any
 
 from talbot.base.gds import write_gds
 from talbot.base.steps import Files, Step, StepError
-from talbot.flow.layout.geometry.decks import check_rules, hole_rules, run_deck, via_rules, with_taps
-from talbot.flow.layout.pdkmaster import export_spice
 from talbot.flow.layout.sensor import pads
 from talbot.flow.layout.steps.parameters import PdkParameters
 from talbot.platforms.layout import layout_platform
 from talbot.platforms.pads import pad_process
 from talbot.platforms.pixel import pixel_process
+from talbot.signoff.geometry.decks import check_rules, hole_rules, run_deck, via_rules, with_taps
+from talbot.signoff.pdkmaster import export_spice
 
 
 class DiePads(Step[PdkParameters]):

@@ -7,7 +7,6 @@ from typing import Any
 
 from talbot.base.steps import Files, Step
 from talbot.flow.layout.sensor import arrange, decoupling, ring, routing, supplies, verilog
-from talbot.flow.layout.sensor.analog import check
 from talbot.flow.layout.sensor.arrange import Arranged
 from talbot.flow.layout.sensor.plan import BLOCKS, CORE, Block, DieParameters, driver, nm
 from talbot.flow.layout.sensor.ring import Frame, Pads, Place
@@ -17,6 +16,7 @@ from talbot.platforms.die import top_metal
 from talbot.platforms.layers import Layer
 from talbot.platforms.layout import layout_platform
 from talbot.platforms.pads import pad_process
+from talbot.signoff.black_box import extra_pins
 
 TOP = "asp_sensor"
 COUNTS = "utilization", "nets", "routed", "abutted", "tracks", "pads"
@@ -55,7 +55,7 @@ class DiePlan(Step[DiePlanParameters]):
         tracks = routing.Tracks.of(rules, p.die)
         pads = self.pads(json.loads(inputs["pads"].read_text(encoding="utf-8")), {})
         extra = dict.fromkeys(
-            pin for block in BLOCKS for pin in check(inputs[f"{block}.lef"], inputs[f"{block}.black_box"])
+            pin for block in BLOCKS for pin in extra_pins(inputs[f"{block}.lef"], inputs[f"{block}.black_box"])
         )
         made = arrange.arranged(blocks, p.die, tracks, layers, pads, extra)
         signals = [

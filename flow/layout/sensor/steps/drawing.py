@@ -52,5 +52,5 @@ class DrawnCircuits(Drawing):
     """All other blocks, each compared with its circuit."""
 
     name = "drawn_circuits"
-    module = "talbot.flow.analog_layout.write"
+    module = "talbot.pixels.post_layout.write"
     outputs = files_of(block for block in BLOCKS if block != ARRAY)

@@ -7,13 +7,14 @@ import shutil
 import pytest
 
 from talbot.base.steps import Runner, StepError
-from talbot.flow.layout.sensor.analog import check, files
+from talbot.flow.layout.sensor.analog import files
 from talbot.flow.layout.sensor.plan import BLOCKS
 from talbot.flow.layout.sensor.steps.drawing import DrawnCircuits, DrawnPixels
 from talbot.flow.layout.sensor.test import small
 from talbot.models.parameters import ParameterError
 from talbot.platforms.layout import layout_platform
 from talbot.platforms.pads import pad_process
+from talbot.signoff.black_box import extra_pins
 
 pytestmark = pytest.mark.needs("layout")
 
@@ -49,7 +50,7 @@ def test_a_block_takes_the_place_of_its_black_box(black_boxes, tmp_path):
     found, drawn = files(tmp_path / "out", "sky130", tmp_path)
     assert found["adc_lanes.lef"].parent == found["adc_lanes.gds"].parent == tmp_path
     assert drawn == ("pixel_array", "row_driver", "column_amplifiers")
-    assert check(found["adc_lanes.lef"], found["adc_lanes.black_box"]) == ["vref"]
+    assert extra_pins(found["adc_lanes.lef"], found["adc_lanes.black_box"]) == ["vref"]
     theirs(black_boxes, tmp_path, "pixel_array")
     found, drawn = files(tmp_path / "out", "sky130", tmp_path)
     assert found["pixel_array.gds"].parent == tmp_path and "pixel_array" not in drawn
@@ -64,7 +65,7 @@ def test_every_block_that_is_drawn_is_on_the_die(black_boxes, tmp_path):
         runner = Runner(tmp_path, {})
         runner.run(step)
         for name in (name for name in step.outputs if name.endswith(".lef")):
-            extra |= set(check(runner.paths[f"{step.name}.{name}"], black_boxes / name))
+            extra |= set(extra_pins(runner.paths[f"{step.name}.{name}"], black_boxes / name))
     assert extra == {"refp", "refn", "vcm", "vref", "amp_on"} | references
 
 
@@ -83,7 +84,7 @@ def test_every_block_that_is_drawn_is_on_the_die(black_boxes, tmp_path):
 def test_other_pins(black_boxes, tmp_path, change, words):
     theirs(black_boxes, tmp_path, "adc_lanes", change)
     with pytest.raises(ParameterError, match=re.escape(words)):
-        check(tmp_path / "adc_lanes.lef", black_boxes / "adc_lanes.lef")
+        extra_pins(tmp_path / "adc_lanes.lef", black_boxes / "adc_lanes.lef")
 
 
 def test_missing_files(black_boxes, tmp_path):
@@ -180,7 +181,7 @@ def test_the_drawn_rows_are_a_block_of_the_die(tmp_path):
     made = draw_row_drivers(masks, ArrayParameters(16, 120))
     lef = tmp_path / "drawn.lef"
     lef.write_text(made.lef(masks))
-    assert check(lef, given["row_driver.lef"]) == []
+    assert extra_pins(lef, given["row_driver.lef"]) == []
     given["row_driver.lef"].write_text(made.lef(masks))
     write_gds(made.layout, given["row_driver.gds"], made.cell)
     assert (

@@ -12,12 +12,12 @@ from talbot.base.gds import read_gds
 from talbot.base.paths import ROOT
 from talbot.base.steps import StepError
 from talbot.base.tools import finish
-from talbot.flow.layout.geometry.abstract import ports
 from talbot.flow.layout.sensor import arrange
 from talbot.flow.layout.sensor.plan import CORE, ORIENTATIONS, SIGNALS, SUPPLIES, DieParameters
 from talbot.flow.layout.sensor.test import small
 from talbot.models.parameters import ParameterError
 from talbot.pixels.blocks import blocks
+from talbot.signoff.geometry.abstract import ports
 
 pytestmark = pytest.mark.needs("layout")
 

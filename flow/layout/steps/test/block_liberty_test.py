@@ -5,10 +5,10 @@ import json
 import pytest
 
 from talbot.base.steps import StepError
-from talbot.flow.layout.netlist.test import shift_register as small
 from talbot.flow.layout.steps.block_liberty import BlockLiberty, BlockLibertyParameters
 from talbot.flow.layout.timing.boundary import Sources, measure, reach
-from talbot.flow.layout.timing.spef import spef
+from talbot.signoff.netlist.test import shift_register as small
+from talbot.signoff.parasitics.spef import spef
 
 pytestmark = pytest.mark.needs("openroad", "yosys")
 

@@ -6,11 +6,11 @@ import pytest
 
 from talbot.base.steps import StepError
 from talbot.cells.netlist.function import Storage
-from talbot.flow.layout.netlist.netlist import Instance, Netlist
 from talbot.flow.layout.steps.equivalence import Equivalence, EquivalenceParameters
 from talbot.flow.layout.steps.synthesis import Synthesis, SynthesisParameters
 from talbot.flow.layout.steps.test.equivalence_test import CELLS, FLIP_FLOP, PORTS
 from talbot.flow.layout.timing import liberty
+from talbot.signoff.netlist.netlist import Instance, Netlist
 
 pytestmark = pytest.mark.needs("yosys")
 

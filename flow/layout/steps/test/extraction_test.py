@@ -2,10 +2,10 @@
 
 import pytest
 
-from talbot.flow.layout.netlist.netlist import Instance, Netlist, Port
 from talbot.flow.layout.timing.parasitics import parasitics
-from talbot.flow.layout.timing.spef import spef
 from talbot.platforms.layout import layout_platform
+from talbot.signoff.netlist.netlist import Instance, Netlist, Port
+from talbot.signoff.parasitics.spef import spef
 
 
 def test_a_wire_counts_with_its_area_both_edges_and_its_squares():

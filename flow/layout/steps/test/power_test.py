@@ -4,12 +4,12 @@ import json
 
 import pytest
 
-from talbot.flow.layout.netlist.test import shift_register as small
 from talbot.flow.layout.power.energy import Cells, powers
 from talbot.flow.layout.power.test.energy_test import ACTIVITY
 from talbot.flow.layout.steps.ir_drop import IrDrop, IrDropParameters
 from talbot.flow.layout.steps.power import Power, PowerParameters, wire_pf
-from talbot.flow.layout.timing.spef import spef
+from talbot.signoff.netlist.test import shift_register as small
+from talbot.signoff.parasitics.spef import spef
 
 pytestmark = pytest.mark.needs("openroad")
 

@@ -9,11 +9,11 @@ from talbot.base import openroad
 from talbot.base.steps import StepError
 from talbot.base.tools import run
 from talbot.flow.layout.design import DESIGNS
-from talbot.flow.layout.netlist.test import shift_register as small
 from talbot.flow.layout.steps import power, sta
 from talbot.flow.layout.timing import boundary
 from talbot.flow.layout.timing.constraints import sdc
-from talbot.flow.layout.timing.spef import spef
+from talbot.signoff.netlist.test import shift_register as small
+from talbot.signoff.parasitics.spef import spef
 
 pytestmark = pytest.mark.needs("openroad")
 SCRIPTS = {

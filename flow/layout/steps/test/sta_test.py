@@ -3,11 +3,11 @@
 import pytest
 
 from talbot.flow.layout.design import Clock, Design
-from talbot.flow.layout.netlist.netlist import Instance, Netlist, Port
 from talbot.flow.layout.report.metrics import RULES, broken
 from talbot.flow.layout.steps.sta import Sta, StaParameters
 from talbot.flow.layout.timing.constraints import sdc
-from talbot.flow.layout.timing.spef import Tree, spef
+from talbot.signoff.netlist.netlist import Instance, Netlist, Port
+from talbot.signoff.parasitics.spef import Tree, spef
 
 pytestmark = pytest.mark.needs("openroad")
 

@@ -4,7 +4,6 @@ import json
 
 import pytest
 
-from talbot.flow.layout.netlist.verilog import modules
 from talbot.flow.layout.steps.stimulus import (
     Stimulus,
     StimulusParameters,
@@ -16,6 +15,7 @@ from talbot.flow.layout.steps.stimulus import (
 )
 from talbot.models.parameters import Window
 from talbot.rtl.verilog import export_verilog
+from talbot.signoff.netlist.verilog import modules
 
 BLOCK = """
 module Leaf (input clk);

@@ -5,10 +5,10 @@ from dataclasses import replace
 
 import pytest
 
-from talbot.flow.layout.netlist.netlist import Instance
-from talbot.flow.layout.netlist.test import shift_register as small
 from talbot.flow.layout.timing import delays
 from talbot.flow.layout.timing.replay import SETTLED, Timing, replay
+from talbot.signoff.netlist.netlist import Instance
+from talbot.signoff.netlist.test import shift_register as small
 
 pytestmark = pytest.mark.needs("iverilog")
 SDF = """(DELAYFILE (SDFVERSION "3.0")

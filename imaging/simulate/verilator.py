@@ -1,0 +1,83 @@
+"""The frame bench as a program: Verilog in, executable out, cached by the content of all that went in."""
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from talbot.base.cache import cached, digest
+from talbot.base.paths import BUILD, PACKAGE
+from talbot.base.sources import code
+from talbot.base.tools import ToolError, meanwhile
+from talbot.base.verilator import FAST, compile_program, has_headers, runtime, verilate, verilator_version
+from talbot.imaging.simulate.build import Build
+
+FRAME = Path(__file__).parent
+READ = FRAME / "read_words.cpp"  # in place of Verilator's VL_FREAD_I, in all that is compiled here
+
+# No fused multiply-add: the front end's arithmetic must round as NumPy's does, on every processor.
+# -O1: a frame takes as long as with -O2, and the compiler two thirds of the time.
+CXX_FLAGS = ("-O1", "-ffp-contract=off", "-DVL_FREAD_I=read_words")
+PACKED = ("zlib.h", "lz4.h")  # headers of what packs an FST
+VERILATOR_FLAGS = (*FAST, "-fno-split", "--output-split", "0", "-Wno-fatal")
+
+
+def bench_program(build: Build, note: Callable[[str], None] = lambda text: None) -> Path:
+    """Path of the compiled bench for ``build``: from the cache, or exported, verilated and compiled now.
+
+    note: called with a line of text before each long step. Raises ToolError.
+    """
+    options = [*build.parameters("-G"), *([f"--trace-{build.waves}"] if build.waves else [])]
+    sources = [PACKAGE / "pixels" / "afe.sv", FRAME / "bench.sv"]
+    return program_of(build, "Bench", options, sources, FRAME / "main.cpp", note)
+
+
+def bare_program(
+    build: Build,
+    note: Callable[[str], None] = lambda text: None,
+    main: Path = FRAME / "bare.cpp",
+    options: Sequence[str] = (),
+) -> Path:
+    """Path of the chip alone with ``main`` around it: by default a clock loop, for `make bench`. Raises ToolError.
+
+    options: of g++, as -shared for a library.
+    """
+    return program_of(build, "AspChip", [], [], main, note, options)
+
+
+def program_of(
+    build: Build,
+    top: str,
+    options: Sequence[str],
+    sources: Sequence[Path],
+    main: Path,
+    note: Callable[[str], None],
+    cxx: Sequence[str] = (),
+) -> Path:
+    """Path of the program of module ``top`` of the Verilog and ``sources``, with ``main`` around it: from the cache.
+
+    options: of Verilator; cxx: of g++. note: called with a line of text before each long step. Raises ToolError.
+    """
+    key = digest(code(__name__), *sources, READ, main, build, top, options, cxx, verilator_version())
+
+    def make(work: Path) -> None:
+        if build.waves == "fst" and not has_headers(PACKED):
+            raise ToolError(
+                f"waves_format = 'fst': needs {' and '.join(PACKED)} (Debian: zlib1g-dev, liblz4-dev); or vcd"
+            )
+        with meanwhile(runtime) as objects:  # a compiler runs while Python exports
+            note("exporting the chip's Verilog")
+            chip = build.chip_verilog(work)
+            note("translating it with Verilator")
+            model = verilate(work / "obj", top, [chip, *sources], [*VERILATOR_FLAGS, *options])
+            note("compiling the simulator")
+            linked = [*objects.result(), *_tracing(build.waves)]
+            compile_program(work / "program", [*model, READ, main], [*CXX_FLAGS, *cxx, *linked])
+
+    return cached(BUILD / "simulator" / key, make) / "program"
+
+
+def _tracing(waves: str) -> list[object]:
+    """Options of g++ for a program that writes waves in a format, "" for none."""
+    if not waves:
+        return []
+    defined = "-DWAVES", f"-DWAVES_{waves.upper()}", "-DVM_TRACE=1", f"-DVM_TRACE_{waves.upper()}=1"
+    return [*defined, *runtime([f"verilated_{waves}_c"]), *(["-lz", "-llz4"] if waves == "fst" else [])]

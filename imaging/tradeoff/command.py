@@ -1,0 +1,28 @@
+"""Error against run time: a table (CSV) and a plot for each design parameter, and one page of all."""
+
+from argparse import ArgumentParser, Namespace
+from pathlib import Path
+
+from talbot.base.jobs import worker_count
+from talbot.base.sensor import Varied, add_sensor, sensor_asked
+from talbot.imaging.tradeoff.sweeps import SWEEPS, run_sweeps
+
+PARTS = "tile", "array", "optics", "electrical", "converter", "chip"
+VARIED = Varied(fixed=dict.fromkeys(PARTS, "each sweep varies one field of the standard sensor"))
+
+
+def add_arguments(parser: ArgumentParser) -> None:
+    """Options of `talbot tradeoff`."""
+    add_sensor(parser)
+    parser.add_argument("--only", help=f"names with commas between, of {', '.join(SWEEPS)} (default: all)")
+    workers = "processes, -1: all cores (default: 1, so that nothing else of the run is in the seconds measured)"
+    parser.add_argument("--workers", type=worker_count, default=1, help=workers)
+    parser.add_argument("--out", type=Path, default=Path("build/tradeoff"), help="folder for the tables and plots")
+
+
+def run(options: Namespace) -> int:
+    """Run the sweeps and print where their page is."""
+    sensor_asked(options, VARIED)
+    run_sweeps(options.out, options.only.split(",") if options.only is not None else None, workers=options.workers)
+    print(f"look at {options.out / 'tradeoff.html'}")
+    return 0

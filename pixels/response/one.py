@@ -1,0 +1,31 @@
+"""One geometry, asked for by its fields: its response over angle, and Eq. 3.1 beside it."""
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+from talbot.base.files import check_folder, staged
+from talbot.pixels.optics.fit import fit
+from talbot.pixels.optics.geometry import PixelGeometry
+from talbot.pixels.optics.response import respond
+from talbot.pixels.response.types import DEGREES, axes_of
+
+NAMES = "summary.json", "response.npz"
+
+
+def make(geometry: PixelGeometry, wavelength_um: float, out: Path) -> dict[str, Any]:
+    """Solve it, write response.npz and summary.json into ``out``; returns the summary. Raises ParameterError."""
+    check_folder("out", out, NAMES)
+    start = perf_counter()
+    found = respond(geometry, np.deg2rad(DEGREES), wavelength_um)
+    summary = asdict(geometry) | {"wavelength_um": wavelength_um} | fit(found).as_dict()
+    summary["wall_s"] = perf_counter() - start
+    with staged(out, NAMES) as folder:
+        shares = found.shares[0].transpose(1, 2, 0)[:, :, None]  # diode, angle, wavelength, polarization
+        np.savez_compressed(folder / "response.npz", response=shares, **axes_of(found))
+        (folder / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+    return summary

@@ -1,0 +1,36 @@
+"""The pins that a host drives or reads: direction and width from the top's ports, meaning from here."""
+
+from collections.abc import Iterator
+
+from talbot.rtl.asp_chip.pins import pins
+from talbot.rtl.host.document.markdown import table
+
+MEANING = {
+    "clk": "System clock. All pins except SPI's and `reset` are synchronous to its rising edge.",
+    "reset": "Active high, synchronized on the chip; at least 4 rising edges of `clk`.",
+    "sclk": "SPI clock, mode 0, at most f_clk / 8.",
+    "csn": "SPI chip select, active low.",
+    "mosi": "SPI data to the chip, most significant bit first.",
+    "miso": "SPI data from the chip; 0 while `csn` is high.",
+    "miso_oe": "Output enable of a shared `miso` pad: `csn` is low, and no reset.",
+    "link_data": "A byte of the stream.",
+    "link_val": "`link_data` is valid. The byte stays until it is taken (or abort, or reset).",
+    "link_rdy": "The receiver takes `link_data` at the next rising edge of `clk`.",
+    "frame_sync": "High from the offer of a frame's first byte until its last is taken; low in loop-back.",
+    "busy": "A frame runs, or its bytes wait for the link. Falls with `done` or an error bit: the host's interrupt.",
+}
+
+
+def host_pins() -> str:
+    """Return the table of the pins that a host or a board drives or reads. Raises KeyError for one that is no port."""
+    ports = {name: (direction, bits) for direction, name, bits in _ports()}
+    return table(
+        ["pin", "direction", "bits", "meaning"], ((f"`{pin}`", *ports[pin], text) for pin, text in MEANING.items())
+    )
+
+
+def _ports() -> Iterator[tuple[str, str, int]]:
+    """Yield direction, name and width of every port of the host's side."""
+    yield from (("in", name, 1) for name in ("clk", "reset"))
+    for direction, ports in zip(("in", "out"), pins(1)):
+        yield from ((direction, name, kind.nbits) for name, kind in ports.items())

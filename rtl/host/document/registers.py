@@ -1,0 +1,71 @@
+"""The register map as Markdown and as a page."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from talbot.base.page import render
+from talbot.models.parameters.registers import Field, RegisterMap
+from talbot.rtl.host.document.markdown import table
+
+NOTE = (
+    "Generated from models/parameters/registers/asp_chip.rdl by talbot document. Byte addresses; a field of more than "
+    "a byte is little-endian. Access: ro read only, rw read and write (the configuration), wo write only (reads 0), "
+    "w1c sticky, cleared by writing 1. A register without a name has that of its field. Addresses and bits that are "
+    "not listed read 0 and ignore writes."
+)
+COLUMNS = "address[bits] register", "field", "access", "reset", "meaning"
+
+
+@dataclass(frozen=True)
+class Row:
+    """A field of the map; of a register array the first field, and ``more``, the number of registers after it."""
+
+    field: Field
+    more: int = 0
+
+    @property
+    def cells(self) -> tuple[str, ...]:
+        """Return the row's texts, in the order of COLUMNS."""
+        f, high = self.field, self.field.lsb + self.field.width - 1
+        register = f.register.partition("[")[0] + (f"[0..{self.more}]" if self.more else "")
+        bits = f"{high}:{f.lsb}" if f.width > 1 else f"{f.lsb}"
+        index = f" + {f.size} i " if self.more else ""
+        return (
+            f"0x{f.address:02X}{index}[{bits}]" + (f" {register}" if register != f.name else ""),
+            f.name,
+            f.access,
+            f"{f.reset:#x}" if f.reset > 9 else f"{f.reset}",
+            f.description,
+        )
+
+
+def rows(chip: RegisterMap) -> Iterator[Row]:
+    """Yield the rows of the map, by ascending address."""
+    arrays: dict[str, list[Field]] = {}
+    for f in chip.fields:
+        arrays.setdefault(f.register.partition("[")[0], []).append(f)
+    for fields in arrays.values():
+        yield from [Row(fields[0], len(fields) - 1)] if "[" in fields[0].register else map(Row, fields)
+
+
+def markdown(chip: RegisterMap) -> str:
+    """Return the map as a Markdown document."""
+    note = f"{NOTE} How a host uses them: [host.md](host.md)."
+    return f"# Registers of AspChip\n\n{note}\n\n{table(COLUMNS, (row.cells for row in rows(chip)))}\n"
+
+
+def html(chip: RegisterMap, listed: bool = False) -> str:
+    """Return the map as an HTML page; ``listed``: the index of results has it."""
+    table = [[cell.replace("`", "") for cell in row.cells] for row in rows(chip)]
+    return (
+        render(
+            Path(__file__).with_name("registers.html"),
+            "Registers of AspChip",
+            listed=listed,
+            note=NOTE,
+            columns=COLUMNS,
+            table=table,
+        )
+        + "\n"
+    )

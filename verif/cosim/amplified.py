@@ -1,0 +1,54 @@
+"""The difference amplifier of a lane in the deck of a co-simulation, with its bias, and what its columns carry.
+
+    clk        |‾|______|‾|______|      high for 12 ns
+    hold       |________|‾‾‾‾‾‾‾‾|
+    reset      |‾‾‾‾‾‾‾‾|________|‾     not hold; ends the lane's sample before it begins again
+    columns    | level  | signal |      2 ns after the reset's end
+    sample     |__________|__‾‾‾‾|      of the lane, after its last decision
+
+It is never off: no pin of the chip is a cycle ahead of `hold`.
+"""
+
+from collections.abc import Callable
+
+from talbot.pixels.circuits.amplifier import TRIM_BITS, UNITS, AmplifierSizes, AmplifierSpec, amplifier
+from talbot.pixels.circuits.lane import LaneSizes
+from talbot.pixels.circuits.netlist import Circuit
+from talbot.pixels.circuits.specification import LaneSpec
+from talbot.pixels.circuits.support import bias
+from talbot.pixels.datasheet.amplifier import COLUMNS
+from talbot.pixels.datasheet.deck import Setup
+from talbot.pixels.datasheet.job import amplifier_of
+
+AFTER = 1e-9  # s after the sample's end at which columns leave the lanes and the reset begins
+Drive = Callable[..., str]  # name, V at 1; half, rise, fall, low: see `deck.source`
+
+
+def sized(pdk: str, spec: LaneSpec, lane: LaneSizes) -> tuple[AmplifierSpec, AmplifierSizes]:
+    """The amplifier of a lane of ``spec``."""
+    return amplifier_of(Setup(pdk, spec), lane)
+
+
+def circuits(sizes: AmplifierSizes) -> tuple[Circuit, ...]:
+    """What a lane has beside its converter."""
+    return amplifier(sizes), bias()
+
+
+def column_volts(spec: LaneSpec, sizes: AmplifierSizes, gain: float) -> float:
+    """V of a column for each LSB of a diode, of which a difference is to be ``gain`` LSB at the lane."""
+    return gain * spec.lsb / sizes.gain
+
+
+def lane_lines(lane: int, drive: Drive, supply: float, dark: bool = True) -> list[str]:
+    """The amplifier of a lane from its columns cola, colb to its input. drive: makes a control of the lane's sample.
+
+    dark: between samples its columns are at column_dark; else something else puts them there.
+    """
+    reset = drive(f"amplifier_reset{lane}", 0.0, fall=AFTER, low=supply)
+    code = ("vdd" if UNITS >> k & 1 else "0" for k in reversed(range(TRIM_BITS)))
+    pins = f"cola{lane} colb{lane} vdd {reset}", " ".join(code), f"in{lane} ref ibias{lane} vdd 0 amplifier"
+    lines = [f"Xamplifier{lane} {' '.join(pins)}", f"Xbias{lane} ibias{lane} vdd 0 bias"]
+    if dark:
+        on = drive(f"amplifier_dark{lane}", 0.0, rise=COLUMNS / 2, fall=2 * AFTER, low=supply)
+        lines += [f"Xdark{d}{lane} column_dark col{d}{lane} {on} vdd 0 selector" for d in "ab"]
+    return lines
