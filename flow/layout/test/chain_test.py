@@ -1,5 +1,6 @@
 """The steps of a layout: the README lists each with its file; installed decks are run."""
 
+import os
 import re
 from dataclasses import replace
 from pathlib import Path
@@ -35,7 +36,8 @@ def test_the_readme_lists_every_step_with_its_file(steps):
     rows = dict(ROW.findall((FOLDER / "README.md").read_text()))
     assert sorted(rows) == sorted(steps)
     for name, file in rows.items():
-        module = ".".join(("talbot.flow.layout", *Path(file).with_suffix("").parts))
+        place = Path(os.path.normpath(FOLDER / file)).relative_to(FOLDER.parents[1])
+        module = ".".join(("talbot", *place.with_suffix("").parts))
         assert type(steps[name]).__module__ == module, name
 
 

@@ -12,7 +12,11 @@ from talbot.verif.mutation.planted import Planted, is_caught, jobs, read
 
 LIST = "    if origin in (list, tuple):\n"
 BUG = Planted(
-    "a bug", "EdgeAdc", "base/records.py", ((LIST, "    if origin is list:\n"),), ("base/test/records_test.py",)
+    "a bug",
+    "EdgeAdc",
+    "talbot/base/records.py",
+    ((LIST, "    if origin is list:\n"),),
+    ("talbot/base/test/records_test.py",),
 )
 
 
