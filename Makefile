@@ -79,12 +79,12 @@ setup-layout: $(LAYOUT_READY)
 
 # The program's commands, by what is installed before they run.
 RUN := sim sensor lightfield polar depth calibrate tradeoff stability decode learn index verilog divider
-TESTS := formal coverage mutate sizes fuzz cocotb suite stuck-at document site pixel pixel-layout cosim layout layout-sweep \
+TESTS := formal coverage mutate sizes fuzz cocotb suite stuck-at document site pixel pixel-layout cosim layout \
   layout-energy
 LAYOUT := pixel pixel-layout cosim pixel-circuit analog analog-layout footprints handoff cells cells-report \
-  cells-compact cells-compact-area cells-compact-search layout layout-sweep layout-energy layout-timing openroad \
+  cells-compact layout layout-energy layout-timing openroad \
   openroad-compare openroad-fit
-TOOLS := pixel-circuit analog analog-layout cells cells-report cells-compact cells-compact-search layout layout-sweep \
+TOOLS := pixel-circuit analog analog-layout cells cells-report cells-compact layout \
   layout-energy layout-timing
 COMMANDS := $(sort $(RUN) $(TESTS) $(LAYOUT) $(TOOLS))
 .PHONY: $(COMMANDS)

@@ -89,14 +89,11 @@ GROUPS: dict[str, dict[str, Command]] = {
         "learn": Command(
             "learn the dictionary or the two-branch network of light fields", "imaging.lightfield.learn.command"
         ),
-        "layout-sweep": Command("layouts of divider variants, plotted", "flow.layout.sweep.command"),
         "openroad-compare": Command("layouts with both cell libraries in one table", "flow.openroad.compare"),
         "cells-report": Command("the characterizer compared with a foundry's tables", "cells.report.command"),
         "cells-compact": Command("draw and check the cell library Compact", "cells.compact.command"),
         "divider": Command("every input of a divider through its Verilog", "imaging.simulate.divider.exhaustive"),
         "layout-timing": Command("measure the shipped cell timing again in ngspice", "flow.layout.measure_cells"),
-        "cells-compact-area": Command("blocks on Compact and on SKY130's cells", "cells.compact.area"),
-        "cells-compact-search": Command("search for narrower cells of Compact", "cells.compact.search"),
         "openroad-fit": Command("Tiny Tapeout projects against their tiles' area", "flow.openroad.fit"),
         "clean": Command("delete build/"),
     },

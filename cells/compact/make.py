@@ -1,7 +1,7 @@
 """A cell from its schematic: the narrowest placement that routes and breaks no rule.
 
-recipes.json holds what a longer search has found (talbot cells-compact-search): a seed of the placement, where
-extra gaps are, whether met1 is used. With a recipe a cell is drawn at once, without one a placement is searched.
+recipes.json holds the results of longer searches: a seed of the placement, where extra gaps are, whether met1 is used.
+With a recipe a cell is drawn at once, without one a placement is searched.
 """
 
 import json

@@ -91,7 +91,7 @@ def asked(monkeypatch, capsys, tmp_path):
         ("layout DESIGN=none", "DESIGN = 'none': must be one of "),
         ("layout DESIGN=amp_ctrl UTILISATION=0.8", "did you mean UTILIZATION?"),
         ("openroad UNTIMED=1", "UNTIMED = '1': must be a variable of make openroad: "),
-        ("layout-sweep LIBERTY=a.lib", "liberty = a.lib: no such file"),
+        ("layout LIBERTY=a.lib", "liberty = a.lib: no such file"),
         ("handoff DESING=amp_ctrl", "did you mean DESIGN?"),
         ("handoff DESIGN=none", "'none': must be one of "),
         ("verilog TOP=Nothing", "invalid choice: 'Nothing'"),

@@ -14,8 +14,8 @@ from talbot.models.parameters.sensor_file import keys, values
 WITHOUT = {
     *("sensor", "render", "index", "site", "learn", "divider"),
     *("stability",),  # its cases have sensors of their own
-    *("cells", "cells-report", "cells-compact", "cells-compact-area", "cells-compact-search"),
-    *("openroad-compare", "openroad-fit", "layout-sweep", "layout-compare", "layout-timing", "layout-energy"),
+    *("cells", "cells-report", "cells-compact"),
+    *("openroad-compare", "openroad-fit", "layout-compare", "layout-timing", "layout-energy"),
     *("verify", "formal", "suite", "cocotb", "coverage", "mutate", "fuzz", "stuck-at", "replay"),
 }
 TAKING = [name for name in COMMANDS if name not in WITHOUT]

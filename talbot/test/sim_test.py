@@ -207,7 +207,7 @@ FILE = "<file>"  # for this one, whose path may have a space
         ("draw", "invalid choice: 'draw'"),
         *(
             (f"{name} --document {FILE}", "must have the comments")
-            for name in ("sizes", "openroad-fit", "openroad-compare", "cells-compact-area")
+            for name in ("sizes", "openroad-fit", "openroad-compare")
         ),
         ("stuck-at --sample=-1", "sample = -1: must be an integer in 0..1000000000"),
         ("decode nowhere.bin", "file = nowhere.bin: No such file"),

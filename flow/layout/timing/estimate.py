@@ -1,10 +1,8 @@
-"""Setup slacks of a netlist that is not routed, its wires estimated."""
+"""Setup slack of a netlist that is not routed, its wires estimated."""
 
-import re
 import tempfile
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 
 from talbot.flow.layout.timing.opensta import TIMED, opensta, worst_slack
@@ -14,11 +12,6 @@ from talbot.signoff.parasitics.spef import spef
 # Of a net that is not placed: fF a driven pin, as many at most; what drives more gets a buffer once it is placed
 SINK_FF, MOST = 3.0, 6
 OHM = 30.0  # of such a net
-PINS = """
-foreach pin [get_pins */*] {
-  puts "PIN [get_property $pin full_name] [get_property $pin slack_max_rise] [get_property $pin slack_max_fall]"
-}
-"""
 UNLOADED = "set_load 0 [all_outputs]"  # a weak driver of a port gets a buffer, too
 SCRIPT = f'{TIMED}{{more}}\nputs "WORST setup [worst_slack -max]"'
 
@@ -34,21 +27,6 @@ def setup_slack(
 ) -> float:
     """Worst setup slack, ns. nets: (fF, ohm) by net. more: commands after the SDC. Raises StepError without a slack."""
     return worst_slack(_report(netlist, nets, liberty, sdc, more), "setup")
-
-
-def setup_slacks(
-    netlist: Netlist, nets: Mapping[str, tuple[float, float]], liberty: Path, sdc: Path
-) -> dict[tuple[str, str], float]:
-    """Setup slack (ns) of every (instance, pin) on a path that is timed. Arguments: see `setup_slack`."""
-    numbered = replace(
-        netlist, instances=tuple(replace(i, name=f"i{k}") for k, i in enumerate(netlist.instances))
-    )  # else names come back escaped
-    names, found = [i.name for i in netlist.instances], {}
-    for number, pin, *slacks in re.findall(
-        r"(?m)^PIN i(\d+)/(\w+) (\S+) (\S+)$", _report(numbered, nets, liberty, sdc, PINS)
-    ):
-        found[names[int(number)], pin] = min(map(float, slacks))
-    return found
 
 
 def _report(netlist: Netlist, nets: Mapping[str, tuple[float, float]], liberty: Path, sdc: Path, more: str) -> str:

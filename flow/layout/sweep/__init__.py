@@ -1,1 +1,0 @@
-"""Many layouts: variants of the divider against one another, and quality against effort."""
