@@ -10,9 +10,6 @@ from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
-from talbot.signoff.parasitics.capacitance import capacitances
-from talbot.signoff.parasitics.extract import floating, with_fill_floating
-from talbot.signoff.parasitics.shapes import labels, shapes
 
 from talbot.base.gds import db, pex
 from talbot.base.steps import StepError
@@ -21,6 +18,9 @@ from talbot.pixels.layout.pixel import COLUMN, COLUMNS, LINE, READ_Y, RESET_Y, R
 from talbot.platforms.extraction import extraction_platform
 from talbot.platforms.layout import layout_platform
 from talbot.platforms.wires import CORNERS
+from talbot.signoff.parasitics.capacitance import capacitances
+from talbot.signoff.parasitics.extract import floating, with_fill_floating
+from talbot.signoff.parasitics.shapes import labels, shapes
 
 LEAST = 4, 6  # rows and columns of the smaller array, which has whole tiles
 ROWS, COLUMN_NETS = ("pixel_reset", "read"), ("column_a", "column_b")

@@ -13,9 +13,6 @@ from types import ModuleType
 from typing import Any
 
 import numpy as np
-from talbot.signoff.parasitics.capacitance import capacitances
-from talbot.signoff.parasitics.shapes import METAL_LEVEL, Shapes, labels, shapes
-from talbot.signoff.parasitics.trees import trees
 
 from talbot.base.gds import db
 from talbot.base.steps import StepError
@@ -25,6 +22,9 @@ from talbot.platforms.analog import AnalogMasks
 from talbot.platforms.extraction import extraction_platform
 from talbot.platforms.layout import layout_platform
 from talbot.platforms.wires import Wires
+from talbot.signoff.parasitics.capacitance import capacitances
+from talbot.signoff.parasitics.shapes import METAL_LEVEL, Shapes, labels, shapes
+from talbot.signoff.parasitics.trees import trees
 
 SUBSTRATE = "vss"
 LEAST_FARAD = 1e-18  # coupling below it counts as to the substrate

@@ -4,13 +4,13 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from talbot.signoff.parasitics.capacitance import capacitances
-from talbot.signoff.parasitics.shapes import METAL_LEVEL, shapes
 
 from talbot.base.gds import db
 from talbot.platforms.extraction import ExtractionPlatform
 from talbot.platforms.layout import LayoutPlatform
 from talbot.platforms.wires import CORNERS
+from talbot.signoff.parasitics.capacitance import capacitances
+from talbot.signoff.parasitics.shapes import METAL_LEVEL, shapes
 
 MOST = CORNERS[-1]  # the corner of wires with the most capacitance
 

@@ -3,16 +3,16 @@
 from typing import Any
 
 import numpy as np
-from talbot.signoff.parasitics.capacitance import capacitances
-from talbot.signoff.parasitics.extract import floating, with_fill_floating
-from talbot.signoff.parasitics.shapes import METAL_LEVEL, shapes
-from talbot.signoff.parasitics.trees import trees
 
 from talbot.base.gds import db
 from talbot.base.steps import Files, Step
 from talbot.flow.layout.steps.parameters import PdkParameters
 from talbot.platforms.extraction import extraction_platform
 from talbot.platforms.layout import layout_platform
+from talbot.signoff.parasitics.capacitance import capacitances
+from talbot.signoff.parasitics.extract import floating, with_fill_floating
+from talbot.signoff.parasitics.shapes import METAL_LEVEL, shapes
+from talbot.signoff.parasitics.trees import trees
 
 HALF_NM, ENDS_NM = 150, ((5_000, 5_000), (25_000, 20_000))  # half the width of a segment; where the net's ends are
 

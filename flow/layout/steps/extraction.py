@@ -2,14 +2,13 @@
 
 from typing import Any
 
-from talbot.signoff.parasitics.extract import extract
-
 from talbot.base.gds import read_gds
 from talbot.base.steps import Files, Step
 from talbot.flow.layout.steps.parameters import PdkParameters
 from talbot.platforms.extraction import extraction_platform
 from talbot.platforms.layout import layout_platform
 from talbot.signoff.netlist.netlist import Netlist
+from talbot.signoff.parasitics.extract import extract
 from talbot.signoff.parasitics.spef import spef
 
 

@@ -5,8 +5,6 @@ from dataclasses import replace
 from itertools import pairwise
 
 import pytest
-from talbot.signoff.parasitics.capacitance import capacitances
-from talbot.signoff.parasitics.shapes import shapes
 
 from talbot.base.gds import db, read_gds
 from talbot.base.steps import StepError
@@ -24,6 +22,8 @@ from talbot.platforms.layout import layout_platform
 from talbot.platforms.sky130 import analog
 from talbot.platforms.sky130.models import wheel
 from talbot.platforms.sky130.wires import WIRES
+from talbot.signoff.parasitics.capacitance import capacitances
+from talbot.signoff.parasitics.shapes import shapes
 
 pytestmark = pytest.mark.needs("layout", "klayout")
 

@@ -3,11 +3,11 @@
 from types import ModuleType
 
 import pytest
-from talbot.signoff.parasitics.test.extract_test import ROUTE, nets, top
 
 from talbot.flow.layout.steps.compiled import Compiled
 from talbot.models.compiled import Compiled as Loop
 from talbot.signoff.parasitics import bins, capacitance, shapes, trees
+from talbot.signoff.parasitics.test.extract_test import ROUTE, nets, top
 
 pytestmark = pytest.mark.needs("layout")
 
