@@ -1,7 +1,7 @@
 """Equivalence of a cut design and its netlist, by ABC: registers matched by name, outputs and next states compared."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from talbot.base.steps import StepError
@@ -25,7 +25,22 @@ class Pair:
     gate_states: dict[Bit, str]
     folder: Path
     seconds: int
-    given: Mapping[Bit, Bit]
+    given: Mapping[Bit, Bit] = field(default_factory=dict)
+
+    def substituted(self, missing: Sequence[Bit], reset: str) -> "Pair":
+        """The same with substitutes of `Cut.substitutes` for the registers ``missing`` in the netlist, `settled`.
+
+        Random states may miss when a register is not constant: a constant that ABC refutes is not guessed again, since
+        with a wrong one other substitutes are refuted too.
+        """
+        refuted: dict[Bit, str] = {}
+        while True:
+            pair = replace(self, given=self.gold.substitutes(missing, self.states, reset, refuted))
+            constants = {bit: str(value) for bit, value in pair.given.items() if value in ("0", "1")}
+            lost = pair._lost(list(constants))
+            if not lost:
+                return pair.settled()
+            refuted |= {bit: constants[bit] for bit in lost}
 
     def settled(self) -> "Pair":
         """The same, where a register that does not keep what is ``given`` for it may hold anything."""

@@ -118,13 +118,17 @@ class Cut:
         """Bits that the outputs ``names`` come from, up to the registers."""
         return self._fan_in([self.outputs[name] for name in names])
 
-    def substitutes(self, missing: Sequence[Bit], present: Collection[Bit], reset: str) -> dict[Bit, Bit]:
+    def substitutes(
+        self, missing: Sequence[Bit], present: Collection[Bit], reset: str, refuted: Mapping[Bit, str] | None = None
+    ) -> dict[Bit, Bit]:
         """Find what the registers ``missing`` (Q bits) seem to hold after a reset: '0', '1' or one of ``present``.
 
         A guess from random states, sparse and dense ones too: a constant is a register whose next state is what it
         holds, a duplicate has the same next state as the other wherever both hold the same; of several the one whose
         next state comes from most of the same gates, and from the fewest others. One substitute changes what others
         seem to hold: therefore in turns. A register without one holds ANY.
+
+        refuted: constants that registers are known not to hold.
         """
         rng = random.Random(1)
         levels: dict[Bit, int] = {"0": 0, "1": ALL}
@@ -134,6 +138,8 @@ class Cut:
             after |= self._next(after)
         guess: dict[Bit, Bit | None] = {bit: "1" if after[bit] else "0" for bit in missing if after[bit] in (0, ALL)}
         wrong: dict[Bit, set[Bit]] = {bit: set() for bit in guess}
+        for bit, held in (refuted or {}).items():
+            guess[bit], wrong[bit] = None, {held}
         kept = 0
         cone = cache(lambda bit: self._fan_in([self.registers[bit]]))
         for turn in range(TURNS):

@@ -73,8 +73,7 @@ class Equivalence(Step[EquivalenceParameters]):
             gate = self.cut(GATE, folder / "gate.json", netlist=inputs["verilog"], liberty=inputs["liberty"])
             states, gate_states = match(gold, gate, Netlist.read(inputs["netlist"]))
             missing = sorted(gold.live() - set(states), key=int)
-            guess = gold.substitutes(missing, states, p.reset)
-            pair = Pair(gold, gate, states, gate_states, folder, p.seconds, guess).settled()
+            pair = Pair(gold, gate, states, gate_states, folder, p.seconds).substituted(missing, p.reset)
             held, proofs = pair.given, pair.prove(p.reset)
         lacking = {gold.names[bit][0]: gold.names.get(held[bit], [held[bit]])[0] for bit in missing}
         outputs["summary"].write_text(

@@ -196,3 +196,27 @@ def test_a_double_is_shown_to_be_one_and_what_the_verilog_leaves_open_is_open(ta
 )
 def test_a_change_beside_what_is_open_or_double_is_found(table, old, new):
     assert verdict(table, Netlist.read(table / "netlist.json"), TABLE.replace(old, new))["equivalence"] == "failed"
+
+
+# Two registers that are always equal; no random state shows that their upper bit is not always 0
+RARE = """
+module Counter(input clk, input reset, input [47:0] key, output [1:0] state, output same);
+  reg [1:0] row, tile;
+  assign state = row;
+  assign same = tile[1] ^ tile[0];
+  always @(posedge clk)
+    if (reset) begin row <= 2'd0; tile <= 2'd0; end
+    else begin
+      row <= {key == 48'haaaa_5555_f00f, row[0] ^ key[0]};
+      tile <= {key == 48'haaaa_5555_f00f, tile[0] ^ key[0]};
+    end
+endmodule
+"""
+
+
+def test_a_wrong_guess_of_a_constant_does_not_hide_a_double(tmp_path):
+    synthesized(tmp_path, RARE)
+    netlist = Netlist.read(tmp_path / "netlist.json")
+    found = verdict(tmp_path, netlist, RARE)
+    assert (found["equivalence"], found["constant_registers"], found["double_registers"]) == ("proven", 0, 1)
+    assert verdict(tmp_path, netlist, RARE.replace("tile <= {key", "tile <= {~key"))["equivalence"] == "failed"
