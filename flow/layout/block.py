@@ -80,10 +80,10 @@ def publish(folder: Path, design: Design, options: Options, runner: Runner, summ
 def draw(folder: Path, design: Design, runner: Runner, options: Options, layout: LayoutPicture | None) -> list[Picture]:
     """Draw the cells by block, the clock's tree and the congestion; pictures of these and of the IR drop.
 
-    layout: as drawn; None, and no picture, where the layout has no power.
+    layout: as drawn; None, and no picture, without one.
     """
     first, name = options.corners[0], design.name
-    if layout is None or f"ir_drop_{first}.picture" not in runner.paths:
+    if layout is None:
         return []
     keys = "stream_out.placement", "library.areas", "stream_out.plan"
     placement, areas, plan = (json.loads(runner.paths[key].read_text(encoding="utf-8")) for key in keys)
@@ -93,4 +93,5 @@ def draw(folder: Path, design: Design, runner: Runner, options: Options, layout:
     clock_tree(files[1], netlist, placed, design.clock.port, plan)
     congestion(files[2], layout, [metal.name for metal in tech.metals[1:]])
     drawn = [picture(path, caption) for path, caption in zip(files, PICTURES.values(), strict=True)]
-    return [*drawn, picture(folder / f"{name}.{first}.ir_drop.png", f"IR drop, {first}")]
+    ir_drop = folder / f"{name}.{first}.ir_drop.png"
+    return [*drawn, picture(ir_drop, f"IR drop, {first}")] if ir_drop.is_file() else drawn

@@ -33,6 +33,7 @@ from talbot.flow.layout.steps.synthesis import SynthesisParameters, TimedSynthes
 from talbot.flow.layout.steps.timing import Timing, TimingParameters
 from talbot.flow.layout.timing.constraints import sdc
 from talbot.flow.layout.variables import Floor
+from talbot.flow.layout.verilog import verilog_text
 from talbot.platforms.wires import wire_corner
 from talbot.rtl.verilog import export_verilog
 from talbot.signoff.foundry_drc import FoundryDrc, FoundryDrcParameters, MagicDrc
@@ -50,7 +51,10 @@ def input_files(design: Design, options: Options, folder: Path) -> dict[str, Pat
 
     Raises ToolError where the export fails.
     """
-    export_verilog(folder / "rtl", [design.top], design.options)
+    if design.verilog:
+        write(folder / "rtl" / f"{design.top}.sv", verilog_text(design.verilog))
+    else:
+        export_verilog(folder / "rtl", [design.top], design.options)
     constraints, before = (folder / "rtl" / f"{design.top}{suffix}.sdc" for suffix in ("", ".place_and_route"))
     constraints.write_text(sdc(design), encoding="utf-8")
     before.write_text(sdc(design, propagated=False), encoding="utf-8")
@@ -137,7 +141,12 @@ def signoff_steps(design: Design, options: Options) -> list[Step]:
 
 
 def netlist_tests(design: Design) -> list[Step]:
-    """The block's tests on both netlists, in both simulators, a wrapper's in Icarus; of the chip, whole frames."""
+    """The block's tests on both netlists, in both simulators, a wrapper's in Icarus; of the chip, whole frames.
+
+    None of a user's Verilog.
+    """
+    if design.verilog:
+        return []
     if not design.netlist_names:
         return [GateFrames()]
     block = design.folder, design.netlist_names, design.top
@@ -150,16 +159,18 @@ def netlist_tests(design: Design) -> list[Step]:
 def timing_steps(design: Design, options: Options) -> list[Step]:
     """The steps that require characterized cells, corner by corner.
 
-    Of the chip, whose frames take minutes with delays, simulation and power run at the first corner alone.
+    Of the chip, whose frames take minutes with delays, simulation and power run at the first corner alone; of a user's
+    Verilog neither runs.
     """
     clock, io = design.clock, design.io
     size = {} if design.netlist_names else CHIP_FRAME
     parameters = StimulusParameters(design.top, design.folder, divider=design.divider, n_frac=design.n_frac, **size)
-    steps: list[Step] = [Stimulus(parameters)]
+    steps: list[Step] = [] if design.verilog else [Stimulus(parameters)]
     for corner in options.corners:
         steps.append(Sta(StaParameters(design.top, corner, clock.period_ns)))
         steps.append(BlockLiberty(BlockLibertyParameters(corner, clock.port)))
-    for corner in options.corners if design.netlist_names else options.corners[:1]:
+    simulated = () if design.verilog else options.corners if design.netlist_names else options.corners[:1]
+    for corner in simulated:
         steps += [
             GateDelays(GateDelaysParameters(corner, clock.period_ns, io.input_delay, io.output_delay)),
             Power(PowerParameters(design.top, corner, clock.period_ns)),

@@ -17,6 +17,7 @@ from talbot.flow.layout.report.page import closing
 from talbot.flow.layout.sensor.die import CHIP, SENSOR, die_steps, lay_out_sensor
 from talbot.flow.layout.sensor.plan import BLOCKS
 from talbot.flow.layout.varied import VARIED
+from talbot.flow.layout.verilog import design_of
 from talbot.models.parameters import ParameterError, check_choice
 from talbot.platforms.foundry import installed
 from talbot.platforms.processes import PROCESSES
@@ -25,8 +26,14 @@ from talbot.platforms.processes import PROCESSES
 def add_arguments(parser: ArgumentParser) -> None:
     """Arguments of `talbot layout`."""
     add = parser.add_argument
-    add("design", nargs="?", default=CHIP, help=f"one of {', '.join((*DESIGNS, SENSOR))}")
+    add("design", nargs="?", help=f"one of {', '.join((*DESIGNS, SENSOR))} (default: {CHIP})")
     add_sensor(parser)
+    files = "your own design, in place of ours: a Verilog file (again for further files); needs --top"
+    add("--verilog", type=Path, action="append", default=[], help=files)
+    add("--top", help="its module")
+    add("--clock", help="its clock, whose rising edge alone registers take (default: clk)")
+    add("--reset", help="its synchronous reset, active at 0 if the name ends in _n (default: none)")
+    add("--period-ns", type=float, help="its clock period, 0.5..10000 ns (default: 20)")
     add("--pdk", default=PROCESSES[0], help=f"process, one of {', '.join(PROCESSES)}")
     add("--utilization", type=float, help="cells' area by core area where the search begins (default: the design's)")
     cells = "characterized cells at a corner (again for further corners; default: those shipped)"
@@ -38,21 +45,36 @@ def add_arguments(parser: ArgumentParser) -> None:
 def run(arguments: Namespace) -> int:
     """Lay out a design and print what came of it; 1 where a limit is broken."""
     sensor_asked(arguments, VARIED)
-    check_choice("DESIGN", arguments.design, (*DESIGNS, SENSOR))
-    chosen = design(CHIP if arguments.design == SENSOR else arguments.design)
+    chosen = chosen_design(arguments)
     start = chosen.utilization if arguments.utilization is None else arguments.utilization
     decks = tuple(installed(arguments.pdk).items())
     options = Options(arguments.pdk, start, tuple(arguments.liberty), decks=decks)
-    if arguments.design == SENSOR:
+    name = arguments.design or chosen.name
+    if name == SENSOR:
         steps = [f"{CHIP}: {step.name}" for step in all_steps(chosen, options)]
         steps += [step.name for step in die_steps(chosen, options, BLOCKS)]
         with Steps(steps, lines=True) as bar:
             summary, lines = lay_out_sensor(chosen, options, arguments.analog, arguments.out, bar.note)
     else:
         summary, lines = block(chosen, options, arguments)
-    print(f"{arguments.design}: laid out")
+    print(f"{name}: laid out")
     print(closing(json.loads(summary.read_text(encoding="utf-8")), lines, summary.with_name("report.html")))
-    return failures(f"{arguments.design}: {line}" for line in lines)
+    return failures(f"{name}: {line}" for line in lines)
+
+
+def chosen_design(arguments: Namespace) -> Design:
+    """The Design of the arguments, of a user's Verilog or of DESIGNS; that of the die is the chip's."""
+    of_verilog = {name: getattr(arguments, name) for name in ("top", "clock", "reset", "period_ns")}
+    if not arguments.verilog:
+        if typed := next((name for name, value in of_verilog.items() if value is not None), None):
+            raise ParameterError(f"{typed} = {of_verilog[typed]}: must be with VERILOG, a user's own design")
+        check_choice("DESIGN", arguments.design or CHIP, (*DESIGNS, SENSOR))
+        return design(CHIP if arguments.design in (None, SENSOR) else arguments.design)
+    if arguments.design:
+        raise ParameterError(f"DESIGN = {arguments.design!r}: must not be with VERILOG, which has its own top")
+    if not arguments.top:
+        raise ParameterError("top = '': must be a module of VERILOG")
+    return design_of(arguments.verilog, **{name: value for name, value in of_verilog.items() if value is not None})
 
 
 def block(chosen: Design, options: Options, arguments: Namespace) -> tuple[Path, list[str]]:

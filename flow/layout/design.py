@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field
 from functools import partial
+from pathlib import Path
 
 from talbot.models.parameters import ASYNCHRONOUS, SPI_INPUTS, ParameterError, check_real
 from talbot.platforms.processes import PROCESSES
@@ -47,7 +48,8 @@ class Design:
     own is laid out in that size. utilization: where the search for the smallest area begins. aspect: width by height.
     divider, n_frac: of the chip in whose frame the block's stimulus is recorded. io: constraints of its ports.
     asynchronous: inputs that pass synchronizers, a false path. reset: port, active at 0 if it ends in _n. frame: a
-    shuttle's outline, see platforms.frame; '' for the smallest that there is. closed: edges without pins.
+    shuttle's outline, see platforms.frame; '' for the smallest that there is. closed: edges without pins. verilog:
+    files of a user's design, which has no tests, and no frame in which power is measured; () for a block of rtl/.
     """
 
     name: str
@@ -65,6 +67,7 @@ class Design:
     reset: str = "reset"
     frame: str = ""
     closed: tuple[str, ...] = ()
+    verilog: tuple[Path, ...] = ()
 
 
 def divider(name: str, variant: str, n_frac: int = 8) -> Design:
@@ -95,7 +98,7 @@ DESIGNS = {
         tile("tt_quad_divider", "tt_um_talbot_divider", netlist_names=("tt_um_talbot_divider",), frame="tt_1x1"),
         tile("tt_amp_ctrl", "tt_um_talbot_amp_ctrl", netlist_names=("tt_um_talbot_amp_ctrl",), frame="tt_1x2"),
         tile("tt_asp_chip", "tt_um_talbot_chip", netlist_names=("tt_um_talbot_chip",), frame="tt_4x4"),
-        chip("asp_chip", utilization=0.65, aspect=1.5, closed=("bottom", "top")),
+        chip("asp_chip", utilization=0.62, aspect=1.5, closed=("bottom", "top")),
     )
 }
 

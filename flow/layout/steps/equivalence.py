@@ -16,7 +16,7 @@ from talbot.signoff.netlist.registers import ANY, Cut
 # Registers without a load stay: a macro has those, too, that the design around it does not use
 GOLD = (
     "read_verilog -sv {rtl}; hierarchy -top {top}; proc; flatten -noscopeinfo; setattr -set keep 1 t:$dff; "
-    "memory; techmap; simplemap; dffunmap; setattr -set keep 1 t:$_DFF_P_; opt_clean; write_json {out}"
+    "memory -nordff; techmap; simplemap; dffunmap; setattr -set keep 1 t:$_DFF_P_; opt_clean; write_json {out}"
 )
 GATE = (
     "read_liberty {liberty}; opt_clean; read_verilog {netlist}; hierarchy -top {top}; proc; flatten -noscopeinfo; "

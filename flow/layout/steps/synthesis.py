@@ -37,13 +37,13 @@ design -save read
 hierarchy -top {top}
 proc
 flatten -noscopeinfo
-memory
+memory -nordff
 techmap
 simplemap
 opt_clean
 write_json {registers}
 design -load read
-synth -flatten -nofsm -top {top}
+synth -flatten -nofsm -nordff -top {top}
 delete t:$scopeinfo
 {gates}
 dfflibmap -liberty {liberty}

@@ -220,3 +220,27 @@ def test_a_wrong_guess_of_a_constant_does_not_hide_a_double(tmp_path):
     found = verdict(tmp_path, netlist, RARE)
     assert (found["equivalence"], found["constant_registers"], found["double_registers"]) == ("proven", 0, 1)
     assert verdict(tmp_path, netlist, RARE.replace("tile <= {key", "tile <= {~key"))["equivalence"] == "failed"
+
+
+MEMORY = """
+module Counter(input clk, input reset, input push, input pop, input [2:0] d, output [2:0] q);
+  reg [2:0] words [0:3];
+  reg [1:0] at, from;
+  assign q = words[from];
+  always @(posedge clk) begin
+    if (push) words[at] <= d;
+    at <= reset ? 2'd0 : at + push;
+    if (reset) from <= 2'd0; else if (pop) from <= from + 2'd1;
+  end
+endmodule
+"""
+
+
+def test_a_memory_and_the_registers_of_its_addresses_keep_their_names(tmp_path):
+    synthesized(tmp_path, MEMORY)
+    netlist = Netlist.read(tmp_path / "netlist.json")
+    registers = {i.name for i in netlist.instances if i.cell == "dff_x1"}
+    words = {f"words[{at}][{k}]_reg" for at in range(4) for k in range(3)}
+    assert registers == words | {f"{name}[{k}]_reg" for name in ("at", "from") for k in range(2)}
+    assert verdict(tmp_path, netlist, MEMORY)["equivalence"] == "proven"
+    assert verdict(tmp_path, netlist, MEMORY.replace("q = words[from]", "q = words[~from]"))["equivalence"] == "failed"
