@@ -23,6 +23,7 @@ from talbot.rtl.tops import TOPS
 from talbot.verif.coverage.program import compile_program
 from talbot.verif.coverage.testplan import folder_of
 from talbot.verif.coverage.traces import recorded
+from talbot.verif.mutation.constants import jobs as constants
 from talbot.verif.mutation.judge import (
     EQUIVALENT,
     KILLED,
@@ -121,16 +122,15 @@ def try_mutants(blocks: Iterable[str], store: Path, factor: float = 1.0, seed: i
     mutants = [mutant for group in groups for mutant in group.mutants]
     by_block = {block: [i for i, name in enumerate(of) if name == block] for block in blocks}
     summaries = {block: summary([mutants[i] for i in at], [results[i] for i in at]) for block, at in by_block.items()}
-    for block, entry in escaped(blocks, store / "planted").items():
+    for block, entry in escaped([*bugs(blocks), *constants(blocks, factor, seed)], store / "planted").items():
         entry.add(summaries[block])
         summaries[block] = entry
     return summaries
 
 
-def escaped(blocks: Iterable[str], store: Path) -> dict[str, BlockResults]:
-    """Plant the bugs of planted.yaml in ``blocks``; a bug that passes its tests is an open point."""
-    planned = bugs(blocks)
-    caught = run_jobs([job for _, job in planned], store, "bugs that escaped once")
+def escaped(planned: Sequence[tuple[str, Job]], store: Path) -> dict[str, BlockResults]:
+    """Plant bugs, (block, Job) each, of planted.yaml and constants; one that passes its tests is an open point."""
+    caught = run_jobs([job for _, job in planned], store, "bugs that escaped once, constants")
     results: dict[str, BlockResults] = {}
     for (block, job), good in zip(planned, caught, strict=True):
         points = [] if good else [f"planted {job.name} = survived: its tests must fail"]
