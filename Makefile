@@ -22,7 +22,7 @@ export MATPLOTLIBRC := /dev/null
 # does not know (talbot/make.py). KNOWN: make's own, and those that go into the environment. PLAIN: targets without a
 # command, which know these alone.
 KNOWN := PYTHON PDK_ROOT SCHEDULER
-PLAIN := help %-help setup setup-layout test lint format locks librelane bench tools have-tools clean
+PLAIN := help %-help setup setup-layout test lint format locks librelane dist bench tools have-tools clean
 GIVEN := $(foreach name,$(.VARIABLES),$(if $(filter command,$(origin $(name))),$(name)))
 $(foreach name,$(filter-out $(KNOWN),$(GIVEN)),$(eval unexport $(name)))
 # As MAKEFLAGS has them, which `make -e` leaves without: the command line's variables
@@ -142,16 +142,25 @@ verify: $(TESTS_READY) $(LAYOUT_READY)
 	@[ "$$TALBOT_CHECK" ] || BEFORE="$(CHECK)" bash requirements/tools.sh --missing iverilog z3
 	@$(talbot) verify
 
+# Environments whose packages do not go with ours
 LIBRELANE := build/librelane
-$(LIBRELANE)/.ready: requirements/librelane.lock | $(READY)
-	@rm -rf '$(LIBRELANE)'
-	@$(PY) -m venv --without-pip '$(LIBRELANE)'
-	@$(PY) -m pip --python '$(LIBRELANE)' install --quiet --disable-pip-version-check --require-hashes -r $<
+RELEASE := build/release
+build/%/.ready: requirements/%.lock | $(READY)
+	@rm -rf '$(@D)'
+	@$(PY) -m venv --without-pip '$(@D)'
+	@$(PY) -m pip --python '$(@D)' install --quiet --disable-pip-version-check --require-hashes -r $<
 	@touch $@
 
 .PHONY: librelane
 librelane: $(TESTS_READY) $(LAYOUT_READY) have-tools $(LIBRELANE)/.ready
 	@$(PY) -m pytest --all flow/openroad/test/librelane_test.py
+
+# Wheel and source distribution, in dist
+.PHONY: dist
+dist: $(RELEASE)/.ready
+	@rm -rf dist
+	@$(RELEASE)/bin/python -m build --outdir dist
+	@$(RELEASE)/bin/twine check --strict dist/*
 
 .PHONY: bench
 bench: $(TESTS_READY)
@@ -167,4 +176,4 @@ have-tools:  # `make cells` and `make layout` install what is missing themselves
 
 .PHONY: clean
 clean:
-	rm -rf build
+	rm -rf build dist

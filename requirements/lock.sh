@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Renew the locks (make locks): for Python 3.11 and later on every platform, versions and hashes of what runs (run), what
 # video files add (video), rendering (render), tests and verification (test), cells and layouts (layout), `make lint`
-# (lint); LibreLane has another environment; uv installs all of these (uv). pdk.lock is edited directly: one wheel whose
+# (lint), `make dist` (release); LibreLane has another environment; uv installs all of these (uv). pdk.lock is edited directly: one wheel whose
 # dependencies are not wanted.
 set -euo pipefail
 cd "$(dirname "$0")"
@@ -13,5 +13,6 @@ lock --extra setup --extra render --constraint run.lock --output-file render.loc
 lock --extra setup --extra test --extra verify --extra document --extra video --extra codecs --constraint run.lock --output-file test.lock
 lock --extra setup --extra layout --constraint test.lock --output-file layout.lock
 compile --group ../pyproject.toml:lint --constraint layout.lock --output-file lint.lock
+compile --group ../pyproject.toml:release --output-file release.lock
 printf '%s\n' 'uv>=0.13,<0.14' | compile - --output-file uv.lock
 printf '%s\n' librelane==3.0.17 pyosys==0.70 | compile - --output-file librelane.lock

@@ -86,6 +86,7 @@ GROUPS: dict[str, dict[str, Command]] = {
         "bench": Command("benchmarks of speed and memory"),
         "locks": Command("renew requirements/*.lock from pyproject.toml"),
         "librelane": Command("LibreLane itself on our designs"),
+        "dist": Command("wheel and source distribution, checked: dist/"),
         "learn": Command(
             "learn the dictionary or the two-branch network of light fields", "imaging.lightfield.learn.command"
         ),
@@ -95,7 +96,7 @@ GROUPS: dict[str, dict[str, Command]] = {
         "divider": Command("every input of a divider through its Verilog", "imaging.simulate.divider.exhaustive"),
         "layout-timing": Command("measure the shipped cell timing again in ngspice", "flow.layout.measure_cells"),
         "openroad-fit": Command("Tiny Tapeout projects against their tiles' area", "flow.openroad.fit"),
-        "clean": Command("delete build/"),
+        "clean": Command("delete build/ and dist/"),
     },
 }
 COMMANDS = {name: command for group in GROUPS.values() for name, command in group.items() if command.module}

@@ -16,7 +16,7 @@ IMAGE = re.compile(r"!\[[^\]]*\]\(([^)\s]+)\)")
 LINK = re.compile(r"(?ms)^```.*?^```|^ {4}.*?$|(?<!!)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)\s]+)\)|`[^`\n]+`")
 # Title of a part of the contents -> its documents, in order; a folder: all in it that no other part has
 PARTS = {
-    "Tutorial": ("docs/tutorial",),
+    "Start": ("docs/install", "docs/tutorial", "docs/how-to", "docs/comparison"),
     "Reference": ("api", "docs/chip", "architecture", "docs/registers", "docs/stream", "docs/host", "docs/figures"),
     "Results": ("gallery", "docs/gallery", "docs/results"),
     "Models": ("models",),
