@@ -20,11 +20,12 @@ from talbot.rtl.harness.testbench import build
 from talbot.rtl.messages import END, FRAME, ROW, SAMPLE, ScanMsg, step_msg
 
 ROWS, COLS, LANES = 3, 104, 8  # three groups, the last one partial
+WIDE = 6 * 32  # columns of one group of the most lanes
 RNG = np.random.default_rng(5)
-SAMPLES = RNG.uniform(0, 127.5, (4, ROWS, COLS, 2))
-SAMPLES[:, 0, :, 1] = SAMPLES[:, 0, :, 0] + RNG.choice((-1, 1), (4, COLS)) * RNG.uniform(15, 90, (4, COLS))  # no zeros
+SAMPLES = RNG.uniform(0, 127.5, (4, ROWS, WIDE, 2))
+SAMPLES[:, 0, :, 1] = SAMPLES[:, 0, :, 0] + RNG.choice((-1, 1), (4, WIDE)) * RNG.uniform(15, 90, (4, WIDE))  # no zeros
 SAMPLES[:, 1, :, 1] = SAMPLES[:, 1, :, 0]  # zeros
-SAMPLES[:, 2, :, 1] = SAMPLES[:, 2, :, 0] + RNG.normal(0, 3, (4, COLS))  # around the window
+SAMPLES[:, 2, :, 1] = SAMPLES[:, 2, :, 0] + RNG.normal(0, 3, (4, WIDE))  # around the window
 
 SETTINGS = settings(max_examples=8, deadline=None, suppress_health_check=[HealthCheck.differing_executors])
 ALWAYS = [(True, True)]
@@ -137,17 +138,28 @@ def frame(rows, cols, lanes, mode, **kw):
     return Scan(rows, cols, lanes, FrameParameters(Window(0, -(-rows // 4) - 1, 0, -(-cols // 6) - 1), mode=mode, **kw))
 
 
+def lane_sets(lanes):
+    """Any lanes enabled: none, one, all but one, neighbours and all more often than at random."""
+    one = st.integers(0, lanes - 1).map(lambda lane: 1 << lane)
+    every = (1 << lanes) - 1
+    few = st.sampled_from([0, every, every >> 1, every & ~1])
+    return st.one_of(
+        st.integers(0, every), one, one.map(lambda bit: every ^ bit), one.map(lambda bit: every & 3 * bit), few
+    )
+
+
 @st.composite
-def step_lists(draw):
-    """Two frames of any steps: any lanes enabled, none too."""
-    Step = step_msg(LANES)
+def step_lists(draw, lanes=LANES):
+    """Two frames of any steps."""
+    Step = step_msg(lanes)
+    groups = st.integers(0, lanes < 32)  # inside WIDE columns
     out = []
     for _ in range(2):
         out.append(Step(FRAME, 0, 0, 0, 0, 0))
         for row in draw(st.lists(st.integers(0, ROWS - 1), max_size=2)):
             out.append(Step(ROW, row, 0, 0, 0, 0))
             out += [
-                Step(SAMPLE, row, draw(st.integers(0, 1)), draw(st.integers(0, 5)), 0, draw(st.integers(0, 255)))
+                Step(SAMPLE, row, draw(groups), draw(st.integers(0, 5)), 0, draw(lane_sets(lanes)))
                 for _ in range(draw(st.integers(0, 6)))
             ]
         out.append(Step(END, 0, 0, 0, 0, 0))
@@ -289,8 +301,19 @@ class TestAdcBankIcarus(TestAdcBankRTL):
 
 
 @pytest.mark.parametrize("cls", [AdcBankFL, AdcBankCL, AdcBank])
-@pytest.mark.parametrize("lanes", [1, 2, 32])
-def test_other_numbers_of_lanes(cls, lanes):
-    steps = steps_of(frame(2, 50, lanes, "edge", mask=0x00000201))
-    got = Run(simulator(cls, False, lanes), steps, "edge", 10, [(True, True), (True, False), (False, True)])
-    assert (got.messages, got.counts) == expected(steps, lanes, "edge", 10)
+@pytest.mark.parametrize("lanes", [1, 2, 4, 16, 32])
+class TestOtherNumbersOfLanes:
+    @settings(SETTINGS, max_examples=5)
+    @given(st.data(), st.sampled_from(MODES), st.integers(0, 127), patterns)
+    def test_any_steps(self, cls, lanes, data, mode, threshold, pattern):
+        steps = data.draw(step_lists(lanes))
+        got = Run(simulator(cls, False, lanes), steps, mode, threshold, pattern)
+        assert (got.messages, got.counts) == expected(steps, lanes, mode, threshold)
+
+    def test_each_lane_alone_and_all_others(self, cls, lanes):
+        Step, every = step_msg(lanes), (1 << lanes) - 1
+        ones = [1 << lane for lane in range(lanes)]
+        steps = [Step(SAMPLE, 2, 0, 3, 0, en) for en in (*ones, *(every ^ one for one in ones))]
+        steps = [Step(FRAME, 0, 0, 0, 0, 0), *steps, Step(END, 0, 0, 0, 0, 0)]
+        got = Run(simulator(cls, False, lanes), steps, "edge", 3, [(True, True), (True, False), (False, True)])
+        assert (got.messages, got.counts) == expected(steps, lanes, "edge", 3)

@@ -9,7 +9,9 @@ from talbot.rtl.asp_chip.balance_rtl import Balance
 from talbot.rtl.harness.testbench import build
 
 TILES = {f"{rows}x{cols}": TileParameters.small(rows, cols) for rows, cols in ((4, 6), (3, 5), (2, 4), (3, 1), (1, 1))}
-TILES["shuffled"] = TileParameters(3, 2, TileParameters().types[:6], (5, 0, 3, 1, 4, 2))
+for rows, cols in ((4, 6), (3, 6), (4, 5), (3, 2)):
+    any_order = np.random.default_rng(rows * cols).permutation(rows * cols).tolist()
+    TILES[f"{rows}x{cols} shuffled"] = TileParameters(rows, cols, TileParameters().types[: rows * cols], any_order)
 
 
 class TestRTL:

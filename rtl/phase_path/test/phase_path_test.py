@@ -23,9 +23,16 @@ patterns = st.lists(st.tuples(st.booleans(), st.booleans()), min_size=1, max_siz
     lambda p: any(v for v, _ in p) and any(r for _, r in p)
 )
 bytes_ = st.one_of(st.integers(0, 255), st.sampled_from([0, 1, 127, 128, 254, 255]))
-steps = st.integers(1, LANES).flatmap(
-    lambda n: st.lists(st.lists(bytes_, min_size=n, max_size=n), min_size=4, max_size=4)
-)
+
+
+def steps_of(lanes):
+    """The taps of a step: any number of lanes."""
+    return st.sampled_from(sorted({1, lanes, *range(1, min(lanes, 8)), max(1, lanes - 1)})).flatmap(
+        lambda n: st.lists(st.lists(bytes_, min_size=n, max_size=n), min_size=4, max_size=4)
+    )
+
+
+steps = steps_of(LANES)
 short_rows = st.lists(st.tuples(st.integers(0, 1023), st.lists(steps, max_size=1)), max_size=1)
 floors = st.sampled_from([0, 1, 20, 201, 255])
 rows = st.lists(st.tuples(st.integers(0, 1023), st.lists(steps, max_size=3)), max_size=3)
@@ -226,18 +233,32 @@ class TestPhasePathIcarus(TestPhasePathRTL):
     verilog = "icarus"
 
 
+CHIPS = [
+    ChipParameters(1, "radix2", 4),
+    ChipParameters(2, "radix4", 5),
+    ChipParameters(4, "cordic", 8, 6),
+    ChipParameters(16, "pipelined", 16),
+    ChipParameters(32, "pipelined", 12),
+]
+
+
 @pytest.mark.parametrize("cls", [PhasePathCL, PhasePath])
-@pytest.mark.parametrize(
-    "chip",
-    [
-        ChipParameters(1, "radix2", 4),
-        ChipParameters(2, "radix4", 5),
-        ChipParameters(4, "cordic", 8, 6),
-        ChipParameters(16, "pipelined", 16),
-        ChipParameters(32, "pipelined", 12),
-    ],
-    ids=lambda c: f"{c.lanes}-{c.divider}",
-)
+@pytest.mark.parametrize("chip", CHIPS, ids=lambda c: f"{c.lanes}-{c.divider}")
+@settings(SETTINGS, max_examples=8)
+@given(st.data())
+def test_two_frames_of_any_configuration(cls, chip, data):
+    """Any samples a step, `on`, noise floor and stalls in each frame."""
+    run, wanted = Run(simulator(cls, False, chip)), []
+    for _ in range(2):
+        on, noise_floor, pattern = data.draw(st.booleans()), data.draw(floors), data.draw(patterns)
+        frame = [(data.draw(st.integers(0, 1023)), data.draw(st.lists(steps_of(chip.lanes), max_size=2)))]
+        run.frame(messages(frame), on, noise_floor, pattern)
+        wanted += expected(frame, chip, noise_floor) if on else unmarked(frame)
+    assert run.messages == wanted
+
+
+@pytest.mark.parametrize("cls", [PhasePathCL, PhasePath])
+@pytest.mark.parametrize("chip", CHIPS, ids=lambda c: f"{c.lanes}-{c.divider}")
 def test_other_lanes_and_dividers(cls, chip):
     rng = np.random.default_rng(8)
     count = 2 if chip.lanes < 8 else 1
