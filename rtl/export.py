@@ -12,24 +12,12 @@ from talbot.base.sensor import Varied, add_sensor, sensor_asked
 from talbot.models.parameters import SensorParameters
 from talbot.rtl.harness.translate import translate_component
 from talbot.rtl.lint import lint
+from talbot.rtl.sensor_options import FIELDS, VARIED
 from talbot.rtl.tops import PARTS, TOPS, WRAPPERS, build_top
 
 WRAPPER = Path(__file__).parent / "tinytapeout"
 BUS = "tt_bytes"
 BY_NAME = *PARTS, *WRAPPERS
-# Options, and the fields of the sensor that they replace
-FIELDS = {
-    "rows": "array.rows",
-    "cols": "array.cols",
-    "lanes": "chip.lanes",
-    "tile-rows": "tile.rows",
-    "tile-cols": "tile.cols",
-    "order": "tile.order",
-    "divider": "chip.divider",
-    "n-frac": "chip.n_frac",
-    "iterations": "chip.cordic_iterations",
-}
-VARIED = Varied(used=tuple(FIELDS.values()))
 # Wrappers connect buses of the standard sensor's widths
 WRAPPED = {
     "tt_um_talbot_divider": Varied(

@@ -6,11 +6,10 @@ from pathlib import Path
 from talbot.base.command import failures
 from talbot.base.files import staged
 from talbot.base.paths import RESULTS
-from talbot.base.sensor import add_sensor, sensor_asked
+from talbot.base.sensor import add_sensor
 from talbot.flow.handoff.archive import archive, sha256
 from talbot.flow.handoff.contents import Broken, contents, manifest, waived
-from talbot.flow.layout.design import DESIGNS, design, folder_name
-from talbot.flow.layout.varied import VARIED
+from talbot.flow.layout.design import DESIGNS, design_asked, folder_name
 from talbot.models.parameters import check_choice
 from talbot.platforms.processes import PROCESSES
 
@@ -26,8 +25,7 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Write the archive and print its hash; 1 where the layout breaks a rule that is not waived."""
-    sensor_asked(options, VARIED)
-    chosen = design(options.design)
+    chosen = design_asked(options.design, options)
     check_choice("pdk", options.pdk, PROCESSES)
     name = folder_name(chosen, options.pdk)
     try:

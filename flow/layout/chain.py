@@ -17,7 +17,7 @@ from talbot.flow.layout.steps.equivalence import Equivalence, EquivalenceParamet
 from talbot.flow.layout.steps.extraction import Extraction
 from talbot.flow.layout.steps.fill import Fill
 from talbot.flow.layout.steps.gate_delays import GateDelays, GateDelaysParameters
-from talbot.flow.layout.steps.gate_frames import GateFrames
+from talbot.flow.layout.steps.gate_frames import GateFrames, GateFramesParameters
 from talbot.flow.layout.steps.gate_tests import GateTests, GateTestsParameters
 from talbot.flow.layout.steps.ir_drop import IrDrop, IrDropParameters
 from talbot.flow.layout.steps.lef import Lef
@@ -27,7 +27,7 @@ from talbot.flow.layout.steps.parameters import PdkParameters
 from talbot.flow.layout.steps.power import Power, PowerParameters
 from talbot.flow.layout.steps.sta import Sta, StaParameters
 from talbot.flow.layout.steps.stage import STAGES, Stage, StageParameters, called, design_tcl, scripts
-from talbot.flow.layout.steps.stimulus import Stimulus, StimulusParameters
+from talbot.flow.layout.steps.stimulus import SMALL, Stimulus, StimulusParameters
 from talbot.flow.layout.steps.stream_out import StreamOut, StreamOutParameters
 from talbot.flow.layout.steps.synthesis import SynthesisParameters, TimedSynthesis
 from talbot.flow.layout.steps.timing import Timing, TimingParameters
@@ -42,7 +42,7 @@ Signoff = Callable[[Design, Options], list[Step]]
 
 FAN_OUT = 12  # most cells that one signal drives, where synthesis knows the cells' timing
 # Of the whole chip, whose netlist with delays simulates a thousand times slower than a block's
-CHIP_FRAME = {"rows": 384, "cols": 384, "tiles": 1}
+CHIP_TILES = 1
 UTILIZATION_STEP = 0.04  # between two attempts
 
 
@@ -148,7 +148,7 @@ def netlist_tests(design: Design) -> list[Step]:
     if design.verilog:
         return []
     if not design.netlist_names:
-        return [GateFrames()]
+        return [GateFrames(GateFramesParameters(design.options))]
     block = design.folder, design.netlist_names, design.top
     runs = ("synthesized", "icarus"), ("final", "icarus"), ("final", "verilator")
     if design.frame:
@@ -163,8 +163,10 @@ def timing_steps(design: Design, options: Options) -> list[Step]:
     Verilog neither runs.
     """
     clock, io = design.clock, design.io
-    size = {} if design.netlist_names else CHIP_FRAME
-    parameters = StimulusParameters(design.top, design.folder, divider=design.divider, n_frac=design.n_frac, **size)
+    parameters = StimulusParameters(design.top, design.folder, design.options, CHIP_TILES)
+    if design.netlist_names:
+        around = *SMALL, f"--divider={design.divider}", f"--n-frac={design.n_frac}"
+        parameters = StimulusParameters(design.top, design.folder, around)
     steps: list[Step] = [] if design.verilog else [Stimulus(parameters)]
     for corner in options.corners:
         steps.append(Sta(StaParameters(design.top, corner, clock.period_ns)))

@@ -7,16 +7,16 @@ from pathlib import Path
 from talbot.base.command import failures
 from talbot.base.paths import RESULTS
 from talbot.base.progress import Steps
-from talbot.base.sensor import add_sensor, sensor_asked
+from talbot.base.sensor import add_sensor
 from talbot.flow.layout.block import lay_out
 from talbot.flow.layout.chain import all_steps
-from talbot.flow.layout.design import DESIGNS, Design, design, folder_name
+from talbot.flow.layout.design import DESIGNS, Design, design_asked, folder_name
 from talbot.flow.layout.options import Options
 from talbot.flow.layout.report.metrics import broken
 from talbot.flow.layout.report.page import closing
-from talbot.flow.layout.sensor.die import CHIP, SENSOR, die_steps, lay_out_sensor
+from talbot.flow.layout.sensor.die import die_steps, lay_out_sensor
 from talbot.flow.layout.sensor.plan import BLOCKS
-from talbot.flow.layout.varied import VARIED
+from talbot.flow.layout.varied import CHIP, SENSOR
 from talbot.flow.layout.verilog import design_of
 from talbot.models.parameters import ParameterError, check_choice
 from talbot.platforms.foundry import installed
@@ -44,7 +44,6 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(arguments: Namespace) -> int:
     """Lay out a design and print what came of it; 1 where a limit is broken."""
-    sensor_asked(arguments, VARIED)
     chosen = chosen_design(arguments)
     start = chosen.utilization if arguments.utilization is None else arguments.utilization
     decks = tuple(installed(arguments.pdk).items())
@@ -69,9 +68,11 @@ def chosen_design(arguments: Namespace) -> Design:
         if typed := next((name for name, value in of_verilog.items() if value is not None), None):
             raise ParameterError(f"{typed} = {of_verilog[typed]}: must be with VERILOG, a user's own design")
         check_choice("DESIGN", arguments.design or CHIP, (*DESIGNS, SENSOR))
-        return design(CHIP if arguments.design in (None, SENSOR) else arguments.design)
+        return design_asked(arguments.design or CHIP, arguments)
     if arguments.design:
         raise ParameterError(f"DESIGN = {arguments.design!r}: must not be with VERILOG, which has its own top")
+    if arguments.sensor:
+        raise ParameterError(f"sensor = {arguments.sensor}: must not be with VERILOG, which has its own sizes")
     if not arguments.top:
         raise ParameterError("top = '': must be a module of VERILOG")
     return design_of(arguments.verilog, **{name: value for name, value in of_verilog.items() if value is not None})

@@ -1,11 +1,15 @@
 """The designs: top module, clock, I/O constraints, and the tests that the netlist must pass."""
 
-from dataclasses import dataclass, field
+from argparse import Namespace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 
-from talbot.models.parameters import ASYNCHRONOUS, SPI_INPUTS, ParameterError, check_real
+from talbot.base.sensor import sensor_asked
+from talbot.flow.layout.varied import CHIP, SENSOR, varied
+from talbot.models.parameters import ASYNCHRONOUS, SPI_INPUTS, ParameterError, SensorParameters, check_real
 from talbot.platforms.processes import PROCESSES
+from talbot.rtl.sensor_options import options_of
 
 
 @dataclass(frozen=True)
@@ -50,6 +54,7 @@ class Design:
     asynchronous: inputs that pass synchronizers, a false path. reset: port, active at 0 if it ends in _n. frame: a
     shuttle's outline, see platforms.frame; '' for the smallest that there is. closed: edges without pins. verilog:
     files of a user's design, which has no tests, and no frame in which power is measured; () for a block of rtl/.
+    label: name of the sensor file that the design follows, part of its folder's name; '' for the standard sensor.
     """
 
     name: str
@@ -68,6 +73,7 @@ class Design:
     frame: str = ""
     closed: tuple[str, ...] = ()
     verilog: tuple[Path, ...] = ()
+    label: str = ""
 
 
 def divider(name: str, variant: str, n_frac: int = 8) -> Design:
@@ -98,7 +104,7 @@ DESIGNS = {
         tile("tt_quad_divider", "tt_um_talbot_divider", netlist_names=("tt_um_talbot_divider",), frame="tt_1x1"),
         tile("tt_amp_ctrl", "tt_um_talbot_amp_ctrl", netlist_names=("tt_um_talbot_amp_ctrl",), frame="tt_1x2"),
         tile("tt_asp_chip", "tt_um_talbot_chip", netlist_names=("tt_um_talbot_chip",), frame="tt_4x4"),
-        chip("asp_chip", utilization=0.62, aspect=1.5, closed=("bottom", "top")),
+        chip(CHIP, utilization=0.62, aspect=1.5, closed=("bottom", "top")),
     )
 }
 
@@ -110,14 +116,29 @@ def design(name: str) -> Design:
     return DESIGNS[name]
 
 
-def flat_design(name: str) -> Design:
-    """Look up a Design without a frame by its name. Raises ParameterError, also for one with a frame."""
-    found = design(name)
-    if found.frame:
-        raise ParameterError(f"DESIGN = {name!r}: must be without a frame, which only our own cells' layouts have")
-    return found
+def design_asked(name: str, options: Namespace) -> Design:
+    """Return the Design ``name`` for the sensor of a command line's options (`base.sensor.add_sensor`).
+
+    That of the die is its chip's. Raises ParameterError for a field that the design cannot vary.
+    """
+    chosen, sensor = design(CHIP if name == SENSOR else name), sensor_asked(options, varied(name))
+    return for_sensor(chosen, sensor, options.sensor.stem) if name == CHIP and options.sensor else chosen
+
+
+def for_sensor(chip: Design, sensor: SensorParameters, label: str) -> Design:
+    """Return the chip for ``sensor``: with its sizes and its divider, its clock no slower than the sensor's."""
+    clock = replace(chip.clock, period_ns=min(chip.clock.period_ns, 1e9 / sensor.chip.f_clk))
+    divider, n_frac = sensor.chip.divider, sensor.chip.n_frac
+    return replace(chip, options=options_of(sensor), divider=divider, n_frac=n_frac, clock=clock, label=label)
+
+
+def check_flat(design: Design) -> None:
+    """Check that a Design is without a frame. Raises ParameterError."""
+    if design.frame:
+        must = "must be without a frame, which only our own cells' layouts have"
+        raise ParameterError(f"DESIGN = {design.name!r}: {must}")
 
 
 def folder_name(design: Design, pdk: str) -> str:
-    """Name of the folder of a design's results; the process is part of it unless it is the default one."""
-    return design.name if pdk == PROCESSES[0] else f"{design.name}-{pdk}"
+    """Name of the folder of a design's results: with the process if it is not the default one, with the label."""
+    return "-".join(filter(None, (design.name, pdk if pdk != PROCESSES[0] else "", design.label)))

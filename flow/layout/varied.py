@@ -1,7 +1,18 @@
-"""What of a sensor a layout can vary: nothing yet. Designs have fixed sizes, analog blocks are drawn for one pitch."""
+"""What of a sensor a layout varies: the chip follows it; blocks and the die have the standard sensor's sizes."""
 
 from talbot.base.sensor import Varied
 from talbot.pixels.drawn import DRAWN_PITCH
+from talbot.rtl.sensor_options import FIELDS
 
+CHIP, SENSOR = "asp_chip", "asp_sensor"
 SIZES = "tile", "array.rows", "array.cols", "chip"
-VARIED = Varied(fixed=dict.fromkeys(SIZES, "designs are laid out in the sizes of the standard sensor") | DRAWN_PITCH)
+VARIED = Varied(used=(*FIELDS.values(), "chip.f_clk"))  # of the chip
+_BLOCK = Varied(
+    fixed=dict.fromkeys(SIZES, f"DESIGN={CHIP} alone is laid out in other sizes than the standard sensor's")
+)
+_DIE = Varied(fixed=_BLOCK.fixed | DRAWN_PITCH)
+
+
+def varied(design: str) -> Varied:
+    """Return what the layout of ``design`` varies."""
+    return {CHIP: VARIED, SENSOR: _DIE}.get(design, _BLOCK)

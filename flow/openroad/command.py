@@ -10,16 +10,17 @@ from talbot.base.files import check_folder, staged
 from talbot.base.openroad import INSTALL
 from talbot.base.paths import RESULTS
 from talbot.base.progress import Steps
-from talbot.base.sensor import add_sensor, sensor_asked
+from talbot.base.sensor import add_sensor
 from talbot.base.tools import ToolError
-from talbot.flow.layout.design import DESIGNS, flat_design
-from talbot.flow.layout.varied import VARIED
+from talbot.flow.layout.design import DESIGNS, check_flat, design_asked, folder_name
+from talbot.flow.layout.varied import CHIP
 from talbot.flow.openroad.results import broken, summarize
 from talbot.flow.openroad.signoff import check, checks
 from talbot.flow.openroad.stages import missing_tools, pdk_root, stages, wire_corners
 from talbot.flow.openroad.stages import run as run_stages
 from talbot.flow.openroad.write import write
 from talbot.platforms.openroad import openroad_platform
+from talbot.platforms.processes import PROCESSES
 from talbot.signoff.geometry.merge import merge
 
 # Suffixes of the contract of flow.layout -> file of the run, or of a check
@@ -30,7 +31,7 @@ CHECKED = {"gds": "fill.gds", "sdc": "sdc", "drc.lyrdb": "drc.report", "lvsdb": 
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot openroad`."""
-    parser.add_argument("design", nargs="?", default="asp_chip", help=f"one of {', '.join(DESIGNS)}")
+    parser.add_argument("design", nargs="?", default=CHIP, help=f"one of {', '.join(DESIGNS)}")
     add_sensor(parser)
     parser.add_argument("--pdk", default="sky130", help="process")
     parser.add_argument("--out", type=Path, default=RESULTS / "layout", help="folder of the layouts")
@@ -39,9 +40,9 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Write the scripts, run them and print where the figures are; 1 where a figure is beyond its limit."""
-    sensor_asked(options, VARIED)
-    chosen, tech = flat_design(options.design), openroad_platform(options.pdk)
-    folder = options.out / f"{chosen.name}-openroad"
+    chosen, tech = design_asked(options.design, options), openroad_platform(options.pdk)
+    check_flat(chosen)
+    folder = options.out / f"{folder_name(chosen, PROCESSES[0])}-openroad"
     check_folder("out", folder)
     written = f"{folder}: {', '.join(write(chosen, tech, folder))}"
     if options.write_only:

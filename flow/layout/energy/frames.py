@@ -18,7 +18,7 @@ from talbot.models.parameters import ALL_TYPES, AmpTiming, ParameterError, Windo
 Values = npt.NDArray[np.float64]
 INTEGRATION = 64  # cycles; short, so that most of a frame's cycles convert
 HALF_THE_TYPES = 0x555555
-RECORDED_TILES = 1  # of the chip's frame with delays (`chain.CHIP_FRAME`)
+RECORDED_TILES = 1  # of the chip's frame with delays (`chain.CHIP_TILES`)
 
 
 @dataclass(frozen=True)

@@ -32,6 +32,7 @@ from talbot.flow.layout.sensor.steps.die_sta import DieSta
 from talbot.flow.layout.sensor.steps.drawing import ARRAY, DrawnCircuits, DrawnPixels
 from talbot.flow.layout.steps.parameters import PdkParameters
 from talbot.flow.layout.steps.sta import StaParameters
+from talbot.flow.layout.varied import CHIP, SENSOR
 from talbot.platforms.die import top_metal
 from talbot.platforms.layout import layout_platform
 from talbot.platforms.pads import pad_process
@@ -39,7 +40,6 @@ from talbot.platforms.pixel import pixel_process
 from talbot.platforms.wires import CORNERS
 from talbot.signoff.foundry_drc import FoundryDrcParameters
 
-SENSOR, CHIP = "asp_sensor", "asp_chip"
 # Files of the chip's run that the die is given
 PARTS = {"core.lef": "lef.lef", "core.gds": "fill.gds", "core.sdc": "sdc"}
 PARTS |= {f"core.{wires}": f"extraction.{wires}" for wires in CORNERS}

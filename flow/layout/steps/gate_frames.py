@@ -1,26 +1,35 @@
 """Whole frames through the chip's netlist in Icarus, with X: every byte must be that of the golden model."""
 
 import tempfile
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from talbot.base.steps import Files, Step
-from talbot.base.steps.step import NoParameters
 from talbot.imaging.simulate.build import Build
 from talbot.imaging.simulate.icarus import icarus_program
+from talbot.rtl.sensor_options import sensor_with
 
 if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
-    from talbot.models.parameters import SensorParameters
+    from talbot.models.parameters import SensorParameters, Window
 
 MODES = (("edge", False), ("image", False), ("tof", True))  # mode, whether the chip computes phases
-SEED, TAPS = 1, 4
+SEED, TAPS, TRIM = 1, 4, 7
+FIRST, TILES = (3, 5), (2, 4)  # row and column of the window's first tile; rows and columns of tiles
 
 
-class GateFrames(Step[NoParameters]):
-    """A window of 2 x 4 tiles of the default sensor in three modes, configured and read back over SPI. Zero delay."""
+@dataclass(frozen=True)
+class GateFramesParameters:
+    """options: of the sensor, as of rtl.export."""
+
+    options: tuple[str, ...] = ()
+
+
+class GateFrames(Step[GateFramesParameters]):
+    """A window of at most 2 x 4 tiles of the sensor in three modes, configured and read back over SPI. Zero delay."""
 
     name = "gate_frames"
     inputs = {"verilog": "stream_out.verilog", "cells": "library.verilog"}
@@ -31,15 +40,15 @@ class GateFrames(Step[NoParameters]):
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         from talbot.imaging.frame.hardware import simulate
         from talbot.models.chip import front_end_of, golden_frame
-        from talbot.models.parameters import FrameParameters, SensorParameters, Window
+        from talbot.models.parameters import FrameParameters
 
-        sensor = SensorParameters()
-        front_end, samples = front_end_of(sensor, [7] * 24), exposure(sensor)
+        sensor = sensor_with(self.parameters.options)
+        front_end, samples = front_end_of(sensor, [TRIM] * sensor.tile.n_types), exposure(sensor)
         lines, cycles, sent = [], 0, 0
         with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
             program = icarus_program(Build.of(sensor), Path(folder), [inputs["verilog"], inputs["cells"]])
             for mode, phase in MODES:
-                frame = FrameParameters(Window(3, 4, 5, 8), mode, phase=phase)
+                frame = FrameParameters(few(sensor.full_window), mode, phase=phase)
                 chip = simulate(program, sensor, frame, samples, front_end)
                 golden = golden_frame(samples, sensor, frame, front_end)
                 made, wrong = chip.status["conversions_made"], chip.status["cfg_err"]
@@ -49,6 +58,14 @@ class GateFrames(Step[NoParameters]):
         outputs["log"].write_text("\n".join(lines) + "\n", encoding="utf-8")
         failed = sum(line.endswith("DIFFERENT") for line in lines)
         return {"passed": len(lines) - failed, "failed": failed, "cycles": cycles, "bytes": sent}
+
+
+def few(full: "Window") -> "Window":
+    """TILES from FIRST on, of these those that there are in the window ``full``."""
+    row, col = min(FIRST[0], full.row1), min(FIRST[1], full.col1)
+    return replace(
+        full, row0=row, row1=min(row + TILES[0] - 1, full.row1), col0=col, col1=min(col + TILES[1] - 1, full.col1)
+    )
 
 
 def exposure(sensor: "SensorParameters") -> "npt.NDArray[np.float64]":

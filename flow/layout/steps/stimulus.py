@@ -17,6 +17,7 @@ from talbot.base.steps import Files, Step, StepError
 from talbot.base.tools import ToolError, finish, run
 from talbot.imaging.simulate.build import Build
 from talbot.imaging.simulate.icarus import icarus_program
+from talbot.rtl.sensor_options import sensor_with
 from talbot.rtl.tinytapeout.golden import EXAMPLES
 from talbot.rtl.tinytapeout.host import simulate as simulate_host
 from talbot.rtl.verilog import export_verilog
@@ -41,28 +42,22 @@ TAP = """module Tap;
 endmodule
 """
 OF_A_TRACE = "import sys; from talbot.rtl.replay import load; print(load(sys.argv[1]).verilog())"
-SCENE, SIZE = "motorcycle", (12, 18)  # of `make sim`'s own scene; pixels of the chip's array
+SCENE = "motorcycle"  # of `make sim`
+SMALL = "--rows=12", "--cols=18"  # the chip around a block
 
 
 @dataclass(frozen=True)
 class StimulusParameters:
-    """The block, and the chip in which it is looked for (rows, cols, divider, n_frac).
+    """The block, and the chip in which it is looked for.
 
-    top: module. folder: of the block in rtl/. tiles: number of tiles read, in the middle of the array; None for all.
+    top: module. folder: of the block in rtl/. options: of the chip, as of rtl.export. tiles: number of tiles read, in
+    the middle of the array; None for all.
     """
 
     top: str = ""
     folder: str = ""
-    rows: int = SIZE[0]
-    cols: int = SIZE[1]
-    divider: str = "radix4"
-    n_frac: int = 8
+    options: tuple[str, ...] = SMALL
     tiles: int | None = None
-
-    @property
-    def options(self) -> tuple[str, ...]:
-        """Options of rtl.export."""
-        return f"--rows={self.rows}", f"--cols={self.cols}", f"--divider={self.divider}", f"--n-frac={self.n_frac}"
 
 
 class Stimulus(Step[StimulusParameters]):
@@ -112,9 +107,7 @@ def in_frame(parameters: StimulusParameters, folder: Path, trace: Path) -> dict[
     ports = ports_of(tree, parameters.top)
     (folder / "tap.v").write_text(tap("Clock.clk", ".".join(("Clock.bench.chip", *path)), ports), encoding="utf-8")
     window = partial(middle, tiles=parameters.tiles) if parameters.tiles else None
-    asked = request(parameters.rows, parameters.cols, scene=SCENE, mode="tof", phase=True, window=window)
-    chip = replace(asked.sensor.chip, divider=parameters.divider, n_frac=parameters.n_frac)
-    asked = replace(asked, sensor=replace(asked.sensor, chip=chip))
+    asked = request(sensor=sensor_with(parameters.options), scene=SCENE, mode="tof", phase=True, window=window)
     exposed = expose(asked, *see(asked))
     program = icarus_program(Build.of(asked.sensor), folder, [folder / f"{CHIP}.sv", folder / "tap.v"], ("Tap",))
     more = (f"+tap={folder / 'tap.trace'}",)
@@ -172,6 +165,7 @@ def settled(line: str) -> str:
 
 def middle(full: "Window", tiles: int) -> "Window":
     """``tiles`` tiles of the middle row of a window."""
+    tiles = min(tiles, full.col1 - full.col0 + 1)
     row, col = (full.row0 + full.row1) // 2, (full.col0 + full.col1 + 1 - tiles) // 2
     return replace(full, row0=row, row1=row, col0=col, col1=col + tiles - 1)
 

@@ -30,6 +30,7 @@ from talbot.flow.layout.steps.stimulus import middle
 from talbot.models.chip import front_end_of, golden_frame
 from talbot.models.parameters import ParameterError
 from talbot.models.parameters.energy import DigitalEvents
+from talbot.rtl.sensor_options import sensor_with
 from talbot.signoff.netlist.netlist import Instance, Netlist, Port
 
 PJ = dict(zip(DigitalEvents._fields, (20.0, 300.0, 9.0, 4.0, 11.0, 50.0), strict=True))
@@ -184,8 +185,7 @@ def test_trims_in_the_samples_are_as_trims_in_the_registers():
 def test_the_recorded_frame_is_that_of_the_chip_with_delays():
     step = next(s for s in timing_steps(design("asp_chip"), Options()) if s.name == "stimulus")
     p, asked = step.parameters, RECORDED.requested()
-    assert (p.rows, p.cols, p.tiles) == (asked.sensor.array.rows, asked.sensor.array.cols, RECORDED_TILES)
-    assert (p.divider, p.n_frac) == (asked.sensor.chip.divider, asked.sensor.chip.n_frac)
+    assert (sensor_with(p.options), p.tiles) == (asked.sensor, RECORDED_TILES)
     assert asked.frame.phase and asked.frame.window == middle(asked.sensor.full_window, p.tiles)
 
 
