@@ -23,7 +23,10 @@ FIRST, TILES = (3, 5), (2, 4)  # row and column of the window's first tile; rows
 
 @dataclass(frozen=True)
 class GateFramesParameters:
-    """options: of the sensor, as of rtl.export."""
+    """The sensor that is simulated.
+
+    options: its, as of rtl.export; () for the standard sensor.
+    """
 
     options: tuple[str, ...] = ()
 
