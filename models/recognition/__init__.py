@@ -1,0 +1,1 @@
+"""Recognition on what the sensor sends: the optics as a first layer, binary gradients, classifiers, their figures."""

@@ -1,0 +1,174 @@
+"""Classification in closed form: ridge regression of the classes in a Gaussian kernel, no epochs and nothing to tune.
+
+With more pictures than landmarks the regressors are a random subset [RasmussenWilliams2006, Sec. 8.3.1].
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy.linalg import LinAlgError, solve
+
+from talbot.models.parameters import ParameterError
+
+Floats = npt.NDArray[np.float32]
+LANDMARKS = 4000
+RIDGE = 3e-3  # of the kernel's value at distance 0
+CHUNK = 2000  # pictures at a time
+LARGE = 20  # px: channels of this size and more are averaged over 2 x 2
+
+
+def features(channels: npt.ArrayLike) -> Floats:
+    """Prepare the channels of a first layer for the kernel.
+
+    Parameters
+    ----------
+    channels : array (n, height, width, channels)
+        Several: both signs are rectified, and from `LARGE` px on averaged over 2 x 2. One is taken as it is.
+
+    Returns
+    -------
+    float32 (n, features)
+        A row a picture.
+    """
+    x = np.asarray(channels, np.float32)
+    if x.shape[-1] > 1:
+        x = np.concatenate([np.maximum(x, 0), np.maximum(-x, 0)], -1)
+        if x.shape[1] >= LARGE:
+            n, height, width, count = x.shape[0], x.shape[1] // 2, x.shape[2] // 2, x.shape[3]
+            x = x[:, : 2 * height, : 2 * width].reshape(n, height, 2, width, 2, count).mean((2, 4))
+    return x.reshape(len(x), -1)
+
+
+@dataclass(frozen=True, eq=False)
+class KernelClassifier:
+    """A trained classifier.
+
+    Attributes
+    ----------
+    landmarks : float32 (m, features)
+        Pictures that new ones are compared with.
+    weights : float64 (m, classes)
+        Of each landmark for each class.
+    width : float
+        Inverse of twice the kernel's variance.
+    """
+
+    landmarks: Floats
+    weights: npt.NDArray[np.float64]
+    width: float
+
+    @property
+    def flops(self) -> int:
+        """Multiply-accumulate operations of a picture behind its features."""
+        return self.landmarks.size + self.weights.size
+
+    def scores(self, x: Floats) -> npt.NDArray[np.float64]:
+        """Score every class.
+
+        Parameters
+        ----------
+        x : float32 (n, features)
+            As of `features`.
+
+        Returns
+        -------
+        float64 (n, classes)
+            Near 1 for the class, near 0 for the others.
+
+        Raises
+        ------
+        ParameterError
+            For features of another number.
+        """
+        if x.shape[1:] != self.landmarks.shape[1:]:
+            raise ParameterError(f"features = {x.shape}: must be (n, {self.landmarks.shape[1]})")
+        out = np.empty((len(x), self.weights.shape[1]))
+        for i in range(0, len(x), CHUNK):
+            out[i : i + CHUNK] = gaussian(x[i : i + CHUNK], self.landmarks, self.width) @ self.weights
+        return out
+
+    def classify(self, x: Floats) -> npt.NDArray[np.intp]:
+        """Classify pictures.
+
+        Parameters
+        ----------
+        x : float32 (n, features)
+            As of `features`.
+
+        Returns
+        -------
+        int (n,)
+            The class of each.
+        """
+        return self.scores(x).argmax(1)
+
+
+def gaussian(x: Floats, y: Floats, width: float) -> npt.NDArray[np.float64]:
+    """Gaussian kernel of all pairs.
+
+    Parameters
+    ----------
+    x : float32 (n, features)
+        One set.
+    y : float32 (m, features)
+        The other.
+    width : float
+        Factor of the squared distance.
+
+    Returns
+    -------
+    float64 (n, m)
+        exp(-width |x - y|**2).
+    """
+    squares = (x * x).sum(1, dtype=np.float64)[:, None] + (y * y).sum(1, dtype=np.float64) - 2.0 * (x @ y.T)
+    return np.exp(-width * np.maximum(squares, 0))
+
+
+def train(
+    x: Floats, labels: npt.NDArray[np.integer], classes: int, seed: int = 1, landmarks: int = LANDMARKS
+) -> KernelClassifier:
+    """Train a classifier.
+
+    Parameters
+    ----------
+    x : float32 (n, features)
+        As of `features`.
+    labels : int (n,)
+        0..classes-1.
+    classes : int
+        Number of classes, 2 or more.
+    seed : int
+        Of the landmarks' draw.
+    landmarks : int
+        At most; all pictures where there are no more.
+
+    Returns
+    -------
+    KernelClassifier
+        Of a kernel as wide as the pictures differ: the width is 1 / (features variance).
+
+    Raises
+    ------
+    ParameterError
+        For no picture.
+    """
+    if not len(x):
+        raise ParameterError("pictures = 0: must be 1 or more, to train")
+    spread = float(x.var(0, dtype=np.float64).sum())
+    width = 1 / spread if spread else 1.0
+    if len(x) <= landmarks:
+        gram = gaussian(x, x, width) + RIDGE * np.eye(len(x))
+        return KernelClassifier(x, solve(gram, np.eye(classes)[labels], assume_a="pos"), width)
+    centres = x[np.sort(np.random.default_rng([seed, 54]).choice(len(x), landmarks, replace=False))]
+    gram = RIDGE * gaussian(centres, centres, width)
+    right = np.zeros((landmarks, classes))
+    for i in range(0, len(x), CHUNK):
+        part = gaussian(x[i : i + CHUNK], centres, width)
+        gram += part.T @ part
+        right += part.T @ np.eye(classes)[labels[i : i + CHUNK]]
+    try:
+        weights = solve(gram, right, assume_a="pos")
+    except LinAlgError:  # two equal landmarks
+        weights = np.linalg.lstsq(gram, right)[0]
+    return KernelClassifier(centres, np.asarray(weights, np.float64), width)
