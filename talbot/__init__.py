@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from talbot.api.decode import DecodedFrame, decode
     from talbot.api.image import Image
     from talbot.api.light_field import LightField
+    from talbot.api.recognize import Recognition, recognize
     from talbot.api.run import Run
     from talbot.api.sensor import Sensor, scenes
     from talbot.api.sweep import Tradeoff, tradeoff
@@ -28,12 +29,14 @@ __all__ = [
     "LightField",
     "ParameterError",
     "PixelType",
+    "Recognition",
     "Run",
     "Sensor",
     "ToolError",
     "Tradeoff",
     "decode",
     "pixel",
+    "recognize",
     "scenes",
     "tradeoff",
 ]
@@ -44,12 +47,14 @@ _MODULES = {
     "LightField": "talbot.api.light_field",
     "ParameterError": "talbot.models.parameters",
     "PixelType": "talbot.models.parameters",
+    "Recognition": "talbot.api.recognize",
     "Run": "talbot.api.run",
     "Sensor": "talbot.api.sensor",
     "ToolError": "talbot.base.tools",
     "Tradeoff": "talbot.api.sweep",
     "decode": "talbot.api.decode",
     "pixel": "talbot.api.pixel",
+    "recognize": "talbot.api.recognize",
     "scenes": "talbot.api.sensor",
     "tradeoff": "talbot.api.sweep",
 }

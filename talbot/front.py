@@ -33,6 +33,7 @@ GROUPS: dict[str, dict[str, Command]] = {
         "lightfield": Command("light field, refocused pictures and depth of a frame", "imaging.lightfield.command"),
         "depth": Command("time of flight: a depth map, unwrapped by the light field", "imaging.depth.command"),
         "polar": Command("angle and degree of polarization, highlights separated", "imaging.polar.command"),
+        "recognize": Command("digits or your pictures classified from the chip's bytes", "imaging.recognize.command"),
         "sequence": Command("a clip or a folder of pictures, frame after frame", "imaging.sequence.command"),
         "calibrate": Command("pixel types, offsets and lens estimated from bench frames", "imaging.calibrate.command"),
         "tradeoff": Command("error against run time: tables and plots", "imaging.tradeoff.command"),

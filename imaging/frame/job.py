@@ -101,20 +101,15 @@ def _samples(
 ) -> tuple[Views, FrontEnd, Values, Values, Values]:
     """All of an exposure but its scene and plan; the arguments as of `expose`."""
     sensor, frame = request.lit, request.frame
-    front_end = _numbered(front_end or trimmed(request), sensor, number)
+    front_end = numbered(front_end or trimmed(request), sensor, number)
     timing = frame.exposing
     if views:
         pairs = moving_currents(scene, sensor, todo, timing, regions=views.regions)
     else:
         views, pairs = kept("captured", captured, scene, sensor, todo, timing, request.views)
 
-    def noisy_by(noise: float) -> Values:
-        exposure = _exposure(request, noise, number)
-        diodes = np.asarray(exposed(pairs, sensor, exposure, trim_gain(front_end.trim)), np.float64)
-        return _of_columns(request, diodes, frame.mode)
-
-    noisy = noisy_by(request.noise)
-    clean = noisy_by(0.0) if request.noise else noisy
+    noisy = diodes_of(request, pairs, front_end, number)
+    clean = diodes_of(replace(request, noise=0.0), pairs, front_end, number) if request.noise else noisy
     ideal = np.moveaxis(front_end.values(clean, frame.mode), 0, 2)
     return views, front_end, noisy, clean, ideal
 
@@ -126,7 +121,17 @@ def trimmed(request: FrameRequest) -> FrontEnd:
     return front_end_of(request.lit, trim_codes(gains))
 
 
-def _numbered(front_end: FrontEnd, sensor: SensorParameters, number: int) -> FrontEnd:
+def diodes_of(request: FrameRequest, pairs: npt.NDArray[np.floating], front_end: FrontEnd, number: int) -> Values:
+    """Expose photocurrents ``pairs`` (taps, 2, rows, cols): what the front end samples, (taps, rows, cols, 2) in LSB.
+
+    number: of the frame in a sequence.
+    """
+    exposure = _exposure(request, request.noise, number)
+    diodes = np.asarray(exposed(pairs, request.lit, exposure, trim_gain(front_end.trim)), np.float64)
+    return _of_columns(request, diodes, request.frame.mode)
+
+
+def numbered(front_end: FrontEnd, sensor: SensorParameters, number: int) -> FrontEnd:
     """The front end at a frame of a sequence: its noise has the next seed in each (pixels/afe.sv)."""
     if front_end.converter is None:
         return front_end

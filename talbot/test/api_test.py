@@ -84,7 +84,7 @@ def test_importing_it_loads_nothing():
 
 
 def test_every_name_is_there_and_documented():
-    assert len(talbot.__all__) == 13 and dir(talbot) == sorted(talbot.__all__)
+    assert len(talbot.__all__) == 15 and dir(talbot) == sorted(talbot.__all__)
     for name in talbot.__all__:
         value = getattr(talbot, name)
         assert name == "scenes" or value.__doc__

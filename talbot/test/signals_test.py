@@ -19,6 +19,7 @@ FRAME = "--rows 24 --cols 36 --golden"
 TARGETS = {  # command -> its smallest run
     "lightfield": f"--scene coins --disparities 3 {FRAME}",
     "polar": FRAME,
+    "recognize": "--count 40 --curves none --golden --workers 1",
     "depth": f"--scene tilted --disparities 3 {FRAME}",
     "pixel": "--kind amplitude --period-um 1",
     "pixel-layout": "--rows 4 --cols 6",

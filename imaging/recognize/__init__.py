@@ -1,0 +1,1 @@
+"""Recognition on what the sensor sends: `talbot recognize`."""

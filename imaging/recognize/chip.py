@@ -1,0 +1,152 @@
+"""Pictures before the sensor, one frame each, through the golden chip: codes, bytes and energy; some by the Verilog."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from talbot.base.kept import kept
+from talbot.imaging.frame import hardware
+from talbot.imaging.frame.figures import image_mode, mismatches
+from talbot.imaging.frame.job import diodes_of, numbered, trimmed
+from talbot.imaging.frame.request import FrameRequest, request
+from talbot.models.afe import FrontEnd
+from talbot.models.chip import GoldenFrame, golden_frame
+from talbot.models.digital.exposure import slot_cycles
+from talbot.models.digital.stream import StreamHeader, encode_frame
+from talbot.models.parameters import EnergyParameters, SensorParameters
+from talbot.models.parameters.energy import WINDOW, DigitalEvents, Events
+from talbot.models.recognition.gradient import ternary
+from talbot.models.recognition.optics import Display, phase_types
+
+STREAMS = 100  # frames whose bytes and energy are measured
+CHUNK = 250  # pictures that are kept together
+MODES = "edge", "ternary", "image"
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What the chip sends of pictures.
+
+    codes: (n, rows, cols), 0 where it does not read. bytes: of a frame, mean. energy: in J, mean, lower and higher
+    reading. share: of the samples, that are not 0. image_energy: with every sample converted and sent as a byte.
+    """
+
+    codes: npt.NDArray[np.int16]
+    bytes: float
+    energy: tuple[float, float]
+    share: float
+    image_energy: tuple[float, float]
+
+
+def sized(display: Display) -> SensorParameters:
+    """The sensor with the array that the display's picture fills."""
+    rows, cols = display.size
+    sensor = display.sensor
+    return replace(sensor, array=replace(sensor.array, rows=rows, cols=cols))
+
+
+def frame_request(display: Display, mode: str, threshold: int, noise: float, seed: int) -> FrameRequest:
+    """The frame of a picture. mode: edge, ternary or image; the first two read the types of alpha 0 alone."""
+    if mode == "image":
+        return request(sensor=sized(display), mode=mode, noise=noise, seed=seed)
+    mask = sum(1 << int(kind) for kind in phase_types(display.sensor))
+    return request(sensor=sized(display), mode="edge", threshold=threshold, mask=mask, noise=noise, seed=seed)
+
+
+def read(
+    display: Display, pictures: npt.NDArray[np.float32], mode: str, threshold: int, noise: float, seed: int
+) -> Reading:
+    """Read one frame of each of ``pictures`` (n, height, width), linear radiance, by the golden chip.
+
+    The temporal noise differs from frame to frame; the fixed pattern does not. Raises ParameterError.
+    """
+    setup = frame_request(display, mode, threshold, noise, seed)
+    front_end = kept("recognize_trims", trimmed, setup)
+    parts = [
+        kept("recognize", _frames, setup, front_end, mode, display, pictures[i : i + CHUNK], i)
+        for i in range(0, len(pictures), CHUNK)
+    ]
+    codes = np.concatenate([part[0] for part in parts])
+    size, low, high, image_low, image_high = parts[0][1].mean(0)
+    read_share = (setup.frame.mask.bit_count() / display.sensor.tile.n_types) if mode != "image" else 1.0
+    share = float((codes[:STREAMS] != 0).mean() / read_share)
+    return Reading(codes, float(size), (float(low), float(high)), share, (float(image_low), float(image_high)))
+
+
+def samples_of(
+    setup: FrameRequest, front_end: FrontEnd, display: Display, pictures: npt.NDArray[np.float32], first: int = 0
+) -> list[tuple[npt.NDArray[np.float64], FrontEnd]]:
+    """What the front end of every frame samples, and its converters; ``pictures[0]`` is frame ``first``."""
+    return [
+        (diodes_of(setup, pair[None], front_end, first + i), numbered(front_end, setup.sensor, first + i))
+        for i, pair in enumerate(display.currents(pictures))
+    ]
+
+
+def _frames(
+    setup: FrameRequest, front_end: FrontEnd, mode: str, display: Display, pictures: npt.NDArray[np.float32], first: int
+) -> tuple[npt.NDArray[np.int16], npt.NDArray[np.float64]]:
+    """Codes, and of the first frames (bytes, energies)."""
+    codes, figures = [], []
+    for i, (samples, converters) in enumerate(samples_of(setup, front_end, display, pictures, first)):
+        golden = golden_frame(samples, setup.sensor, setup.frame, converters)
+        sent = golden.sent[..., 0]
+        if mode == "ternary":
+            sent = ternary(sent, max(setup.frame.threshold, 1)).astype(np.int16)
+        codes.append(sent)
+        if first + i < STREAMS:
+            stream, decisions = golden.stream, golden.decisions
+            if mode == "ternary":
+                stream, decisions = ternary_stream(golden), WINDOW * golden.samples
+            figures.append((len(stream), *_energy(golden, stream, decisions)))
+    return np.stack(codes), np.array(figures).reshape(-1, 5)
+
+
+def ternary_stream(golden: GoldenFrame) -> bytes:
+    """An edge frame as a ternary mode sends it: each code that is not 0 is the threshold with its sign.
+
+    These are the shortest values of the stream as it is (docs/stream.md), so any decoder of version 3 reads them.
+    """
+    array, chip, tile = golden.sensor.array, golden.sensor.chip, golden.sensor.tile
+    threshold = max(golden.frame.threshold, 1)
+    header = StreamHeader.from_frame(array.rows, array.cols, chip.lanes, golden.frame, tile)
+    codes = ternary(golden.sent, threshold).astype(np.int16) * threshold
+    return encode_frame(header, codes, 0, golden.samples, tile)
+
+
+def _energy(golden: GoldenFrame, stream: bytes, decisions: int) -> tuple[float, float, float, float]:
+    """Energy of a frame in J, lower and higher reading, then with every sample converted and sent as a byte."""
+    rows, columns = int(golden.read.any(1).sum()), int(golden.read.any(0).sum())
+    cycles = frame_cycles(golden)
+    sent = np.frombuffer(stream, np.uint8)
+    toggles = int(np.unpackbits(sent[1:] ^ sent[:-1]).sum()) + 2 * sent.size
+    digital = DigitalEvents(cycles, rows, golden.samples, decisions, len(stream))
+    seconds = cycles / golden.sensor.chip.f_clk
+    events = Events(rows * golden.sensor.array.cols, rows * columns, seconds, decisions, toggles, digital)
+    parameters = EnergyParameters()
+    return *parameters.total(events), *parameters.total(image_mode(events, golden.samples))
+
+
+def frame_cycles(golden: GoldenFrame) -> int:
+    """Cycles of a frame: a slot for each row, and for each by which the reset pointer leads."""
+    timing = golden.frame.exposing
+    return (int(golden.read.any(1).sum()) + timing.exposure) * slot_cycles(timing)
+
+
+def verify(
+    display: Display, pictures: npt.NDArray[np.float32], mode: str, threshold: int, noise: float, seed: int
+) -> dict[str, int]:
+    """Read ``pictures`` by the Verilog as well: bytes, those that differ, and cycles of both. Raises ToolError."""
+    setup = frame_request(display, mode, threshold, noise, seed)
+    front_end = kept("recognize_trims", trimmed, setup)
+    program = hardware.program(setup.sensor)
+    out = {"frames": len(pictures), "bytes": 0, "mismatches": 0, "cycles": 0, "cycles_model": 0}
+    for samples, converters in samples_of(setup, front_end, display, pictures):
+        golden = golden_frame(samples, setup.sensor, setup.frame, converters)
+        chip = hardware.simulate(program, setup.sensor, setup.frame, samples, converters)
+        out["bytes"] += len(chip.stream)
+        out["mismatches"] += mismatches(chip.stream, golden.stream)
+        out["cycles"] += chip.status["cycles"]
+        out["cycles_model"] += frame_cycles(golden)
+    return out

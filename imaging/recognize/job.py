@@ -1,0 +1,163 @@
+"""One run of `talbot recognize`: settings of its table and curves, evaluated, and the summary."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+from talbot.base.files import atomic
+from talbot.base.progress import each
+from talbot.imaging.recognize import chip, study, wake
+from talbot.imaging.recognize.data import Pictures
+from talbot.imaging.recognize.study import CURVES, FREE, FRONTS, Point, Setting
+from talbot.models.parameters import ParameterError, check_choice
+from talbot.models.recognition.optics import Display, phase_types
+
+STORE = Path("parts")  # of the results' folder: kept parts of a run
+SAMPLE = 2  # pictures that the Verilog reads
+WAKE = "wake"
+SOME = 600  # pictures of a curve's point
+
+
+@dataclass(frozen=True, eq=False)
+class Study:
+    """What a run measures.
+
+    fronts: of the table, the first is the headline's. base: of all settings. curves: names, of `study.CURVES` and wake.
+    some: pictures of a curve's point. draws: of random types. verilog: whether the chip's Verilog reads a sample.
+    """
+
+    data: Pictures
+    fronts: tuple[str, ...]
+    base: Setting
+    curves: tuple[str, ...] = ()
+    some: int = SOME
+    draws: int = 100
+    verilog: bool = True
+    workers: int = -1
+
+    def __post_init__(self) -> None:
+        for front in self.fronts:
+            check_choice("front", front, FRONTS)
+        for name in self.curves:
+            check_choice("curves", name, (*CURVES, WAKE))
+        if self.base.classifier == "shipped":
+            raise ParameterError("classifier = 'shipped': must be kernel or lenet")
+        if not self.fronts or len(set(self.fronts)) != len(self.fronts):
+            raise ParameterError(f"front = {','.join(self.fronts)!r}: must be different ones of {', '.join(FRONTS)}")
+        Display(self.base.sensor, self.data.images.shape[1:], self.base.scale)  # fits
+
+
+@dataclass(frozen=True, eq=False)
+class Recognition:
+    """What was measured. rows: of the table by name. lines: of each curve, (point, result). alarms: by contrast."""
+
+    study: Study
+    rows: Mapping[str, dict[str, Any]]
+    lines: Mapping[str, Mapping[str, list[tuple[Point, dict[str, Any]]]]]
+    alarms: Mapping[float, dict[str, Any]]
+    summary: dict[str, Any]
+
+
+def measure(task: Study, folder: Path) -> Recognition:
+    """Evaluate all of ``task``; parts that are ready are kept in ``folder``. Raises ParameterError, ToolError."""
+    start, base, data = perf_counter(), task.base, task.data
+    lead = task.fronts[0]
+    chosen = {front: replace(base, front=front) for front in task.fronts}
+    rows = study.run(chosen, data, folder, "front", task.workers)
+    free = {"image": replace(base, front="image")} if "image" not in task.fronts else {}
+    free |= {name: replace(base, front=name, bytes=rows[lead]["bytes"]) for name in FREE}
+    if data.name == "digits" and replace(base, seeds=Setting.seeds) == Setting():  # as the weights were trained
+        free["shipped"] = Setting(classifier="shipped", seeds=1)
+    if base.classifier == "lenet":
+        free["learned"] = replace(base, front="learned")
+    rows |= study.run(free, data, folder, "baseline", task.workers)
+    rows = {name: study.figures(row) for name, row in rows.items()}
+    lines = _curves(task, folder)
+    alarms = {}
+    if WAKE in task.curves:
+        for contrast in each(wake.CONTRASTS, "wake-up"):
+            alarms[contrast] = wake.detect(base.sensor, contrast, base.seed)
+    sample = _sample(task, lead) if task.verilog else None
+    summary = _summary(task, rows, sample) | {
+        "curves": {
+            name: {
+                label: [[p.x, r["accuracy"], r["accuracy_std"]] for p, r in points]
+                for label, points in by_label.items()
+            }
+            for name, by_label in lines.items()
+        },
+        "wake_auc": {
+            f"{c:g}": {name: row["auc"] for name, row in detectors.items()} for c, detectors in alarms.items()
+        },
+        "seconds": perf_counter() - start,
+    }
+    return Recognition(task, rows, lines, alarms, summary)
+
+
+def _curves(task: Study, folder: Path) -> dict[str, dict[str, list[tuple[Point, dict[str, Any]]]]]:
+    named = study.curves(task.base, task.curves, task.draws)
+    places = {
+        f"{name}-{i}-{point.x:g}": (name, label, point)
+        for name, by_label in named.items()
+        for i, (label, points) in enumerate(by_label.items())
+        for point in points
+    }
+    settings = {key: point.setting for key, (_, _, point) in places.items()}
+    results = study.run(settings, task.data.part(task.some), folder, "curve", task.workers)
+    out: dict[str, dict[str, list[tuple[Point, dict[str, Any]]]]] = {}
+    for key, (name, label, point) in places.items():
+        out.setdefault(name, {}).setdefault(label, []).append((point, study.figures(results[key])))
+    return out
+
+
+def _sample(task: Study, lead: str) -> dict[str, int]:
+    """Compare the bytes of the Verilog with the golden chip's, for the frame of the front ``lead``."""
+    base, shape = task.base, task.data.images.shape[1:]
+    optics = lead in ("asp", "ternary")
+    display = Display(base.sensor, shape, base.scale, base.scale * base.blur) if optics else None
+    display = display or Display(base.sensor, shape, 1, 0.0, 0)
+    mode, radiance = "edge" if optics else "image", task.data.radiance[:SAMPLE]
+    return chip.verify(display, radiance, mode, base.threshold, base.noise, base.seed)
+
+
+def _summary(task: Study, rows: Mapping[str, dict[str, Any]], sample: dict[str, int] | None) -> dict[str, Any]:
+    lead, base, data = rows[task.fronts[0]], task.base, task.data
+    splits = [data.split(seed) for seed in range(base.seed, base.seed + base.seeds)]
+    free = {name: row for name, row in rows.items() if name not in task.fronts}
+    return {
+        "data": data.name,
+        "pictures": len(data.labels),
+        "trained_on": len(splits[0][0]),
+        "tested_on": len(splits[0][1]),
+        "classes": data.classes,
+        "size": list(data.images.shape[1:]),
+        "types": len(phase_types(base.sensor)),
+        "front": task.fronts[0],
+        "classifier": base.classifier,
+        "scale": base.scale,
+        "blur": base.blur,
+        "threshold": base.threshold,
+        "noise": base.noise,
+        "seed": base.seed,
+        "seeds": base.seeds,
+        **{key: lead[key] for key in ("accuracy", "accuracy_std", "energy_uj", "bytes")},
+        **{key: lead[key] for key in ("flops_first_layer", "flops_total", "network_uj")},
+        "baselines": {
+            name: {key: row[key] for key in ("accuracy", "accuracy_std", "bytes")} for name, row in free.items()
+        },
+        "rows": dict(rows),
+        "verilog": sample,
+        "stream_mismatches": sample["mismatches"] if sample else 0,
+    }
+
+
+def write_weights(task: Study, path: Path) -> None:
+    """Train the lenet of the first front on the split of the first seed, and write it. Raises ParameterError."""
+    base, data = replace(task.base, front=task.fronts[0], classifier="lenet"), task.data
+    channels, (chosen, _) = study.see(base, data.radiance).channels, data.split(base.seed)
+    net = study.network(base, channels.shape[1:], data.classes, base.seed)
+    net.train(channels[chosen], data.labels[chosen], base.epochs)
+    with atomic(path) as part, part.open("wb") as file:
+        net.save(file)

@@ -1,0 +1,183 @@
+"""The files of a run: page, arrays, and the table of a document."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from markupsafe import Markup
+from PIL import Image
+
+from talbot.base.charts import curves as chart
+from talbot.base.charts import svg
+from talbot.base.page import TABLES, Picture, Section, Tile, render
+from talbot.imaging.frame import report
+from talbot.imaging.recognize import study
+from talbot.imaging.recognize.job import Recognition
+
+NAMES = ("recognize.html", "summary.json", "features.npz")
+TEXTS = {
+    "asp": "ASP codes, {types} types of alpha 0",
+    "ternary": "ASP ternary: sign, or 0 below the threshold",
+    "gradient": "binary gradient (Eq. A.1), as published",
+    "image": "plain image of the picture's size, in focus",
+    "same_bytes": "plain image in at most as many bytes",
+    "random": "random 12 filters on the plain image",
+    "shipped": "ASP codes, LeNet with shipped weights",
+    "learned": "learned 12 filters on the plain image",
+    "chance": "chance: the most frequent class",
+}
+HEAD = (
+    "",
+    "accuracy",
+    "spread of seeds",
+    "bytes",
+    "sensor, uJ",
+    "first layer, operations",
+    "all, operations",
+    "network, uJ",
+)
+AXES = {
+    "threshold": ("threshold, codes", "Accuracy over the threshold"),
+    "bits": ("bits", "Accuracy over the bits of codes and gradient"),
+    "snr": ("SNR of the pictures, dB", "Accuracy over white noise in the pictures (Fig. 6.6)"),
+    "blur": ("blur, picture px", "Accuracy over the blur: the picture's depth"),
+    "draws": ("draw", "Error of random filters (Sec. 6.4.4)"),
+}
+SHOWN = 6  # pictures
+Array = npt.NDArray[Any]
+
+
+def rows(s: dict[str, Any]) -> list[tuple[str, ...]]:
+    """Rows of the table of the summary ``s``: fronts, then baselines."""
+    return [(_text(name, s), *_cells(row)) for name, row in s["rows"].items()]
+
+
+def _text(name: str, s: dict[str, Any]) -> str:
+    return TEXTS[name].format(types=s["types"])
+
+
+def _cells(row: dict[str, Any]) -> tuple[str, ...]:
+    low, high = row["energy_uj"]
+    energy = "-" if not high else f"{low:.3g}" if low == high else f"{low:.3g} to {high:.3g}"
+    size = f"{row['bytes']:.0f}" if row["bytes"] else "-"
+    spread = f"{100 * row['accuracy_std']:.2f}"
+    numbers = (f"{row['flops_first_layer']:,}", f"{row['flops_total']:,}", f"{row['network_uj']:.3g}")
+    return f"{100 * row['accuracy']:.2f} %", spread, size, energy, *numbers
+
+
+def lines(s: dict[str, Any]) -> str:
+    """The table as Markdown."""
+    out = ["| " + " | ".join(HEAD) + " |", "|---|" + "---:|" * (len(HEAD) - 1)]
+    return "\n".join([*out, *("| " + " | ".join(row) + " |" for row in rows(s))]) + "\n"
+
+
+def about(s: dict[str, Any]) -> str:
+    """What a page says below its title."""
+    height, width = s["size"]
+    return (
+        f"{s['pictures']:,} pictures of {height} x {width} px in {s['classes']} classes, {s['trained_on']:,} to train, "
+        f"{s['tested_on']:,} to test; {s['scale']} sensor px a picture px, blur of {s['blur']:g} picture px, threshold "
+        f"{s['threshold']}, noise {s['noise']:g}, {s['seeds']} seeds, classifier {s['classifier']}"
+    )
+
+
+def write(folder: Path, result: Recognition) -> None:
+    """Write everything but summary.json into ``folder``, which exists."""
+    s, data, base = result.summary, result.study.data, result.study.base
+    some = study.see(study.replace(base, front=result.study.fronts[0]), data.radiance[: study.chip.CHUNK])
+    np.savez_compressed(
+        folder / "features.npz", features=some.channels.astype(np.float16), labels=data.labels[: len(some.channels)]
+    )
+    shown = _pictures(result, some.channels)
+    text = render(
+        TABLES,
+        f"{data.name}: recognition on what the sensor sends",
+        picture=shown[1].image,
+        about=about(s),
+        tiles=_headline(s),
+        sections=[
+            Section("Every front compared with what costs nothing", NOTE, head=HEAD, rows=rows(s)),
+            Section("Pictures, and what is sent of them", pictures=shown),
+            *_curves(result),
+            *_alarms(result),
+        ],
+    )
+    (folder / "recognize.html").write_text(text, encoding="utf-8")
+
+
+NOTE = (
+    "Accuracy: mean over seeds, each with its own split and draws; spread: standard deviation, in percent points. "
+    "Sensor: the lower and the higher reading of the energy model. Operations: multiply-accumulate; the network's "
+    "energy is 0.23 pJ each, without memory."
+)
+
+
+def _headline(s: dict[str, Any]) -> list[Tile]:
+    free, same = s["baselines"], s["rows"]["same_bytes"]
+    check = report.agreement(s["stream_mismatches"]) if s["verilog"] else Tile("not run", "the chip's Verilog", "none")
+    return [
+        Tile(
+            f"{100 * s['accuracy']:.2f} %",
+            f"accuracy, spread {100 * s['accuracy_std']:.2f} (chance: {100 * free['chance']['accuracy']:.1f} %)",
+        ),
+        Tile(f"{100 * same['accuracy']:.2f} %", "of a plain image in at most as many bytes"),
+        Tile(f"{s['bytes']:.0f}", "bytes a frame"),
+        check,
+    ]
+
+
+def _pictures(result: Recognition, channels: Array) -> list[Picture]:
+    """Some pictures, and their first channel."""
+    first = channels[:SHOWN, :, :, 0].astype(float)
+    gray = np.round(127.5 + 127.5 * first / max(float(np.abs(first).max()), 1e-9)).astype(np.uint8)
+    named = (
+        ("pictures", "on the display", result.study.data.images[:SHOWN]),
+        ("features", "the first channel; gray is 0", gray),
+    )
+    return [Picture(name, "", text, _large(np.hstack([*pixels]))) for name, text, pixels in named]
+
+
+def _large(pixels: Array) -> Image.Image:
+    times = max(480 // pixels.shape[1], 1)
+    return Image.fromarray(np.kron(pixels, np.ones((times, times), np.uint8)))
+
+
+def _curves(result: Recognition) -> list[Section]:
+    out = []
+    for name, by_label in result.lines.items():
+        axis, title = AXES[name]
+        if name == "draws":
+            errors = [100 * (1 - r["accuracy"]) for points in by_label.values() for _, r in points]
+            text = (
+                f"{len(errors)} draws of six types: mean error {np.mean(errors):.2f} %, standard deviation "
+                f"{np.std(errors):.2f} %."
+            )
+            out.append(Section(title, text))
+            continue
+        series = {label: [(p.x, 100 * r["accuracy"], "") for p, r in points] for label, points in by_label.items()}
+        table = [(label, f"{p.x:g}", *_cells(r)[:4]) for label, points in by_label.items() for p, r in points]
+        head = ("", axis, *HEAD[1:5])
+        text = f"{min(result.study.some, len(result.study.data.labels))} pictures; each point is trained again."
+        figure = chart(series, axis, "accuracy, %", title)
+        out.append(Section(title, text, charts=[svg(figure)], head=head, rows=table))
+    return out
+
+
+def _alarms(result: Recognition) -> list[Section]:
+    if not result.alarms:
+        return []
+    charts: list[Markup] = []
+    table = []
+    for contrast, by_label in result.alarms.items():
+        series = {name: list(zip(row["false"], row["true"], [""] * len(row["true"]))) for name, row in by_label.items()}
+        styles = {name: {"marker": "", "linewidth": 1.6} for name in series}
+        title = f"Wake-up at a contrast of {100 * contrast:g} %"
+        charts.append(svg(chart(series, "false alarms", "detections", title, styles=styles)))
+        table += [
+            (name, f"{100 * contrast:g} %", f"{row['auc']:.3f}", f"{row['energy_uj'][0]:.3g}", f"{row['bytes']:.0f}")
+            for name, row in by_label.items()
+        ]
+    head = ("", "contrast", "area below the curve", "sensor, uJ", "bytes")
+    text = "Is anything there? A disc enters a smooth background while the light drifts by 10 % from frame to frame."
+    return [Section("Wake-up", text, charts=charts, head=head, rows=table)]
