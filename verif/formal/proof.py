@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -32,17 +32,17 @@ class Twin:
 class Proof:
     """The properties of one wrapper.
 
-    name: unique. block: the top in rtl.tops that its results count for. wrapper: SystemVerilog file. top: its
-    module. modules: module under proof -> the exported top or part whose Verilog holds it. sensor: rows, cols, lanes,
-    tile_rows, tile_cols, divider, n_frac, iterations that differ from the default. method: 'induction' (base and step,
-    unbounded) or 'bounded'. depth: steps of the base, and the largest k of the induction. cover_depth, twin_depth:
-    steps within which every cover point must be reached and every twin must fail. engines: the first also runs covers
-    and twins. timeout: s. generated: names in verif.formal.tables, text put before the wrapper. sources: files read
-    before the wrapper. defines: macros of the wrapper. why: reason for the depth. twins: property -> Twin.
+    name: unique. block: the top in rtl.tops that its results count for. wrapper: SystemVerilog file. top: its module.
+    modules: module under proof -> the exported top or part whose Verilog holds it. sensor: rows, cols, lanes,
+    tile_rows, tile_cols, order, divider, n_frac, iterations that differ from the default. method: 'induction' (base
+    and step, unbounded) or 'bounded'. depth: steps of the base, and the largest k of the induction. cover_depth,
+    twin_depth: steps within which every cover point must be reached and every twin must fail. engines: the first also
+    runs covers and twins. timeout: s. generated: names in verif.formal.tables, text put before the wrapper. sources:
+    files read before the wrapper. defines: macros of the wrapper. why: reason for the depth. twins: property -> Twin.
     assumptions: label -> the neighbour's property or the document that it follows from (but RESET). never: regular
     expression of cover points of its inputs that cannot be reached (verif.formal.freedom) -> the reason. tied: inputs
-    of the modules that have a constant, with spaces between -> the reason. size_of: the proof that this one repeats at
-    another size: its covers and twins count for both. slow: no test of `make test`.
+    of the modules that have a constant, with spaces between -> the reason. size_of: the proof that this one repeats
+    at another size: its covers and twins count for both. slow: no test of `make test`.
     free_depth: steps within which the inputs must take their values. free_from: register of
     the wrapper -> value that it begins with there, all others with any; by default they begin in reset.
     """
@@ -108,6 +108,8 @@ class Proof:
         tile = TileParameters.small(
             parameters.pop("tile_rows", default.tile.rows), parameters.pop("tile_cols", default.tile.cols)
         )
+        if "order" in parameters:
+            tile = replace(tile, order=parameters.pop("order"))
         if parameters:
             raise ParameterError(f"{self.name}.sensor = {', '.join(parameters)}: must be parameters of the sensor")
         return SensorParameters(tile=tile, array=array, chip=chip)

@@ -8,8 +8,8 @@
 
 module PhasePathProof (input clk, input reset, input [11:0] recv__msg, input recv__val, input send__rdy,
                        input on, input [7:0] noise_floor);
-  (* anyconst *) wire [2:0] any_lane;
-  wire [2:0] lane = any_lane & (`LANES - 1);    // a power of two
+  (* anyconst *) wire [4:0] any_lane;
+  wire [4:0] lane = any_lane & (`LANES - 1);    // a power of two
   wire recv__rdy, send__val;
   wire [11:0] send__msg;
   PhasePath dut (.*);
@@ -36,7 +36,7 @@ module PhasePathProof (input clk, input reset, input [11:0] recv__msg, input rec
   // The position of the next message in its frame: tap, number of the sample, samples a tap
   reg open = 0;       // FRAME is taken, END is not
   reg [1:0] tap;
-  reg [3:0] index, samples;
+  reg [5:0] index, samples;
   wire [1:0] kind = recv__msg[11:10];
   wire last = recv__msg[9];
   wire taken = recv__val && recv__rdy;
@@ -46,7 +46,7 @@ module PhasePathProof (input clk, input reset, input [11:0] recv__msg, input rec
   reg [4:0] requested = 0;
   reg [11:0] msg;
   reg [1:0] msg_tap;
-  reg [3:0] msg_index;
+  reg [5:0] msg_index;
   wire tapped = on && msg[11:10] == SAMPLE;
   wire passes = here && !tapped && requested == 0;
   wire stores = here && tapped && msg_tap != 3;
@@ -90,7 +90,7 @@ module PhasePathProof (input clk, input reset, input [11:0] recv__msg, input rec
   wire [8:0] x = {1'b0, i0} - {1'b0, i180}, y = {1'b0, msg[7:0]} - {1'b0, i90};
   wire [16:0] entry = entries >> 17 * lane;
   wire [1:0] at_tap = here && tapped ? msg_tap : tap;
-  wire [3:0] at_index = here && tapped ? msg_index : index;
+  wire [5:0] at_index = here && tapped ? msg_index : index;
   wire [2:0] stored = at_tap + (at_index > lane);     // taps of the tracked lane
 
   always @* begin
@@ -112,7 +112,7 @@ module PhasePathProof (input clk, input reset, input [11:0] recv__msg, input rec
       inv_register: assert (\dut.full == here && (!here || {\dut.kind , \dut.data } == msg));
       inv_frame: assert (open || (here ? msg[11:10] == END : requested == 0));
       inv_place: assert (here && tapped ? \dut.tap == msg_tap && \dut.turn == 1 << msg_index && msg_index < `LANES
-                           && {tap, index} == (msg[9] ? {msg_tap + 2'd1, 4'd0} : {msg_tap, msg_index + 4'd1})
+                           && {tap, index} == (msg[9] ? {msg_tap + 2'd1, 6'd0} : {msg_tap, msg_index + 6'd1})
                          : \dut.tap == tap && \dut.turn == 1 << index);
       inv_samples: assert (index < `LANES && (tap == 0 || samples < `LANES && index <= samples));
       inv_last: assert (!(here && tapped) || (msg_tap == 0 ? msg_index < `LANES - 1 || msg[9]
