@@ -95,6 +95,7 @@ def stages(design: Design, options: Options, floor: Floor) -> list[Step]:
     common = options.pdk, design.top, options.corners
     own: dict[str, StageParameters] = {
         "floorplan": StageParameters(*common, "floorplan", floor, design.frame),
+        "power": StageParameters(*common, "power", frame=design.frame),
         "place": StageParameters(*common, "place", frame=design.frame, closed=design.closed),
         "cts": StageParameters(*common, "cts", clock=design.clock.port),
     }

@@ -7,11 +7,13 @@ from pathlib import Path
 
 import pytest
 
-from talbot.flow.layout.chain import all_steps, signoff_steps
+from talbot.flow.layout.chain import all_steps, signoff_steps, stages
 from talbot.flow.layout.design import DESIGNS, design
 from talbot.flow.layout.options import Options
 from talbot.flow.layout.sensor.die import CHIP, die_steps
 from talbot.flow.layout.sensor.plan import BLOCKS
+from talbot.flow.layout.steps.stage import SCRIPTS, STAGES, design_tcl
+from talbot.flow.layout.variables import Floor
 
 FOLDER = Path(__file__).parents[1]
 DECKS = (("klayout", Path("deck")), ("magic", Path("deck")))
@@ -44,3 +46,9 @@ def test_the_readme_lists_every_step_with_its_file(steps):
 def test_installed_decks_are_run():
     steps = signoff_steps(design("amp_ctrl"), Options(decks=DECKS))
     assert {"foundry_drc", "magic_drc"} <= {step.name for step in steps}
+
+
+@pytest.mark.parametrize("stage", [stage for stage in STAGES if "$supply" in (SCRIPTS / f"{stage}.tcl").read_text()])
+def test_the_supplies_of_a_frame_have_its_names(stage):
+    (step,) = (s for s in stages(DESIGNS["tt_quad_divider"], Options(), Floor()) if s.name == stage)
+    assert "set supply {VPWR}" in design_tcl(step.parameters)
