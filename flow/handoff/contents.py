@@ -67,7 +67,7 @@ def contents(
     if (page := sources["reports/report.html"]).is_file():
         sources |= {f"reports/{name}": folder / name for name in SHOWN.findall(page.read_text(encoding="utf-8"))}
     if missing := sorted(str(path.relative_to(folder)) for path in sources.values() if not path.is_file()):
-        must = f"must be a finished layout (make layout DESIGN={design.name})"
+        must = f"must be a finished layout (make layout DESIGN={design.name}{' SENSOR=FILE' if design.label else ''})"
         raise ParameterError(f"{folder} = without {', '.join(missing)}: {must}")
     summary = json.loads(sources["reports/summary.json"].read_text(encoding="utf-8"))
     rules = {waiver["rule"] for waiver in waivers}
