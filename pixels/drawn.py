@@ -2,11 +2,13 @@
 
 from talbot.base.sensor import Varied
 
-DRAWN_PITCH_UM = 10.0
+DRAWN_PITCH_UM = 10.0  # of rows and columns
+PIXEL_PITCHES_UM = 10.0, 15.0  # at which pixels are drawn: at 9 um metal 1 breaks its rules, at 8 um implants too
 DUMMIES = 2  # rows and columns on each side of a drawn array
 DRAWN_PITCH = {"array.pitch": "the masks of pixels, rows and columns are drawn for this pitch"}
 ARRAY_FIELDS = {"rows": "array.rows", "cols": "array.cols"}  # options that replace fields of the sensor
-DRAWN_ARRAY = Varied(used=(*ARRAY_FIELDS.values(), "tile"), fixed=DRAWN_PITCH)
+PIXEL_PITCH = {"array.pitch": (round(1e-6 * PIXEL_PITCHES_UM[0], 12), round(1e-6 * PIXEL_PITCHES_UM[1], 12))}
+DRAWN_ARRAY = Varied(used=(*ARRAY_FIELDS.values(), "array.pitch", "tile"), limits=PIXEL_PITCH)
 DRAWN_LINES = {"array.pitch": "resistance and capacitance of lines are those of pixels drawn on this pitch"}
 DRAWN_LANES = {"chip.lanes": "converters are drawn for this number of lines over the columns"}
 DRAWN_SIZES = dict.fromkeys(

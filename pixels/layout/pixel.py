@@ -19,7 +19,7 @@ import numpy as np
 
 from talbot.base.gds import db
 from talbot.models.parameters import ParameterError, PixelType, check_real
-from talbot.pixels.drawn import DRAWN_PITCH_UM
+from talbot.pixels.drawn import PIXEL_PITCHES_UM
 from talbot.pixels.layout.canvas import Canvas
 from talbot.pixels.layout.circuit import Circuit, circuit
 from talbot.pixels.layout.gratings import Lines, Point, lines, polygons
@@ -33,10 +33,11 @@ UPPER, COLUMNS, PLATES, ROWS_ON = 4, 2, 3, 1  # metals by their place in the pro
 # um. Of the wells: half of the space between two, the strip of transistors below, the space to the next pixel's strip
 BESIDE, STRIP, ABOVE = 0.65, 2.95, 0.05
 BAR, SHIELD = 0.45, (0.2, 1.3)  # least of half a bar's width; bottom and top of what joins the bars
-GRATING = 1.7, 9.8  # bottom and top of the upper grating
-OPENING = 0.7, 4.27, 3.1, 9.75  # of the frame in the western half: left, right, bottom, top
-REACH = 0.6, 4.35, 3.0, 9.85  # of analyzers on the frame's metal, whose lines end in it
-BELOW = 0.6, 4.26, 2.8, 9.95  # of analyzers on the columns' metal, over the frame
+# Left and bottom in the pixel's western half; right and top from the pixel's middle and from its northern edge
+GRATING = 1.7, 0.2  # bottom and top of the upper grating
+OPENING = 0.7, 0.73, 3.1, 0.25  # of the frame: left, right, bottom, top
+REACH = 0.6, 0.65, 3.0, 0.15  # of analyzers on the frame's metal, whose lines end in it
+BELOW = 0.6, 0.74, 2.8, 0.05  # of analyzers on the columns' metal, over the frame
 FRAME = 2.8  # bottom of the frame
 BESIDE_WIDE = {UPPER: 0.4, ROWS_ON: 0.28}  # space to metal wider than 1.5 um
 PLATE = 0.45, 2.70  # bottom and top of the supply's plate
@@ -68,8 +69,10 @@ class PixelLayout:
         process, g = self.process, self.geometry
         if g.kind != "amplitude":
             raise ParameterError(f"kind = {g.kind!r}: must be amplitude for a drawn pixel")
-        if abs(g.pitch_um - DRAWN_PITCH_UM) > 1e-6:
-            raise ParameterError(f"pitch_um = {g.pitch_um}: must be {DRAWN_PITCH_UM}, for which pixels are drawn")
+        check_real("pitch_um", g.pitch_um, *PIXEL_PITCHES_UM)
+        steps = g.pitch_um / (2 * process.grid_um)  # half a pixel is on the grid
+        if abs(steps - round(steps)) > 1e-6:
+            raise ParameterError(f"pitch_um = {g.pitch_um}: must be a multiple of {2 * process.grid_um:g}")
         check_real("w_um", self.w_um, 0.42, 1.0)
         check_real("l_um", self.l_um, 0.5, 0.5)
         if process.level(g.diffraction) != UPPER or process.level(g.analyzer or "") >= PLATES:
@@ -100,6 +103,17 @@ class PixelLayout:
         """Width and height of a diode."""
         pitch = self.geometry.pitch_um
         return pitch / 2 - 2 * BESIDE, pitch - STRIP - ABOVE
+
+    @property
+    def grating_um(self) -> tuple[float, float]:
+        """Bottom and top of the upper grating."""
+        return GRATING[0], round(self.geometry.pitch_um - GRATING[1], 6)
+
+    def within(self, box: tuple[float, float, float, float]) -> tuple[float, float, float, float]:
+        """Left, right, bottom, top of OPENING, REACH or BELOW in the western half, um."""
+        left, right, bottom, top = box
+        pitch = self.geometry.pitch_um
+        return left, round(pitch / 2 - right, 6), bottom, round(pitch - top, 6)
 
     @property
     def circuit(self) -> Circuit:
@@ -189,7 +203,7 @@ def openings(pixel: PixelLayout) -> Iterator[tuple[int, tuple[float, float, floa
     space to wide metal.
     """
     grid, pitch, axis = pixel.process.grid_um, pixel.geometry.pitch_um, pixel.axis
-    left, right, bottom, top = OPENING
+    left, right, bottom, top = pixel.within(OPENING)
     nominal = [(BAR, 0.0, pitch - BAR, pitch)]
     nominal += [(x, bottom, y, top) for x, y in ((left, right), (pitch - right, pitch - left))]
     for (level, of, polygons_of), box in zip(_gratings(pixel), nominal, strict=True):
@@ -206,7 +220,8 @@ def _gratings(pixel: PixelLayout) -> Iterator[tuple[int, Lines, list[list[Point]
     """(metal, grating, its lines) of the upper grating and of the analyzer of each half, of one origin."""
     g, grid = pixel.geometry, pixel.process.grid_um
     pitch, (upper, lower) = g.pitch_um, pixel.gratings()
-    origin = round(pitch / 2 / grid), round(sum(GRATING) / 2 / grid)
+    low, high = pixel.grating_um
+    origin = round(pitch / 2 / grid), round((low + high) / 2 / grid)
 
     def within(of: Lines, box: tuple[float, float, float, float], shift: float) -> list[list[Point]]:
         west, south, east, north = (round(edge / grid) for edge in box)
@@ -214,16 +229,18 @@ def _gratings(pixel: PixelLayout) -> Iterator[tuple[int, Lines, list[list[Point]
 
     lines_apart = grid * (upper.pitch - upper.width) if pixel.axis == 0 else 0.0
     beside = BAR + max(lines_apart, BESIDE_WIDE[UPPER])
-    yield UPPER, upper, within(upper, (beside, GRATING[0], pitch - beside, GRATING[1]), 0.0)
+    yield UPPER, upper, within(upper, (beside, low, pitch - beside, high), 0.0)
     level, least = pixel.process.level(g.analyzer or ""), BESIDE_WIDE[ROWS_ON]
     if level != ROWS_ON:
-        left, right, bottom, top = BELOW
+        left, right, bottom, top = pixel.within(BELOW)
     elif pixel.axis is not None:
         space = max(grid * (lower.pitch - lower.width), least)
         x, y = (space, 0.0) if pixel.axis == 0 else (0.0, space)
-        left, right, bottom, top = REACH[0] + x, REACH[1] - x, REACH[2] + y, REACH[3] - y
+        west, east, south, north = pixel.within(REACH)
+        left, right, bottom, top = west + x, east - x, south + y, north - y
     else:
-        left, right, bottom, top = OPENING[0] + least, OPENING[1] - least, OPENING[2] + least, OPENING[3] - least
+        west, east, south, north = pixel.within(OPENING)
+        left, right, bottom, top = west + least, east - least, south + least, north - least
     for diode, (west, east) in zip(pixel.diodes, ((left, right), (pitch - right, pitch - left)), strict=True):
         yield level, lower, within(lower, (west, bottom, east, top), g.shift + QUADRATURE[diode])
 
@@ -305,7 +322,7 @@ def _ground(canvas: Canvas, pixel: PixelLayout) -> None:
     for left, right in ((0, BAR), (pitch - BAR, pitch)):
         canvas.wire(UPPER, left, 0, right, pitch)
     for left, right in ((0, bars[0]), (bars[2], pitch)):
-        canvas.wire(UPPER, left, SHIELD[0], right, GRATING[1])
+        canvas.wire(UPPER, left, SHIELD[0], right, pixel.grating_um[1])
     canvas.wire(UPPER, 0, SHIELD[0], pitch, SHIELD[1])
     for (left, bottom, right, top), (west, east) in zip(frame, ((0, pitch / 2), (pitch / 2, pitch)), strict=True):
         for box in (

@@ -2,6 +2,7 @@
 
 import argparse
 import sys
+from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 
@@ -24,7 +25,9 @@ from talbot.platforms.pixel import pixel_process
 NAME = "pixel_array"
 
 
-def drawn_pixels(pdk: str, tile: TileParameters) -> tuple[PixelLayout, ...]:
+def drawn_pixels(
+    pdk: str, tile: TileParameters, pitch_um: float = ArrayParameters().pitch_um
+) -> tuple[PixelLayout, ...]:
     """The tile's types on the gratings that ``pdk`` keeps. Raises ParameterError for a beta that it does not have."""
     pixel_process(pdk)
     chosen, out = gratings(pdk), []
@@ -34,7 +37,8 @@ def drawn_pixels(pdk: str, tile: TileParameters) -> tuple[PixelLayout, ...]:
             known = ", ".join(f"{b:g}" for b in chosen.geometries)
             raise ParameterError(f"beta = {kind.beta:g}: must be one of {known}, which {pdk!r} has gratings for")
         geometry = chosen.geometries[beta]
-        out.append(pixel_layout(geometry, kind, fitted(geometry, chosen.wavelength_um)))
+        fit = fitted(geometry, chosen.wavelength_um)
+        out.append(pixel_layout(replace(geometry, pitch_um=pitch_um), kind, fit))
     return tuple(out)
 
 
@@ -44,9 +48,12 @@ def fitted(geometry: PixelGeometry, wavelength_um: float) -> Fit:
     return measure(geometry, wavelength_um).fit
 
 
-def array_layout(pdk: str, rows: int, cols: int, tile: TileParameters = TileParameters()) -> ArrayLayout:
-    """An array of a tile. Raises ParameterError."""
-    return ArrayLayout(ArrayParameters(rows, cols), tile, drawn_pixels(pdk, tile))
+def array_layout(
+    pdk: str, rows: int, cols: int, tile: TileParameters = TileParameters(), pitch: float = ArrayParameters.pitch
+) -> ArrayLayout:
+    """An array of a tile; ``pitch`` in m. Raises ParameterError."""
+    array = ArrayParameters(rows, cols, pitch)
+    return ArrayLayout(array, tile, drawn_pixels(pdk, tile, array.pitch_um))
 
 
 def array_lef(array: ArrayLayout) -> str:
@@ -75,7 +82,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Write the files."""
     sensor = sensor_asked(options, DRAWN_ARRAY, ARRAY_FIELDS)
-    write(options.out, array_layout(options.pdk, *sensor.shape, sensor.tile))
+    write(options.out, array_layout(options.pdk, *sensor.shape, sensor.tile, sensor.array.pitch))
     return 0
 
 

@@ -54,7 +54,7 @@ def make(
             check_file(name, file)
     decks = installed(pdk)
     rows, cols = sensor.shape
-    array = array_layout(pdk, rows, cols, sensor.tile)
+    array = array_layout(pdk, rows, cols, sensor.tile, sensor.array.pitch)
     small = replace(array, array=replace(array.array, rows=SMALL[0], cols=SMALL[1]))
     types = [_type(pixel, gratings(pdk).wavelength_um) for pixel in array.pixels]
     with staged(out, (*FILES, *REPORTS, *page.NAMES)) as folder:

@@ -25,7 +25,7 @@ FIRST, TILES = (3, 5), (2, 4)  # row and column of the window's first tile; rows
 class GateFramesParameters:
     """The sensor that is simulated.
 
-    options: its, as of rtl.export; () for the standard sensor.
+    options: of the sensor, as of rtl.export; () for the standard sensor.
     """
 
     options: tuple[str, ...] = ()

@@ -100,7 +100,8 @@ def test_a_cell_has_its_masks_inside_its_outline():
         ),
         ({"diffraction": "met3"}, "diffraction, analyzer = met3, met1: must be met4 over met1 or met2"),
         ({"analyzer": "met3", "period_um": 0.8}, "diffraction, analyzer = met4, met3: must be met4 over met1 or met2"),
-        ({"pitch_um": 8.0}, "pitch_um = 8.0: must be"),
+        ({"pitch_um": 8.0}, "pitch_um = 8.0: must be a number in .10.0, 15.0."),
+        ({"pitch_um": 12.005}, "pitch_um = 12.005: must be a multiple of 0.01"),
         ({"process": "ihp-sg13g2", "diffraction": "Metal4", "analyzer": "Metal1"}, "pdk = 'ihp-sg13g2': must be"),
     ],
 )

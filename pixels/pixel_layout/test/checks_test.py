@@ -1,9 +1,12 @@
 """The decks find what is planted in a pixel, and nothing in one as it is drawn."""
 
+from dataclasses import replace
+
 import pytest
 
 from talbot.base.gds import db, write_gds
-from talbot.models.parameters import TileParameters
+from talbot.models.parameters import ArrayParameters, TileParameters
+from talbot.pixels.layout.array import DUMMIES, EAST, WEST, ArrayLayout, draw_array, draw_pixels
 from talbot.pixels.layout.circuit import spice
 from talbot.pixels.layout.pixel import PixelLayout, draw
 from talbot.pixels.layout.write import gratings
@@ -15,9 +18,9 @@ pytestmark = pytest.mark.needs("layout", "klayout")
 TYPES = TileParameters().types
 
 
-def made(number):
+def made(number, pitch_um=10.0):
     kind = TYPES[number]
-    return PixelLayout(gratings("sky130").geometries[kind.beta], kind, (0, 2))
+    return PixelLayout(replace(gratings("sky130").geometries[kind.beta], pitch_um=pitch_um), kind, (0, 2))
 
 
 def written(path, number, change=lambda layout, cell, process: None):
@@ -46,6 +49,30 @@ def test_a_pixel_keeps_the_rules_and_faults_are_found(tmp_path):
     found = drc(written(tmp_path / "bad.gds", oblique, faults), "sky130", tmp_path / "bad.lyrdb")
     assert {"licon.18", "hvntm.3", "hvi.5", "m4 width", "m4 space"} <= set(found)
     assert unwaived(found) == sum(found.values()) - found["x.2"] > 0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("pitch_um", (12.0, 15.0))
+def test_an_array_of_another_pitch_keeps_the_rules(tmp_path, pitch_um):
+    layout, tile = db.Layout(), TileParameters()
+    layout.dbu = 0.001
+    pixels = tuple(made(number, pitch_um) for number in range(tile.n_types))
+    array = ArrayLayout(ArrayParameters(tile.rows, tile.cols, 1e-6 * pitch_um), tile, pixels)
+    cell = draw_array(layout, array, draw_pixels(layout, array))
+    write_gds(layout, tmp_path / "array.gds", cell)
+    width = (tile.cols + 2 * DUMMIES) * pitch_um + WEST + EAST
+    assert layout.dbu * cell.bbox().width() == pytest.approx(width)
+    assert unwaived(drc(tmp_path / "array.gds", "sky130", tmp_path / "drc.lyrdb")) == 0
+
+
+def test_a_pixel_of_another_pitch_is_its_circuit(tmp_path):
+    pixel, process, layout = made(0, 12.0), pixel_process("sky130"), db.Layout()
+    layout.dbu = 0.001
+    draw(layout, pixel)
+    write_gds(layout, tmp_path / "pixel.gds")
+    text = spice(pixel.name, pixel.circuit, process.deck_model, process.deck_diode)
+    assert "A=42.3P" in text  # two wells of 4.7 x 9 um
+    assert lvs(tmp_path / "pixel.gds", text, "sky130", tmp_path / "pixel.lvsdb")
 
 
 def test_a_pixel_is_its_circuit_and_an_open_contact_is_found(tmp_path):
