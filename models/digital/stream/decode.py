@@ -154,6 +154,7 @@ def _decode_frame(data: bytes, frame: DecodedFrame, sent: bytes, tile: TileParam
         cut = _good_header(data, at + COUNTED_BYTES, trailer_end) if notes else -1
         if cut >= 0:  # these are no bytes of the trailer
             trailer_end, notes = cut, [f"the trailer ends after {cut - at} of {TRAILER_BYTES} bytes"]
+        frame.truncated = trailer_end - at < TRAILER_BYTES
         frame.errors += [f"byte {at}: {note}" for note in notes]
     else:
         frame.errors.append(f"byte {at}: the trailer is damaged or missing")
@@ -169,9 +170,14 @@ def _decode_around(
     search, bad, tail = Search(body.view, stop, limit, frame.layout, *body.coder), [], None
     while tail is None:
         segment = search.next_segment(ordinal, at)
-        bad += range(ordinal, segment[1] if segment else body.total)
         if not segment:
+            bad += range(ordinal, body.total)
             break
+        lone = search.lone_segment(ordinal, at, segment[1], segment[0])
+        if lone:
+            bad += range(ordinal, lone[1])
+            ordinal, _, _ = body.decode(lone[1], lone[0], False)
+        bad += range(ordinal, segment[1])
         ordinal, at, tail = body.decode(segment[1], segment[0], not bad)
     frame.bad_rows = frame.layout.rows[bad].tolist()
     if bad:

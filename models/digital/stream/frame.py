@@ -29,6 +29,8 @@ class DecodedFrame:
         Rows that are damaged or missing, ascending.
     made, left_out : int or None
         Conversions; None when the trailer is lost.
+    truncated : bool
+        The trailer's counts are decoded, the bytes after them end too early.
     segments : int
         Segments, each with a mark, that are decoded.
     errors : list of str
@@ -43,13 +45,14 @@ class DecodedFrame:
     bad_rows: list[int] = field(default_factory=list)
     made: int | None = None
     left_out: int | None = None
+    truncated: bool = False
     segments: int = 0
     errors: list[str] = field(default_factory=list)
 
     @property
     def complete(self) -> bool:
-        """True when every row and the trailer's counts are decoded."""
-        return not self.bad_rows and self.made is not None
+        """True when every row is decoded and the trailer is there with all its bytes."""
+        return not self.bad_rows and self.made is not None and not self.truncated
 
     @property
     def read(self) -> npt.NDArray[np.bool_]:

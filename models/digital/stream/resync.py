@@ -2,7 +2,8 @@
 
 A segment carries no length, so a damaged one hides the start of the next. But at every position a segment can be
 decoded on trial, and its mark, xor the payload's CRC-16, is its first row if it is one and a random number if not. A
-trial is accepted when that row is plausible and the segment (or trailer) after it fits as well.
+trial is accepted when that row is plausible and the segment (or trailer) after it fits as well. A good segment between
+two bad ones is accepted without a neighbour when few places and rows are possible and one fits alone.
 """
 
 import numpy as np
@@ -11,7 +12,9 @@ import numpy.typing as npt
 from talbot.models.digital.stream.header import Layout
 from talbot.models.digital.stream.payload import check_segment, find_segment, row_bytes_max, segment_fits
 from talbot.models.parameters import ROWS_MAX
-from talbot.models.parameters.stream_format import COUNTED_BYTES
+from talbot.models.parameters.stream_format import COUNTED_BYTES, MARK
+
+LONE_MAX = 2048  # positions times rows that are tried for a lone segment; a mark fits by chance in 1 of 65,536
 
 
 class Search:
@@ -79,6 +82,42 @@ class Search:
             return segment
         following, near = min(lost + 1, total), min(self.stop, at + self.longest + COUNTED_BYTES)
         return self._find(at, near, following, total) or after or self._find(at, self.stop, following, total)
+
+    def lone_segment(self, lost: int, at: int, following: int, until: int) -> tuple[int, int] | None:
+        """Find a good segment between two bad ones.
+
+        Parameters
+        ----------
+        lost : int
+            Number of the first row of the segment that does not fit.
+        at : int
+            Its position.
+        following : int
+            Number of the first row of the next segment of `next_segment`.
+        until : int
+            Its position.
+
+        Returns
+        -------
+        (int, int) or None
+            Position and number of the first row, where exactly one position and row fit and at most `LONE_MAX` are
+            possible.
+        """
+        least = max(self.coder[2], 1) + MARK.size
+        last = 1 + MARK.size if following == self.layout.rows.size else least  # bytes of a bad segment after it
+        positions, ordinals = range(at + least, until - least - last + 1), range(lost + 1, following - 1)
+        if len(positions) * len(ordinals) > LONE_MAX:
+            return None
+        fitting = []
+        for position in positions:
+            for ordinal in ordinals:
+                end, row, many, _, work = check_segment(
+                    self.data, position, until - last, ordinal, self.layout.counts, *self.coder
+                )
+                self.limit -= work
+                if end >= 0 and row == self.layout.rows[ordinal] and ordinal + many < following:
+                    fitting.append((position, ordinal))
+        return fitting[0] if len(fitting) == 1 else None
 
     def _after(self, lost: int, at: int) -> tuple[int, int] | None:
         """Position and row after the seeming end of the lost segment, if the next one (or the trailer) fits there."""

@@ -145,6 +145,7 @@ def test_cut_short_anywhere(name):
         assert frame.bad_rows == rows[whole:].tolist() and frame.errors and frame.stop == length
         assert np.array_equal(frame.samples[rows[:whole]], samples[rows[:whole]])
         assert (frame.made is None) == (length < len(data) - 4)
+        assert not frame.complete
 
 
 @pytest.mark.parametrize("kind", ["counts", "both"])
@@ -182,6 +183,38 @@ def test_many_damaged_rows(mode, step):
         data[start + 6] ^= 0x01
     (frame,) = decode_stream(bytes(data))
     check_rows_lost(frame, header, samples, list(range(1, 200, step)))
+
+
+@pytest.mark.parametrize("name", ["edge", "segments", "rough", "few rows"])
+def test_a_good_segment_between_two_bad_ones_is_decoded(name):
+    """All bytes of the bad ones are random: of 60 pairs at least 59 cost these two alone, and no sample is wrong."""
+    header, samples, data = sent(name)
+    starts, rows = starts_of(header, samples)
+    rng, lost = np.random.default_rng(2), []
+    for _ in range(60):
+        first = int(rng.integers(len(rows) - 2))
+        damaged = bytearray(data)
+        for segment in (first, first + 2):
+            start, size = starts[segment], starts[segment + 1] - starts[segment]
+            damaged[start : start + size] = rng.integers(0, 256, size, np.uint8).tobytes()
+        (frame,) = decode_stream(bytes(damaged))
+        good = np.setdiff1d(header.layout().rows, frame.bad_rows)
+        assert np.array_equal(frame.samples[good], samples[good])
+        lost.append(frame.bad_rows != rows[first] + rows[first + 2])
+    assert sum(lost) <= 1
+
+
+@pytest.mark.parametrize("name", ["edge", "segments"])
+def test_random_bytes_of_three_segments_are_no_segment(name):
+    header, samples, data = sent(name)
+    starts, rows = starts_of(header, samples)
+    rng = np.random.default_rng(3)
+    for first in rng.integers(len(rows) - 2, size=60).tolist():
+        damaged = bytearray(data)
+        start, stop = starts[first], starts[first + 3]
+        damaged[start:stop] = rng.integers(0, 256, stop - start, np.uint8).tobytes()
+        (frame,) = decode_stream(bytes(damaged))
+        assert frame.bad_rows == sum(rows[first : first + 3], [])
 
 
 def test_header_damaged_worse_is_named():
