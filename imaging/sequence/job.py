@@ -21,7 +21,7 @@ from talbot.models.capture.views import SAFETY
 from talbot.models.chip import GoldenFrame, golden_frame
 from talbot.models.digital.stream import decode_stream
 from talbot.models.parameters import ParameterError
-from talbot.models.plan import Plan, plan
+from talbot.models.plan import plan
 from talbot.models.scene import Clip, Sampling, Scene, scene_of
 
 NUMBERS = 1 << 16  # of the register frame_number
@@ -64,7 +64,7 @@ def results(
                 with clock.step("setup"):
                     todo, front_end = plan(scene, sensor, request.frame), trimmed(request)
             with clock.step("capture"):
-                views = choose(scene, todo)
+                views = choose(scene)
                 numbered = replace(request, frame=replace(request.frame, frame_number=(first + number) % NUMBERS))
                 exposed = expose(numbered, scene, todo, front_end, views, number)
             if chip is None or program is None:
@@ -115,13 +115,13 @@ class _Chooser:
         self._views: Views | None = None
         self._limit = -1.0
 
-    def __call__(self, scene: Scene, todo: Plan) -> Views:
+    def __call__(self, scene: Scene) -> Views:
         if self._views and (self._request.views or not scene.angular):
             return self._views
         strength = _gradients(scene)
         if self._views is None or strength > self._limit:
             sensor, timing = self._request.lit, self._request.frame.exposing
-            views = choose_views(scene, sensor, timing, self._request.views, read=todo.read)
+            views = choose_views(scene, sensor, timing, self._request.views)
             if self._views is None or views.most >= self._views.most:
                 self._views = _everywhere(views)
             self._limit = strength / SAFETY

@@ -48,18 +48,14 @@ class Views(NamedTuple):
 
 
 def choose_views(
-    scene: Scene,
-    sensor: SensorParameters,
-    timing: AmpTiming,
-    views: int | None = None,
-    bound: float = BOUND,
-    read: npt.NDArray[np.bool_] | None = None,
+    scene: Scene, sensor: SensorParameters, timing: AmpTiming, views: int | None = None, bound: float = BOUND
 ) -> Views:
     """Choose the views of a capture.
 
     The differences are captured through REFERENCE views and through ever more of them, until the error is below the
-    bound: in PROBE tile rows spread evenly over those that are read, or in all. Tiles whose light varies least over
-    the pupil keep the scene's own grid, as many as the error allows: regions in focus, and plain ones.
+    bound: in PROBE tile rows spread evenly over the array, or in all. Tiles whose light varies least over the pupil
+    keep the scene's own grid, as many as the error allows: regions in focus, and plain ones. Mask, window and
+    decimation of the frame play no part: leaving pixels out changes no bit of the others.
 
     Parameters
     ----------
@@ -73,8 +69,6 @@ def choose_views(
         Along the pupil's diameter everywhere, 1..31; None chooses.
     bound : float
         Largest RMS error in codes, 0.01..100.
-    read : bool (rows, cols), optional
-        Pixels that the frame reads, at least one; None is all.
 
     Returns
     -------
@@ -88,7 +82,6 @@ def choose_views(
     """
     check_real("bound", bound, 0.01, 100)
     everywhere = np.ones(scene.shape, bool)
-    read = everywhere if read is None else read
     if views is not None:
         check_int("views", views, 1, REFERENCE)
     if not scene.angular:
@@ -97,7 +90,7 @@ def choose_views(
         if views not in (None, scene.views):
             raise ParameterError(f"views = {views}: must be left out, the light field has its own {scene.views}")
         return Views((Region(scene.views, everywhere),), scene.views, None)
-    probe = _Probe(scene, sensor, timing, read)
+    probe = _Probe(scene, sensor, timing)
     if views is not None:
         error = _rms(probe.error(views))
         return Views((Region(views, everywhere),), views, error, (), tuple(probe.tried))
@@ -152,20 +145,19 @@ def captured(
     ParameterError
         As both.
     """
-    chosen = choose_views(scene, sensor, timing, views, read=plan.read)
+    chosen = choose_views(scene, sensor, timing, views)
     return chosen, moving_currents(scene, sensor, plan, timing, regions=chosen.regions)
 
 
 class _Probe:
     """Differences against those through REFERENCE views, where they are measured."""
 
-    def __init__(self, scene: Scene, sensor: SensorParameters, timing: AmpTiming, read: npt.NDArray[np.bool_]) -> None:
+    def __init__(self, scene: Scene, sensor: SensorParameters, timing: AmpTiming) -> None:
         self.scene, self.sensor = scene, sensor
-        tile_row = np.arange(scene.shape[0]) // sensor.tile.rows  # of each row
-        full = np.unique(tile_row[read.any(1)])
-        count = min(PROBE, full.size)
-        measured = full[((np.arange(count) + 0.5) * full.size / count).astype(int)]
-        self.pixels = read & np.isin(tile_row, measured)[:, None]
+        count = min(PROBE, sensor.tile_rows)
+        measured = ((np.arange(count) + 0.5) * sensor.tile_rows / count).astype(int)
+        rows = np.isin(np.arange(scene.shape[0]) // sensor.tile.rows, measured)
+        self.pixels = np.broadcast_to(rows[:, None], scene.shape)
         self.unit = codes_per_unit(sensor, timing)
         gains = optical_gains(sensor.tile, sensor.optics)
         self.gains = gains[sensor.tile.type_map(*scene.shape)][self.pixels]

@@ -1,13 +1,23 @@
 """What the plan leaves out changes no sample (or less than a stated bound) and does save the work."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
+from hypothesis import given, reject, settings
+from hypothesis import strategies as st
 
-from talbot.models.capture import Exposure, capture
+from talbot.models.capture import Exposure, capture, captured, exposed
 from talbot.models.capture.operator import rounding
-from talbot.models.parameters import ArrayParameters, FrameParameters, SensorParameters, Window
+from talbot.models.parameters import (
+    ALL_TYPES,
+    ArrayParameters,
+    FrameParameters,
+    ParameterError,
+    SensorParameters,
+    Window,
+)
 from talbot.models.pixel import demodulate, depth_of, phase_of
 from talbot.models.plan import plan
 from talbot.models.scene import Sampling, Scene, load
@@ -42,6 +52,33 @@ def test_unread_pixels(mask, window, mode):
     assert 0 < made.read.sum() < ROWS * COLS and "unread pixels" in _what(made)
     part, whole = _samples(scene, made, frame), _samples(scene, everything, frame)
     np.testing.assert_array_equal(part[:, made.read], whole[:, made.read])
+
+
+@cache
+def _chosen(mode):
+    """Samples of every pixel through the views that are chosen."""
+    return _through_chosen(FrameParameters(FULL, mode=mode))
+
+
+def _through_chosen(frame):
+    scene = _scene("motorcycle")
+    todo = plan(scene, SENSOR, frame)
+    views, pairs = captured(scene, SENSOR, todo, frame.exposing)
+    assert len({region.views for region in views.regions} | {scene.views}) > 1  # not the scene's own grid alone
+    return todo.read, exposed(pairs, SENSOR, Exposure(SENSOR.electrical, frame.exposing, SENSOR.chip.f_clk))
+
+
+@settings(max_examples=8, deadline=None)
+@given(st.data())
+def test_mask_window_and_decimation_change_no_sample(draw):
+    rows, cols = (sorted(draw.draw(st.tuples(*2 * (st.integers(0, n - 1),)))) for n in (10, 11))
+    mode, mask = draw.draw(st.sampled_from(["edge", "raw"])), draw.draw(st.integers(1, ALL_TYPES))
+    frame = FrameParameters(Window(*rows, *cols), mode=mode, mask=mask, decimation=draw.draw(st.integers(0, 3)))
+    try:
+        read, samples = _through_chosen(frame)
+    except ParameterError:  # selects no pixel
+        reject()
+    np.testing.assert_array_equal(samples[:, read], _chosen(mode)[1][:, read])
 
 
 def test_one_view_where_there_is_no_angle():

@@ -151,17 +151,14 @@ def test_fewer_views_err_more():
     assert chosen.error <= 0.2 and chosen.most > choose_views(scene, sensor, timing, bound=2.0).most
 
 
-@pytest.mark.parametrize("window", [slice(0, 96), slice(80, 96)])
-def test_the_error_is_that_of_all_pixels_read(tmp_path, window):
+def test_the_error_is_that_of_all_pixels(tmp_path):
     """A picture with texture in its last rows alone."""
     codes = np.full((96, 96), 128, np.uint8)
     codes[84:] = np.random.default_rng(0).integers(0, 256, (12, 96), np.uint8)
     Image.fromarray(codes).save(tmp_path / "p.png")
     sensor = sensor_behind(96, 96)
     scene, timing = load(str(tmp_path / "p.png"), Sampling.of(sensor)), FrameParameters(sensor.full_window).timing
-    read = np.zeros((96, 96), bool)
-    read[window] = True
-    views = choose_views(scene, sensor, timing, read=read)
+    views = choose_views(scene, sensor, timing)
     gains = optical_gains(sensor.tile, sensor.optics)[sensor.tile.type_map(96, 96)]
 
     def differences(regions):
@@ -169,7 +166,7 @@ def test_the_error_is_that_of_all_pixels_read(tmp_path, window):
         return codes_per_unit(sensor, timing) * (a - gains * b)
 
     apart = differences(views.regions) - differences([Region(31, np.ones((96, 96), bool))])
-    assert np.sqrt(np.mean(apart[read] ** 2)) == pytest.approx(views.error, rel=1e-6)
+    assert np.sqrt(np.mean(apart**2)) == pytest.approx(views.error, rel=1e-6)
     assert 0.05 < views.error < 0.5
 
 
