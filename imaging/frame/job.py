@@ -26,8 +26,9 @@ from talbot.models.capture import expose as expose_pair
 from talbot.models.chip import GoldenFrame, front_end_of, golden_frame
 from talbot.models.digital.stream import decode_stream
 from talbot.models.digital.stream.frame import DecodedFrame
-from talbot.models.parameters import FrameParameters, SensorParameters, TileParameters
+from talbot.models.parameters import ELEMENTARY_CHARGE, AmpTiming, FrameParameters, SensorParameters, TileParameters
 from talbot.models.pixel import measured_gains
+from talbot.models.pixel.trim import optical_gains
 from talbot.models.plan import Plan, plan
 from talbot.models.scene import Sampling, Scene, load
 
@@ -115,9 +116,17 @@ def _samples(
 
 
 def trimmed(request: FrameRequest) -> FrontEnd:
-    """The sensor's front end; its trims come from a frame of a flat field, or from a calibration."""
+    """The sensor's front end; its trims come from a frame of a flat field, or from a calibration.
+
+    Where the dark current alone fills the wells there is no flat field: the trims are those of the optics.
+    """
     known = request.calibration
-    gains = known.gains if known else measured_gains(flat_field(request), request.lit.tile)
+    if known:
+        gains = known.gains
+    elif dark_filled(request):
+        gains = optical_gains(request.lit.tile, request.lit.optics)
+    else:
+        gains = measured_gains(flat_field(request), request.lit.tile)
     return front_end_of(request.lit, trim_codes(gains))
 
 
@@ -139,16 +148,36 @@ def numbered(front_end: FrontEnd, sensor: SensorParameters, number: int) -> Fron
     return replace(front_end, converter=replace(front_end.converter, seed=seed))
 
 
+def dark_filled(request: FrameRequest) -> bool:
+    """Whether the dark current of a row's integration leaves less than a tenth of a full well to the light."""
+    return _dark_electrons(request) > 0.9 * request.sensor.electrical.full_well
+
+
+def _dark_electrons(request: FrameRequest) -> float:
+    return request.sensor.electrical.dark_current * _flat_seconds(request) / ELEMENTARY_CHARGE
+
+
+def _flat_seconds(request: FrameRequest) -> float:
+    return replace(_exposure(request, 0.0), timing=_flat_timing(request)).intervals[0]
+
+
+def _flat_timing(request: FrameRequest) -> AmpTiming:
+    return replace(request.frame.exposing, n_cm=0)
+
+
 def flat_field(request: FrameRequest) -> Values:
     """The sensor's diodes, (rows, cols, 2) in LSB, before a flat field at half of white, dark current taken off.
 
-    One frame of the same chip with noise of its own, from which the trims are measured as on a bench.
+    One frame of the same chip and timing with noise of its own, from which the trims are measured as on a bench: in the
+    light of a lamp whose white gives the signal of RoomParameters, whatever the light of the frame is.
     """
-    sensor, frame = request.lit, request.frame
+    sensor = request.lit
     flat, everywhere = load("flat:50", Sampling.of(sensor)), Region(1, np.ones(sensor.shape, bool))
     pair = kept("flat", integrate, flat, sensor, everywhere)[0]
-    exposure = replace(_exposure(request, request.noise), timing=replace(frame.exposing, n_cm=0))
-    light, dark = expose_pair(pair, exposure, tap=BENCH), expose_pair(0 * pair, replace(exposure, noise=0.0))
+    room = sensor.electrical.full_well - _dark_electrons(request)
+    lamp = request.room.signal * room * ELEMENTARY_CHARGE / _flat_seconds(request) / sensor.electrical.white_current
+    exposure = replace(_exposure(request, request.noise), timing=_flat_timing(request))
+    light, dark = expose_pair(lamp * pair, exposure, tap=BENCH), expose_pair(0 * pair, replace(exposure, noise=0.0))
     light, dark = (_of_columns(request, diodes[None], "edge")[0] for diodes in (light, dark))
     return light - dark
 

@@ -14,6 +14,7 @@ from talbot.models.parameters import ParameterError, SensorParameters
 from talbot.models.reconstruct import FULL, diode_noise, light_field_estimate, white_sum
 from talbot.models.reconstruct.bad_pixels import dead_pixels, repaired
 from talbot.models.reconstruct.bayes import FieldEstimator, FieldPrior
+from talbot.models.reconstruct.bayes.prior import NOISE_MAX
 from talbot.models.reconstruct.methods import ANY_TYPES, DEFAULT, Found, check_method, measure
 from talbot.models.scene import Scene
 
@@ -138,7 +139,8 @@ def prior_of(result: Readout, near: float | None = None, far: float | None = Non
     timing, read = request.frame.exposing, result.decoded.read
     light = result.decoded.samples[read].mean() / white_sum(request.lit, timing)
     noise = float(diode_noise(light, request.lit, timing, request.noise))
-    prior = FieldPrior(noise=max(noise, FieldPrior.noise), **rest)  # a scene is never as even as the prior's planes
+    # A scene is never as even as the prior's planes.
+    prior = FieldPrior(noise=min(max(noise, FieldPrior.noise), NOISE_MAX), **rest)
     part = part_of(result)
     if part is None or not all(part.types):
         return prior

@@ -5,8 +5,16 @@ import numpy as np
 import pytest
 
 from talbot.imaging.frame.codecs import CODECS, coded
-from talbot.imaging.frame.figures import depth_line, energy_line, mismatches, psnr, trims_at_end, trims_line
-from talbot.imaging.frame.job import expose, flat_field, golden_result, see, simulate_frame
+from talbot.imaging.frame.figures import (
+    depth_line,
+    energy_line,
+    mismatches,
+    psnr,
+    summarize_golden,
+    trims_at_end,
+    trims_line,
+)
+from talbot.imaging.frame.job import expose, flat_field, golden_result, see, simulate_frame, trimmed
 from talbot.imaging.frame.merit import against
 from talbot.imaging.frame.quality import (
     decoding_error,
@@ -32,6 +40,28 @@ def test_mismatches_counts_bytes_that_differ_or_are_missing():
 def test_an_array_smaller_than_a_tile_is_trimmed():
     asked = request(1, 1, scene="flat:50")
     assert trims_at_end(expose(asked, *see(asked)).front_end.trim) == []
+
+
+DIM = {
+    "0.001 lux": ({"lux": 0.001}, {}),
+    "0.5 lux, raw, one slot": ({"lux": 0.5, "exposure": 0, "mode": "raw"}, {}),
+    "full by dark current": ({}, {"dark_current": 1e-6}),
+    "half full by dark current": ({}, {"dark_current": 1e-12}),
+    "overexposed": ({"lux": 1e6, "exposure": 0, "timing": {"t_int": 65535}}, {}),
+}
+
+
+@pytest.mark.parametrize("name", DIM)
+def test_trims_are_from_a_flat_field_of_its_own_light(name):
+    """Whatever the light of the frame, the trims are those of the usual light, to what noise leaves of a step."""
+    options, electrical = DIM[name]
+    frames = [request(40, 48, scene="coins"), request(40, 48, scene="coins", **options)]
+    usual, dim = (replace(f, sensor=replace(f.sensor, electrical=replace(f.sensor.electrical, **part)))
+                  for f, part in zip(frames, ({}, electrical), strict=True))  # fmt: skip
+    trims = [trimmed(asked).trim for asked in (usual, dim)]
+    assert np.abs(np.subtract(*trims)).max() <= (5 if "half" in name else 2)
+    result = golden_result(dim)
+    assert summarize_golden(result)["stream_bytes"] == len(result.stream)
 
 
 def test_the_bench_measures_the_chip_that_takes_the_frame():

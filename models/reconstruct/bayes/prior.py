@@ -9,6 +9,7 @@ import numpy.typing as npt
 from talbot.models.parameters import ParameterError, check_int, check_real
 
 Floats = npt.NDArray[np.float64]
+NOISE_MAX = 10.0  # of white: with more the samples say nothing
 CLEAR = 0.006  # of white: noise beyond which evidence is pooled more widely
 LAG = 4  # px between pixels whose sums tell a frame's contrast
 ABOVE = 2.0  # times it: a window may have more than the frame has on the average
@@ -75,7 +76,7 @@ class FieldPrior:
         check_real("contrast", self.contrast, 1e-3, 100)
         check_real("length", self.length, 0.1, 1000)
         check_real("fineness", self.fineness, 0.1, 2)
-        check_real("noise", self.noise, 1e-5, 10)
+        check_real("noise", self.noise, 1e-5, NOISE_MAX)
         check_real("far", self.far, -20, 20)
         check_real("near", self.near, -20, 20)
         check_int("disparities", self.disparities, 1, 500)
