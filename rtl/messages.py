@@ -2,11 +2,14 @@
 
 from functools import cache
 
-from pymtl3 import Bits2, Bits3, Bits8, Bits9, Bits10, mk_bits, mk_bitstruct
+from pymtl3 import Bits2, Bits3, Bits4, Bits8, Bits9, Bits10, Bits32, mk_bits, mk_bitstruct
 
 FRAME, ROW, SAMPLE, END = range(4)  # ScanMsg.kind and StepMsg.kind
 
 ScanMsg = mk_bitstruct("ScanMsg", {"kind": Bits2, "data": Bits10})
+
+# strobe: bytes of the word at `address` to write, 0 to read; every request gets a word, a write's is not defined
+MemReq = mk_bitstruct("MemReq", {"strobe": Bits4, "address": Bits32, "data": Bits32})
 
 DivReq = mk_bitstruct("DivReq", {"x": Bits9, "y": Bits9})
 
