@@ -122,8 +122,15 @@ def pattern(sensor: SensorParameters) -> "Component":
     return Pattern(sensor.chip.lanes)
 
 
-# Of AspChip: exported by name only, to be proven for any sensor
-PARTS: dict[str, Build] = {"Balance": balance, "Pattern": pattern}
+def proc(sensor: SensorParameters) -> "Component":
+    """Return the processor of test chip 1, the same for any sensor."""
+    from talbot.rtl.proc import Proc
+
+    return Proc()
+
+
+# Of AspChip, to be proven for any sensor, and of test chip 1: exported by name only
+PARTS: dict[str, Build] = {"Balance": balance, "Pattern": pattern, "Proc": proc}
 
 # Of rtl.tinytapeout: Verilog around a top, exported by name only
 WRAPPERS = {

@@ -87,7 +87,7 @@ def _word(name: str, operands: list[str], pc: int, names: Mapping[str, int]) -> 
         raise ParameterError(f"instruction = {name!r}: must be one of {', '.join([*TABLE, *PSEUDO, 'li', 'la'])}")
     form = TABLE[name][0]
     if name == "fence":
-        return encode(name)
+        return encode(name, imm=0xFF)  # all before all
     if (name in LOADS or name in STORES or name == "jalr") and (match := OFFSET.match(operands[-1])):
         operands = [operands[0], match[2], match[1] or "0"]
     order = ("rs2", "rs1", "imm") if form == "S" else ORDERS[form]

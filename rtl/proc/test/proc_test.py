@@ -174,10 +174,10 @@ class TestCL(TestFL):
         "text, cycles",
         [
             ("nop\n" * 40, 40),  # an instruction a cycle
-            ("lw x5, 0x40(x0)\n" * 40, 40),
-            ("sw x5, 0x40(x0)\nlw x5, 0x40(x0)\n" * 20, 40),
+            ("lw x5, 0x700(x0)\n" * 40, 40),
+            ("sw x5, 0x700(x0)\nlw x5, 0x700(x0)\n" * 20, 40),
             ("add x5, x5, x6\n" * 40, 40),
-            ("lw x5, 0x40(x0)\nadd x6, x6, x5\n" * 20, 60),  # a cycle between a load and its use
+            ("lw x5, 0x700(x0)\nadd x6, x6, x5\n" * 20, 60),  # a cycle between a load and its use
             ("jal x5, 4\n" * 40, 120),  # three cycles a jump or taken branch
             ("beq x0, x0, 4\n" * 40, 120),
             ("bne x0, x0, 4\n" * 40, 40),
