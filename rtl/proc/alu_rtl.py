@@ -20,6 +20,7 @@ class Alu(Component):
         s.less = Wire()
         s.less_unsigned = Wire()
         s.shift = Wire(32)
+        s.extended = Wire(33)
         s.shifted = Wire(64)
         s.holds = Wire()
 
@@ -33,7 +34,8 @@ class Alu(Component):
         @update
         def up_shift():
             s.shift @= zext(s.b[0:5], 32)
-            s.shifted @= sext(concat(s.a[31] & s.alternative, s.a), 64) >> zext(s.b[0:5], 64)
+            s.extended @= concat(s.a[31] & s.alternative, s.a)
+            s.shifted @= sext(s.extended, 64) >> zext(s.b[0:5], 64)
 
         @update
         def up_out():

@@ -38,6 +38,9 @@ class Decoder(Component):
         s.plain = Wire()  # funct7 = 0
         s.other = Wire()  # funct7 = 0x20
         s.has_rd = Wire()
+        s.jump = Wire(21)  # immediates
+        s.branch = Wire(13)
+        s.stored = Wire(12)
         s.kind = Wire(3)
         s.choice = Wire(3)
         s.alternative = Wire()
@@ -59,6 +62,9 @@ class Decoder(Component):
             s.plain @= s.funct7 == 0
             s.other @= s.funct7 == 0x20
             s.has_rd @= s.word[7:12] != 0
+            s.jump @= concat(s.word[31], s.word[12:20], s.word[20], s.word[21:31], Bits1(0))
+            s.branch @= concat(s.word[31], s.word[7], s.word[25:31], s.word[8:12], Bits1(0))
+            s.stored @= concat(s.word[25:32], s.word[7:12])
             s.control @= Control(
                 s.kind, s.choice, s.alternative, s.immediate, s.from_rs1, s.from_pc, s.uses_rs1, s.uses_rs2, s.writes
             )
@@ -82,7 +88,7 @@ class Decoder(Component):
             elif s.opcode == 0x6F:  # jal
                 s.kind @= JUMP
                 s.from_pc @= 1
-                s.imm @= sext(concat(s.word[31], s.word[12:20], s.word[20], s.word[21:31], Bits1(0)), 32)
+                s.imm @= sext(s.jump, 32)
             elif (s.opcode == 0x67) & (s.funct3 == 0):  # jalr
                 s.kind @= JUMP
                 s.from_rs1 @= 1
@@ -93,7 +99,7 @@ class Decoder(Component):
                 s.uses_rs1 @= 1
                 s.uses_rs2 @= 1
                 s.writes @= 0
-                s.imm @= sext(concat(s.word[31], s.word[7], s.word[25:31], s.word[8:12], Bits1(0)), 32)
+                s.imm @= sext(s.branch, 32)
             elif (s.opcode == 0x03) & (s.funct3[0:2] != 3) & (s.funct3 != 6):
                 s.kind @= LOAD
                 s.from_rs1 @= 1
@@ -104,7 +110,7 @@ class Decoder(Component):
                 s.uses_rs1 @= 1
                 s.uses_rs2 @= 1
                 s.writes @= 0
-                s.imm @= sext(concat(s.word[25:32], s.word[7:12]), 32)
+                s.imm @= sext(s.stored, 32)
             elif (s.opcode == 0x13) & (
                 (s.funct3[0:2] != 1) | s.plain | ((s.funct3 == 5) & s.other)  # shifts have a funct7
             ):

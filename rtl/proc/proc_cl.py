@@ -58,6 +58,8 @@ class Execute:
             self.result = compute(op.name, a, op.imm & MASK)
         if self.target is not None and self.target & 2:
             self.fault = True
+        if self.fault:
+            self.target = 0  # a request to no address that the program computes
 
     @property
     def receives(self):
@@ -65,7 +67,7 @@ class Execute:
 
     @property
     def leaves(self):
-        return self.fault or self.target is not None
+        return self.target is not None
 
 
 class ProcCL(Component):
@@ -94,7 +96,7 @@ class ProcCL(Component):
             s.d_go = s.d is not None and (x is None or s.x_go) and not s.hazard(s.d[0])
             leave = s.x_go and x.leaves
             s.imem_req.val @= s.flying != IN_FLIGHT and (not s.halt or s.held)
-            s.imem_req.msg @= (x.target or 0) & ~3 if leave and not s.held else s.address
+            s.imem_req.msg @= x.target & ~3 if leave and not s.held else s.address
             s.imem_resp.rdy @= s.halt or s.d is None or s.d_go or s.drops > 0
             s.halted @= s.halt
 
@@ -147,7 +149,7 @@ class ProcCL(Component):
         if leave:
             s.d = None
             s.halt = s.halt or x.fault
-        s.fetch(accepted, arrived, fresh, (x.target or 0) & ~3 if leave else None)
+        s.fetch(accepted, arrived, fresh, x.target & ~3 if leave else None)
 
     def fetch(s, accepted, arrived, fresh, target):
         """Advance the requests for instructions. target: of an instruction that leaves the path."""

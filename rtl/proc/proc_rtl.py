@@ -150,6 +150,8 @@ class Proc(Component):
             s.x_go @= s.x_val & ~s.x_blocked
             s.fetch.leave @= s.x_go & (s.x_leaves | s.x_fault)
             s.fetch.target @= concat(s.x_sum[2:32], Bits2(0))
+            if s.x_fault:
+                s.fetch.target @= 0  # no address that the program computes
 
         @update
         def up_operands():

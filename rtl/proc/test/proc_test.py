@@ -25,6 +25,12 @@ WORDS = st.lists(st.integers(0, 2**32 - 1), min_size=1, max_size=8)
 CORNERS = 0, 1, 0xFFFFFFFF, 0x7FFFFFFF, 0x80000000, 0x12345678, 0xFFFFFFE1
 STORED = "".join(f"sw x{n}, {0x600 + 4 * n}(x0)\n" for n in range(32)) + "ebreak\n"
 
+FAULTS = (
+    *(".word 0", ".word 0xffffffff", ".word 0x73", ".word 0x100f", "lw x5, 2(x6)", "lh x5, 1(x6)", "sh x5, 3(x6)"),
+    *("sw x5, 1(x6)", "jal x5, 6", "jalr x5, 2(x6)", "beq x0, x0, 10", ".word 0xc0002573", ".word 0xf14312f3"),
+    *(".word 0x02c585b3", ".word 0x40001013", ".word 0x7c0012f3", ".word 0x00003003", ".word 0x00002063"),
+)
+
 
 class TestFL:
     cls, verilog = ProcFL, False
@@ -105,22 +111,7 @@ class TestFL:
     def test_x0_is_zero(self):
         self.of("addi x0, x0, 5\nlw x0, 0(x0)\ncsrr x0, 0xfc0\njal x0, 4\nadd x5, x0, x0\n" + STORED, words=[9])
 
-    @pytest.mark.parametrize(
-        "fault",
-        [
-            *(
-                ".word 0",
-                ".word 0xffffffff",
-                ".word 0x73",
-                ".word 0x100f",
-                "lw x5, 2(x6)",
-                "lh x5, 1(x6)",
-                "sh x5, 3(x6)",
-            ),
-            *("sw x5, 1(x6)", "jal x5, 6", "jalr x5, 2(x6)", "beq x0, x0, 10", ".word 0xc0002573", ".word 0xf14312f3"),
-            *(".word 0x02c585b3", ".word 0x40001013", ".word 0x7c0012f3", ".word 0x00003003", ".word 0x00002063"),
-        ],
-    )
+    @pytest.mark.parametrize("fault", FAULTS)
     def test_stops(self, fault):
         """Nothing of the instruction or after it takes effect, all before it does."""
         around = "li x5, 77\nli x6, 0x700\nsw x5, 0(x6)\n"
@@ -170,12 +161,21 @@ class TestCL(TestFL):
             bench.run(program, words * 40, willing, latencies, limit=600)
         assert benches[0].log == benches[1].log
 
+    @pytest.mark.parametrize("fault", FAULTS)
+    def test_requests_of_the_cycle_of_a_stop(self, fault):
+        """No request is for an address that the stopping instruction computes, data and jumps that it refuses."""
+        program = assemble(f"li x5, 77\nli x6, 0x700\n{fault}\nnop\nebreak\n")
+        benches = [self.bench(), Bench(ProcCL, False)]
+        assert all(bench.run(program) for bench in benches) and benches[0].log == benches[1].log
+        requests = {messages[0] for messages, _, _ in benches[0].log if messages[0]}
+        assert max(int(address, 16) for address in requests) <= len(program)
+
     @pytest.mark.parametrize(
         "text, cycles",
         [
             ("nop\n" * 40, 40),  # an instruction a cycle
             ("lw x5, 0x700(x0)\n" * 40, 40),
-            ("sw x5, 0x700(x0)\nlw x5, 0x700(x0)\n" * 20, 40),
+            ("sw x6, 0x700(x0)\nlw x5, 0x700(x0)\n" * 20, 40),
             ("add x5, x5, x6\n" * 40, 40),
             ("lw x5, 0x700(x0)\nadd x6, x6, x5\n" * 20, 60),  # a cycle between a load and its use
             ("jal x5, 4\n" * 40, 120),  # three cycles a jump or taken branch
