@@ -131,6 +131,11 @@ NEEDS = {
     "mitsuba": Need(packages("mitsuba", "mitransient"), "make render", offered=False, imported=True),
     "openroad": Need(openroad, LAYOUT, offered=(sys.platform, platform.machine()) == ("linux", "x86_64")),
     "PDK_ROOT": Need(paths("PDK_ROOT"), "PDK_ROOT=<an installed PDK>", offered=False),
+    "RISCV_ARCH_TEST": Need(paths("RISCV_ARCH_TEST"), "RISCV_ARCH_TEST=<riscv-arch-test>", offered=False),
+    "riscv64-unknown-elf-gcc": Need(
+        programs("riscv64-unknown-elf-gcc"), "apt-get install gcc-riscv64-unknown-elf", offered=False
+    ),
+    "tinyrv": Need(packages("tinyrv"), "pip install tinyrv", offered=False),
     "TT_TOOLS": Need(paths("TT_TOOLS"), "TT_TOOLS=<tt-support-tools>", offered=False),
     "tt-layouts": Need(projects, "make layout DESIGN=<each of the Tiny Tapeout projects>", offered=False),
     "/proc": Need(lambda: Path("/proc/self/stat").is_file(), "Linux", offered=False),
