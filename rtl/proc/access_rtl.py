@@ -7,7 +7,7 @@ class StoreLanes(Component):
     """`misaligned`: the address is not a multiple of the size, also of a load's."""
 
     def construct(s):
-        s.funct3 = InPort(3)
+        s.size = InPort(2)  # 1, 2 or 4 bytes: 0, 1, 2
         s.low = InPort(2)  # of the address
         s.data = InPort(32)
         s.strobe = OutPort(4)
@@ -19,11 +19,11 @@ class StoreLanes(Component):
             s.word @= s.data
             s.strobe @= 15
             s.misaligned @= s.low != 0
-            if s.funct3[0:2] == 0:
+            if s.size == 0:
                 s.word @= concat(s.data[0:8], s.data[0:8], s.data[0:8], s.data[0:8])
                 s.strobe @= Bits4(1) << zext(s.low, 4)
                 s.misaligned @= 0
-            elif s.funct3[0:2] == 1:
+            elif s.size == 1:
                 s.word @= concat(s.data[0:16], s.data[0:16])
                 s.strobe @= Bits4(3) << zext(s.low, 4)
                 s.misaligned @= s.low[0]

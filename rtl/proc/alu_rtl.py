@@ -1,6 +1,6 @@
 """Alu at RTL: results of register and immediate instructions, and comparisons of branches."""
 
-from pymtl3 import Component, InPort, OutPort, Wire, concat, sext, update, zext
+from pymtl3 import Component, InPort, OutPort, Wire, sext, update, zext
 
 
 class Alu(Component):
@@ -20,8 +20,9 @@ class Alu(Component):
         s.less = Wire()
         s.less_unsigned = Wire()
         s.shift = Wire(32)
-        s.extended = Wire(33)
-        s.shifted = Wire(64)
+        s.negative = Wire()
+        s.sign = Wire(32)
+        s.shifted = Wire(32)  # to the right
         s.holds = Wire()
 
         # Logic
@@ -34,8 +35,9 @@ class Alu(Component):
         @update
         def up_shift():
             s.shift @= zext(s.b[0:5], 32)
-            s.extended @= concat(s.a[31] & s.alternative, s.a)
-            s.shifted @= sext(s.extended, 64) >> zext(s.b[0:5], 64)
+            s.negative @= s.a[31] & s.alternative
+            s.sign @= sext(s.negative, 32)
+            s.shifted @= ((s.a ^ s.sign) >> s.shift) ^ s.sign
 
         @update
         def up_out():
@@ -52,7 +54,7 @@ class Alu(Component):
             elif s.funct3 == 4:
                 s.out @= s.a ^ s.b
             elif s.funct3 == 5:
-                s.out @= s.shifted[0:32]
+                s.out @= s.shifted
             elif s.funct3 == 6:
                 s.out @= s.a | s.b
             else:

@@ -16,8 +16,6 @@ Control = mk_bitstruct(
         "immediate": Bits1,  # the ALU's second operand
         "from_rs1": Bits1,  # base of the sum
         "from_pc": Bits1,
-        "uses_rs1": Bits1,
-        "uses_rs2": Bits1,
         "writes": Bits1,  # rd, which is not x0
     },
 )
@@ -29,6 +27,8 @@ class Decoder(Component):
         s.word = InPort(32)
         s.hart_id = InPort(32)
         s.control = OutPort(Control)
+        s.uses_rs1 = OutPort()
+        s.uses_rs2 = OutPort()
         s.imm = OutPort(32)
 
         # Components
@@ -47,8 +47,6 @@ class Decoder(Component):
         s.immediate = Wire()
         s.from_rs1 = Wire()
         s.from_pc = Wire()
-        s.uses_rs1 = Wire()
-        s.uses_rs2 = Wire()
         s.writes = Wire()
 
         # Connections
@@ -65,9 +63,7 @@ class Decoder(Component):
             s.jump @= concat(s.word[31], s.word[12:20], s.word[20], s.word[21:31], Bits1(0))
             s.branch @= concat(s.word[31], s.word[7], s.word[25:31], s.word[8:12], Bits1(0))
             s.stored @= concat(s.word[25:32], s.word[7:12])
-            s.control @= Control(
-                s.kind, s.choice, s.alternative, s.immediate, s.from_rs1, s.from_pc, s.uses_rs1, s.uses_rs2, s.writes
-            )
+            s.control @= Control(s.kind, s.choice, s.alternative, s.immediate, s.from_rs1, s.from_pc, s.writes)
 
         @update
         def up_control():

@@ -78,7 +78,7 @@ class Proc(Component):
         s.alu.funct3 //= s.x_control.funct3
         s.alu.alternative //= s.x_control.alternative
         s.alu.a //= s.x_a
-        s.store.funct3 //= s.x_control.funct3
+        s.store.size //= s.x_control.funct3[0:2]
         s.store.low //= s.x_sum[0:2]
         s.store.data //= s.x_b
         s.load.funct3 //= s.m_funct3
@@ -172,9 +172,9 @@ class Proc(Component):
 
         @update
         def up_decode():
-            s.hazard @= (
-                s.decoder.control.uses_rs1 & ((s.x_hit_a & (s.x_control.kind == LOAD)) | (s.m_hit_a & s.m_waits))
-            ) | (s.decoder.control.uses_rs2 & ((s.x_hit_b & (s.x_control.kind == LOAD)) | (s.m_hit_b & s.m_waits)))
+            s.hazard @= (s.decoder.uses_rs1 & ((s.x_hit_a & (s.x_control.kind == LOAD)) | (s.m_hit_a & s.m_waits))) | (
+                s.decoder.uses_rs2 & ((s.x_hit_b & (s.x_control.kind == LOAD)) | (s.m_hit_b & s.m_waits))
+            )
             s.d_go @= s.d_val & ~s.hazard & (~s.x_val | s.x_go)
             s.fetch.free @= ~s.d_val | s.d_go
 

@@ -93,6 +93,12 @@ def test_fusesoc_reads_and_lints_the_core(tmp_path):
     assert "talbot:asp:AmpCtrl:" in done.stdout + done.stderr
 
 
+def test_the_processor_is_lint_clean(tmp_path):
+    path = tmp_path / "Proc.sv"
+    path.write_text(translate("Proc", SensorParameters()))
+    assert "Verilator clean" in lint(path, "Proc")
+
+
 def test_a_small_tile_is_lint_clean(tmp_path):
     """Its types are fewer than the mask's bits."""
     path = tmp_path / "ReadoutSeq.sv"
