@@ -105,12 +105,18 @@ def draw_array(layout: "db.Layout", array: ArrayLayout, cells: "Mapping[int, db.
     block, process = array.block, array.pixels[0].process
     canvas = Canvas(layout, block.name, process)
     _place(canvas, array, cells)
-    _rings(canvas, array)
-    _ends(canvas, array)
+    draw_surroundings(canvas, array)
     _supplies(canvas, array)
     draw_pins(layout, canvas.cell, block, process.name, AnalogSizes().supply_um)
     canvas.box(process.outline, 0, 0, block.width_um, block.height_um)
     return canvas.cell
+
+
+def draw_surroundings(canvas: Canvas, array: ArrayLayout) -> None:
+    """Draw what is around the pixels: rings, ends of rows and columns, buses of the supplies in the east."""
+    _rings(canvas, array)
+    _ends(canvas, array)
+    _buses(canvas, array)
 
 
 def _place(canvas: Canvas, array: ArrayLayout, cells: "Mapping[int, db.Cell]") -> None:
@@ -121,12 +127,12 @@ def _place(canvas: Canvas, array: ArrayLayout, cells: "Mapping[int, db.Cell]") -
         first_row, first_col = -DUMMIES + (row + DUMMIES) % tile.rows, -DUMMIES + (col + DUMMIES) % tile.cols
         down = len(range(first_row, rows + DUMMIES, tile.rows))
         across = len(range(first_col, cols + DUMMIES, tile.cols))
-        x, y = _corner(array, first_row, first_col)
+        x, y = corner(array, first_row, first_col)
         pitch = array.pitch_um
         _repeat(canvas, cells[number], (x, y), (tile.cols * pitch, across), (-tile.rows * pitch, down))
 
 
-def _corner(array: ArrayLayout, row: int, col: int) -> tuple[float, float]:
+def corner(array: ArrayLayout, row: int, col: int) -> tuple[float, float]:
     """The south-west corner of a pixel, um; row -1 is a dummy's."""
     pitch = array.pitch_um
     return WEST + (col + DUMMIES) * pitch, SOUTH + (array.array.rows + DUMMIES - 1 - row) * pitch
@@ -143,7 +149,7 @@ def _repeat(
         canvas.cell.insert(db.CellInstArray(cell.cell_index(), trans, *vectors, across, up))
 
 
-def _inside(array: ArrayLayout) -> tuple[float, float, float, float]:
+def inside(array: ArrayLayout) -> tuple[float, float, float, float]:
     """Left, bottom, right, top of all pixels, dummies among them."""
     block = array.block
     return WEST, SOUTH, block.width_um - EAST, block.height_um - NORTH
@@ -159,7 +165,7 @@ def _rings(canvas: Canvas, array: ArrayLayout) -> None:
         _ring(canvas, array, local, near, far)
         _ring(canvas, array, implant, near - IMPLANT, far + IMPLANT)
         middle = (near + far) / 2
-        left, bottom, right, top = _inside(array)
+        left, bottom, right, top = inside(array)
         across, up = int((right - left) / CONTACT_PITCH), int((top - bottom) / CONTACT_PITCH)
         for y in (bottom - middle, top + middle):
             _repeat(canvas, canvas_of.cell, (left + 0.5, y), (CONTACT_PITCH, across), (CONTACT_PITCH, 1))
@@ -170,7 +176,7 @@ def _rings(canvas: Canvas, array: ArrayLayout) -> None:
 
 def _ring(canvas: Canvas, array: ArrayLayout, mask: GdsLayer, near: float, far: float) -> None:
     """A mask all around the pixels, from ``near`` to ``far`` um from them."""
-    left, bottom, right, top = _inside(array)
+    left, bottom, right, top = inside(array)
     for low, high in ((bottom - far, bottom - near), (top + near, top + far)):
         canvas.box(mask, left - far, low, right + far, high)
     for low, high in ((left - far, left - near), (right + near, right + far)):
@@ -184,7 +190,7 @@ def _ends(canvas: Canvas, array: ArrayLayout) -> None:
         Canvas(canvas.layout, name, canvas.process) for name in ("row_end", "dummy_end", "column_end")
     )
     pins = {pin.name: pin.at_um for pin in array.block.pins}
-    _, y0 = _corner(array, 0, 0)
+    _, y0 = corner(array, 0, 0)
     for name, y in (("pixel_reset_row[0]", RESET_Y), ("read_row[0]", READ_Y)):
         at = pins[name] - y0
         row.wire(PLATES, 0, at - LINE, TURN[0] + LINE, at + LINE)
@@ -200,7 +206,7 @@ def _ends(canvas: Canvas, array: ArrayLayout) -> None:
     _repeat(canvas, row.cell, (0, SOUTH + DUMMIES * pitch), (pitch, 1), (pitch, rows))
     for y in (SOUTH, SOUTH + (rows + DUMMIES) * pitch):
         _repeat(canvas, dummy.cell, (0, y), (pitch, 1), (pitch, DUMMIES))
-    x0, _ = _corner(array, 0, 0)
+    x0, _ = corner(array, 0, 0)
     for name, x in (("column_a[0]", pitch / 2 - COLUMN), ("column_b[0]", pitch / 2 + COLUMN)):
         at = pins[name] - x0
         column.wire(UPPER, at - LINE, 0, at + LINE, TURN[1] + LINE)
@@ -211,10 +217,10 @@ def _ends(canvas: Canvas, array: ArrayLayout) -> None:
     _repeat(canvas, column.cell, (WEST + DUMMIES * pitch, 0), (pitch, cols), (pitch, 1))
 
 
-def _supplies(canvas: Canvas, array: ArrayLayout) -> None:
-    """Draw the supplies in the east: buses of ground and supply over the rings, top metal from these to the pins."""
+def _buses(canvas: Canvas, array: ArrayLayout) -> None:
+    """Draw buses of ground and supply over the rings, in the east."""
     process, pitch = canvas.process, array.pitch_um
-    _, bottom, right, _ = _inside(array)
+    _, bottom, right, _ = inside(array)
     end = Canvas(canvas.layout, "supply_end", process)
     for low, high in (GROUND_BUS, SUPPLY_BUS):
         end.wire(UPPER, low, 0, high, pitch)
@@ -227,7 +233,12 @@ def _supplies(canvas: Canvas, array: ArrayLayout) -> None:
     end.stack(x, y, 0, UPPER)
     end.square(process.metals[PLATES].gds, x, y, 0.5)
     _repeat(canvas, end.cell, (right, bottom), (pitch, 1), (pitch, array.array.rows + 2 * DUMMIES))
-    via, half = process.vias[UPPER], AnalogSizes().supply_um / 2
+
+
+def _supplies(canvas: Canvas, array: ArrayLayout) -> None:
+    """Draw top metal from the buses to the pins."""
+    _, _, right, _ = inside(array)
+    via, half = canvas.process.vias[UPPER], AnalogSizes().supply_um / 2
     for pin in array.block.pins:
         if pin.supply:
             low, high = SUPPLY_BUS if pin.name == "vdda" else GROUND_BUS

@@ -15,6 +15,9 @@ from talbot.models.parameters import ParameterError
 LARGEST = 24  # of a direction's two whole numbers
 NEAR = pi / 720  # rad, of a direction to the wanted one: a quarter of a degree
 WIDER = 1.05  # most that a period may grow
+OBLIQUE = 12, 5  # the direction that octilinear lines may have, and its mirror images
+ENDS, RETURN, STEEP = 15, 12, 5  # lengths of it in an end of such a line; steeper steps there, their straight run
+ROUGH = 5  # more width, for the corners of the steps
 Point = tuple[int, int]
 Box = tuple[int, int, int, int]  # left, bottom, right, top
 
@@ -125,6 +128,47 @@ def polygons(grating: Lines, window: Box, shift: float, origin: Point | None = N
         if (last - first) * hypot(p, q) >= 3 * grating.line:
             (x1, y1), (x2, y2) = ((x + t * p, y + t * q) for t in (floor(first + 1), floor(last)))
             yield [(x1, y1), (x2, y2), (x2 + side_x, y2 + side_y), (x1 + side_x, y1 + side_y)]
+
+
+def octilinear(corners: list[Point], grating: Lines) -> list[Point]:
+    """A line of `polygons` with edges at multiples of 45 degrees alone; one that has no others is as it was.
+
+    The long sides become steps, a straight run and a diagonal for each (p, q). Both have the same steps, as far apart
+    along the axis on which lines repeat as the line is wide. A line ends in a straight run of its width, so that no
+    corner is acute, and steeper steps return from there to the line. A line without room for its ends is left out: it
+    has no corners. Lines keep the least width; spaces between the ends of two are for the design rules to check. Raises
+    ParameterError for a direction that is neither a multiple of 45 degrees nor like `OBLIQUE`.
+    """
+    p, q = grating.direction
+    if not p * q or abs(p) == abs(q):
+        return corners
+    if {abs(p), abs(q)} != {*OBLIQUE}:
+        raise ParameterError(f"direction = {p}, {q}: must be a multiple of 45 degrees, or {OBLIQUE} mirrored")
+    (run, rise), swap, turn = OBLIQUE, abs(q) > abs(p), 1 if q > 0 else -1
+
+    def flat(x: int, y: int) -> Point:
+        """Turn into axes in which lines rise by less than 45 degrees."""
+        return (turn * y, x) if swap else (x, turn * y)
+
+    def back(x: int, y: int) -> Point:
+        return (y, turn * x) if swap else (x, turn * y)
+
+    (x, y), (end, _), _, (side_x, side_y) = (flat(*corner) for corner in corners)
+    left = (end - x) // run - 2 * ENDS
+    if left < 0:
+        return []
+    if side_y < y:
+        x, y = side_x, side_y
+    height = ceil(grating.line) + ROUGH
+    y += (round(grating.width * hypot(p, q) ** 2 / run) - height) // 2 + rise * (ENDS - RETURN)
+    level, last = ENDS * run - RETURN * (rise + STEEP), run - rise - STEEP
+    inner = [STEEP + last, *[run - rise] * (left - 1), 2 * STEEP] if left else [2 * STEEP]
+    lower = [(x, y)]
+    for straight in (level, *[STEEP] * (RETURN - 1), *inner, *[STEEP] * (RETURN - 1)):
+        x, y = x + straight + rise, y + rise
+        lower += [(x - rise, y - rise), (x, y)]
+    lower.append((x + level, y))
+    return [back(*point) for point in (*lower, *((x, y + height) for x, y in reversed(lower)))]
 
 
 def _span(start: int, step: int, low: float, high: float) -> tuple[float, float]:

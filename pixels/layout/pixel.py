@@ -22,7 +22,7 @@ from talbot.models.parameters import ParameterError, PixelType, check_real
 from talbot.pixels.drawn import PIXEL_PITCHES_UM
 from talbot.pixels.layout.canvas import Canvas
 from talbot.pixels.layout.circuit import Circuit, circuit
-from talbot.pixels.layout.gratings import Lines, Point, lines, polygons
+from talbot.pixels.layout.gratings import Lines, Point, lines, octilinear, polygons
 from talbot.pixels.optics.fit import Fit
 from talbot.pixels.optics.geometry import QUADRATURE, PixelGeometry
 from talbot.pixels.tabled import rows
@@ -57,6 +57,7 @@ class PixelLayout:
     kind: the type.
     diodes: rows of `Response` for the two diodes, 0..3 quarter periods (`talbot.pixels.tabled.rows`).
     w_um, l_um: of the transistors.
+    octilinear: whether lines at other angles than multiples of 45 degrees are steps of these, as some shuttles ask.
     """
 
     geometry: PixelGeometry
@@ -64,6 +65,7 @@ class PixelLayout:
     diodes: tuple[int, int]
     w_um: float = field(default=1.0, metadata={"unit": "um"})
     l_um: float = field(default=0.5, metadata={"unit": "um"})
+    octilinear: bool = False
 
     def __post_init__(self) -> None:
         process, g = self.process, self.geometry
@@ -189,11 +191,36 @@ def draw(layout: "db.Layout", pixel: PixelLayout) -> Canvas:
     return canvas
 
 
+def draw_reference(layout: "db.Layout", pixel: PixelLayout, covered: bool) -> Canvas:
+    """Draw a pixel without gratings, named plain or covered; its circuit and frame are those of ``pixel``.
+
+    covered: under the upper grating's metal, and under what is an analyzer in other pixels.
+    """
+    process, pitch = pixel.process, pixel.geometry.pitch_um
+    canvas = Canvas(layout, "pixel_covered" if covered else "pixel_plain", process)
+    for axis in (None, pitch / 2):
+        canvas.mirrored(axis)
+        _diode(canvas, pixel)
+        _transistors(canvas, pixel)
+        if covered:
+            left, right, bottom, top = OPENING
+            least = BESIDE_WIDE[ROWS_ON]
+            canvas.wire(ROWS_ON, left + least, bottom + least, right - least, top - least)
+    canvas.mirrored(None)
+    _lines(canvas, pixel)
+    _ground(canvas, pixel)
+    if covered:
+        canvas.wire(UPPER, 0, GRATING[0], pitch, GRATING[1])  # wide: as far from the shields as gratings are
+    canvas.box(process.outline, 0, 0, pitch, pitch)
+    return canvas
+
+
 def grating_polygons(pixel: PixelLayout) -> Iterator[tuple[int, list[Point]]]:
     """(metal, corners in steps of the grid) of every line: of the upper grating, then of both halves' analyzers."""
-    for level, _, polygons_of in _gratings(pixel):
+    for level, of, polygons_of in _gratings(pixel):
         for corners in polygons_of:
-            yield level, corners
+            if drawn := octilinear(corners, of) if pixel.octilinear else corners:
+                yield level, drawn
 
 
 def openings(pixel: PixelLayout) -> Iterator[tuple[int, tuple[float, float, float, float]]]:

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
+from talbot.base.gds import db
 from talbot.models.parameters import ParameterError, TileParameters
-from talbot.pixels.layout.gratings import Lines, lines, polygons
+from talbot.pixels.layout.gratings import Lines, lines, octilinear, polygons
 
 WINDOW = 100, 600, 850, 1980
 GAMMAS = sorted({kind.gamma_deg for kind in TileParameters().types})
@@ -66,3 +67,30 @@ def test_corners_are_right_inside_the_window_and_on_the_grid(gamma):
 def test_a_period_without_room_is_refused():
     with pytest.raises(ParameterError, match="must have room for a line of 60"):
         lines(0.3, 100, 0.5, 60, 60)
+
+
+@pytest.mark.needs("layout")
+@pytest.mark.parametrize("gamma", [-67.5, -22.5, 22.5, 67.5])
+@pytest.mark.parametrize("shift", [0.0, 0.5])
+def test_octilinear_lines_keep_rules_and_place(gamma, shift):
+    made, window = lines(np.deg2rad(gamma), 140, 0.43, 60, 60), (0, 0, 1700, 1700)
+    straight, steps = db.Region(), db.Region()
+    for corners in polygons(made, window, shift):
+        straight.insert(db.Polygon([db.Point(*point) for point in corners]))
+        if drawn := octilinear(corners, made):
+            steps.insert(db.Polygon([db.Point(*point) for point in drawn]))
+    assert all(0 in (edge.dx(), edge.dy()) or abs(edge.dx()) == abs(edge.dy()) for edge in steps.edges().each())
+    assert steps.width_check(60).count() == 0
+    assert steps.space_check(50).count() == 0  # ends may be nearer than lines: the deck checks the drawn pixels
+    assert steps.bbox().inside(db.Box(*window))
+    assert (steps - straight).area() < 0.06 * straight.area()  # between the straight line's sides but for the steps
+    assert 0.9 < steps.area() / straight.area() < 1.0
+
+
+def test_octilinear_leaves_other_lines_and_refuses_other_directions():
+    for gamma in (0.0, 45.0, 90.0):
+        made = lines(np.deg2rad(gamma), 140, 0.5, 60, 60)
+        assert all(octilinear(corners, made) == corners for corners in polygons(made, WINDOW, 0.0))
+    made = lines(np.deg2rad(10.0), 140, 0.5, 60, 60)
+    with pytest.raises(ParameterError, match="direction = .*: must be a multiple of 45 degrees"):
+        octilinear(next(polygons(made, WINDOW, 0.0)), made)
