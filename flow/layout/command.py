@@ -19,14 +19,18 @@ from talbot.flow.layout.sensor.plan import BLOCKS
 from talbot.flow.layout.varied import CHIP, SENSOR
 from talbot.flow.layout.verilog import design_of
 from talbot.models.parameters import ParameterError, check_choice
+from talbot.pixels.test_chip import job as test_chip
 from talbot.platforms.foundry import installed
 from talbot.platforms.processes import PROCESSES
+
+NAMES = *DESIGNS, SENSOR, test_chip.DESIGN
+CELLS = "sensor", "top", "clock", "reset", "period_ns", "utilization", "liberty", "analog"  # of other designs alone
 
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Arguments of `talbot layout`."""
     add = parser.add_argument
-    add("design", nargs="?", help=f"one of {', '.join((*DESIGNS, SENSOR))} (default: {CHIP})")
+    add("design", nargs="?", help=f"one of {', '.join(NAMES)} (default: {CHIP})")
     add_sensor(parser)
     files = "your own design, in place of ours: a Verilog file (again for further files); needs --top"
     add("--verilog", type=Path, action="append", default=[], help=files)
@@ -44,6 +48,8 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(arguments: Namespace) -> int:
     """Lay out a design and print what came of it; 1 where a limit is broken."""
+    if arguments.design == test_chip.DESIGN and not arguments.verilog:
+        return pixels(arguments)
     chosen = chosen_design(arguments)
     start = chosen.utilization if arguments.utilization is None else arguments.utilization
     decks = tuple(installed(arguments.pdk).items())
@@ -67,7 +73,7 @@ def chosen_design(arguments: Namespace) -> Design:
     if not arguments.verilog:
         if typed := next((name for name, value in of_verilog.items() if value is not None), None):
             raise ParameterError(f"{typed} = {of_verilog[typed]}: must be with VERILOG, a user's own design")
-        check_choice("DESIGN", arguments.design or CHIP, (*DESIGNS, SENSOR))
+        check_choice("DESIGN", arguments.design or CHIP, NAMES)
         return design_asked(arguments.design or CHIP, arguments)
     if arguments.design:
         raise ParameterError(f"DESIGN = {arguments.design!r}: must not be with VERILOG, which has its own top")
@@ -76,6 +82,22 @@ def chosen_design(arguments: Namespace) -> Design:
     if not arguments.top:
         raise ParameterError("top = '': must be a module of VERILOG")
     return design_of(arguments.verilog, **{name: value for name, value in of_verilog.items() if value is not None})
+
+
+def pixels(arguments: Namespace) -> int:
+    """Lay out the pixels' test chip and print what came of it; 1 where a check fails."""
+    for name in CELLS:
+        if (value := getattr(arguments, name)) not in (None, []):
+            raise ParameterError(f"{name} = {value}: must not be with DESIGN={test_chip.DESIGN}, which has no cells")
+    folder = arguments.out / arguments.design
+    with Steps(test_chip.STEPS, lines=True) as bar:
+        summary = test_chip.make(arguments.pdk, folder, bar.note)
+    print(f"{arguments.design}: laid out")
+    print(test_chip.line(summary, folder))
+    lines = [f"design rule {rule}: {count} violations" for rule, count in summary["drc"].items()]
+    lines += [f"LVS: {', '.join(summary['lvs_differs'][:5])}"] * (not summary["lvs_match"])
+    lines += [f"output {name}: not on ground" for name in summary["untied"]]
+    return failures(f"{arguments.design}: {line}" for line in lines)
 
 
 def block(chosen: Design, options: Options, arguments: Namespace) -> tuple[Path, list[str]]:

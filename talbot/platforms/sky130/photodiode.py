@@ -24,15 +24,16 @@ def cards(process: str, sizes: Collection[tuple[float, float]], mismatch: bool =
     lines = models.cards("binned", process, {(TRANSISTOR, w, length) for w, length in sizes})
     if mismatch:
         lines = [line.replace("mc_mm_switch=0", "mc_mm_switch=1") for line in lines]
+    return [*lines, *junction_cards(process)]
+
+
+def junction_cards(process: str) -> list[str]:
+    """Lines of the models of `diode` alone."""
     j = junction(process)
     common = f"level=1 tlevc=1 n={j['n']:g} eg={j['eg']:g} xti={j['xti']:g} tnom={j['tref']:g}"
     area = _depletion(*(j[key] for key in ("cj", "mj", "pb", "cta", "tpb", "tref")))
     edge = _depletion(*(j[key] for key in ("cjsw", "mjsw", "php", "ctp", "tphp", "tref")))
-    return [
-        *lines,
-        f".model {FLOOR} d {common} is={j['js']:g} {area}",
-        f".model {EDGE} d {common} is={j['jsw']:g} {edge}",
-    ]
+    return [f".model {FLOOR} d {common} is={j['js']:g} {area}", f".model {EDGE} d {common} is={j['jsw']:g} {edge}"]
 
 
 def _depletion(farads: float, grading: float, volts: float, rise: float, fall: float, reference: float) -> str:
