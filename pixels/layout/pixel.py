@@ -203,14 +203,15 @@ def draw_reference(layout: "db.Layout", pixel: PixelLayout, covered: bool) -> Ca
         _diode(canvas, pixel)
         _transistors(canvas, pixel)
         if covered:
-            left, right, bottom, top = OPENING
+            left, right, bottom, top = pixel.within(OPENING)
             least = BESIDE_WIDE[ROWS_ON]
             canvas.wire(ROWS_ON, left + least, bottom + least, right - least, top - least)
     canvas.mirrored(None)
     _lines(canvas, pixel)
     _ground(canvas, pixel)
     if covered:
-        canvas.wire(UPPER, 0, GRATING[0], pitch, GRATING[1])  # wide: as far from the shields as gratings are
+        low, high = pixel.grating_um
+        canvas.wire(UPPER, 0, low, pitch, high)  # wide: as far from the shields as gratings are
     canvas.box(process.outline, 0, 0, pitch, pitch)
     return canvas
 

@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 
 MODES = (("edge", False), ("image", False), ("tof", True))  # mode, whether the chip computes phases
 SEED, TAPS, TRIM = 1, 4, 7
-FIRST, TILES = (3, 5), (2, 4)  # row and column of the window's first tile; rows and columns of tiles
+FIRST = 3, 5  # row and column of the window's first tile
+TILES = 2, 4  # rows and columns of tiles
 
 
 @dataclass(frozen=True)
