@@ -10,7 +10,7 @@ VARIED = Varied(used=(*FIELDS.values(), "chip.f_clk"))  # of the chip
 _BLOCK = Varied(
     fixed=dict.fromkeys(SIZES, f"DESIGN={CHIP} alone is laid out in other sizes than the standard sensor's")
 )
-_DIE = Varied(fixed=_BLOCK.fixed | DRAWN_PITCH)
+_DIE = Varied(fixed={**_BLOCK.fixed, **DRAWN_PITCH})
 
 
 def varied(design: str) -> Varied:
