@@ -93,5 +93,6 @@ def draw(folder: Path, design: Design, runner: Runner, options: Options, layout:
     clock_tree(files[1], netlist, placed, design.clock.port, plan)
     congestion(files[2], layout, [metal.name for metal in tech.metals[1:]])
     drawn = [picture(path, caption) for path, caption in zip(files, PICTURES.values(), strict=True)]
-    ir_drop = folder / f"{name}.{first}.ir_drop.png"
-    return [*drawn, picture(ir_drop, f"IR drop, {first}")] if ir_drop.is_file() else drawn
+    if f"ir_drop_{first}.picture" in runner.paths:
+        drawn.append(picture(folder / f"{name}.{first}.ir_drop.png", f"IR drop, {first}"))
+    return drawn

@@ -20,6 +20,8 @@ GOOD = {
         ({"gate_tests.passed": {"least": 3, "most": 3}}, []),
         ({"gate_tests.passed": {"least": 4}}, ["gate_tests.passed = 3: must be at least 4"]),
         ({"gate_tests.passed": {"most": 2}}, ["gate_tests.passed = 3: must be at most 2"]),
+        ({"drc": {"is": 0, "unless": "lvs_match"}}, []),
+        ({"drc": {"is": 0, "unless": "user_verilog"}}, ["drc = None: must be 0"]),
         ({"lvs_match": {"is": False}}, ["lvs_match = True: must be False"]),
         ({"wns_ns": {"least": 0}}, ["wns_ns = None: must be at least 0"]),
         ({"wns_ns": {"least": 0, "if_measured": True}}, []),
