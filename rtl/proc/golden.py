@@ -9,6 +9,7 @@ from talbot.rtl.proc.isa import (
     HART_ID,
     LOADS,
     MASK,
+    REGISTER,
     STORES,
     compute,
     decode,
@@ -76,8 +77,7 @@ def execution(hart_id: int = 0) -> Execution:
         elif op.name in ("lui", "auipc"):
             result = op.imm + (pc if op.name == "auipc" else 0) & MASK
         elif op.name != "fence":
-            immediate = op.name not in ("sltu",) and (op.name.endswith("i") or op.name == "sltiu")
-            result = compute(op.name, a, op.imm & MASK if immediate else b)
+            result = compute(op.name, a, b if op.name in REGISTER else op.imm & MASK)
         if following & 3:
             return registers
         if result is not None and op.rd:

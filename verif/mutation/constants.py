@@ -113,8 +113,10 @@ def _python(text: str) -> Iterator[tuple[str, str]]:
                     new = replaced((a, ast.unparse(b)), (b, ast.unparse(a)))
                     yield f"line {a.lineno}: {ast.unparse(a)} and {ast.unparse(b)} exchanged", new
     for node in ast.walk(tree):
-        value = node.value if isinstance(node, ast.Constant) and node not in exchanged else None
-        if isinstance(node, ast.Constant) and isinstance(value, int | float) and not isinstance(value, bool):
+        if not isinstance(node, ast.Constant) or node in exchanged:
+            continue
+        value = node.value
+        if isinstance(value, int | float) and not isinstance(value, bool):
             new = repr(value + 1 if isinstance(value, int) else value * 1.5 or 1.5)
             yield f"line {node.lineno}: {text[slice(*span(node))]} is {new}", replaced((node, new))
 
