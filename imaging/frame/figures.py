@@ -12,6 +12,7 @@ from talbot.base.verilator import verilator_version
 from talbot.imaging.frame.quality import decoding_error, ideal_samples, quality
 from talbot.imaging.frame.result import FrameResult, GoldenResult
 from talbot.models.afe.trim import TRIM_MAX, TRIM_MIN
+from talbot.models.chip import GoldenFrame
 from talbot.models.digital.exposure import integration_cycles, slot_cycles
 from talbot.models.parameters import ELEMENTARY_CHARGE, EnergyParameters, LightParameters
 from talbot.models.parameters.energy import DECISIONS, EYE_LIMIT, WINDOW, DigitalEvents, Events
@@ -36,15 +37,19 @@ def psnr(error: Values) -> float | None:
 
 def events_of(result: FrameResult) -> Events:
     """What the frame did, for its energy."""
-    frame, sensor, golden = result.request.frame, result.request.sensor, result.golden
-    taps = 4 if frame.mode == "tof" else 1
+    chip = result.chip
+    return golden_events(result.golden, chip.stream, chip.status["cycles"], chip.activity["busy"])
+
+
+def golden_events(golden: GoldenFrame, stream: bytes, cycles: int, busy: int) -> Events:
+    """What a frame of ``cycles`` that sends ``stream`` does, the chip being busy for ``busy`` cycles."""
+    array, taps = golden.sensor.array, 4 if golden.frame.mode == "tof" else 1
     rows, columns = int(golden.read.any(1).sum()), int(golden.read.any(0).sum())
-    seconds = result.chip.status["cycles"] / sensor.chip.f_clk
-    stream = np.frombuffer(result.chip.stream, np.uint8)
+    seconds, sent = cycles / golden.sensor.chip.f_clk, np.frombuffer(stream, np.uint8)
     # Data pins that change from byte to byte, and the strobe up and down
-    toggles = int(np.unpackbits(stream[1:] ^ stream[:-1]).sum()) + 2 * stream.size
-    digital = golden.digital_events(result.chip.activity["busy"])
-    return Events(rows * sensor.array.cols * taps, rows * columns * taps, seconds, golden.decisions, toggles, digital)
+    toggles = int(np.unpackbits(sent[1:] ^ sent[:-1]).sum()) + 2 * sent.size
+    digital = golden.digital_events(busy)
+    return Events(rows * array.cols * taps, rows * columns * taps, seconds, golden.decisions, toggles, digital)
 
 
 def energy_of(result: FrameResult) -> dict[str, float]:

@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from talbot.base.kept import kept
 from talbot.imaging.frame import hardware
-from talbot.imaging.frame.figures import image_mode, mismatches
+from talbot.imaging.frame.figures import golden_events, image_mode, mismatches
 from talbot.imaging.frame.job import diodes_of, numbered, trimmed
 from talbot.imaging.frame.request import FrameRequest, request
 from talbot.models.afe import FrontEnd
@@ -15,7 +15,7 @@ from talbot.models.chip import GoldenFrame, golden_frame
 from talbot.models.digital.exposure import slot_cycles
 from talbot.models.digital.stream import StreamHeader, encode_frame
 from talbot.models.parameters import EnergyParameters, SensorParameters
-from talbot.models.parameters.energy import WINDOW, DigitalEvents, Events
+from talbot.models.parameters.energy import WINDOW
 from talbot.models.recognition.gradient import ternary
 from talbot.models.recognition.optics import Display, phase_types
 
@@ -117,13 +117,10 @@ def ternary_stream(golden: GoldenFrame) -> bytes:
 
 def _energy(golden: GoldenFrame, stream: bytes, decisions: int) -> tuple[float, float, float, float]:
     """Energy of a frame in J, lower and higher reading, then with every sample converted and sent as a byte."""
-    rows, columns = int(golden.read.any(1).sum()), int(golden.read.any(0).sum())
     cycles = frame_cycles(golden)
-    sent = np.frombuffer(stream, np.uint8)
-    toggles = int(np.unpackbits(sent[1:] ^ sent[:-1]).sum()) + 2 * sent.size
-    digital = DigitalEvents(cycles, rows, golden.samples, decisions, len(stream))
-    seconds = cycles / golden.sensor.chip.f_clk
-    events = Events(rows * golden.sensor.array.cols, rows * columns, seconds, decisions, toggles, digital)
+    events = golden_events(golden, stream, cycles, cycles)
+    digital = events.digital._replace(decisions=decisions, bytes=len(stream))
+    events = events._replace(decisions=decisions, digital=digital)
     parameters = EnergyParameters()
     return *parameters.total(events), *parameters.total(image_mode(events, golden.samples))
 

@@ -115,9 +115,10 @@ def _curves(task: Study, folder: Path) -> dict[str, dict[str, list[tuple[Point, 
 def _sample(task: Study, lead: str) -> dict[str, int]:
     """Compare the bytes of the Verilog with the golden chip's, for the frame of the front ``lead``."""
     base, shape = task.base, task.data.images.shape[1:]
-    optics = lead in ("asp", "ternary")
-    display = Display(base.sensor, shape, base.scale, base.scale * base.blur) if optics else None
-    display = display or Display(base.sensor, shape, 1, 0.0, 0)
+    optics = replace(base, front=lead).by_optics
+    display = (
+        study.out_of_focus(base.sensor, shape, base.scale, base.blur) if optics else study.in_focus(base.sensor, shape)
+    )
     mode, radiance = "edge" if optics else "image", task.data.radiance[:SAMPLE]
     return chip.verify(display, radiance, mode, base.threshold, base.noise, base.seed)
 

@@ -1,5 +1,6 @@
 """The files of a run: page, arrays, and the table of a document."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ from talbot.base.charts import svg
 from talbot.base.page import TABLES, Picture, Section, Tile, render
 from talbot.imaging.frame import report
 from talbot.imaging.recognize import study
+from talbot.imaging.recognize.chip import CHUNK
 from talbot.imaging.recognize.job import Recognition
 
 NAMES = ("recognize.html", "summary.json", "features.npz")
@@ -85,7 +87,7 @@ def about(s: dict[str, Any]) -> str:
 def write(folder: Path, result: Recognition) -> None:
     """Write everything but summary.json into ``folder``, which exists."""
     s, data, base = result.summary, result.study.data, result.study.base
-    some = study.see(study.replace(base, front=result.study.fronts[0]), data.radiance[: study.chip.CHUNK])
+    some = study.see(replace(base, front=result.study.fronts[0]), data.radiance[:CHUNK])
     np.savez_compressed(
         folder / "features.npz", features=some.channels.astype(np.float16), labels=data.labels[: len(some.channels)]
     )

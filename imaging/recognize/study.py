@@ -26,6 +26,7 @@ from talbot.models.parameters import (
     check_choice,
     check_int,
 )
+from talbot.models.parameters.stream_format import HEADER_BYTES, TRAILER_BYTES
 from talbot.models.recognition import gradient, kernel
 from talbot.models.recognition.network import Conv, Network, lenet
 from talbot.models.recognition.optics import Display, phase_types
@@ -107,6 +108,16 @@ class Seen:
     image_energy: tuple[float, float] | None = None
 
 
+def in_focus(sensor: SensorParameters, shape: tuple[int, int]) -> Display:
+    """A picture that fills the array, a sensor px for each of its px."""
+    return Display(sensor, shape, 1, 0.0, 0)
+
+
+def out_of_focus(sensor: SensorParameters, shape: tuple[int, int], scale: int, blur: float) -> Display:
+    """A picture before the optics as a first layer. blur: in picture px."""
+    return Display(sensor, shape, scale, blur * scale)
+
+
 def see(setting: Setting, radiance: npt.NDArray[np.float32]) -> Seen:
     """What the network gets of pictures (n, height, width), by a front of the setting. Raises ParameterError."""
     if setting.by_optics:
@@ -115,7 +126,7 @@ def see(setting: Setting, radiance: npt.NDArray[np.float32]) -> Seen:
     if setting.front == "same_bytes":
         radiance = reduced(radiance, image_size(setting, shape))
     height, width = radiance.shape[1:]
-    display = Display(setting.sensor, (height, width), 1, 0.0, 0)
+    display = in_focus(setting.sensor, (height, width))
     reading = chip.read(display, radiance, "image", 0, setting.noise, setting.seed)
     codes = reading.codes[..., None].astype(np.float32)
     if setting.front == "gradient":
@@ -132,7 +143,7 @@ def see(setting: Setting, radiance: npt.NDArray[np.float32]) -> Seen:
 def _edges(setting: Setting, radiance: npt.NDArray[np.float32]) -> Seen:
     sensor = replace(setting.sensor, tile=random_tile(setting.draw)) if setting.draw else setting.sensor
     shape: tuple[int, int] = radiance.shape[1:]  # pyright: ignore[reportAssignmentType]
-    display = Display(sensor, shape, setting.scale, setting.blur * setting.scale)
+    display = out_of_focus(sensor, shape, setting.scale, setting.blur)
     types = phase_types(sensor)
     if setting.ideal:
         pair = display.currents(radiance)
@@ -157,7 +168,7 @@ def random_tile(draw: int) -> TileParameters:
 
 def image_size(setting: Setting, shape: tuple[int, int]) -> int:
     """Edge of the largest square picture in ``setting.bytes`` of the chip, at most the picture's, at least 2."""
-    frame = 32 + 14 + 4  # header, trailer, marks (docs/stream.md)
+    frame = HEADER_BYTES + TRAILER_BYTES + 4  # marks (docs/stream.md)
     return int(np.clip(np.sqrt(max(setting.bytes - frame, 0)), 2, min(shape)))
 
 

@@ -8,9 +8,9 @@ import numpy.typing as npt
 from scipy.ndimage import gaussian_filter
 
 from talbot.imaging.recognize import chip
+from talbot.imaging.recognize.study import in_focus, out_of_focus
 from talbot.models.parameters import SensorParameters
 from talbot.models.recognition import gradient
-from talbot.models.recognition.optics import Display
 from talbot.models.recognition.statistics import roc
 
 SIZE, SCALE, BLUR = 16, 6, 4.0  # picture px; sensor px a picture px; picture px
@@ -54,8 +54,8 @@ def detect(sensor: SensorParameters, contrast: float, seed: int) -> dict[str, An
     """Area below the ROC and energy a frame (uJ) of every detector at one contrast. Raises ParameterError."""
     seen = watch(contrast, seed)
     flat = seen.pairs.reshape(-1, SIZE, SIZE)
-    edge = chip.read(Display(sensor, (SIZE, SIZE), SCALE, SCALE * BLUR), flat, "ternary", THRESHOLD, 1.0, seed)
-    plain = chip.read(Display(sensor, (SIZE, SIZE), 1, 0.0, 0), flat, "image", 0, 1.0, seed)
+    edge = chip.read(out_of_focus(sensor, (SIZE, SIZE), SCALE, BLUR), flat, "ternary", THRESHOLD, 1.0, seed)
+    plain = chip.read(in_focus(sensor, (SIZE, SIZE)), flat, "image", 0, 1.0, seed)
     signs = edge.codes.reshape(FRAMES, 2, *edge.codes.shape[1:])
     codes = plain.codes.reshape(FRAMES, 2, SIZE, SIZE).astype(float)
     active = gradient.spatial(codes, GRADIENT)

@@ -4,6 +4,7 @@ Arrays are float32 (pictures, height, width, channels). A network is a list of l
 needs. [LeCun1998] has the layout of `lenet`; with the first layer in the optics the list begins behind it.
 """
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -25,8 +26,8 @@ CHUNK = 500  # pictures of one inference
 LARGE = 20  # px: pictures of this size and more are pooled ahead of the second layer
 
 
-class Layer:
-    """A layer without parameters; what is one overrides these."""
+class Layer(ABC):
+    """A layer; by default without weights, and of the shape of its input."""
 
     weights: tuple[Floats, ...] = ()
     gradients: tuple[Floats, ...] = ()
@@ -36,13 +37,13 @@ class Layer:
         """Draw the weights for a picture of this shape at the input; return its shape at the output."""
         return shape
 
+    @abstractmethod
     def _forward(self, x: Floats, rng: np.random.Generator | None) -> Floats:
         """Compute the output (n, ...) of an input (n, ...); rng is for what is random in training, else None."""
-        raise NotImplementedError
 
+    @abstractmethod
     def _backward(self, g: Floats) -> Floats:
         """Return the loss's gradient by the input of the last `_forward` from that by its output."""
-        raise NotImplementedError
 
     def _products(self, shape: tuple[int, ...]) -> int:
         """Count the multiply-accumulate operations of a picture of this shape ([Jayasuriya2017], Table 6.2: FLOPS)."""

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from talbot.models.parameters import ParameterError, SensorParameters, check_int, check_real
 from talbot.models.pixel.weights import view_weights
+from talbot.models.scene.warp import cubic_weights
 
 VIEWS = 31  # along the pupil's diameter
 BLUR_MAX = 200.0
@@ -19,33 +20,6 @@ MATRIX = 1 << 28  # elements at most: 1 GiB
 MARGIN = 2  # dark picture px around the picture, for the light that the blur spreads
 
 Floats = npt.NDArray[np.float64]
-
-
-def keys_weights(t: float) -> Floats:
-    """Weights of the pixels -1, 0, 1 and 2 at a position between 0 and 1, by cubic convolution.
-
-    Parameters
-    ----------
-    t : float
-        Position, 0..1.
-
-    Returns
-    -------
-    float64 (4,)
-        Their sum is 1.
-
-    References
-    ----------
-    [Keys1981], Eq. 15.
-    """
-    return np.array(
-        [
-            ((-0.5 * t + 1.0) * t - 0.5) * t,
-            (1.5 * t - 2.5) * t * t + 1.0,
-            ((-1.5 * t + 2.0) * t + 0.5) * t,
-            (0.5 * t - 0.5) * t * t,
-        ]
-    )
 
 
 def kernels(sensor: SensorParameters, blur: float) -> Floats:
@@ -70,7 +44,7 @@ def kernels(sensor: SensorParameters, blur: float) -> Floats:
     spread = np.zeros((VIEWS, 2 * half + 2))
     for i, at in enumerate(place):
         first = int(np.floor(at))
-        spread[i, first - 1 : first + 3] += keys_weights(at - first)
+        spread[i, first - 1 : first + 3] += cubic_weights(at - first)
     return np.einsum("vy,tdvu,ux->tdyx", spread, weights, spread, optimize=True)[..., :-1, :-1]
 
 

@@ -117,8 +117,23 @@ def fill_rows(disparity: Floats, hole: Bools) -> None:
 
 
 @njit(cache=True, nogil=True)
-def _keys(t: float) -> tuple[float, float, float, float]:
-    """Weights of cubic convolution [Keys1981] at -1, 0, 1, 2 for a position ``t`` in 0..1."""
+def cubic_weights(t: float) -> tuple[float, float, float, float]:
+    """Weights of cubic convolution at -1, 0, 1 and 2.
+
+    Parameters
+    ----------
+    t : float
+        Position, 0..1.
+
+    Returns
+    -------
+    tuple of four floats
+        Their sum is 1.
+
+    References
+    ----------
+    [Keys1981], Eq. 15.
+    """
     t2, t3 = t * t, t * t * t
     return (-0.5 * t + t2 - 0.5 * t3, 1 - 2.5 * t2 + 1.5 * t3, 0.5 * t + 2 * t2 - 1.5 * t3, -0.5 * t2 + 0.5 * t3)
 
@@ -146,7 +161,7 @@ def cubic(image: Floats, y: float, x: float) -> float:
     rows, cols = image.shape
     y, x = min(max(y, 0.0), rows - 1.0), min(max(x, 0.0), cols - 1.0)
     y0, x0 = int(y), int(x)
-    wy, wx = _keys(y - y0), _keys(x - x0)
+    wy, wx = cubic_weights(y - y0), cubic_weights(x - x0)
     total = 0.0
     for i in range(4):
         row = image[min(max(y0 + i - 1, 0), rows - 1)]
@@ -163,7 +178,7 @@ def cubic(image: Floats, y: float, x: float) -> float:
 def _taps(place: float, size: int) -> tuple[int, tuple[float, float, float, float]]:
     """First whole place and weights of `cubic` at a place, 0..size - 1."""
     place = min(max(place, 0.0), size - 1.0)
-    return int(place), _keys(place - int(place))
+    return int(place), cubic_weights(place - int(place))
 
 
 @njit(cache=True, nogil=True)

@@ -1,7 +1,7 @@
 """Recognition of one's own pictures through the sensor, by the same functions as `make recognize`."""
 
 import tempfile
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -81,7 +81,7 @@ def recognize(
     task = Study(pictured, (front,), base, verilog=False, workers=1)
     with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
         measured = measure(task, Path(folder))
-    lead = study.replace(base, front=front)
+    lead = replace(base, front=front)
     features = study.see(lead, pictured.radiance).channels
     classify, _ = study.trained(lead, features, pictured, base.seed)
     held = np.zeros(len(features), bool)
