@@ -9,7 +9,7 @@ from talbot.base.sources import code
 from talbot.base.steps import StepError
 from talbot.platforms.layout import layout_platform
 from talbot.platforms.patience import imported
-from talbot.platforms.pixel import pixel_process
+from talbot.platforms.pixel import PixelProcess, pixel_process
 from talbot.signoff.geometry.decks import broken_rules, hole_rules, is_circuit, via_rules, with_taps
 from talbot.signoff.pdkmaster import export_decks
 
@@ -43,12 +43,16 @@ def common_decks(pdk: str) -> tuple[list[str], str]:
 
 def decks(pdk: str) -> tuple[str, str]:
     """The decks of design rules and of LVS, text, with what pixels need beyond PDKMaster's."""
-    process, mark = pixel_process(pdk), "\nnetlist\n"
-    rules, lvs = common_decks(pdk)
+    process, (rules, lvs) = pixel_process(pdk), common_decks(pdk)
+    return "\n".join([*rules, process.masks.read_text(encoding="utf-8"), ""]), with_diodes(lvs, process)
+
+
+def with_diodes(lvs: str, process: PixelProcess) -> str:
+    """A deck of LVS that extracts the pixels' photodiodes, too. Raises StepError."""
+    mark = "\nnetlist\n"
     if lvs.count(mark) != 1:
         raise StepError("lvs: the deck has no single line 'netlist' before which diodes could be extracted")
-    text = "\n".join([*rules, process.masks.read_text(encoding="utf-8"), ""])
-    return text, lvs.replace(mark, f"\n{process.lvs.read_text(encoding='utf-8')}{mark}")
+    return lvs.replace(mark, f"\n{process.lvs.read_text(encoding='utf-8')}{mark}")
 
 
 def drc(gds: Path, pdk: str, report: Path) -> dict[str, int]:

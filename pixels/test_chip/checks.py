@@ -5,6 +5,7 @@ from pathlib import Path
 from talbot.base.gds import db
 from talbot.base.steps import StepError
 from talbot.pixels.layout.circuit import Diode, spice
+from talbot.pixels.pixel_layout.checks import with_diodes
 from talbot.pixels.post_layout import checks as analog
 from talbot.pixels.test_chip.circuit import ANALOG, GROUND, HIGH, INPUTS, LOGIC, NAME, VDDA, pixels
 from talbot.pixels.test_chip.draw import HEIGHT, STRIPE_ENDS, STRIPES, TIED, TestChip
@@ -15,7 +16,7 @@ from talbot.platforms.sky130.tinytapeout import ANALOG_PORTS, PORT_UM
 from talbot.signoff.geometry.decks import broken_rules, is_circuit
 from talbot.signoff.parasitics.shapes import METAL_LEVEL, shapes
 
-COMPARE, NETLIST = "\nok = compare\n", "\nnetlist\n"
+COMPARE = "\nok = compare\n"
 PORTS = *INPUTS, *ANALOG, GROUND, LOGIC, HIGH  # pins that something is on
 PIXEL = "pixel"
 FOURTH = METAL_LEVEL + 4  # level of the pins
@@ -42,11 +43,10 @@ def netlist(chip: TestChip, masks: AnalogMasks) -> str:
 
 def lvs(gds: Path, text: str, masks: AnalogMasks, report: Path) -> bool:
     """Whether ``gds`` is the circuit ``text``, pin by pin. Raises StepError."""
-    deck = analog.decks(masks.base.name)[1]
-    if deck.count(NETLIST) != 1 or deck.count(COMPARE) != 1:
-        raise StepError("lvs: the deck must have one line 'netlist' and one 'ok = compare'")
+    deck = with_diodes(analog.decks(masks.base.name)[1], masks.base)
+    if deck.count(COMPARE) != 1:
+        raise StepError("lvs: the deck must have one line 'ok = compare'")
     named = "".join(f'same_nets!("{NAME}", "{port}", "{port}")\n' for port in PORTS)
-    deck = deck.replace(NETLIST, f"\n{masks.base.lvs.read_text(encoding='utf-8')}{NETLIST}")
     return is_circuit(deck.replace(COMPARE, f"\n{named}{COMPARE[1:]}"), gds, text, report)
 
 

@@ -108,6 +108,19 @@ def draw_chip(masks: AnalogMasks) -> TestChip:
     return TestChip(layout, canvas.cell, array, tuple(d.values()), terminals, places)
 
 
+def relabelled(layout: "db.Layout", names: Mapping[str, str]) -> "db.Layout":
+    """A copy whose top cell has the labels of ``names`` alone, with their new names."""
+    copy = db.Layout()
+    copy.assign(layout)
+    for index in copy.layer_indexes():
+        for shape in [*copy.top_cell().shapes(index).each(db.Shapes.STexts)]:
+            if name := names.get(shape.text_string):
+                shape.text_string = name
+            else:
+                shape.delete()
+    return copy
+
+
 def _pixels(layout: "db.Layout", array: ArrayLayout) -> tuple["db.Cell", dict[tuple[int, int], str]]:
     """The pixels with dummies and rings, and the cell at each position; row 0 is the north one."""
     canvas = Canvas(layout, "pixels", array.pixels[0].process)

@@ -8,13 +8,13 @@ from time import perf_counter
 from typing import Any
 
 from talbot.base.files import check_folder, staged
-from talbot.base.gds import db, write_gds
+from talbot.base.gds import write_gds
 from talbot.cells.corner import Corner
 from talbot.pixels.post_layout.checks import differences
 from talbot.pixels.test_chip import project
 from talbot.pixels.test_chip.checks import PORTS, drc, lvs, netlist, untied
 from talbot.pixels.test_chip.circuit import NAME
-from talbot.pixels.test_chip.draw import HEIGHT, WIDTH, TestChip, draw_chip
+from talbot.pixels.test_chip.draw import HEIGHT, WIDTH, TestChip, draw_chip, relabelled
 from talbot.pixels.test_chip.read import TYPICAL, Exposure, extracted, read
 from talbot.platforms.analog import analog_masks
 
@@ -85,13 +85,7 @@ def make(pdk: str, out: Path, note: Callable[[str], None] = lambda text: None) -
 
 def write_named(chip: TestChip, path: Path) -> None:
     """Write the layout with the names that LVS compares: outputs tied to ground have none of their own."""
-    layout = db.Layout()
-    layout.assign(chip.layout)
-    for index in layout.layer_indexes():
-        for shape in [*layout.top_cell().shapes(index).each(db.Shapes.STexts)]:
-            if shape.text_string not in PORTS:
-                shape.delete()
-    write_gds(layout, path)
+    write_gds(relabelled(chip.layout, {port: port for port in PORTS}), path)
 
 
 def line(summary: dict[str, Any], folder: Path) -> str:

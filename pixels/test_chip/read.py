@@ -11,13 +11,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from talbot.base.gds import db
 from talbot.cells.corner import Corner
 from talbot.pixels.analog_layout.cells import Cell
+from talbot.pixels.layout.circuit import SIDES
 from talbot.pixels.pixel_circuit.deck import analyse, pulses, subcircuit
 from talbot.pixels.post_layout.extract import SUBSTRATE, Extracted, extract
 from talbot.pixels.test_chip.circuit import ANALOG, BIAS, COLS, GROUND, HIGH, INPUTS, LOGIC, OUT, ROWS, VDDA
-from talbot.pixels.test_chip.draw import TestChip
+from talbot.pixels.test_chip.draw import TestChip, relabelled
 from talbot.platforms.analog import AnalogMasks
 from talbot.platforms.layout import layout_platform
 from talbot.platforms.sky130 import analog, photodiode
@@ -29,7 +29,6 @@ PATH_OHM, PATH_FARAD = 500.0, 5e-12  # of an analog pin's way to its pad, the sh
 BOARD_FARAD = 30e-12  # a voltmeter and its wire
 # What gmin carries and the currents' tolerance are below 1 % of the least photocurrent
 OPTIONS = ".option gmin=1e-16 abstol=1e-15 chgtol=1e-18 reltol=1e-4 itl1=500 itl2=300 itl4=100 method=gear"
-SIDES = "a", "b"
 RESET, SETTLE = 20e-6, 20e-6  # s: a reset; from its end to the first sample
 
 
@@ -71,14 +70,8 @@ class Read:
 
 def extracted(chip: TestChip, masks: AnalogMasks, corner: str = TYPICAL) -> Extracted:
     """The strips' transistors with the parasitics of all nets; lines to the pixels are ports, too."""
-    layout, ports = db.Layout(), (*INPUTS, *ANALOG, LOGIC, HIGH, SUBSTRATE)
-    layout.assign(chip.layout)
-    for index in layout.layer_indexes():
-        for shape in [*layout.top_cell().shapes(index).each(db.Shapes.STexts)]:
-            if shape.text_string == GROUND:
-                shape.text_string = SUBSTRATE
-            elif shape.text_string not in ports:
-                shape.delete()
+    ports = *INPUTS, *ANALOG, LOGIC, HIGH, SUBSTRATE
+    layout = relabelled(chip.layout, {GROUND: SUBSTRATE, **{port: port for port in ports}})
 
     def named(net: str) -> str:
         return SUBSTRATE if net == GROUND else net

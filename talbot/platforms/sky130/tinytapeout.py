@@ -31,7 +31,6 @@ ANALOG_UM, ANALOG_FIRST_UM = (145.36, 225.76), 131.10
 ANALOG_PORTS = tuple((name, round(ANALOG_FIRST_UM - k * PITCH_UM, 2)) for k, name in enumerate(PORTS))
 ANALOG_PINS = tuple((f"ua[{k}]", round(136.62 - 19.32 * k, 2)) for k in range(8))  # at the south edge
 ANALOG_PIN_UM = 0.90, 1.00
-ANALOG_SUPPLIES = "VGND", "VDPWR", "VAPWR"  # stripes of the ports' metal, 1.2 um wide at the least
 MARGIN_SITES, MARGIN_ROWS = 12, 2
 FULL = 0.60  # cells' area by core area for which the default density is meant
 
