@@ -6,10 +6,12 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
+import numpy as np
+
 from talbot.base.files import atomic
 from talbot.base.progress import each
 from talbot.imaging.recognize import chip, study, wake
-from talbot.imaging.recognize.data import Pictures
+from talbot.imaging.recognize.data import Pictures, load
 from talbot.imaging.recognize.study import CURVES, FREE, FRONTS, Point, Setting
 from talbot.models.parameters import ParameterError, check_choice
 from talbot.models.recognition.optics import Display, phase_types
@@ -68,7 +70,7 @@ def measure(task: Study, folder: Path) -> Recognition:
     rows = study.run(chosen, data, folder, "front", task.workers)
     free = {"image": replace(base, front="image")} if "image" not in task.fronts else {}
     free |= {name: replace(base, front=name, bytes=rows[lead]["bytes"]) for name in FREE}
-    if data.name == "digits" and replace(base, seeds=Setting.seeds) == Setting():  # as the weights were trained
+    if as_trained(task):
         free["shipped"] = Setting(classifier="shipped", seeds=1)
     if base.classifier == "lenet":
         free["learned"] = replace(base, front="learned")
@@ -94,6 +96,16 @@ def measure(task: Study, folder: Path) -> Recognition:
         "seconds": perf_counter() - start,
     }
     return Recognition(task, rows, lines, alarms, summary)
+
+
+def as_trained(task: Study) -> bool:
+    """Whether the pictures, hence the split, and the setting are those with which the shipped weights were trained.
+
+    On a part of the digits they would be tested with pictures of their training.
+    """
+    whole = load("digits")
+    same = task.data.test is None and np.array_equal(task.data.images, whole.images)
+    return same and replace(task.base, seeds=Setting.seeds) == Setting()
 
 
 def _curves(task: Study, folder: Path) -> dict[str, dict[str, list[tuple[Point, dict[str, Any]]]]]:

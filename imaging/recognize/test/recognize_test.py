@@ -12,6 +12,7 @@ from talbot.api.recognize import recognize
 from talbot.commands import main
 from talbot.imaging.recognize import chip, study
 from talbot.imaging.recognize.data import load, picture
+from talbot.imaging.recognize.job import Study, as_trained
 from talbot.imaging.recognize.study import Setting, evaluate, noisy, reduced, see
 from talbot.imaging.recognize.wake import watch
 from talbot.models.afe import FrontEnd
@@ -224,6 +225,14 @@ def test_the_verilog_sends_the_golden_chips_bytes(digits):
     found = chip.verify(Display(STANDARD, (8, 8), 3, 12.0), digits.radiance[:1], "edge", 10, 1.0, 1)
     assert found["mismatches"] == 0 and found["bytes"] > 46
     assert found["cycles"] == pytest.approx(found["cycles_model"], rel=1e-3)
+
+
+def test_shipped_weights_are_compared_on_the_pictures_of_their_split_alone():
+    whole, setting = load("digits"), Setting()
+    assert as_trained(Study(whole, ("asp",), setting))
+    assert not as_trained(Study(whole.part(200), ("asp",), setting))
+    assert not as_trained(Study(replace(whole, images=255 - whole.images), ("asp",), setting))
+    assert not as_trained(Study(whole, ("asp",), replace(setting, blur=3.0)))
 
 
 def test_shipped_weights_are_small_and_read_digits_without_training():
