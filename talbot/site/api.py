@@ -27,12 +27,12 @@ def write(source: Path) -> None:
     for name in names:
         value = getattr(talbot, name)
         if isinstance(value, type):
-            lines.append(f".. autoclass:: {name}\n   :members:\n")
+            lines.append(f".. autoclass:: talbot.{name}\n   :members:\n")
         elif isinstance(value, ModuleType):
             options = ":members:\n   :imported-members:\n"
             lines.append(f".. automodule:: {value.__name__}\n   {options}")
         elif callable(value):
-            lines.append(f".. autofunction:: {name}\n")
+            lines.append(f".. autofunction:: talbot.{name}\n")
         else:
             lines.append(f".. py:data:: {name}\n\n   {', '.join(f'`{item}`' for item in value)}\n")
     (source / "api.md").write_text("\n".join([*lines, "```", ""]), encoding="utf-8")

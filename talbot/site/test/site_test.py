@@ -110,6 +110,8 @@ def test_the_page_of_the_api_has_every_name(tmp_path):
     api.write(tmp_path)
     text = (tmp_path / "api.md").read_text()
     assert sorted(re.findall(r"\.\. (?:auto\w+|py:data):: (?:[\w.]+\.)?(\w+)", text)) == sorted(talbot.__all__)
+    # After an automodule a bare name is that module's
+    assert set(re.findall(r"\.\. auto(?:class|function):: (\w+)\.\w+\n", text)) == {"talbot"}
 
 
 def test_docstrings_are_prose():
