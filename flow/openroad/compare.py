@@ -16,7 +16,6 @@ HEAD = (
     "design | cells | area, mm2 | instances | cell area, um2 | f_max at ss, MHz | setup, hold, ns | "
     "power at tt, uW | wire, mm | wire, pF | seconds | MiB | limits broken"
 )
-NOT_RUN = "not run"
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -31,7 +30,7 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 
 def run(options: Namespace) -> int:
-    """Print the table of the designs' summaries; of a layout that has not run it has none of the figures."""
+    """Print the table of the designs' summaries."""
     before = ""
     if options.document:
         marked(options.document, "cells")  # refused before the work
@@ -44,25 +43,27 @@ def run(options: Namespace) -> int:
 
 
 def table(names: Sequence[str], out: Path, before: str = "") -> str:
-    """The table in Markdown. before: one of earlier, whose rows stay where a layout is not in ``out``."""
+    """Return the table in Markdown, and the designs without a layout below it.
+
+    before: an earlier table, whose rows stay where a layout is not in ``out``.
+    """
     columns = HEAD.count("|") + 1
     lines = [f"| {HEAD} |", "|---" * 2 + "|---:" * (columns - 2) + "|"]
+    missing: dict[str, list[str]] = {}
     for name in names:
         for library, folder in (("compact", name), ("sky130_fd_sc_hd", f"{name}-openroad")):
             first, path = f"| {name} | {library} |", out / folder / "summary.json"
             if folder != name and name not in FOUNDRY and not path.is_file():
                 continue
-            cells = (
-                row(json.loads(path.read_text(encoding="utf-8")))
-                if path.is_file()
-                else [NOT_RUN] + [""] * (columns - 3)
-            )
-            kept = (
-                []
-                if path.is_file()
-                else [line for line in before.splitlines() if line.startswith(first) and NOT_RUN not in line]
-            )
-            lines.append(kept[0] if kept else f"{first} {' | '.join(cells)} |")
+            earlier = next((line for line in before.splitlines() if line.startswith(first)), None)
+            if path.is_file():
+                figures = row(json.loads(path.read_text(encoding="utf-8")))
+                lines.append(f"{first} {' | '.join(figures)} |")
+            elif earlier:
+                lines.append(earlier)
+            else:
+                missing.setdefault(library, []).append(f"`{name}`")
+    lines += [text for library in missing for text in ("", f"Not run with `{library}`: {', '.join(missing[library])}.")]
     return "\n".join(lines)
 
 
