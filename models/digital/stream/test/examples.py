@@ -118,8 +118,8 @@ def small_frame():
     return frame_example(header, np.arange(24).reshape(2, 6, 2) * 10, 22, 0)
 
 
-EXAMPLES = edges, small_frame  # in docs/stream.md
+DOCUMENTED = edges  # in docs/stream.md
 FURTHER = faint, noise
 
 if __name__ == "__main__":
-    print("\n\n".join("\n".join(example()) for example in EXAMPLES + FURTHER))
+    print("\n\n".join("\n".join(example()) for example in (DOCUMENTED, small_frame, *FURTHER)))
