@@ -50,8 +50,15 @@ done
 if ! "$folder/bin/python" -m pip --version >/dev/null 2>&1; then
     echo "setup: making $folder with $(found "$python")"
     rm -rf "$folder" # half-made, or its Python is gone
-    # Debian splits ensurepip off Python; virtualenv brings a pip of its own.
-    "$python" -m venv "$folder" 2>/dev/null || { rm -rf "$folder"; "$python" -m virtualenv -q "$folder"; } 2>/dev/null \
+    # pip of the wheel that ensurepip has, unpacked: ensurepip itself takes ten times as long. Debian splits ensurepip off Python;
+    # virtualenv brings a pip of its own.
+    wheel='import ensurepip, glob, os, sysconfig, zipfile
+folders = os.path.join(os.path.dirname(ensurepip.__file__), "_bundled"), sysconfig.get_config_var("WHEEL_PKG_DIR") or "-"
+wheels = [file for folder in folders for file in glob.glob(os.path.join(folder, "pip-*.whl"))]
+zipfile.ZipFile(wheels[0]).extractall(sysconfig.get_path("purelib"))'
+    { "$python" -m venv --without-pip "$folder" && "$folder/bin/python" -c "$wheel" && "$folder/bin/python" -m pip --version; } \
+        >/dev/null 2>&1 || { rm -rf "$folder"; "$python" -m venv "$folder"; } 2>/dev/null \
+        || { rm -rf "$folder"; "$python" -m virtualenv -q "$folder"; } 2>/dev/null \
         || fail "venv = unavailable in '$python': install python3-venv (Debian: apt-get install python3-venv) or virtualenv"
 fi
 
@@ -107,9 +114,11 @@ install() {
 }
 [ -x "$folder/bin/uv" ] || "$folder/bin/python" -m pip install --quiet --no-deps --no-compile --require-hashes \
     -r "$here/uv.lock" 2>/dev/null || true # a registry without it
-# A lock names all that its packages depend on. pip compiles 6,000 modules with one core, compileall with all, and without
-# half of their text: tests, and packages that few commands import. Python compiles those when it imports them
-later='site-packages/((.*/)?(tests?|testcases)|pip|setuptools|networkx|fontTools|pygments)/'
+# A lock names all that its packages depend on. pip compiles 6,000 modules with one core. compileall compiles those that a frame
+# loads, with all cores; Python compiles the others when it imports them
+later='site-packages/((.*/)?(tests?|testcases)|pip|setuptools|networkx|fontTools|pygments|hypothesis|_pytest|sklearn'
+later+='|numba/cuda|numpy/(distutils|f2py)|scipy/(stats|optimize|signal|sparse|integrate|interpolate|spatial|io|cluster|constants)'
+later+='|matplotlib/backends|imageio/plugins|skimage/(feature|measure|morphology|transform|filters)|mpl_toolkits)/'
 install --require-hashes "${requirements[@]}"
 "$folder/bin/python" -m compileall -q -j 0 -x "$later" "$folder"/lib/python*/site-packages >/dev/null 2>&1 || true # of templates, too
 case " $* " in # the project itself, with the packages that it cannot do without

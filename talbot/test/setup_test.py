@@ -17,7 +17,7 @@ case "$*" in
     *fcntl* | *literal_eval*) exec "$REAL" "$@" ;;
     *ZLIB_RUNTIME_VERSION*) exec "$REAL" -c "import zlib; zlib.ZLIB_RUNTIME_VERSION = '${ZLIB:-1.3.1}'; $2" ;;
     "-m pip config list") echo "${CONF:-}" ;;
-    "-m venv "*) mkdir -p "$3/bin" && cp "$0" "$3/bin/python" ;;
+    "-m venv "*) mkdir -p "${*: -1}/bin" && cp "$0" "${*: -1}/bin/python" ;;
     "-m pip --version") exit 0 ;;
     "-m pip install "*uv.lock) env | grep -E '^(PIP_|PYTHON)' | sort >>"$LOG"
         [ -z "${UV:-}" ] || { echo "no uv" >&2; exit 1; }
