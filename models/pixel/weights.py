@@ -16,6 +16,8 @@ from numpy.polynomial.legendre import leggauss
 from talbot.models.parameters import OpticsParameters, ParameterError, PixelType, SensorParameters, TileParameters
 from talbot.models.pixel.response import response, vignetting
 
+_gauss = lru_cache(maxsize=8)(leggauss)  # of each of up to 961 cells
+
 
 def density(
     types: Sequence[PixelType], optics: OpticsParameters, nu_x: npt.NDArray[np.floating], nu_y: npt.NDArray[np.floating]
@@ -90,7 +92,7 @@ def cell_nodes(optics: OpticsParameters, v: int, u: int) -> npt.NDArray[np.float
     crossings = [s * np.sqrt(max(radius**2 - y**2, 0.0)) for y in (y0, y1) for s in (-1, 1)]
     cuts = np.array(sorted({x0, x1, *(c for c in crossings if x0 < c < x1)}))
     arcs = np.arcsin(np.clip(cuts / radius, -1, 1))
-    node, weight = leggauss(optics.subsamples)
+    node, weight = _gauss(optics.subsamples)
     parts = []
     for t0, t1 in zip(arcs[:-1], arcs[1:], strict=True):
         t = (t0 + t1) / 2 + node * (t1 - t0) / 2
