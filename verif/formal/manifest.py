@@ -21,7 +21,9 @@ def read(path: Path) -> list[Proof]:
         entries = yaml.safe_load(path.read_text(encoding="utf-8"))
         return [_proof(path.parent, sized) for entry in entries for sized in _sizes(entry)]
     except (yaml.YAMLError, TypeError, KeyError) as error:
-        raise ParameterError(f"{path} = {str(error).splitlines()[0]}: must be a list of proofs (README.md)") from None
+        raise ParameterError(
+            f"{path} = {str(error).splitlines()[0]}: must be a list of proofs (verif/formal/README.md)"
+        ) from None
 
 
 def _sizes(entry: dict[str, Any]) -> Iterator[dict[str, Any]]:

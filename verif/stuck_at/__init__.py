@@ -1,1 +1,1 @@
-"""Stuck-at coverage of the chip's gates by a functional test at its pins (README.md)."""
+"""Stuck-at coverage of the chip's gates by a functional test at its pins."""
