@@ -20,6 +20,7 @@ from talbot.flow.layout.steps.gate_delays import GateDelays, GateDelaysParameter
 from talbot.flow.layout.steps.gate_frames import GateFrames, GateFramesParameters
 from talbot.flow.layout.steps.gate_tests import GateTests, GateTestsParameters
 from talbot.flow.layout.steps.ir_drop import IrDrop, IrDropParameters
+from talbot.flow.layout.steps.leakage import Leakage, LeakageParameters
 from talbot.flow.layout.steps.lef import Lef
 from talbot.flow.layout.steps.library import Library
 from talbot.flow.layout.steps.lvs import Lvs
@@ -169,6 +170,7 @@ def timing_steps(design: Design, options: Options) -> list[Step]:
         around = *SMALL, f"--divider={design.divider}", f"--n-frac={design.n_frac}"
         parameters = StimulusParameters(design.top, design.folder, around)
     steps: list[Step] = [] if design.verilog else [Stimulus(parameters)]
+    steps.append(Leakage(LeakageParameters(options.corners)))
     for corner in options.corners:
         steps.append(Sta(StaParameters(design.top, corner, clock.period_ns)))
         steps.append(BlockLiberty(BlockLibertyParameters(corner, clock.port)))

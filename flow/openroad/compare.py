@@ -14,7 +14,7 @@ from talbot.flow.openroad.results import broken
 FOUNDRY = "quad_divider", "amp_ctrl", "asp_chip"  # designs with a row of the foundry's cells, run or not
 HEAD = (
     "design | cells | area, mm2 | instances | cell area, um2 | f_max at ss, MHz | setup, hold, ns | "
-    "power at tt, uW | wire, mm | wire, pF | seconds | MiB | limits broken"
+    "power at tt, uW | leakage at tt / ss / ff, uW | wire, mm | wire, pF | seconds | MiB | limits broken"
 )
 
 
@@ -71,17 +71,20 @@ def row(summary: Mapping[str, Any]) -> list[str]:
     """The figures of one summary; '' for one that it does not have."""
     slacks = [min(summary[name].values()) if summary[name] else None for name in ("wns_ns", "whs_ns")]
     power = next((uw for corner, uw in (summary["power_uw"] or {}).items() if corner.startswith("tt")), None)
+    leakage = " / ".join(f"{uw:,.{0 if uw >= 100 else 2}f}" for uw in (summary.get("leakage_uw") or {}).values())
     figures = (
         (summary["area_um2"], 1e-6, ".4f"),
         (summary["cells"], 1, ",d"),
         (summary["cell_area_um2"], 1, ",.0f"),
         (summary["f_max_mhz"], 1, ".1f"),
     )
-    more = (power, 1, ",.0f"), (summary["wire_um"], 1e-3, ",.1f"), (summary["wire_pf"], 1, ",.1f")
+    more = (summary["wire_um"], 1e-3, ",.1f"), (summary["wire_pf"], 1, ",.1f")
     run = (sum(summary["wall_s"].values()), 1, ",.0f"), (max(summary["peak_mib"].values()), 1, ",d")
     return [
         *(_written(*figure) for figure in figures),
         ", ".join(_written(slack, 1, "+.2f") for slack in slacks),
+        _written(power, 1, ",.0f"),
+        leakage,
         *(_written(*figure) for figure in (*more, *run)),
         str(len(broken(dict(summary)))),
     ]

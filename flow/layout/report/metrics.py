@@ -85,6 +85,7 @@ def summarize(design: Design, options: Options, runner: Runner, attempts: Sequen
         **{name: by_corner(name) for name in ("slew_violations", "capacitance_violations")},
         "f_max_mhz": min((by_corner("f_max_mhz") or {"": None}).values()),
         **{name: by_corner(name, "power") for name in ("power_uw", "energy_pj_cycle")},
+        "leakage_uw": metric("leakage", "leakage_uw"),
         "power_at_chip_clock_uw": at_chip_clock(by_corner("energy_pj_cycle", "power")),
         "table_6_1": table_6_1(metric(f"power_{first}", "by_block"), slowed) if design.top == CHIP else None,
         "power_by_block_uw": metric(f"power_{first}", "by_block"),

@@ -26,6 +26,7 @@ BY_CORNER = (
     ("worst_slew_ns", "the longest of these, ns"),
     ("hold_margin_ns", "least simulated hold margin, ns"),
     ("power_uw", "power, uW"),
+    ("leakage_uw", "leakage, uW"),
     ("energy_pj_cycle", "energy a cycle, pJ"),
     ("power_at_chip_clock_uw", "power at the chip's clock, 10 MHz, uW"),
     ("supply_drop_mv", "IR drop, supply, mV"),
@@ -90,6 +91,11 @@ def tiles(s: dict[str, Any], broken: Sequence[str]) -> list[Tile]:
             return Tile("not run", label, "bad" if bad else "none")
         return Tile(str(value), label, "bad" if bad else "good" if rule else "")
 
+    def most(name: str, label: str) -> Tile:
+        found = s.get(name) or {}
+        corner = max(found, key=lambda one: found[one], default=None)
+        return tile(f"{found[corner]:,.1f} uW", f"{label}, {corner}") if corner else tile(None, label)
+
     def worst(name: str, label: str) -> Tile:
         found = s.get(name) or {}
         corner = min(found, key=lambda one: found[one], default=None)
@@ -107,6 +113,7 @@ def tiles(s: dict[str, Any], broken: Sequence[str]) -> list[Tile]:
         tile(tests.get("passed"), "netlist tests passed", "gate_tests"),
         worst("wns_ns", "setup slack"),
         worst("whs_ns", "hold slack"),
+        most("leakage_uw", "leakage"),
         tile(s["f_max_mhz"] and f"{s['f_max_mhz']:.1f} MHz", "highest clock"),
         tile(s["antenna_violations"], "antennas", "antenna_violations"),
     ]

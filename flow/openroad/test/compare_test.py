@@ -10,6 +10,7 @@ SUMMARY = {
     "wns_ns": {"ss": 1.0, "tt": 2.0},
     "whs_ns": {"ss": 0.3, "tt": 0.1},
     "power_uw": {"tt": 29.0},
+    "leakage_uw": {"tt": 0.061, "ss": 1234.4, "ff": 0.5},
     "wall_s": {"route": 600.0, "sta": 37.4},
     "peak_mib": {"route": 405},
 } | dict.fromkeys(("area_um2", "cells", "cell_area_um2", "f_max_mhz", "wire_um", "wire_pf"), 5000)
@@ -26,7 +27,8 @@ def test_a_row_stays_where_its_layout_is_not_there(tmp_path, capsys):
     written = document.read_text().splitlines()
     assert written[0] == "<!-- cells -->" and "| quad_divider | sky130_fd_sc_hd | 7 |" in written
     (measured,) = [text for text in written if text.startswith("| quad_divider | compact |")]
-    assert "| 0.0050 | 5,000 |" in measured and "| +1.00, +0.10 | 29 |" in measured and "| 637 | 405 |" in measured
+    assert "| 0.0050 | 5,000 |" in measured and "| 637 | 405 |" in measured
+    assert "| +1.00, +0.10 | 29 | 0.06 / 1,234 / 0.50 |" in measured
     assert {"Not run with `compact`: `amp_ctrl`.", "Not run with `sky130_fd_sc_hd`: `amp_ctrl`."} <= set(written)
     capsys.readouterr()
     assert main(compare, line) == 0  # of no document nothing is known
