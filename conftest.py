@@ -1,4 +1,4 @@
-"""Options of the tests: slow ones, and netlists in place of the translated Verilog.
+"""Options of the tests: slow ones, and netlists instead of the translated Verilog.
 
 A property fails immediately with the first input that breaks it. --hypothesis-profile=smallest looks for the smallest
 one, which takes minutes with a simulator. Where a CI runs the tests, Hypothesis draws the same inputs every time,
@@ -137,7 +137,7 @@ def pytest_collection_modifyitems(config, items):
 
 @pytest.fixture
 def given_verilog(request):
-    """given_verilog(name): files of the netlist in place of what a test builds as ``name``; [] where none are given."""
+    """given_verilog(name): files of the netlist instead of what a test builds as ``name``; [] where none are given."""
     netlists = request.config.stash.get(NETLISTS, None)
 
     def files(name):

@@ -32,7 +32,7 @@ def tabled(sensor: SensorParameters, pixel: str, note: Callable[[str], None] = l
 
     Pixels that are drawn respond as they are drawn (`layout.section`), others and those named "-endless" as endless
     gratings: their tables are computed once, then kept. note: called with a line about each part that takes long. Types
-    with a response of their own stay as they are. Raises ParameterError for a beta without gratings, or for an angle at
+    with a response stay as they are. Raises ParameterError for a beta without gratings, or for an angle at
     which nothing is drawn.
     """
     check_choice("pixel", pixel, PIXELS)

@@ -1,6 +1,6 @@
 """Variables of make's command line as options of a command: `make sim SCENE=coins` is `talbot sim --scene=coins`.
 
-The Makefile names the target and the variables of its own (`--make 'sim PYTHON PDK_ROOT'`); every other one must be an
+The Makefile names the target and its own variables (`--make 'sim PYTHON PDK_ROOT'`); every other one must be an
 argument of the command. Values come from MAKEFLAGS as they were typed: no shell and no make has expanded them. With
 `make -e` those of the environment count, too.
 """

@@ -98,7 +98,7 @@ def contents(
 
 
 def shuttle_files(design: Design, files: Mapping[str, bytes]) -> dict[str, bytes]:
-    """Tiny Tapeout's project of a finished layout: its own files, beside them the layout's by the name of the top."""
+    """Tiny Tapeout's project of a finished layout: its files, and the layout's by the name of the top."""
     verilog = files[f"rtl/{design.top}.sv"].decode()
     made = {name: text.encode() for name, text in project_files(design, verilog).items()}
     own = {"gds": "layout/{}.gds", "lef": "layout/{}.lef", "v": "netlist/{}.power.v"}

@@ -1,4 +1,4 @@
-"""A design for OpenROAD-flow-scripts: config.mk, constraint.sdc, rules-base.json, in a folder of designs of its own."""
+"""A design for OpenROAD-flow-scripts: config.mk, constraint.sdc, rules-base.json, in a separate folder of designs."""
 
 import json
 

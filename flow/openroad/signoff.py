@@ -50,7 +50,7 @@ def checks(design: Design, tech: OpenRoadPlatform) -> list[Step]:
 def given(
     design: Design, tech: OpenRoadPlatform, root: Path, folder: Path, size_um: tuple[float, float]
 ) -> dict[str, Path]:
-    """The steps' inputs by name, of the run in ``folder`` with the PDK in ``root``; files are written beside it."""
+    """The steps' inputs by name, of the run in ``folder`` with the PDK in ``root``; files are written next to it."""
     made = folder / "signoff"
     made.mkdir(exist_ok=True)
     netlist = routed_netlist(folder / "final.v", design.top)

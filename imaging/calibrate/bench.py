@@ -98,7 +98,7 @@ class Bench:
         return front_end_of(self.request.lit, np.zeros(self.request.sensor.tile.n_types, int))
 
     def _frame(self, pair: Values, number: int) -> Values:
-        """Codes of a raw frame of the golden chip, (rows, cols, 2); each number has noise of its own."""
+        """Codes of a raw frame of the golden chip, (rows, cols, 2); each number has independent noise."""
         request, sensor = self.request, self.request.lit
         front_end = self._front_end
         exposure = Exposure(

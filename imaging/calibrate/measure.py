@@ -1,4 +1,4 @@
-"""A calibration beside the truth that the bench alone knows, and what it leaves in a picture."""
+"""Errors of a calibration against the true optics, and their effect on a picture."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace

@@ -65,7 +65,7 @@ def capture(
 ) -> DepthFrames:
     """The frames of ``request``, which is in tof mode.
 
-    code: in place of the sensor's, of more frames. direct: of a scene whose light comes straight from the surfaces, all
+    code: instead of the sensor's, of more frames. direct: of a scene whose light comes straight from the surfaces, all
     of it. Raises ParameterError, ToolError.
     """
     clock = Clock(note=note)
@@ -110,7 +110,7 @@ def _raw(request: FrameRequest, exposed: Exposed) -> list[tuple[FrameRequest, Ex
 
 
 def _tap(exposed: Exposed, tap: int) -> Exposed:
-    """One tap of an exposure as a frame of its own, for raw mode."""
+    """Return one tap of an exposure as a separate frame, for raw mode."""
     samples, clean = exposed.samples[tap : tap + 1], exposed.clean[tap : tap + 1]
     ideal = np.moveaxis(exposed.front_end.values(clean, "raw"), 0, 2)
     return replace(exposed, plan=replace(exposed.plan, taps=1), samples=samples, clean=clean, ideal=ideal)

@@ -1,4 +1,4 @@
-"""Depth from the frames of time of flight by every method, beside what costs nothing."""
+"""Depth from the frames of time of flight by every method, with baselines."""
 
 from collections.abc import Callable, Container, Sequence
 from dataclasses import dataclass, replace

@@ -199,7 +199,7 @@ def request_of(a: Namespace, sensor: SensorParameters | None = None, sequence: b
     """The FrameRequest of `add_frame_arguments`, scene, depth, waves and out. Raises ParameterError.
 
     The sensor has the size of a light field's views where neither rows, cols nor a sensor file are typed.
-    sensor: in place of that of the options, their camera included. sequence: the scene is one, no light field.
+    sensor: instead of that of the options, their camera included. sequence: the scene is one, no light field.
     """
     from talbot.imaging.frame.request import light_field_of, request
     from talbot.models.calibrate import read_calibration

@@ -97,7 +97,7 @@ def light_of(result: FrameResult) -> dict[str, float] | None:
 
 
 def light_line(summary: dict[str, Any]) -> str:
-    """The source of time of flight beside the limit that its light passes or keeps, '' without one."""
+    """Return the source of time of flight and whether its light keeps the limit, '' without a source."""
     source = summary.get("light_source")
     if not source:
         return ""
@@ -156,7 +156,7 @@ def digital_line(summary: dict[str, Any]) -> str:
 
 
 def camera_of(result: GoldenResult) -> dict[str, float | None]:
-    """The camera and how far what stands, in m; exit_pupil_m: None is infinity."""
+    """Return camera and distances of the scene, in m; exit_pupil_m: None is infinity."""
     optics, depth = result.request.sensor.optics, result.exposed.scene.depth
     lens = optics.camera
     near, far = (None, None) if depth is None else (float(depth.min()), float(depth.max()))
@@ -211,7 +211,7 @@ def exposure_line(summary: dict[str, Any]) -> str:
 
 
 def camera_line(summary: dict[str, Any]) -> str:
-    """What camera this is and how far what stands, in one line."""
+    """Return camera and distances of the scene in one line."""
     c = summary["camera"]
     pupil = "telecentric" if c["exit_pupil_m"] is None else f"exit pupil at {1e3 * c['exit_pupil_m']:.4g} mm"
     text = f"f/{c['f_number']:g} lens of {1e3 * c['focal_length_m']:.4g} mm, {pupil}, focused at {_far(c['focus_m'])}"
@@ -226,7 +226,7 @@ def _far(metres: float) -> str:
 
 
 def depth_line(summary: dict[str, Any]) -> str:
-    """Error of the depth beside that of one depth for all, '' without depth."""
+    """Return the error of the depth and that of one depth for all, '' without depth."""
     error, constant = summary["depth_rms_m"], summary["depth_rms_constant_m"]
     if error is None:
         return ""

@@ -90,7 +90,7 @@ def expose(
     """Expose ``scene``.
 
     front_end: of an earlier frame of the same chip; None: trimmed to a frame of a flat field. views: None: as many as
-    the request says. number: of the frame in a sequence; each has temporal noise of its own.
+    the request says. number: of the frame in a sequence; each has independent temporal noise.
     """
     if views or front_end:  # of a sequence: no frame comes again
         return Exposed(scene, todo, *_samples(request, scene, todo, front_end, views, number))
@@ -168,8 +168,8 @@ def _flat_timing(request: FrameRequest) -> AmpTiming:
 def flat_field(request: FrameRequest) -> Values:
     """The sensor's diodes, (rows, cols, 2) in LSB, before a flat field at half of white, dark current taken off.
 
-    One frame of the same chip and timing with noise of its own, from which the trims are measured as on a bench: in the
-    light of a lamp whose white gives the signal of RoomParameters, whatever the light of the frame is.
+    One frame of the same chip and timing with independent noise, from which the trims are measured as on a bench: in
+    the light of a lamp whose white gives the signal of RoomParameters, whatever the light of the frame is.
     """
     sensor = request.lit
     flat, everywhere = load("flat:50", Sampling.of(sensor)), Region(1, np.ones(sensor.shape, bool))

@@ -1,4 +1,4 @@
-"""The figures of merit of a summary, each beside what costs nothing and what a user would otherwise choose."""
+"""The figures of merit of a summary, each with a baseline that costs nothing and the usual alternative."""
 
 from collections.abc import Callable
 from typing import Any
@@ -23,7 +23,7 @@ def ratio(value: float | None) -> str:
 
 
 def against(s: Summary) -> str:
-    """PSNR of the 2-D image beside that of flat gray, of JPEG and of JPEG XL."""
+    """Return the PSNR of the 2-D image and that of flat gray, of JPEG and of JPEG XL."""
     image, gray, jpeg, jpegxl = (decibels(s[f"image_psnr{name}_db"]) for name in ("", "_gray", "_jpeg", "_jpegxl"))
     psnr, nothing = s["image_psnr_db"], s["image_psnr_gray_db"]  # None: no error at all
     note = ", no better than gray" if psnr is not None and (nothing is None or psnr <= nothing) else ""
@@ -33,26 +33,26 @@ def against(s: Summary) -> str:
 
 
 def sent(s: Summary) -> str:
-    """SNR of the decoded samples beside that of nothing sent."""
+    """Return the SNR of the decoded samples and that of nothing sent."""
     return f"SNR {decibels(s['snr_db'])} ({nothing_sent(s)})"
 
 
 def nothing_sent(s: Summary) -> str:
-    """What stands beside the SNR of the decoded samples."""
+    """Return the baseline of the SNR of the decoded samples."""
     snr, nothing = s["snr_db"], s["snr_nothing_sent_db"]  # None: no error at all, or no signal
     note = "no better than " if snr is not None and snr <= (nothing or 0.0) else ""
     return f"{note}nothing sent: {decibels(nothing)}"
 
 
 def light_field(s: Summary) -> str:
-    """PSNR of the light field's estimate beside that of the 2-D image in every view."""
+    """PSNR of the light field's estimate next to that of the 2-D image in every view."""
     psnr, copied = s["light_field_psnr_db"], s["light_field_psnr_copied_db"]
     note = ", no better" if psnr is not None and (copied is None or psnr <= copied) else ""
     return f"PSNR {decibels(psnr)}{note}; the 2-D image in every view has {decibels(copied)}"
 
 
 def table(s: Summary) -> list[tuple[str, str, str]]:
-    """What, its figure, and what stands beside it, in the report's order; what the mode does not have is left out."""
+    """Return name, figure and baseline of each figure of the mode, in the report's order."""
     rows = [("SNR of the samples", decibels(s["snr_db"]), nothing_sent(s))]
     if s["mode"] == "edge":
         share = percent(s["edge_share"])

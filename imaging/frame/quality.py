@@ -1,4 +1,4 @@
-"""How good a frame is, each figure beside what costs nothing and beside what a user would otherwise choose.
+"""Quality of a frame: each figure with a baseline that costs nothing and the usual alternative.
 
 Defined in docs/figures.md. None where a figure has no meaning: no such samples, no error at all, too few pixels.
 """
@@ -117,7 +117,7 @@ def image_figures(result: GoldenResult, size: int, codecs: Sequence[str], versio
 
 
 def part_read(read: npt.NDArray[np.bool_]) -> tuple[slice, slice]:
-    """The smallest rectangle of all pixels that are read: of what lies outside nothing is said."""
+    """Return the smallest rectangle of all pixels that are read; nothing outside is compared."""
     rows, cols = (np.flatnonzero(read.any(axis)) for axis in (1, 0))
     return slice(rows[0], rows[-1] + 1), slice(cols[0], cols[-1] + 1)
 

@@ -115,7 +115,7 @@ def request(
     mask: int = ALL_TYPES,
     **rest: Any,
 ) -> FrameRequest:
-    """A FrameRequest for ``sensor``, or one that has these in place of its own: rows, cols, lanes, camera, converter.
+    """Return a FrameRequest for ``sensor``, with these fields replaced: rows, cols, lanes, camera, converter.
 
     converter: typical or ideal. lux: illuminance of white. timing: phases that are not the default, fields of AmpTiming
     but exposure. exposure: rows by which the reset pointer leads, or None for as many as give the signal of

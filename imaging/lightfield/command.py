@@ -1,4 +1,4 @@
-"""The light field and the depth of a scene from a raw frame of the chip, beside the free baselines."""
+"""The light field and the depth of a scene from a raw frame of the chip, with baselines."""
 
 from argparse import ArgumentParser, Namespace
 from collections.abc import Callable

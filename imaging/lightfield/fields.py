@@ -1,4 +1,4 @@
-"""What a raw frame gives by every method, with its figures, beside what costs nothing."""
+"""Light fields of a raw frame by every method, with figures and a baseline that costs nothing."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -89,7 +89,7 @@ def read_back(
 def _by_truth(
     result: GoldenResult, prior: FieldPrior, seen: Values, sent: Values, methods: Sequence[str]
 ) -> dict[str, float | None]:
-    """PSNR in dB of the methods that know the sensor's true optics in place of a calibration."""
+    """PSNR in dB of the methods that know the sensor's true optics instead of a calibration."""
     true = replace(result, request=replace(result.request, calibration=None))
     estimator, operator, corners = estimator_of(true, prior), CaptureOperator(true.sensor), reached(true)
     estimates = {name: measure(name, estimator, operator, sent)[0].light_field for name in methods}
@@ -104,7 +104,7 @@ def baselines(image: Values, truth: Values) -> dict[str, float | None]:
 
 
 def depth_figures(result: GoldenResult, estimate: Estimate) -> dict[str, float | None]:
-    """Error of disparity and depth where the method is sure of them, beside that of one value for all.
+    """Return the error of disparity and depth where the method marks them as reliable, and that of one value for all.
 
     range_m: from the nearest to the farthest of the scene. sure: share of the pixels.
     """

@@ -1,4 +1,4 @@
-"""Figures of a light field that was read back, beside what costs nothing."""
+"""Figures of an estimated light field and of a baseline that costs nothing."""
 
 import numpy as np
 import numpy.typing as npt

@@ -1,4 +1,4 @@
-"""Polarization of a scene from a raw frame of the chip, and its highlights, beside what costs nothing."""
+"""Polarization of a scene from a raw frame of the chip, and its highlights, with baselines."""
 
 from argparse import ArgumentParser, Namespace
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Polarization and highlights from a raw frame, with their errors beside those of what costs nothing."""
+"""Polarization and highlights from a raw frame, with their errors and those of baselines."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -111,7 +111,7 @@ def _degrees(frame: PolarFrame) -> list[Picture]:
 
 
 def _depths(frame: PolarFrame) -> list[Section]:
-    """The disparity as found and without the highlights, beside the truth."""
+    """Return pictures of the disparity with and without the highlights, and of the truth."""
     off, truth = frame.summary["disparity"], frame.result.exposed.scene.disparity
     if frame.disparity is None or truth is None:
         return []

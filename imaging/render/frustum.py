@@ -1,6 +1,6 @@
 """The views of a thin lens as Mitsuba's off-axis frusta.
 
-Metres are the scene's own. The world has x to the right, y up, z towards the camera, which stands at the origin: the
+Metres are the scene's own. The world has x to the right, y up, z towards the camera, which is at the origin: the
 projects's (x, y, z) is the world's (x, -y, -z). A view (dv, du) looks from the point of the entrance pupil that is du
 steps to the right and dv steps down; all views see the same rectangle of the focal plane, where disparity is 0.
 """

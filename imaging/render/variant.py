@@ -27,7 +27,7 @@ def _module(name: str) -> Any:
 
 
 def use(variant: str, threads: int = 1) -> None:
-    """Switch Mitsuba to a variant, with so many threads. Raises ToolError where it, or LLVM, is missing."""
+    """Switch Mitsuba to a variant, with ``threads`` threads. Raises ToolError where it, or LLVM, is missing."""
     if LLVM not in os.environ:
         os.environ[LLVM] = str(_llvm())
     mi = mitsuba()

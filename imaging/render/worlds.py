@@ -84,7 +84,7 @@ def _cloth(level: float, seed: int, contrast: float = 0.35) -> np.ndarray[Any, A
 def room(sampling: Sampling) -> Objects:
     """Cornell box of a room's size, of which a long lens sees slanted blocks before the rear wall.
 
-    What the walls beside the picture scatter reaches everything in it.
+    What the walls next to the picture scatter reaches everything in it.
     """
     f = focal(sampling)
     half = sampling.cols / 2 / f
@@ -174,7 +174,7 @@ def scatterer() -> Objects:
 
 
 def spheres(sampling: Sampling) -> Objects:
-    """Glossy dielectric balls and one of metal, lamps beside them, cloth, and a lit panel that fills its pixels."""
+    """Glossy dielectric balls and one of metal, lamps next to them, cloth, and a lit panel that fills its pixels."""
     half = sampling.cols / 2 / focal(sampling)
 
     def ball(x: float, y: float, z: float, radius: float, bsdf: Objects) -> Objects:

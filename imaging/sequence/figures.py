@@ -38,7 +38,8 @@ def of_all(frames: Sequence[dict[str, Any]], result: FrameResult, wall: dict[str
     """Figures of the sequence. result: its last frame. wall: s by step.
 
     frames_per_s: of all frames by all wall clock but that of the setup (trims, first choice of views, weights) and of
-    the simulator's compilation; frames_per_s_in_all: by all of it. rtl_s: wall clock of the simulator, beside wall_s.
+    the simulator's compilation; frames_per_s_in_all: by all of it. rtl_s: wall clock of the simulator, which runs
+    while other steps do.
     """
     golden, f_clk = result.golden, result.request.sensor.chip.f_clk
     raw = int(golden.read.sum()) * golden.sent.shape[2]

@@ -106,7 +106,7 @@ def size_line(s: Mapping[str, Any]) -> str:
 
 
 def rate_line(s: Mapping[str, Any]) -> str:
-    """Frames a second and where the time of a frame goes, in ms; the simulator's runs beside the rest."""
+    """Frames a second and where the time of a frame goes, in ms; the simulator's runs next to the rest."""
     parts = {name: 1e3 * s["wall_s"].get(name, 0.0) / s["frames"] for name in STEPS}
     text = ", ".join(f"{STEPS[name]} {ms:.1f}" for name, ms in parts.items())
     python = 1e3 * s["processor_s"]["python"] / max(s["frames"] - 1, 1)  # since the first was there

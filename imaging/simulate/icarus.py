@@ -12,7 +12,7 @@ from talbot.imaging.simulate.verilator import FRAME
 def icarus_program(build: Build, folder: Path, chip: Sequence[Path] = (), tops: Sequence[str] = ()) -> Path:
     """Compile the bench for ``build`` into ``folder``; returns the program's path. Raises ToolError.
 
-    chip: Verilog files of it, a netlist's and its cells' too; exported now if empty. tops: modules beside the bench.
+    chip: Verilog files of it, a netlist's and its cells' too; exported now if empty. tops: modules next to the bench.
     """
     program = folder / "bench.vvp"
     bench = [PACKAGE / "pixels" / "afe.sv", FRAME / "bench.sv", FRAME / "clock.sv"]

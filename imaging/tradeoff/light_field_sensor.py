@@ -78,7 +78,7 @@ def _dense(seed: int) -> PixelType:
 
 
 def quantized(result: GoldenResult, bits: int) -> Floats:
-    """The diodes of a frame as ideal converters of so many bits give them, (rows, cols, 2) in LSB of the chip's."""
+    """Return the diodes of a frame through ideal converters of ``bits`` bits, (rows, cols, 2) in LSB of the chip's."""
     step = FULL_CODE / 2**bits
     values = result.exposed.front_end.values(result.exposed.samples, "raw")
     return np.moveaxis(np.clip(np.rint(values / step), 0, 2**bits - 1) * step, 0, 2)

@@ -42,7 +42,7 @@ def _differences(sensor: SensorParameters, scene: Scene, views: int) -> npt.NDAr
 
 
 def measure(point: tuple[int, int]) -> dict[str, Any]:
-    """Error and time of a capture through so many views."""
+    """Return error and time of a capture through the views of ``point``."""
     views, size = point
     sensor, scene, best = _scene(size)
     start = perf_counter()

@@ -1,6 +1,6 @@
 """Measured responses as tables, for pixels that are not of the form of Eq. 3.1: those of gratings in real metal.
 
-Around Eq. 3.1 with the type's own level lies what it leaves: a Gaussian process over the two angles to the lines, whose
+The residual of Eq. 3.1 at the type's level is a Gaussian process over the two angles to the lines, whose
 lengths and strength are those of greatest likelihood [RasmussenWilliams2006, Sec. 5.4.1]. Noise stays out of the table
 as far as the samples tell it from the response, and a residual that is all noise leaves Eq. 3.1 alone.
 """

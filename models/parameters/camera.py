@@ -42,7 +42,7 @@ class CameraParameters:
 
     References
     ----------
-    [Jayasuriya2017], Sec. 3.5.1, has f/1.2; with each field stands its source.
+    [Jayasuriya2017], Sec. 3.5.1, has f/1.2; each field has its source.
     """
 
     f_number: float = sourced(1.2, "[Jayasuriya2017], Sec. 3.5.1")

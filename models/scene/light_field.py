@@ -61,7 +61,7 @@ class LightField:
     specular : bool (height, width) or None
         Where the middle view shows a specular reflection, if that is known.
     behind : array (height, width) or None
-        Depth of what stands behind an occluder, in m of the scene, 0.001..1000.
+        Depth of the surface behind an occluder, in m of the scene, 0.001..1000.
     echo : Echo or None
         Where the light of time of flight has been; of an array of the light field's size alone.
 

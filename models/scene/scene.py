@@ -53,7 +53,7 @@ class Scene:
     specular : bool (rows, cols) or None
         Where the centre view shows a reflection brighter than half of the lamp that it is of; None if not known.
     behind : array (rows, cols) or None
-        Distance from the camera of what stands behind an occluder, 0.001..1000 m.
+        Distance from the camera of the surface behind an occluder, 0.001..1000 m.
     surfaces : array (views, views, rows, cols) or None
         Disparity of what every view of the light field shows; None: as the centre view's.
     echo : Echo or None

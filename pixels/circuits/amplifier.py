@@ -197,7 +197,7 @@ def size(
 ) -> AmplifierSizes:
     """Sizes for ``spec`` with ``load`` F, the lane's array, from the process's tables of gm/Id.
 
-    The output has the signal's time without SLEW to come within LEFT of what may be left: so many time constants
+    The output has the signal's time without SLEW to come within LEFT of the allowed residue, in time constants
     C / (beta gm). A recycling folded cascode has 1 + (SPLIT - 1) / SPLIT times the transconductance of one side of its
     pair [Assaad2009]. Widths are currents over the densities at which each role has its EFFICIENCY.
     """
@@ -235,12 +235,12 @@ def _drawn(um: float) -> float:
 
 
 def _n(name: str, nodes: str, w: float, kind: tuple[str, float], parts: int = 1) -> list[Transistor]:
-    """So many n transistors of ``w`` um side by side. nodes: drain gate source."""
+    """Return ``parts`` parallel n transistors of ``w`` um. nodes: drain gate source."""
     return _parts(name, (*nodes.split(), "vss"), w, kind, parts)
 
 
 def _p(name: str, nodes: str, w: float, kind: tuple[str, float], parts: int = 1) -> list[Transistor]:
-    """So many p transistors of ``w`` um side by side. nodes: drain gate source."""
+    """Return ``parts`` parallel p transistors of ``w`` um. nodes: drain gate source."""
     return _parts(name, (*nodes.split(), "vdd"), w, kind, parts)
 
 

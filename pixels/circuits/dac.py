@@ -6,7 +6,7 @@ terminator's at refn. Half a unit samples refp and goes to refn: level(code) = c
 (refn - in + code LSB - LSB / 2) times `attenuation`, whatever is on it as a parasitic: only what it has there when it
 is compared and when it sampled must be the same.
 
-`balance` is the other input's array, of the same capacitance: it samples `in` and then stands at the middle of the
+`balance` is the other input's array, of the same capacitance: it samples `in` and then is at the middle of the
 references, 128 units at each. Pins: top in sample samplen refp refn vdd vss.
 """
 

@@ -81,7 +81,7 @@ def measure(
     corner: Corner,
     circuit: Circuit | None = None,
 ) -> AmplifierResult:
-    """Everything of an amplifier that drives the input of ``lane``. circuit: in place of that of ``sizes``."""
+    """Everything of an amplifier that drives the input of ``lane``. circuit: instead of that of ``sizes``."""
     lsb, load = setup.spec.lsb, load_of(setup, lane, corner)
     most = REACH * 128 * lsb / sizes.gain  # V between the columns
     end = END * spec.hold
@@ -170,7 +170,7 @@ def load_of(setup: Setup, lane: LaneSizes, corner: Corner) -> float:
 
 
 def biased(circuit: Circuit) -> Circuit:
-    """An amplifier with a bias of its own. Pins: its own without ibias, then vdd_bias."""
+    """Return an amplifier with its bias. Pins: the amplifier's without ibias, then vdd_bias."""
     return Circuit(
         "biased",
         (*(pin for pin in PINS if pin != "ibias"), "vdd_bias"),

@@ -88,7 +88,7 @@ PIXEL = "n_thick"  # role of its pixel's switches, which are no part of a column
 
 
 class Beside(NamedTuple):
-    """What a deck has beside the bench: lines, inputs, rails (V)."""
+    """Additions of a deck to the bench: lines, inputs, rails (V)."""
 
     lines: tuple[str, ...] = ()
     inputs: tuple[str, ...] = ()
@@ -126,7 +126,7 @@ class ColumnResult:
 def measure(
     setup: Setup, spec: ColumnSpec, sizes: ColumnSizes, corner: Corner, circuit: Circuit | None = None
 ) -> ColumnResult:
-    """Everything of a column. circuit: in place of the bench of ``sizes``."""
+    """Everything of a column. circuit: instead of the bench of ``sizes``."""
     start, runs, repeated = trimmed(setup, spec, sizes, corner, circuit), TRIMS, 0
     end, lsb = turn_of(spec) + spec.cycle, spec.lsb
     with opened(setup, spec, sizes, corner, start, circuit=circuit) as spice:
@@ -305,7 +305,7 @@ def opened(
     roles in ``alike``. more: nodes that are kept.
 
     The bias's lines are held until a row is read, or what is outside of the chip at them would take milliseconds: where
-    ngspice finds an operating point by a transient of its own, it ends long before.
+    ngspice finds an operating point by a transient, it ends long before.
     The coupling capacitors begin empty, as leakage leaves them after a pause: the second stage has farthest to go.
     """
     lines = deck(circuit or bench(sizes, spec), setup, corner, seed=seed, alike=alike)

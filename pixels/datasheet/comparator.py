@@ -34,7 +34,7 @@ class Decisions:
 def decisions(setup: Setup, sizes: LaneSizes, corner: Corner, circuit: Circuit | None = None) -> Decisions:
     """Four decisions of half an LSB at the lane's input, their signs alternating, after one of the other sign.
 
-    circuit: in place of the comparator of ``sizes``, with its pins.
+    circuit: instead of the comparator of ``sizes``, with its pins.
     """
     spec, vdd = setup.spec, corner.supply
     period, count = 1 / spec.f_clk, 5

@@ -60,7 +60,7 @@ def fitted(
     start: tuple[float, float],
     drawn: Circuit | None = None,
 ) -> ColumnFit:
-    """A column as `models.parameters.circuit_columns` has it. start: V, trimmed. drawn: in place of the circuit."""
+    """A column as `models.parameters.circuit_columns` has it. start: V, trimmed. drawn: instead of the circuit."""
 
     def given(made: Circuit) -> Circuit:
         return made.replaced(drawn) if drawn else made

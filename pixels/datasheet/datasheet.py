@@ -1,4 +1,4 @@
-"""Rows of a datasheet in CACE's manner: what was measured over corners or draws, beside its limit."""
+"""Rows of a datasheet in CACE's manner: figures over corners or draws, with limits."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass

@@ -119,5 +119,5 @@ def settled(
 
 
 def patient(seconds: float) -> Settings:
-    """SETTINGS with so many CPU seconds for a transient."""
+    """Return SETTINGS with this limit of CPU seconds for a transient."""
     return replace(SETTINGS, timeout=seconds)

@@ -50,7 +50,7 @@ class LaneResult:
 
 
 def open_lane(setup: Setup, sizes: LaneSizes, corner: Corner, circuit: Circuit | None = None) -> Simulator:
-    """An ngspice process of a lane with its references. circuit: in place of that of ``sizes``, with its pins."""
+    """An ngspice process of a lane with its references. circuit: instead of that of ``sizes``, with its pins."""
     circuit = circuit or sar_lane(sizes)
     if circuit.ports != PINS:
         raise ParameterError(f"circuit {circuit.name}: ports = {' '.join(circuit.ports)}: must be {' '.join(PINS)}")

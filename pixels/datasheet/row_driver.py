@@ -48,7 +48,7 @@ class RowDriverResult:
 def measure(
     setup: Setup, spec: RowDriverSpec, corner: Corner, driver: Circuit | None = None, around: Sequence[float] = AROUND
 ) -> RowDriverResult:
-    """The row of ``spec`` at a corner. driver: in place of `row`. around: of its lines' level."""
+    """The row of ``spec`` at a corner. driver: instead of `row`. around: of its lines' level."""
     found, runs, repeated = [], 0, 0
     lines = deck(bench(spec, driver or row()), setup, corner)
     for factor in around:

@@ -48,7 +48,7 @@ class AmplifierNoise:
 def drawn(
     setup: Setup, spec: AmplifierSpec, sizes: AmplifierSizes, lane: LaneSizes, corner: Corner, seed: int
 ) -> Drawn:
-    """One amplifier: transistors of the models' own mismatch, capacitors of so many cells each."""
+    """Return one amplifier: transistors with the models' mismatch, capacitors with that of their cells."""
     lsb, load = setup.spec.lsb, load_of(setup, lane, corner)
     level = REACH * FRAME * 128 * lsb / sizes.gain
     circuit = with_mismatch(amplifier(sizes), sizes, process_of(setup.pdk).CELL_MISMATCH, seed)

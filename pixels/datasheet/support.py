@@ -62,7 +62,7 @@ def measure(setup: Setup, spec: SupportSpec, corner: Corner) -> SupportResult:
 def phases(
     setup: Setup, spec: SupportSpec, corner: Corner, circuit: Circuit | None = None
 ) -> tuple[list[float], Simulator]:
-    """Gaps (s) between the phases at half the supply, at three edges; circuit: in place of `non_overlap`."""
+    """Gaps (s) between the phases at half the supply, at three edges; circuit: instead of `non_overlap`."""
     period, high = 4 * QUARTER, corner.supply
     lines = deck(circuit or non_overlap(), setup, corner)
     with simulator(lines, ("clk",), ("phi1", "phi2"), corner) as spice:
@@ -79,7 +79,7 @@ def phases(
 
 
 def bias_measured(setup: Setup, corner: Corner, circuit: Circuit | None = None) -> tuple[BiasResult, Simulator]:
-    """Current and start of a bias; circuit: in place of `bias`, of several outputs the first is loaded."""
+    """Current and start of a bias; circuit: instead of `bias`, of several outputs the first is loaded."""
     wave, spice = started(setup, corner, circuit and first_output(circuit))
     current = -wave.current["ibias"]
     away = wave.time[np.abs(current - current[-1]) > NEAR * abs(current[-1])]
@@ -97,7 +97,7 @@ def first_output(circuit: Circuit) -> Circuit:
 
 
 def started(setup: Setup, corner: Corner, circuit: Circuit | None = None) -> tuple[Wave, Simulator]:
-    """The bias while its supply rises from 0; circuit: in place of `bias`."""
+    """The bias while its supply rises from 0; circuit: instead of `bias`."""
     rails = {"vss": 0.0, "ibias": PIN}
     lines = deck(circuit or bias(), setup, corner)
     with Simulator(lines, ("vdd",), (), rails, corner.temperature, SETTINGS) as spice:

@@ -6,7 +6,7 @@
     column   |_______|/‾‾‾‾‾‾|‾‾‾      it drives the lane's line, for longer than in the chip
     lane     | before|__/ out|         sampled at the end of the hold
 
-Column and amplifier have each a settling of their own in the datasheet, of the one with a capacitor for an amplifier,
+Column and amplifier each have a settling in the datasheet, of the one with a capacitor for an amplifier,
 of the other behind an ideal column. Here one is behind the other, with what the sample before left on the lane's array.
 """
 
@@ -47,7 +47,7 @@ def measure(
     corner: Corner,
     *drawn: Circuit,
 ) -> TurnResult:
-    """Of a column that is trimmed first. drawn: circuits in place of those of ``sizes``."""
+    """Of a column that is trimmed first. drawn: circuits instead of those of ``sizes``."""
     (spec, of_amplifier), lsb = specs, setup.spec.lsb
     alone, made = bench(sizes[0], spec), joined(*sizes, spec)
     for one in drawn:
@@ -72,7 +72,7 @@ def measure(
 
 
 def joined(column: ColumnSizes, own: AmplifierSizes, spec: ColumnSpec) -> Circuit:
-    """The column's bench with the amplifier, and its bias, in place of the capacitors of its inputs."""
+    """The column's bench with the amplifier, and its bias, instead of the capacitors of its inputs."""
     made, driver = bench(column, spec), amplifiers.biased(amplifier(own))
     nodes = {"column_a": "far_a", "column_b": "far_b"}
     parts = *made.instances, Instance("driver", driver, tuple(nodes.get(pin, pin) for pin in driver.ports))

@@ -47,7 +47,7 @@ def drawn_curves(pixel: PixelLayout, wavelength_um: float, orders_a_period: int 
 
 
 def sections(pixel: PixelLayout) -> Iterator[tuple[Section, float]]:
-    """Cuts across the lines of a drawn pixel among its like, and the share of the pixel that each stands for."""
+    """Return cuts across a drawn pixel among neighbours of its type, and the share that each represents."""
     gamma = pixel.kind.gamma_deg
     if abs(gamma) not in DIRECTIONS:
         known = ", ".join(f"{angle:g}" for angle in DIRECTIONS)

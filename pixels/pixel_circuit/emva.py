@@ -81,7 +81,7 @@ def emva(electrical: ElectricalParameters, seed: int = 1) -> Emva:
 
 
 def _picture(electrical: ElectricalParameters, electrons: float, seed: int, number: int) -> Floats:
-    """Values of the diodes of a flat picture in which the light makes so many electrons in each."""
+    """Return the diodes' values of a flat picture with a mean of ``electrons`` photoelectrons in each."""
     timing = AmpTiming()
     exposure = Exposure(electrical, timing, seed=seed, number=number)
     unit = electrical.white_current * sum(exposure.intervals) / ELEMENTARY_CHARGE

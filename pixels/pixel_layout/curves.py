@@ -1,4 +1,4 @@
-"""Angular responses of all drawn types, for `PIXEL=`: solved one by one, kept, beside those of endless gratings."""
+"""Angular responses of all drawn types, for `PIXEL=`: solved, kept, compared with infinite gratings."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -20,7 +20,7 @@ DEGREES = 20  # over which they are compared
 
 @dataclass(frozen=True)
 class Kept:
-    """A drawn type beside endless gratings.
+    """A drawn type compared with infinite gratings.
 
     kept: least-squares share of their (a - b) / (a + b). correlation: of both. light: ratio of the mean.
     """

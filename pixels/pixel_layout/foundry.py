@@ -1,7 +1,7 @@
 """The foundry's own decks over the drawn pixels, from a PDK that PDK_ROOT has.
 
 KLayout's deck is run on all files. Magic keeps shapes as tiles at multiples of 45 degrees and counts widths and spaces
-of others wrongly, so that it checks `STRAIGHT`: the types whose lines are at such angles, beside one another.
+of others wrongly, so that it checks `STRAIGHT`: the types whose lines are at such angles, next to one another.
 """
 
 import json

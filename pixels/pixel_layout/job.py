@@ -170,7 +170,7 @@ def _spice(made: Made) -> list[tuple[str, str]]:
 
 
 def _type(pixel: PixelLayout, wavelength_um: float) -> dict[str, Any]:
-    """What is drawn of a type beside what was solved, and what the drawn gratings do."""
+    """Return the drawn dimensions of a type, the solved ones, and the response of the drawn gratings."""
     upper, lower = pixel.gratings()
     solved, drawn = fitted(pixel.geometry, wavelength_um), fitted(pixel.drawn, wavelength_um)
     return {

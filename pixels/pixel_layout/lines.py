@@ -29,7 +29,7 @@ NAMES = ROWS + COLUMN_NETS
 
 @dataclass(frozen=True)
 class Line:
-    """A line's part in each pixel. ohm: of its own metal. farad: least, typical and most, to all else."""
+    """A line's part in each pixel. ohm: of the line's metal. farad: least, typical and most, to all else."""
 
     ohm: float
     farad: dict[str, float]

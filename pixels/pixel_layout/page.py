@@ -1,4 +1,4 @@
-"""The page of the drawn pixel: pictures, checks, what is drawn beside what was solved."""
+"""The page of the drawn pixel: pictures, checks, drawn and solved dimensions."""
 
 import io
 from typing import Any
@@ -37,7 +37,7 @@ NAMES = ("pixel_layout.html", *(f"{name}.png" for name in PICTURES))
 
 
 def write(made: Made, s: dict[str, Any]) -> None:
-    """Write the page and its pictures beside the files of ``made``."""
+    """Write the page and its pictures next to the files of ``made``."""
     process = made.shown.process
     figures = {
         "cross_section": pictures.cross_section(

@@ -48,7 +48,7 @@ def measure(
 
 
 def rows(spec: AmplifierSpec, found: Pair[Amplified]) -> Iterator[Row]:
-    """Layout beside schematic, with the limits of `make analog`."""
+    """Return figures of layout and schematic, with the limits of `make analog`."""
     amplifier, pair = found.of(lambda one: one.amplifier), found.of(lambda one: one.bias).row
 
     def row(name: str, unit: str, field: str, most: float | None = None, scale: float = 1.0) -> Row:

@@ -16,13 +16,13 @@ from talbot.pixels.post_layout.row import Row
 def measure(
     setup: Setup, spec: ColumnSpec, sizes: ColumnSizes, corner: Corner, drawn: Circuit | None = None
 ) -> ColumnResult:
-    """Everything of a column; drawn: in place of the circuit."""
+    """Everything of a column; drawn: instead of the circuit."""
     bench = column.bench(sizes, spec).replaced(drawn) if drawn else None
     return column.measure(setup, spec, sizes, corner, bench)
 
 
 def rows(spec: ColumnSpec, found: Pair[ColumnResult]) -> Iterator[Row]:
-    """Layout beside schematic, with the limits of `make analog`."""
+    """Return figures of layout and schematic, with the limits of `make analog`."""
     row = found.row
     yield row("column: slope, off by", "%", lambda one: 100 * abs(one.slope - 1), 100 * spec.slope)
     yield row("column: slope of both diodes' mean, off by", "%", lambda one: 100 * abs(one.mean - 1), 100 * spec.slope)

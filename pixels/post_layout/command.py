@@ -1,4 +1,4 @@
-"""The analog circuits drawn in a process's masks: checked, extracted, measured again beside their schematics."""
+"""The analog circuits in a process's masks: checked, extracted, measured again, compared with their schematics."""
 
 from argparse import ArgumentParser, Namespace
 from pathlib import Path

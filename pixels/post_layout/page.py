@@ -1,4 +1,4 @@
-"""The page of the drawn analog circuits: pictures, checks, layout beside schematic."""
+"""The page of the drawn analog circuits: pictures, checks, layout and schematic."""
 
 import io
 from pathlib import Path
@@ -48,7 +48,7 @@ NAMES = ("analog_layout.html", *(f"{name}.png" for name in PICTURES))
 
 
 def write(folder: Path, s: dict[str, Any], process: PixelProcess) -> None:
-    """Write the page and its pictures beside the files of the cells in ``folder``."""
+    """Write the page and its pictures next to the files of the cells in ``folder``."""
     pictures = []
     for name, about in PICTURES.items():
         path = folder / f"{name}.png"

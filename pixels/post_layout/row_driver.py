@@ -9,7 +9,7 @@ from talbot.pixels.post_layout.row import Row
 
 
 def rows(spec: RowDriverSpec, found: Pair[RowDriverResult]) -> Iterator[Row]:
-    """Layout beside schematic, with the limits of `make analog`."""
+    """Return figures of layout and schematic, with the limits of `make analog`."""
     row = found.row
     yield row("row driver: wrong levels", "", lambda one: not one.right, 0.0)
     yield row("row driver: far end within 1 %", "ns", lambda one: 1e9 * one.settling, 1e9 * spec.settle)

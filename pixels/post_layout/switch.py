@@ -21,12 +21,12 @@ class Gaps:
 
 
 def measure(setup: Setup, spec: SupportSpec, corner: Corner, circuit: Circuit | None = None) -> Gaps:
-    """The gaps at a corner; circuit: in place of the schematic."""
+    """The gaps at a corner; circuit: instead of the schematic."""
     found, _ = phases(setup, spec, corner, circuit)
     return Gaps(min(found), max(found))
 
 
 def rows(spec: SupportSpec, found: Pair[Gaps]) -> Iterator[Row]:
-    """Layout beside schematic, with the limits of `make analog`."""
+    """Return figures of layout and schematic, with the limits of `make analog`."""
     yield found.row("switch drivers: shortest gap", "ns", lambda one: 1e9 * one.shortest, least=1e9 * spec.gap)
     yield found.row("switch drivers: longest gap", "ns", lambda one: 1e9 * one.longest, 1e9 * spec.lost)

@@ -1,4 +1,4 @@
-"""Error against run time: what a solution keeps, beside a converged one, and the seconds that it takes."""
+"""Error against run time: orders and other settings compared with a converged solution, and their seconds."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""One geometry, asked for by its fields: its response over angle, and Eq. 3.1 beside it."""
+"""One geometry of the command line: its response over angle, and Eq. 3.1 fitted to it."""
 
 import json
 from dataclasses import asdict

@@ -1,4 +1,4 @@
-"""The page of a process's pixel: cross-section, curves beside Eq. 3.1, what was tried, what moves the result."""
+"""The page of a process's pixel: cross-section, curves and Eq. 3.1, geometries tried, sensitivities."""
 
 import io
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Pictures of a plan's pixels: their cross-section with the light in it, their responses beside Eq. 3.1."""
+"""Pictures of a plan's pixels: cross-section with the light in it, responses and Eq. 3.1."""
 
 from collections.abc import Mapping
 

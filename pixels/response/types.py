@@ -134,7 +134,7 @@ def at_heights(design: Design, heights: str) -> Design:
 
 
 def axes_of(response: Response) -> dict[str, Any]:
-    """What response.npz has beside the response: its angles in rad, wavelengths in m, and polarizations."""
+    """Axes of response.npz: angles in rad, wavelengths in m, and polarizations."""
     return {
         "angles": response.angles,
         "wavelengths": 1e-6 * response.wavelengths_um,

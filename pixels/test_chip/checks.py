@@ -51,7 +51,7 @@ def lvs(gds: Path, text: str, masks: AnalogMasks, report: Path) -> bool:
 
 
 def untied(layout: "db.Layout", masks: AnalogMasks) -> list[str]:
-    """Unused outputs that are not on ground, which have no names of their own in LVS."""
+    """Return unused outputs that are not on ground; LVS has no separate names for them."""
     pdk, places = masks.base.name, dict(ANALOG_PORTS)
     found = shapes(layout, layout.top_cell(), layout_platform(pdk), extraction_platform(pdk))
 

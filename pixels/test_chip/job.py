@@ -84,7 +84,7 @@ def make(pdk: str, out: Path, note: Callable[[str], None] = lambda text: None) -
 
 
 def write_named(chip: TestChip, path: Path) -> None:
-    """Write the layout with the names that LVS compares: outputs tied to ground have none of their own."""
+    """Write the layout with the names that LVS compares: outputs tied to ground share its name."""
     write_gds(relabelled(chip.layout, {port: port for port in PORTS}), path)
 
 

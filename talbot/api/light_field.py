@@ -33,7 +33,7 @@ class Disparity(Image):
 
 
 class LightField:
-    """A light field l[v, u, y, x] or l[v, u, y, x, rgb]: what stands before the sensor, or an estimate of it.
+    """A light field l[v, u, y, x] or l[v, u, y, x, rgb]: the scene of a sensor, or an estimate of it.
 
         field = talbot.LightField(views)  # or talbot.LightField.load("views/")
         near = field.refocus(1.0)  # what has 1 px per view step is sharp

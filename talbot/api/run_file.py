@@ -1,4 +1,4 @@
-"""Runs in files: everything of a frame, and what other programs read beside it."""
+"""Runs in files: everything of a frame, and files for other programs."""
 
 import gzip
 import json

@@ -83,12 +83,12 @@ class Sensor:
     divider, f_clk, ...).
 
     tile: rows of PixelType, 1..4 of 1..6 each, [[a, b], [c, d]]; or TileParameters. A PixelType has beta, gamma_deg,
-    alpha, perhaps an m of its own, or response=f: a function of the incidence angles theta_x and theta_y, arrays (n,)
+    alpha, optionally m, or response=f: a function of the incidence angles theta_x and theta_y, arrays (n,)
     in rad, that gives the response of both diodes, (2, n), 0 or more.
     converter: 'typical', 'ideal', 'circuit' (as ngspice has it), or a dict of inl, dnl, offset, noise, ktc (LSB),
     unit_mismatch (relative) and seed.
     pixel: 'ideal' (Eq. 3.1), 'sky130' or 'ihp-sg13g2': what the process's gratings do, as `make sim PIXEL=sky130`;
-    types with a response of their own keep it. Tables are computed once, in half a minute.
+    types with a response keep it. Tables are computed once, in half a minute.
 
     Raises ParameterError for an unknown name or a value out of range.
     """
@@ -143,12 +143,12 @@ class Sensor:
         return sensor
 
     def simulate(self, scene: Seen = "motorcycle", mode: str = "edge", **settings: Unpack[Settings]) -> Run:
-        """One frame through the chip's Verilog, as `make sim` does it, and through the golden model beside it.
+        """One frame through the chip's Verilog, as `make sim` does it, and through the golden model.
 
         The simulator is compiled for each size of array and tile, then kept.
 
         scene: one of `talbot.scenes`, an image, a light field's file or folder, or a light field or its array, whose
-        size a sensor without rows and cols of its own takes.
+        size that a sensor without rows and cols takes.
         mode: edge (differences), image (sums), raw (both diodes) or tof (four taps). settings:
 
         seed: of every random draw, 0..2**32-1 (1). noise: times the physical noise, 0..100 (1).
@@ -158,12 +158,12 @@ class Sensor:
         col1), both ends included (all). decimation: log2 of the tile step, 0..3 (0).
         threshold: in edge mode, |code| below it is left out, 0..127 (10). phase: in tof mode, phase and amplitude from
         the chip's divider (False); noise_floor: amplitude below which a phase is not valid, 0..255 (0).
-        lux: illuminance of white, 0.001..1e6 (500); time of flight has a light of its own, white_current.
+        lux: illuminance of white, 0.001..1e6 (500); time of flight has another light, white_current.
         exposure: rows by which the reset pointer leads, 0..1023, or None for as many as that light asks for.
         timing: cycles of the amplifier's phases, {'t_int': 512, ...}: t_reset, t_int, t_cm, t_settle, t_read, t_guard,
-        1..65535, and n_cm, common-mode resets, 0..255; with a t_int of its own an exposure of None is 0 rows.
+        1..65535, and n_cm, common-mode resets, 0..255; with t_int given, an exposure of None is 0 rows.
         overlap: integrate a row while another converts (True).
-        test_pattern: digital, in place of the pixels (False). frame_number: 0..65535 (0).
+        test_pattern: digital, instead of the pixels (False). frame_number: 0..65535 (0).
 
         Raises ParameterError, and ToolError where the simulator cannot be made.
         """
@@ -186,7 +186,7 @@ class Sensor:
         frames: a folder of pictures, an animated picture or a video (models/scene/README.md); or arrays (height, width)
         or (height, width, 3), any iterable of them: uint8 and uint16 are sRGB codes, floats linear radiance, 0..16.
         All have one size and stand on the plane of pictures without depth. Frames are read, and runs made, as they are
-        asked for. mode and settings: as of `simulate`, without depth. Each frame has temporal noise of its own, and
+        asked for. mode and settings: as of `simulate`, without depth. Each frame has independent temporal noise, and
         the next frame_number.
 
         Raises ParameterError, ToolError.
@@ -250,7 +250,7 @@ def _check_names(field: str, values: Mapping[str, Any], known: Sequence[str]) ->
 
 
 def _values(parameters: SensorParameters) -> dict[str, Any]:
-    """Every parameter that has a name of its own."""
+    """Return every parameter by name."""
     values = {}
     for name, path in NAMES.items():
         value: Any = parameters
@@ -267,7 +267,7 @@ def _changed(
     pixel: str | None,
     named: Mapping[str, Any],
 ) -> SensorParameters:
-    """``base`` with these in place of its own."""
+    """Return ``base`` with these fields replaced."""
     tables: dict[str, Any] = {}
     for name, value in named.items():
         if name not in NAMES:

@@ -42,7 +42,7 @@ def _content(part: object) -> list[bytes]:
 def cached(folder: Path | str, make: Callable[[Path], object]) -> Path:
     """Return ``folder`` as ``make(temporary folder)`` filled it, now or earlier; after an exception nothing is left.
 
-    A folder in which a file of then is missing or changed is made again.
+    A folder in which a file is missing or changed is made again.
     """
     folder = Path(folder)
     if _sound(folder):
@@ -65,7 +65,7 @@ def cached(folder: Path | str, make: Callable[[Path], object]) -> Path:
 
 
 def _names(folder: Path) -> list[str]:
-    """The files below ``folder`` that count as its content: not what Python keeps beside its modules."""
+    """The files below ``folder`` that count as its content: not what Python keeps next to its modules."""
     files = (path for path in folder.rglob("*") if path.is_file() and "__pycache__" not in path.parts)
     return sorted(str(path.relative_to(folder)) for path in files)
 

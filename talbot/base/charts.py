@@ -100,7 +100,7 @@ def curves(
 ) -> Figure:
     """Draw lines with markers. series: name -> points (x, y, label or ''); mark: one (x, y) to circle.
 
-    styles: of series by name, `SCATTER` or `LINE`. A label that has no place beside its point is left out.
+    styles: of series by name, `SCATTER` or `LINE`. A label that has no place next to its point is left out.
     """
     legend_rows = -(-len(series) // 2) if len(series) > 1 else 0
     figure = Figure(figsize=(4.6, 3.2 + 0.18 * legend_rows), layout="constrained")
@@ -144,7 +144,7 @@ def front(points: Iterable[tuple[float, float, str]]) -> list[tuple[float, float
 
 
 def place_labels(axes: Axes, points: Sequence[tuple[float, float, str]], size: float = 7) -> None:
-    """Write the labels of ``points`` (x, y, label or '') beside them, over no other label, point or line."""
+    """Write the labels of ``points`` (x, y, label or '') next to them, over no other label, point or line."""
     figure = axes.figure
     canvas = FigureCanvasAgg(figure)  # pyright: ignore[reportArgumentType]
     canvas.draw()  # the layout is that of the finished figure

@@ -30,7 +30,7 @@ class Job:
     """One call: ``call(*arguments)`` returns JSON or dataclasses (which `base.records.from_json` reads back).
 
     name: unique among the jobs of a run, a file name. inputs: paths (their content counts), texts and numbers that
-    decide the result beside the code of ``call``, which is found by itself.
+    decide the result next to the code of ``call``, which is found by itself.
     """
 
     name: str

@@ -35,11 +35,11 @@ PLAIN = (type(None), bool, int, float, complex, str, bytes, slice, range, np.gen
 
 
 class Unnamed(TypeError):
-    """The content of an object cannot be told."""
+    """The content of an object cannot be determined."""
 
 
 def kept(store: str, compute: Callable[..., T], *arguments: object, most: int = MOST) -> T:
-    """Return ``compute(*arguments)``, now or earlier; computed where an argument's content cannot be told.
+    """Return ``compute(*arguments)``, now or earlier; computed where an argument's content cannot be determined.
 
     store: name of the folder of such values. compute: a function of a module; a value that cannot be pickled is
     computed each time. most: size of the store in bytes.

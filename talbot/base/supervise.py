@@ -1,6 +1,6 @@
 """A program in a child process, so that SIGINT, SIGTERM and SIGHUP end it at any moment and leave nothing behind.
 
-The parent waits. At a signal it kills every process below it (tools in sessions of their own too), removes what was
+The parent waits. At a signal it kills every process below it (tools in separate sessions too), removes what was
 being written, and exits with 128 + the signal's number. No code of the program is interrupted, so none of it has to be
 ready for that; where files must appear together, `undisturbed` lets the end wait.
 """

@@ -194,7 +194,7 @@ def started(
     env: Mapping[str, str] | None = None,
     cwd: Path | str | None = None,
 ) -> Iterator["subprocess.Popen[bytes]"]:
-    """Start ``command``, a process group of its own, which ends with the context at the latest.
+    """Start ``command`` as a separate process group, which ends with the context at the latest.
 
     log: gets both outputs. files: open ones that it keeps. env: see `finish`. Raises ToolError when there is no such
     program.

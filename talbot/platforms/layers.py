@@ -88,7 +88,7 @@ class Crossing:
     """Capacitance between two layers, one above the other; their LEF names, or DIFFUSION.
 
     overlap_af_um2: of the area where they overlap. down_af_um, up_af_um: of an edge of the upper one to the lower one
-    beside it, and of an edge of the lower one to the upper.
+    next to it, and of an edge of the lower one to the upper.
     """
 
     upper: str

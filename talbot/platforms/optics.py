@@ -41,7 +41,7 @@ class OpticalStack:
 
     metals: from the lowest. films: of the dielectrics, from the silicon below the field oxide up, which is height 0;
     metals lie inside them. surface_um: height of the silicon of active areas, where photodiodes are. finger_um: minimum
-    width of a diffusion, and space between two. gate: polysilicon over active areas, where it lies inside
+    width of a diffusion, and space between two. gate: polysilicon over active areas, where it is inside
     one film. grid_um: of what is drawn. heights: name of the table of heights.
     """
 

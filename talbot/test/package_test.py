@@ -1,4 +1,4 @@
-"""One package, `talbot`: in a checkout its parts are links to the folders beside it, in a wheel they are folders."""
+"""One package, `talbot`: in a checkout its parts are links to the folders next to it, in a wheel they are folders."""
 
 import os
 import shutil

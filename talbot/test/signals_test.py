@@ -41,7 +41,7 @@ def sim(folder, *more):
 
 
 def begun(child):
-    """Wait for the first line of `talbot`, which holds signals back: before it, Python ends by rules of its own."""
+    """Wait for the first line of `talbot`, which holds signals back: before it, Python ends by its own rules."""
     bit, until = 1 << signal.SIGTERM - 1, time.monotonic() + 200
     while child.poll() is None and time.monotonic() < until:
         masks = re.findall(r"Sig(?:Blk|Cgt):\s*(\w+)", Path(f"/proc/{child.pid}/status").read_text(encoding="utf-8"))

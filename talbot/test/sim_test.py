@@ -230,7 +230,7 @@ def test_refused_in_one_line(words, said, tmp_path, monkeypatch, capsys):
 
 
 def test_no_room_for_the_results(photograph, tmp_path):
-    """A limit on the size of files stands in for a full disk: writing fails half-way through."""
+    """A limit on the size of files acts as a full disk: writing fails half-way through."""
     program(request(rows=13, cols=50, lanes=4).sensor)  # compiled without the limit
 
     def small_files():

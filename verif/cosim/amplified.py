@@ -30,7 +30,7 @@ def sized(pdk: str, spec: LaneSpec, lane: LaneSizes) -> tuple[AmplifierSpec, Amp
 
 
 def circuits(sizes: AmplifierSizes) -> tuple[Circuit, ...]:
-    """What a lane has beside its converter."""
+    """Parts of a lane other than its converter."""
     return amplifier(sizes), bias()
 
 

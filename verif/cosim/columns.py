@@ -75,7 +75,7 @@ def lines(
     """Lines of the deck; see `drive` for their controls. lanes: of each column; the lanes' lines end at cola0, colb0.
 
     diodes: (a, b) in LSB of each column and tap. edge: lanes get both diodes, else the mean. trim: initial voltages: an
-    operating point of so many floating nodes takes minutes, and what rises from 0 V couples into the others (as drawn
+    operating point of these floating nodes takes minutes, and what rises from 0 V couples into the others (as drawn
     0.5 LSB of a sum). cols: that the row's lines pass. swapped: columns whose diodes are on each other's line. cut:
     column from which on the row's read line is open.
     """
@@ -167,7 +167,7 @@ def trimmed(spec: ColumnSpec, edge: bool, cycle: float, high: float, drawn: bool
     """Bias alone, from off; then, STEPS times, a pixel without light. drawn: of the column as drawn. Raises ToolError.
 
     Each begins as the one before ended, and so does a row. The bias's lines are given to the first, too: where ngspice
-    finds no operating point it takes the end of a transient of its own, 10 us long, and they need milliseconds.
+    finds no operating point it takes the end of a transient, 10 us long, and they need milliseconds.
     """
     sizes, pixels = size(spec, analog), PixelSizes()
     reset, read, ends = 2, 6, 6 + spec.settle + spec.read

@@ -106,7 +106,7 @@ def build(
     """The circuit that reads one row.
 
     values: LSB at (column, sub-sample). lanes: of the chip; only those that serve one of these columns are built, with
-    ``everything`` all. unsigned: the range of all values; else -128..127. row: pixels in place of ideal columns. drawn:
+    ``everything`` all. unsigned: the range of all values; else -128..127. row: pixels instead of ideal columns. drawn:
     circuits as drawn and extracted; without ``fault``.
     """
     columns = tuple(sorted({column for column, _ in values}))

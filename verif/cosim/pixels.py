@@ -2,7 +2,7 @@
 
 A pixel has two wells. A transistor of each resets it from the row's reset line, another connects it to its column
 line from the row's read line. A charge amplifier at each column line, with a capacitor of the well's size, takes all
-of its charge, whatever the capacitance of the well's junctions. Beside the row is a dark pixel whose amplifiers hold
+of its charge, whatever the capacitance of the well's junctions. Next to the row is a dark pixel whose amplifiers hold
 what the switches leave: that is taken off every column. The value is formed as in `models/afe`, and transistors
 sample it on a capacitor for each tap.
 

@@ -1,4 +1,4 @@
-"""One row through the chip's Verilog with the circuit in the loop, and its codes beside the real-number model's."""
+"""One row through the chip's Verilog with the circuit in the loop, and its codes next to the real-number model's."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -64,7 +64,7 @@ class RowRequest:
     t_int : int
         Cycles of integration, 1..65535.
     whole : bool
-        Every cycle of the integration is simulated, not one in place of all.
+        Every cycle of the integration is simulated, not one instead of all.
     amplifier : bool
         The lanes' difference amplifiers are in the circuit: edge mode with its pixels, or any with ``columns``; a clock
         that is high for what the amplifier asks.
@@ -73,7 +73,7 @@ class RowRequest:
     extracted : bool
         Lanes, amplifiers, biases and column amplifiers are as drawn, with their parasitics; without ``fault``.
     partition : bool
-        Each lane and its columns are a circuit and a process of their own, with references, bias and row lines of their
+        Each lane and its columns are a separate circuit and process, with references, bias and row lines of their
         own; one chip hears all of them.
     sensor : SensorParameters
         Of which the small array has the tile and the chip.

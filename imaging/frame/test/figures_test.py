@@ -65,7 +65,7 @@ def test_trims_are_from_a_flat_field_of_its_own_light(name):
 
 
 def test_the_bench_measures_the_chip_that_takes_the_frame():
-    """The same fixed pattern, other noise: pixels of one type have the trims of their own gains."""
+    """The same fixed pattern, other noise: the trims follow the gains of the type's pixels."""
     quiet = {"read_noise": 0.0, "offset_fpn": 0.0, "column_fpn": 0.0, "flicker_noise": 0.0, "gain_fpn": 0.1}
     asked = request(4, 6, scene="flat:50")
     asked = replace(asked, sensor=replace(asked.sensor, electrical=replace(asked.sensor.electrical, **quiet)))
@@ -77,7 +77,7 @@ def test_the_bench_measures_the_chip_that_takes_the_frame():
 
 
 def test_an_image_is_judged_where_it_is_read():
-    """What lies outside of a window changes no figure of quality"""
+    """Pixels outside of a window change no figure of quality"""
     asked = request(40, 48, mode="image", window=lambda full: Window(1, 3, 1, 4), noise=0.0)
     result = simulate_frame(asked)
     figures = image_quality(result)

@@ -1,4 +1,4 @@
-"""What costs nothing stands beside every figure, and what is no better says so."""
+"""Every figure has a baseline that costs nothing, and is marked where it is no better."""
 
 import pytest
 

@@ -37,7 +37,7 @@ class Learned:
 
 
 def learned(seeds: Sequence[int], atoms: int, rounds: int, seed: int) -> Learned:
-    """A dictionary of ``atoms`` from scenes of ``seeds``, in so many batches."""
+    """Return a dictionary of ``atoms`` from scenes of ``seeds``, learned in ``rounds`` batches."""
     rng, parts = np.random.default_rng(seed), []
     for field in each(light_fields(seeds), "scenes", total=len(seeds)):
         windows = sliding_window_view(field.astype(np.float32), PATCH, (2, 3))

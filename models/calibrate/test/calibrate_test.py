@@ -1,4 +1,4 @@
-"""Types, aperture and chief ray from synthetic sweeps, and what cannot be told."""
+"""Types, aperture and chief ray from synthetic sweeps, and quantities that cannot be determined."""
 
 import json
 from dataclasses import replace

@@ -60,7 +60,7 @@ WILD = st.one_of(  # most of them stop the processor
 
 
 def _jump(item, place, starts, end):
-    """Return the words of a jump at ``place``, to the item so many further on; a loop goes back so many."""
+    """Return the words of ``item``, a jump by items at ``place``; a loop goes back."""
     name, d, a, count = item
     if name == "loop":
         here = max(0, place - count)

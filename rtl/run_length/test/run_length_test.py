@@ -335,7 +335,7 @@ class TestRunLengthFL:
             assert self.bench(header).run(scan_of(rows)) == stream_of(header, rows, 0, 0)
 
     def test_frames_back_to_back(self):
-        """Each frame is complete, whatever was before: frames of any mode, stray messages, a reset in a frame."""
+        """Each frame is complete after frames of any mode, messages out of place, or a reset in a frame."""
         pick, bench = random.Random(2), self.bench(header_of())
         for _ in range(self.many):
             what, header = pick.choice(("nothing", "no frame", "rows", "reset")), any_header(pick)

@@ -49,7 +49,7 @@ def add_cell(
 
 
 def with_latches(library: Group) -> Group:
-    """Give the clock gates of ``library`` a latch and a function in place of a state table, which Yosys does not read.
+    """Give the clock gates of ``library`` a latch and a function instead of a state table, which Yosys does not read.
 
     Of those that Liberty calls latch_posedge: a latch, open while the clock is low, and an AND. Changes and returns it.
     """

@@ -58,7 +58,7 @@ class Tile(NamedTuple):
 
 @dataclass(frozen=True)
 class Scale:
-    """What the colours of a picture mean: ``colours`` (n, 3), uint8, stand for values from ``low`` to ``high``."""
+    """Legend of a picture: ``colours`` (n, 3), uint8, represent values from ``low`` to ``high``."""
 
     colours: npt.NDArray[np.uint8]
     low: float

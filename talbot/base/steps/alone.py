@@ -1,4 +1,4 @@
-"""A call in a process of its own: its memory is measured, a library that crashes ends nothing else, and the end of
+"""A call in a separate process: its memory is measured, a library that crashes ends nothing else, and the end of
 this process ends that one and the tools that it runs."""
 
 import ctypes

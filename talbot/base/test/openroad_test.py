@@ -1,4 +1,4 @@
-"""OpenROAD's Python package in place of the program: which is called, and the package itself where it is installed."""
+"""OpenROAD's Python package instead of the program: which is called, and the package itself where it is installed."""
 
 import shutil
 import sys

@@ -72,7 +72,7 @@ def heard():
 
 
 def started(folder, words, prepare=heard):
-    """A Python with ``words`` in a session of its own, known by TEST_MARK=``folder``, in which Ctrl-C counts."""
+    """A Python with ``words`` in a separate session, known by TEST_MARK=``folder``, in which Ctrl-C counts."""
     environment = {key: value for key, value in os.environ.items() if key != "TALBOT_RUN"}
     return subprocess.Popen(
         [sys.executable, *words],

@@ -180,7 +180,7 @@ def cards(
 ) -> list[str]:
     """The models' lines for (role, w, l) at tt, ss, ff, sf or fs; mismatch: every instance is drawn, but of ``alike``.
 
-    Without it all transistors of a size have one model. Inside its subcircuit every instance has all bins of its own:
+    Without it all transistors of a size have one model. Inside its subcircuit every instance has its own bins:
     a circuit of 480 transistors took ngspice 10 s to read, one of 2000 minutes.
     """
     lines = models.cards("binned", process, {(ROLES[role], w, length) for role, w, length in sizes})

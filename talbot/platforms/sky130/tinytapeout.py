@@ -61,7 +61,7 @@ CONFIG = {
 
 
 def core_um2(tiles: str) -> float:
-    """Area for cells in so many tiles."""
+    """Return the area for cells in ``tiles`` tiles."""
     width, height = SIZES_UM[tiles]
     columns, rows = round(width / SITE.width_um) - MARGIN_SITES, round(height / SITE.height_um) - MARGIN_ROWS
     return columns * SITE.width_um * rows * SITE.height_um

@@ -1,4 +1,4 @@
-"""A call in a process of its own ends when its work is done."""
+"""A call in a separate process ends when its work is done."""
 
 import subprocess
 import sys

@@ -152,7 +152,7 @@ class Order(Repeat):
 
 
 class Tool(Repeat):
-    """A tool that would run for a minute, its process's number told in the given file."""
+    """A tool that would run for a minute and writes its process number to the given file."""
 
     name = "tool"
 

@@ -1,4 +1,4 @@
-"""Functions taken from the cells' Verilog against the equations that SkyWater publishes beside it."""
+"""Functions taken from the cells' Verilog against the equations that SkyWater publishes next to it."""
 
 import itertools
 import json
