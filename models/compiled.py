@@ -36,7 +36,7 @@ class Compiled:
         return getattr(_numba(), decorator)(*arguments, **options)(function)
 
     def __call__(self, *arguments: Any, **named: Any) -> Any:
-        """The function's value."""
+        """Return the function's value."""
         return self.compiled(*arguments, **named)
 
     def __reduce__(self) -> str:

@@ -91,7 +91,7 @@ def optical_cases() -> list[Case]:
 
 
 def _within(name: str, bound: str, value: float, low: float, high: float) -> Case:
-    """A case that is ok where low <= value <= high (never for NaN)."""
+    """Return a case that is ok where low <= value <= high (never for NaN)."""
     return Case(name, bound, f"{value:.3g}", bool(low <= value <= high))
 
 

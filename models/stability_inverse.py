@@ -43,7 +43,7 @@ def inverse_cases() -> list[Case]:
 
 
 def _scene(slope: float = 1.0) -> Floats:
-    """A light field of texture at a disparity of ``slope`` px per view step, 0.1..0.9, (5, 5, rows, cols)."""
+    """Return a light field of texture at a disparity of ``slope`` px per view step, 0.1..0.9, (5, 5, rows, cols)."""
     y, x = np.indices(SHAPE)
     steps = np.arange(-2, 3) * slope
     return np.array(
@@ -101,7 +101,7 @@ def _amid_dead(estimator: FieldEstimator, pair: Floats) -> Estimate:
 
 
 def _bounded(name: str, estimate: Estimate, top: float, known: float | None = None) -> Case:
-    """An estimate within BOUND times the light ``top``; known: share of the pixels that may have a disparity."""
+    """Return an estimate within BOUND times the light ``top``; known: share of the pixels that may have a disparity."""
     field, sure = estimate.light_field, float((estimate.spread < SURE).mean())
     finite = bool(
         np.isfinite(field).all() and np.isfinite(estimate.disparity).all() and not np.isnan(estimate.spread).any()
@@ -196,7 +196,7 @@ def _coded() -> list[Case]:
 
 
 def _calibrations() -> list[Case]:
-    """A calibration without modulation, without a type, and without light."""
+    """Return a calibration without modulation, without a type, and without light."""
     tile, side = TileParameters(), np.linspace(-0.38, 0.38, 9)
     holes = np.stack([grid.ravel() for grid in np.meshgrid(side, side, indexing="ij")], 1)
     places = np.stack(np.meshgrid(*(np.arange(12.0) - 5.5 for _ in range(2)), indexing="ij"), -1)

@@ -91,7 +91,7 @@ class Block:
 def blocks(
     array: ArrayParameters | None = None, chip: ChipParameters | None = None, sizes: AnalogSizes | None = None
 ) -> tuple[Block, ...]:
-    """The four analog blocks. Raises ParameterError where there is no room for the pins."""
+    """Return the four analog blocks. Raises ParameterError where there is no room for the pins."""
     array, chip, sizes = array or ArrayParameters(), chip or ChipParameters(), sizes or AnalogSizes()
     return (
         pixel_array(array),
@@ -137,7 +137,7 @@ def lane_lines(chip: ChipParameters, sizes: AnalogSizes) -> list[tuple[str, floa
 
 
 def pixel_array(array: ArrayParameters) -> Block:
-    """The pixels alone, without what a drawn array has around them."""
+    """Return the pixels alone, without what a drawn array has around them."""
     width, height = array.cols * array.pitch * 1e6, array.rows * array.pitch * 1e6
     return Block(
         "pixel_array",
@@ -152,7 +152,7 @@ def pixel_array(array: ArrayParameters) -> Block:
 
 
 def row_driver(array: ArrayParameters, sizes: AnalogSizes) -> Block:
-    """The drivers of all rows: the chip in the south, each row's lines in the east, supplies in the west."""
+    """Return the drivers of all rows: the chip in the south, each row's lines in the east, supplies in the west."""
     height = array.rows * array.pitch * 1e6
     return Block(
         "row_driver",
@@ -237,7 +237,7 @@ def _spread(block: str, names: Sequence[str], direction: str, begin: float, end:
 
 
 def _supplies(side: str, length: float, names: Sequence[str]) -> list[Pin]:
-    """A pin of each supply for every 500 um of the side, one at least."""
+    """Return a pin of each supply for every 500 um of the side, one at least."""
     count = max(1, round(length / 500))
     return [
         Pin(name, "inout", side, (place + (1 + k) / (len(names) + 1)) * length / count, True)

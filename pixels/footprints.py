@@ -33,14 +33,14 @@ USES = {name: "GROUND" if name == "vssa" else "POWER" for name in SUPPLIES}
 
 
 def layer(pin: Pin, pdk: str) -> Layer:
-    """The metal of a pin. Raises ParameterError for a process without one for supplies."""
+    """Return the metal of a pin. Raises ParameterError for a process without one for supplies."""
     if pin.supply:
         return top_metal(pdk).metal
     return layout_platform(pdk).metals[VERTICAL if pin.side in ("north", "south") else ACROSS]
 
 
 def box(pin: Pin, block: Block, supply_um: float, grid_um: float) -> Box:
-    """The shape of a pin, on the grid."""
+    """Return the shape of a pin, on the grid."""
     vertical = pin.side in ("north", "south")
     wide = (supply_um if pin.supply else WIDE_UM) / 2
     deep = supply_um if pin.supply else DEEP_UM
@@ -51,7 +51,7 @@ def box(pin: Pin, block: Block, supply_um: float, grid_um: float) -> Box:
 
 
 def lef(block: Block, pdk: str, supply_um: float, taken: Iterable[str] = ()) -> str:
-    """The LEF of a block: outline, pins, and an obstruction on their layers over all that is deeper than these.
+    """Return the LEF of a block: outline, pins, and an obstruction on their layers over all that is deeper than these.
 
     taken: LEF names of further layers that are obstructed.
     """
@@ -81,7 +81,7 @@ def lef(block: Block, pdk: str, supply_um: float, taken: Iterable[str] = ()) -> 
 
 
 def black_box(block: Block, pdk: str, supply_um: float) -> "db.Layout":
-    """The layout of a footprint: pins with their names, and the outline."""
+    """Return the layout of a footprint: pins with their names, and the outline."""
     import klayout.db as db
 
     tech, layout = layout_platform(pdk), db.Layout()

@@ -91,7 +91,7 @@ def _betas(sensor: SensorParameters, pixel: str) -> list[float]:
 
 
 def _table(pixel: str, beta: float, note: Callable[[str], None] = lambda text: None) -> Path:
-    """The folder with the table for ``beta``."""
+    """Return the folder with the table for ``beta``."""
     chosen = gratings(pixel)
     geometry, wavelength = chosen.geometries[beta], chosen.wavelength_um
     key = digest(code("talbot.pixels.optics.table"), geometry, wavelength)
@@ -104,7 +104,7 @@ def _table(pixel: str, beta: float, note: Callable[[str], None] = lambda text: N
 
 @lru_cache(maxsize=16)
 def _loaded(pixel: str, beta: float) -> tuple[Design, Floats]:
-    """The design for ``beta`` as it measures, and its table (4, along, across), 1 as a plain diode."""
+    """Return the design for ``beta`` as it measures, and its table (4, along, across), 1 as a plain diode."""
     chosen = gratings(pixel)
     geometry, wavelength = chosen.geometries[beta], chosen.wavelength_um
     shares = np.load(_table(pixel, beta) / "table.npy")

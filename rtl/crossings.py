@@ -50,7 +50,7 @@ class Netlist:
                 self.readers.setdefault(bit, []).append(Reader(name, "pin", name, ()))
 
     def synchronized(self, first: Reader) -> bool:
-        """Whether only the data input of a second flip-flop reads the flip-flop ``first``."""
+        """Return whether only the data input of a second flip-flop reads the flip-flop ``first``."""
         return [(r.kind, r.port) for bit in first.out for r in self.readers.get(bit, [])] == [(FLIP_FLOP, "D")]
 
     def raw(self, bit: int, gates: set[int]) -> set[str]:

@@ -23,7 +23,7 @@ and the file that has its traceback), 130 Ctrl-C, 143 terminated.
 
 
 def parser(chosen: str = "") -> Parser:
-    """The parser of all commands, with the arguments of ``chosen`` alone."""
+    """Return the parser of all commands, with the arguments of ``chosen`` alone."""
     about = f"The open design flow for angle-sensitive-pixel sensors.\n\n{listing(make=False)}"
     layout = argparse.RawDescriptionHelpFormatter
     top = Parser(prog="talbot", description=about, epilog=STATUS, formatter_class=layout, usage="talbot COMMAND ...")
@@ -39,7 +39,7 @@ def parser(chosen: str = "") -> Parser:
 
 
 def command(name: str) -> ModuleType:
-    """The module of a command, imported now."""
+    """Return the module of a command, imported now."""
     return importlib.import_module(f"talbot.{COMMANDS[name].module}")
 
 

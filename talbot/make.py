@@ -62,7 +62,7 @@ def arguments(
 
 
 def _at_home(parser: Parser, name: str, value: str) -> str:
-    """A value with ~ or ~user before it expanded: no shell has seen it (SCENE=~/photo.png)."""
+    """Return a value with ~ or ~user before it expanded: no shell has seen it (SCENE=~/photo.png)."""
     path = os.path.expanduser(value)
     if path.startswith("~"):
         parser.error(f"{name} = {value!r}: must begin with a user's home folder (or ./{value})")

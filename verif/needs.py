@@ -88,7 +88,7 @@ def mount() -> bool:
 
 
 def projects() -> bool:
-    """Whether the Tiny Tapeout projects are laid out."""
+    """Return whether the Tiny Tapeout projects are laid out."""
     from talbot.base.paths import BUILD
 
     names = "tt_quad_divider", "tt_amp_ctrl", "tt_asp_chip"  # as flow.openroad.tinytapeout.PROJECTS
@@ -96,14 +96,14 @@ def projects() -> bool:
 
 
 def openroad() -> bool:
-    """Whether OpenROAD is installed, the program or the wheel."""
+    """Return whether OpenROAD is installed, the program or the wheel."""
     from talbot.base.openroad import program
 
     return bool(program())
 
 
 def librelane() -> bool:
-    """Whether LibreLane is installed in build/librelane."""
+    """Return whether LibreLane is installed in build/librelane."""
     from talbot.base.paths import BUILD
 
     return (BUILD / "librelane" / "bin" / "python").is_file()

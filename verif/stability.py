@@ -81,7 +81,7 @@ def frame_cases(name: str, arguments: dict[str, Any]) -> list[Case]:
 
 
 def divider_cases() -> list[Case]:
-    """The divider where it is stiff: equal operands, zeros, full scale, every sign."""
+    """Return the divider where it is stiff: equal operands, zeros, full scale, every sign."""
     full = np.array([-256, -255, 255])
     corners = [np.ravel(a) for a in np.meshgrid(full, full)]
     equal = np.arange(-255, 256)

@@ -68,7 +68,7 @@ def table(names: Sequence[str], out: Path, before: str = "") -> str:
 
 
 def row(summary: Mapping[str, Any]) -> list[str]:
-    """The figures of one summary; '' for one that it does not have."""
+    """Return the figures of one summary; '' for one that it does not have."""
     slacks = [min(summary[name].values()) if summary[name] else None for name in ("wns_ns", "whs_ns")]
     power = next((uw for corner, uw in (summary["power_uw"] or {}).items() if corner.startswith("tt")), None)
     leakage = " / ".join(f"{uw:,.{0 if uw >= 100 else 2}f}" for uw in (summary.get("leakage_uw") or {}).values())

@@ -76,7 +76,7 @@ def fit(name: str, folder: Path) -> tuple[Fit, Path]:
 
 
 def table(fits: Sequence[Fit]) -> str:
-    """The table in Markdown."""
+    """Return the table in Markdown."""
     lines = [
         "| project | tiles | cells | flip-flops | cells' area, um2 | tiles' core, um2 | full |",
         "|---|---|---:|---:|---:|---:|---:|",

@@ -88,6 +88,6 @@ def _escaped(name: str) -> str:
 
 
 def voltages(path: Path) -> list[float]:
-    """The voltages of a file that OpenROAD wrote."""
+    """Return the voltages of a file that OpenROAD wrote."""
     with path.open(encoding="utf-8") as file:
         return [float(row["Voltage"]) for row in csv.DictReader(file, skipinitialspace=True)]

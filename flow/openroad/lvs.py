@@ -42,7 +42,7 @@ class Lvs(Step[PdkParameters]):
 
 
 def top_of(verilog: Path) -> str:
-    """The module of a netlist's file."""
+    """Return the module of a netlist's file."""
     found = re.search(r"(?m)^module (\S+)", verilog.read_text(encoding="utf-8"))
     if not found:
         raise StepError(f"lvs: {verilog}: no module")
@@ -59,7 +59,7 @@ def subcircuits(text: str) -> dict[str, tuple[list[str], list[str]]]:
 
 
 def spice(netlist: Netlist, cells: dict[str, tuple[list[str], list[str]]]) -> str:
-    """The netlist with supplies, and the subcircuits that it uses."""
+    """Return the netlist with supplies, and the subcircuits that it uses."""
     used = [instance for instance in netlist.instances if instance.cell in cells]
     ports = " ".join(net for port in netlist.ports for net in port.bits())
     lines = [f".subckt {netlist.name} {ports}", *(_call(k, i, cells[i.cell][0]) for k, i in enumerate(used)), ".ends"]
@@ -74,7 +74,7 @@ def _call(number: int, instance: Instance, ports: Sequence[str]) -> str:
 
 
 def _device(match: re.Match[str]) -> str:
-    """A transistor, or the resistor without resistance of the constants' cell."""
+    """Return a transistor, or the resistor without resistance of the constants' cell."""
     name, nets, kind, width, length = match.groups()
     if kind == "short" or "__res_" in kind:
         return f"R{name} {' '.join(nets.split()[:2])} 0 SHORT"

@@ -34,7 +34,7 @@ def summarize(
     size_um: tuple[float, float],
     checked: Runner,
 ) -> dict[str, Any]:
-    """The figures of a run; None for those that are not measured.
+    """Return the figures of a run; None for those that are not measured.
 
     found: figures of the stages' logs. folder: of the run. size_um: (width, height) of the die. checked: the checks.
     """
@@ -77,7 +77,7 @@ def summarize(
 
 
 def worst(found: Mapping[str, float], name: str, corners: Sequence[str]) -> dict[str, float | None]:
-    """The least of the figure ``name`` over the wires' corners, by corner of the cells."""
+    """Return the least of the figure ``name`` over the wires' corners, by corner of the cells."""
     return {corner: min((v for key, v in found.items() if _of(key, name, corner)), default=None) for corner in corners}
 
 
@@ -86,7 +86,7 @@ def _parts(found: Mapping[str, float], prefix: str) -> dict[str, float]:
 
 
 def _of(key: str, name: str, corner: str) -> bool:
-    """Whether ``key`` is 'name.<wires>.corner'."""
+    """Return whether ``key`` is 'name.<wires>.corner'."""
     return key.startswith(f"{name}.") and key.endswith(f".{corner}")
 
 

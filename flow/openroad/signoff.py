@@ -33,7 +33,7 @@ ELSEWHERE = Sta, MeshDrop  # OpenROAD itself times all corners and solves the po
 
 
 def checks(design: Design, tech: OpenRoadPlatform) -> list[Step]:
-    """The steps, in order."""
+    """Return the steps, in order."""
     timing = timing_steps(design, Options(pdk=tech.name, utilization=tech.utilization))
     powered = [step.parameters.corner for step in timing if isinstance(step, Power)]
     nets = tech.supply[0], tech.ground[0]

@@ -58,7 +58,7 @@ def wire_corners(tech: OpenRoadPlatform, root: Path) -> list[str]:
 
 
 def pdk_root(tech: OpenRoadPlatform, environment: Mapping[str, str] = os.environ) -> Path:
-    """The folder PDK_ROOT, every file of the process there. Raises ParameterError."""
+    """Return the folder PDK_ROOT, every file of the process there. Raises ParameterError."""
     root = environment.get("PDK_ROOT", "")
     if not root:
         install = f"pip install ciel; ciel enable --pdk-family {tech.name} <version>"

@@ -91,7 +91,7 @@ pinout:
 
 
 def page(project: Project, verilog: str) -> str:
-    """The page docs/info.md of the shuttle's datasheet; the protocol is the comment at the head of our files."""
+    """Return the page docs/info.md of the shuttle's datasheet; the protocol is the comment at the head of our files."""
     heads = re.findall(r"(?m)((?:^//.*\n)+)\n`default_nettype none", verilog)
     works = "\n".join(re.sub(r"(?m)^// ?", "", head) for head in heads)
     sections = ("How it works", works), ("How to test", project.test), ("External hardware", "None.")

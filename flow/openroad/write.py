@@ -17,7 +17,7 @@ from talbot.signoff.netlist.gating import ClockGate
 
 
 def rtl(design: Design, folder: Path) -> str:
-    """The Verilog of a Design, exported now: text. Raises ToolError."""
+    """Return the Verilog of a Design, exported now: text. Raises ToolError."""
     (path,) = export_verilog(folder, [design.top], design.options)
     return path.read_text(encoding="utf-8")
 

@@ -42,7 +42,7 @@ def areas() -> dict[str, float]:
 
 
 def yosys_installed() -> bool:
-    """Whether Yosys is installed."""
+    """Return whether Yosys is installed."""
     return located("yosys") is not None
 
 

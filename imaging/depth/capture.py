@@ -63,7 +63,7 @@ def capture(
     code: ElectricalParameters | None = None,
     direct: bool = False,
 ) -> DepthFrames:
-    """The frames of ``request``, which is in tof mode.
+    """Return the frames of ``request``, which is in tof mode.
 
     code: instead of the sensor's, of more frames. direct: of a scene whose light comes straight from the surfaces, all
     of it. Raises ParameterError, ToolError.

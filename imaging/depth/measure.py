@@ -61,7 +61,7 @@ class Depth:
 
 
 def leading(methods: Container[str]) -> str:
-    """The method whose depth leads."""
+    """Return the method whose depth leads."""
     return CODED if CODED in methods else SINE
 
 
@@ -143,7 +143,7 @@ def _phases(frames: DepthFrames, field: DepthField, ideal: DepthField, white: fl
 
 
 def _three(estimator: FieldEstimator, diodes: Values, white: float) -> tuple[DepthField, float]:
-    """The depth field without the last tap, and the seconds that it takes."""
+    """Return the depth field without the last tap, and the seconds that it takes."""
     start = perf_counter()
     return depth_field(estimator, diodes[:3] / white), perf_counter() - start
 
@@ -260,6 +260,6 @@ def _passing(phasors: Complexes, disparity: float, clear: Sequence[Bools]) -> tu
 
 
 def _beyond(phase: Values, limit: float, ambiguity: float) -> Values:
-    """The least depth in m behind ``limit`` that has this phase."""
+    """Return the least depth in m behind ``limit`` that has this phase."""
     fine = phase / (2 * np.pi) % 1 * ambiguity
     return fine + np.maximum(np.ceil((limit - fine) / ambiguity), 0) * ambiguity

@@ -70,7 +70,7 @@ def _row(m: dict[str, Any], span: float) -> tuple[str, ...]:
 
 
 def lead_line(s: dict[str, Any]) -> str:
-    """The leading method of the summary ``s``, its error where it is sure, and what costs nothing."""
+    """Return the leading method of the summary ``s``, its error where it is reliable, and the baseline."""
     lead = s["depth_method"]
     error, _, sure, _ = _row(s["methods"][lead], s["range_m"])
     beside = f"one depth for all {number(s['baselines']['constant']['rms_m'], 4, ' m')}"

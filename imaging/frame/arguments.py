@@ -37,5 +37,5 @@ def window(text: str, full: Window) -> Window:
 
 
 def named(scene: str) -> str:
-    """The name of a scene: of its file or folder, also where that is given as ., x/.. or /."""
+    """Return the name of a scene: of its file or folder, also where that is given as ., x/.. or /."""
     return (Path(scene).stem.strip(".") and Path(scene).stem) or Path(os.path.abspath(scene)).name or "root"

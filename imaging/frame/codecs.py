@@ -55,7 +55,7 @@ def absent(codec: str) -> str | None:
 
 
 def coded(image: Values, codec: str, size: int) -> Values | None:
-    """An image (rows, cols) >= 0 through a codec, at its best quality of at most ``size`` bytes.
+    """Return an image (rows, cols) >= 0 through a codec, at its best quality of at most ``size`` bytes.
 
     None where even the worst is larger, and where the codec is `absent`.
     """

@@ -171,7 +171,7 @@ def typed_of(
 
 
 def name_of(typed: dict[str, Any]) -> str:
-    """A folder's name: coins-raw, motorcycle-types=low,high-window=10_40,8_50; a long one ends in a digest."""
+    """Return a folder's name: coins-raw, motorcycle-types=low,high-window=10_40,8_50; a long one ends in a digest."""
     parts = [named(typed["scene"])]
     for name, value in list(typed.items())[1:]:
         value = Path(value).stem if name in ("depth", "sensor", "calibration") else value
@@ -187,7 +187,7 @@ def tell_replaced(before: dict[str, Any] | None, typed: dict[str, Any]) -> None:
 
 
 def arguments_of(folder: Path) -> dict[str, Any] | None:
-    """The arguments of the run whose results are in ``folder``, None where there is none."""
+    """Return the arguments of the run whose results are in ``folder``, None where there is none."""
     try:
         arguments = json.loads((folder / "summary.json").read_text(encoding="utf-8"))["arguments"]
         return arguments if arguments["scene"] else None
@@ -196,7 +196,7 @@ def arguments_of(folder: Path) -> dict[str, Any] | None:
 
 
 def request_of(a: Namespace, sensor: SensorParameters | None = None, sequence: bool = False) -> "FrameRequest":
-    """The FrameRequest of `add_frame_arguments`, scene, depth, waves and out. Raises ParameterError.
+    """Return the FrameRequest of `add_frame_arguments`, scene, depth, waves and out. Raises ParameterError.
 
     The sensor has the size of a light field's views where neither rows, cols nor a sensor file are typed.
     sensor: instead of that of the options, their camera included. sequence: the scene is one, no light field.
@@ -239,7 +239,7 @@ def request_of(a: Namespace, sensor: SensorParameters | None = None, sequence: b
 
 
 def camera_of(a: Namespace, camera: CameraParameters) -> CameraParameters:
-    """The ``camera`` with what the options ``a`` change."""
+    """Return the ``camera`` with what the options ``a`` change."""
     field = {"focal": "focal_length", "pupil": "exit_pupil"}
     texts = {name: getattr(a, name) for name in (option.replace("-", "_") for option in CAMERA)}
     chosen = {field.get(n, n): real(n, v, 0, float("inf")) for n, v in texts.items() if v is not None}

@@ -23,7 +23,7 @@ PEAK = 255.0  # span of the 8-bit codes
 
 
 def mismatches(first: bytes, second: bytes) -> int:
-    """How many bytes differ, a missing byte counting as one."""
+    """Return how many bytes differ, a missing byte counting as one."""
     a, b = (np.frombuffer(x, np.uint8) for x in (first, second))
     common = min(a.size, b.size)
     return int((a[:common] != b[:common]).sum()) + abs(a.size - b.size)
@@ -36,13 +36,13 @@ def psnr(error: Values) -> float | None:
 
 
 def events_of(result: FrameResult) -> Events:
-    """What the frame did, for its energy."""
+    """Return the frame's events, for its energy."""
     chip = result.chip
     return golden_events(result.golden, chip.stream, chip.status["cycles"], chip.activity["busy"])
 
 
 def golden_events(golden: GoldenFrame, stream: bytes, cycles: int, busy: int) -> Events:
-    """What a frame of ``cycles`` that sends ``stream`` does, the chip being busy for ``busy`` cycles."""
+    """Return the events of a frame of ``cycles`` that sends ``stream``; the chip is busy for ``busy`` cycles."""
     array, taps = golden.sensor.array, 4 if golden.frame.mode == "tof" else 1
     rows, columns = int(golden.read.any(1).sum()), int(golden.read.any(0).sum())
     seconds, sent = cycles / golden.sensor.chip.f_clk, np.frombuffer(stream, np.uint8)
@@ -77,7 +77,7 @@ def energy_of(result: FrameResult) -> dict[str, float]:
 
 
 def light_of(result: FrameResult) -> dict[str, float] | None:
-    """The light source of time of flight, None in other modes.
+    """Return the light source of time of flight, None in other modes.
 
     power_w: electrical, while it is on. lit_s: of a frame, in which a row integrates. irradiance: of the focal plane in
     W/m^2 while it is on; mean_irradiance: of frame after frame. eye_limit: of infrared at an eye for more than 1000 s.
@@ -111,7 +111,7 @@ def light_line(summary: dict[str, Any]) -> str:
 
 
 def edge_pays_below(events: Events, conversions: int) -> float:
-    """The share of converted samples below which edge mode takes less than image mode, at most 1.
+    """Return the share of converted samples below which edge mode takes less than image mode, at most 1.
 
     A converted sample counts with its share of the bytes and changes of the frame that had ``events``.
     """
@@ -124,7 +124,7 @@ def edge_pays_below(events: Events, conversions: int) -> float:
 
 
 def image_mode(events: Events, samples: int) -> Events:
-    """The events with a full conversion and a byte for every sample; half of the data pins change."""
+    """Return the events with a full conversion and a byte for every sample; half of the data pins change."""
     digital = events.digital._replace(decisions=DECISIONS * samples, bytes=samples)
     return events._replace(decisions=DECISIONS * samples, toggles=(4 + 2) * samples, digital=digital)
 
@@ -168,7 +168,7 @@ def camera_of(result: GoldenResult) -> dict[str, float | None]:
 
 
 def exposure_of(result: GoldenResult) -> dict[str, Any]:
-    """How long a row integrates, and the light: lux of the room, to volts and codes of a white diode.
+    """Return how long a row integrates, and the light: lux of the room, to volts and codes of a white diode.
 
     white_electrons: before the first common-mode reset. deviating_rows: rows that integrated other than the formula
     says, by the pins of the chip; of the golden chip none.
@@ -195,7 +195,7 @@ def exposure_of(result: GoldenResult) -> dict[str, Any]:
 
 
 def exposure_line(summary: dict[str, Any]) -> str:
-    """How long a row integrates, in what light, and what white gives, in one line."""
+    """Return a row's integration, the light and the codes of white, in one line."""
     x = summary["exposure"]
     text = f"a row integrates {1e3 * x['integration_s']:.3g} ms of {1e3 * summary['frame_s_at_clock']:.3g} ms"
     if x["deviating_rows"]:
@@ -240,7 +240,7 @@ def trims_at_end(trims: Iterable[int]) -> list[int]:
 
 
 def trims_line(summary: dict[str, Any]) -> str:
-    """What `trims_at_end` found, '' if nothing."""
+    """Return a line about the types of `trims_at_end`, '' if there are none."""
     kinds = summary["trims_at_end"]
     if not kinds:
         return ""

@@ -27,7 +27,7 @@ class HardwareFrame(FrameRun):
 
 
 def program(sensor: SensorParameters, waves: str = "", note: Callable[[str], None] = lambda text: None) -> Path:
-    """The compiled bench for ``sensor``. waves: as of Build. Raises ToolError."""
+    """Return the compiled bench for ``sensor``. waves: as of Build. Raises ToolError."""
     return bench_program(Build.of(sensor, waves), note)
 
 
@@ -92,7 +92,7 @@ def chip(program: Path, front_end: FrontEnd, taps: int, stall: int = 0) -> Itera
 
 
 def _with_status(run: FrameRun, after: Sequence[bytes]) -> HardwareFrame:
-    """The run with what the transfers ``after`` its frame brought back, at the end of its SPI bytes."""
+    """Return the run with what the transfers ``after`` its frame brought back, at the end of its SPI bytes."""
     replies, end = [], len(run.miso)
     for transfer in reversed(after):
         replies.insert(0, run.miso[end - len(transfer) : end])

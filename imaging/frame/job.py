@@ -56,7 +56,7 @@ class Clock:
 
 
 def see(request: FrameRequest) -> tuple[Scene, Plan]:
-    """The scene that ``request`` names and the plan of its frame. Raises ParameterError."""
+    """Return the scene that ``request`` names and the plan of its frame. Raises ParameterError."""
     scene = _loaded(request)
     for note in scene.notes:
         say(note)
@@ -66,7 +66,7 @@ def see(request: FrameRequest) -> tuple[Scene, Plan]:
 
 
 def _loaded(request: FrameRequest) -> Scene:
-    """The scene; that of a request which names none is kept, with the functions that render it."""
+    """Return the scene; that of a request which names none is kept, with the functions that render it."""
     sampling = Sampling.of(request.sensor)
     if request.scene == FrameRequest.scene and request.depth is None:
         return Scene(**kept("scenes", _parts, request.scene, sampling))
@@ -74,7 +74,7 @@ def _loaded(request: FrameRequest) -> Scene:
 
 
 def _parts(name: str, sampling: Sampling) -> dict[str, Any]:
-    """The fields of a scene: a copy of the scene itself would hold all of its light field."""
+    """Return the fields of a scene: a copy of the scene itself would hold all of its light field."""
     scene = load(name, sampling)
     return {item.name: getattr(scene, item.name) for item in fields(scene)}
 
@@ -116,7 +116,7 @@ def _samples(
 
 
 def trimmed(request: FrameRequest) -> FrontEnd:
-    """The sensor's front end; its trims come from a frame of a flat field, or from a calibration.
+    """Return the sensor's front end; its trims come from a frame of a flat field, or from a calibration.
 
     Where the dark current alone fills the wells there is no flat field: the trims are those of the optics.
     """
@@ -141,7 +141,7 @@ def diodes_of(request: FrameRequest, pairs: npt.NDArray[np.floating], front_end:
 
 
 def numbered(front_end: FrontEnd, sensor: SensorParameters, number: int) -> FrontEnd:
-    """The front end at a frame of a sequence: its noise has the next seed in each (pixels/afe.sv)."""
+    """Return the front end at a frame of a sequence: its noise has the next seed in each (pixels/afe.sv)."""
     if front_end.converter is None:
         return front_end
     seed = (sensor.converter.seed + number) % (1 << 32)
@@ -149,7 +149,7 @@ def numbered(front_end: FrontEnd, sensor: SensorParameters, number: int) -> Fron
 
 
 def dark_filled(request: FrameRequest) -> bool:
-    """Whether the dark current of a row's integration leaves less than a tenth of a full well to the light."""
+    """Return whether the dark current of a row's integration leaves less than a tenth of a full well to the light."""
     return _dark_electrons(request) > 0.9 * request.sensor.electrical.full_well
 
 
@@ -166,7 +166,7 @@ def _flat_timing(request: FrameRequest) -> AmpTiming:
 
 
 def flat_field(request: FrameRequest) -> Values:
-    """The sensor's diodes, (rows, cols, 2) in LSB, before a flat field at half of white, dark current taken off.
+    """Return the sensor's diodes, (rows, cols, 2) in LSB, before a flat field at half of white, dark current taken off.
 
     One frame of the same chip and timing with independent noise, from which the trims are measured as on a bench: in
     the light of a lamp whose white gives the signal of RoomParameters, whatever the light of the frame is.
@@ -183,7 +183,7 @@ def flat_field(request: FrameRequest) -> Values:
 
 
 def _of_columns(request: FrameRequest, diodes: Values, mode: str) -> Values:
-    """What the column amplifiers give of ``diodes`` (taps, rows, cols, 2)."""
+    """Return the column amplifiers' outputs for ``diodes`` (taps, rows, cols, 2)."""
     columns = request.columns
     if columns is None:
         return diodes
@@ -216,7 +216,7 @@ def _golden(samples: Values, sensor: SensorParameters, frame: FrameParameters, f
 
 
 def _decoded(stream: bytes, tile: TileParameters) -> DecodedFrame:
-    """The first frame of a stream. Raises StreamError where there is none."""
+    """Return the first frame of a stream. Raises StreamError where there is none."""
     return decode_stream(stream, tile)[0]
 
 
@@ -231,7 +231,7 @@ def simulate_frame(request: FrameRequest, note: Callable[[str], None] = lambda t
 
 
 def golden_result(request: FrameRequest, note: Callable[[str], None] = lambda text: None) -> GoldenResult:
-    """The same frame by the golden chip alone. Raises ParameterError."""
+    """Return the same frame by the golden chip alone. Raises ParameterError."""
     clock = Clock(note=note)
     exposed = _exposed(request, clock)
     with clock.step("decode"):
@@ -252,7 +252,7 @@ def _exposed(request: FrameRequest, clock: Clock) -> Exposed:
 
 
 def _prepared(request: FrameRequest, clock: Clock, waves: str = "") -> tuple[Exposed, Path]:
-    """The exposure and the simulator, which is built while the scene is captured. waves: as of Build.
+    """Return the exposure and the simulator, which is built while the scene is captured. waves: as of Build.
 
     Where the scene cannot be captured the compiler ends, too.
     """

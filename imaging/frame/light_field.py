@@ -67,7 +67,7 @@ class Part(NamedTuple):
 
 
 def part_of(result: Readout) -> Part | None:
-    """What is read; None where that is not every tile of a window: decimated, or with rows that are lost."""
+    """Return the region that is read; None where it is not every tile of a window (decimation, lost rows)."""
     frame, (rows, cols) = result.request.frame, result.sensor.shape
     tile, window = result.sensor.tile, frame.window
     types = np.array([bool(frame.mask >> kind & 1) for kind in range(tile.n_types)])
@@ -113,7 +113,7 @@ def estimate(result: Readout, method: str = DEFAULT, prior: FieldPrior | None = 
 
 
 def whole_tiles(result: Readout) -> Part:
-    """What is read. Raises ParameterError where that is not every tile of a window."""
+    """Return the region that is read. Raises ParameterError where it is not every tile of a window."""
     part = part_of(result)
     if part is None:
         name, step = "decimation", result.request.frame.decimation
@@ -130,7 +130,7 @@ def tried(views: int, near: float | None, far: float | None) -> dict[str, float]
 
 
 def prior_of(result: Readout, near: float | None = None, far: float | None = None, **rest: Any) -> FieldPrior:
-    """The prior of a frame: the noise of its sensor in its mean light, its contrast. rest: other of its fields.
+    """Return the prior of a frame: the noise of its sensor in its mean light, its contrast. rest: other of its fields.
 
     near, far: by default a disparity of `SHIFT` between the views at the pupil's ends, however many are between.
     """
@@ -193,7 +193,7 @@ def reached(result: Readout) -> npt.NDArray[np.bool_]:
 
 
 def _cut(sensor: SensorParameters, part: Part) -> SensorParameters:
-    """The sensor of the part alone: its tiles are whole, so that its types lie as in the array."""
+    """Return the sensor of the part alone: its tiles are whole, so that its types lie as in the array."""
     rows, cols = (side.stop - side.start for side in part.box)
     return replace(sensor, array=replace(sensor.array, rows=rows, cols=cols))
 

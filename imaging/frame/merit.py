@@ -8,17 +8,17 @@ Summary = dict[str, Any]
 
 
 def decibels(value: float | None) -> str:
-    """A figure in dB."""
+    """Return a figure in dB."""
     return "-" if value is None else f"{value:.1f} dB"
 
 
 def percent(value: float | None) -> str:
-    """A fraction in %."""
+    """Return a fraction in %."""
     return "-" if value is None else f"{100 * value:.3g} %"
 
 
 def ratio(value: float | None) -> str:
-    """A figure without a unit."""
+    """Return a figure without a unit."""
     return "-" if value is None else f"{value:.2f}"
 
 

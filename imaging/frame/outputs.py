@@ -62,7 +62,7 @@ def write(folder: Path, result: FrameResult, summary: dict[str, Any]) -> None:
 
 
 def _drawn(result: GoldenResult, summary: dict[str, Any]) -> Drawn:
-    """The pictures of a frame. summary: without MEASURED."""
+    """Return the pictures of a frame. summary: without MEASURED."""
     singles, errors, sheets = shown(result, summary), error_maps(result, summary), _sheets(result)
     files = {picture.name: picture.png for picture in (*singles, *errors, *sheets)}
     files["overview"] = encoded(pictures.overview([(picture.name, picture.image) for picture in singles]))
@@ -77,7 +77,7 @@ def _drawn(result: GoldenResult, summary: dict[str, Any]) -> Drawn:
 
 
 def shown(result: GoldenResult, summary: dict[str, Any]) -> list[Picture]:
-    """The single pictures of the mode."""
+    """Return the single pictures of the mode."""
     frame, golden, decoded, scene = result.request.frame, result.golden, result.decoded, result.exposed.scene
     out = [_gray("scene", "the scene, centre view", scene.image, 0.0, pictures.brightest(scene.image))]
     samples = decoded.samples.astype(float)
@@ -132,13 +132,13 @@ def _signed(name: str, caption: str, values: Values, scale: float, unit: str) ->
 
 
 def _error(name: str, caption: str, error: Values, unit: str) -> Picture:
-    """A signed map; its colours end where all but a hundredth of the pixels are within."""
+    """Return a signed map; its colours end where all but a hundredth of the pixels are within."""
     scale = max(float(np.nanquantile(np.abs(error), 0.99)), 1e-6)
     return replace(_signed(f"{name}_error", caption, np.nan_to_num(error), scale, unit), title=name)
 
 
 def _depth(result: GoldenResult, summary: dict[str, Any]) -> Picture:
-    """The depth from near to far, as far as the scene reaches where its depth is known."""
+    """Return the depth from near to far, as far as the scene reaches where its depth is known."""
     depth, truth = depth_map(result), result.exposed.scene.depth
     seen = depth[~np.isnan(depth)] if truth is None else truth
     low, high = (float(np.quantile(seen, share)) for share in (0.0, 1.0)) if seen.size else (0.0, 1.0)
@@ -150,14 +150,14 @@ def _depth(result: GoldenResult, summary: dict[str, Any]) -> Picture:
 
 
 def _within(result: GoldenResult, image: Values, low: float, high: float) -> tuple[Values, float, float]:
-    """The image, white outside the rectangle of what is read: no sample of the frame is there."""
+    """Return the image, white outside the rectangle of what is read: no sample of the frame is there."""
     out, part = np.full_like(image, high), part_read(result.golden.read)
     out[part] = image[part]
     return out, low, high
 
 
 def _sheets(result: GoldenResult) -> list[Picture]:
-    """The contact sheets of the mode."""
+    """Return the contact sheets of the mode."""
     sensor, frame = result.request.sensor, result.request.frame
     if frame.mode not in ("edge", "raw"):
         return []
@@ -181,7 +181,7 @@ def _fields(result: GoldenResult, summary: dict[str, Any]) -> list[tuple[str, Va
 
 
 def _views(fields: list[tuple[str, Values]]) -> list[Views]:
-    """The fields for the slider, and the error of the second."""
+    """Return the fields for the slider, and the error of the second."""
     if not fields:
         return []
     top = pictures.brightest(fields[0][1])

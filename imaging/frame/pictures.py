@@ -31,7 +31,7 @@ def grays(field: Values, high: float) -> list[list[Image]]:
 
 
 def brightest(values: Values) -> float:
-    """What is shown white: all but a thousandth is darker."""
+    """Return the value shown as white: all but a thousandth is darker."""
     return max(float(np.quantile(values, 0.999)), 1e-6)
 
 
@@ -60,7 +60,7 @@ def depth(values: Values, low: float, high: float) -> Image:
 
 
 def depth_colours() -> npt.NDArray[np.uint8]:
-    """The colours of `depth`, (256, 3), from near to far."""
+    """Return the colours of `depth`, (256, 3), from near to far."""
     from matplotlib import colormaps
 
     return np.round(255 * colormaps["viridis"](np.linspace(0, 1, 256))[:, :3]).astype(np.uint8)
@@ -74,7 +74,7 @@ def angle(values: Values) -> Image:
 
 
 def angle_colours() -> npt.NDArray[np.uint8]:
-    """The colours of `angle` from -pi/2 to pi/2, (256, 3)."""
+    """Return the colours of `angle` from -pi/2 to pi/2, (256, 3)."""
     from matplotlib import colormaps
 
     return np.round(255 * colormaps["twilight"](np.linspace(0, 1, 256))[:, :3]).astype(np.uint8)
@@ -87,12 +87,12 @@ def marked(values: Values, mask: npt.NDArray[np.bool_]) -> Image:
 
 
 def signed_scale(scale: float, unit: str) -> Scale:
-    """The colours of `signed`."""
+    """Return the colours of `signed`."""
     return Scale(np.asarray(signed(np.linspace(-scale, scale, 511)[None], scale))[0], -scale, scale, unit)
 
 
 def gray_scale(low: float, high: float, unit: str) -> Scale:
-    """The colours of `gray`."""
+    """Return the colours of `gray`."""
     return Scale(np.asarray(gray(np.linspace(low, high, 511)[None], low, high).convert("RGB"))[0], low, high, unit)
 
 
@@ -127,14 +127,14 @@ def contact_sheet(
 
 
 def edge_sheet(edges: Values, tile: TileParameters, scale: float) -> Image:
-    """The 24 edge images (n_types, tile_rows, tile_cols) as a contact sheet, one row a beta."""
+    """Return the 24 edge images (n_types, tile_rows, tile_cols) as a contact sheet, one row a beta."""
     images = [signed(edge, scale) for edge in edges]
     labels = [f"{t.beta:g}, {t.gamma_deg:g}°{' sin' if t.alpha else ' cos'}" for t in tile.types]
     return contact_sheet(images, labels, columns=max(1, len(images) // 3), aspect=tile.cols / tile.rows)
 
 
 def view_sheet(light_field: Values, cell: int = 96) -> Image:
-    """The views l[v, u, y, x] in their order, dark to bright by the field's own maximum."""
+    """Return the views l[v, u, y, x] in their order, dark to bright by the field's own maximum."""
     high = float(light_field.max()) or 1.0
     v, u = light_field.shape[:2]
     images = [gray(light_field[j, i], high=high) for j in range(v) for i in range(u)]
@@ -153,6 +153,6 @@ def sprite(images: Sequence[Sequence[Image]], width: int) -> Image:
 
 
 def overview(named: Sequence[tuple[str, Image]], cell: int = 288) -> Image:
-    """The run's pictures side by side, each with its name."""
+    """Return the run's pictures side by side, each with its name."""
     square = [image.convert("RGB").resize((cell, cell), Resampling.LANCZOS) for _, image in named]
     return contact_sheet(square, [name for name, _ in named], len(named), cell)

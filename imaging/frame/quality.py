@@ -27,7 +27,7 @@ ROUNDING = 1e-6  # codes RMS: a signal of less is what arithmetic leaves of none
 
 
 def ideal_samples(ideal: Values, frame: FrameParameters) -> Values:
-    """What a perfect chip would send, in codes, (rows, cols, subs).
+    """Return the codes that a perfect chip would send, (rows, cols, subs).
 
     The analog values, or, of the four taps, their phase (256 = a turn) and amplitude.
     """
@@ -134,7 +134,7 @@ def ssim(image: Values, truth: Values) -> float | None:
 
 
 def coded_sum(result: GoldenResult) -> Values:
-    """The sum image that the same exposure gives in image mode, every pixel read, relative radiance."""
+    """Return the sum image that the same exposure gives in image mode, every pixel read, relative radiance."""
     request, samples = result.request, result.exposed.samples
     frame = FrameParameters(request.sensor.full_window, mode="image", timing=request.frame.exposing)
     sums = golden_frame(samples.mean(0, keepdims=True), request.sensor, frame, result.exposed.front_end)
@@ -176,7 +176,7 @@ def depth_quality(result: GoldenResult) -> dict[str, float | None]:
 
 
 def depth_map(result: GoldenResult) -> Values:
-    """The depth in time of flight, (rows, cols) in m, NaN where there is no amplitude."""
+    """Return the depth in time of flight, (rows, cols) in m, NaN where there is no amplitude."""
     phase, strength = result.echo
     depth = depth_of(phase, result.request.sensor.electrical.f_mod)
     return np.where(result.golden.read & (strength > 0), depth, np.nan)

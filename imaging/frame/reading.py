@@ -66,7 +66,7 @@ def asked(
     add_arguments: Callable[[ArgumentParser], None],
     sensor: SensorParameters | None = None,
 ) -> tuple[FrameRequest, dict[str, Any]]:
-    """The request, and the arguments that its folder tells. sensor: see `request_of`. Raises ParameterError.
+    """Return the request, and the arguments that its folder tells. sensor: see `request_of`. Raises ParameterError.
 
     A rendered scene has its own size where no other is given.
     """
@@ -81,7 +81,7 @@ def asked(
 
 
 def frame_of(request: FrameRequest, note: Note, golden: bool) -> GoldenResult:
-    """The frame by the chip's Verilog, or by the golden chip alone. Raises ParameterError, ToolError."""
+    """Return the frame by the chip's Verilog, or by the golden chip alone. Raises ParameterError, ToolError."""
     return (golden_result if golden else simulate_frame)(request, note)
 
 
@@ -140,23 +140,23 @@ def rms(error: npt.NDArray[np.floating]) -> float | None:
 
 
 def line(s: dict[str, Any]) -> str:
-    """What a page says below its title of the summary ``s``."""
+    """Return the text below a page's title, from the summary ``s``."""
     by = "the chip's Verilog" if s["chip"] else "the golden model"
     return f"{s['rows']} x {s['cols']} pixels, {s['views']} x {s['views']} views, noise {s['noise']:g}, by {by}"
 
 
 def differs(s: dict[str, Any]) -> bool:
-    """Whether chip and golden model differ in the summary ``s``."""
+    """Return whether chip and golden model differ in the summary ``s``."""
     return bool(s["stream_mismatches"] or s["decoded_mismatches"])
 
 
 def agreement(s: dict[str, Any]) -> Tile:
-    """Whether chip and golden model agree, where the chip ran."""
+    """Return whether chip and golden model agree, where the chip ran."""
     if not s["chip"]:
         return Tile("not run", "the chip's Verilog", "none")
     return report.agreement(s["stream_mismatches"] or s["decoded_mismatches"])
 
 
 def number(value: float | None, digits: int = 2, unit: str = "") -> str:
-    """A figure, '-' where there is none."""
+    """Return a figure, '-' where there is none."""
     return "-" if value is None else f"{value:.{digits}f}{unit}"

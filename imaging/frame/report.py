@@ -44,13 +44,13 @@ FIRST = "differences", "depth", "image"  # names of pictures, one of which is on
 
 
 def agreement(differ: int, unit: str = "values", of: str = "") -> Tile:
-    """Whether the chip and the golden model agree. differ: how many do not."""
+    """Return whether the chip and the golden model agree. differ: how many do not."""
     about = f"chip against golden model{of}"
     return Tile(f"{differ} {unit} differ", about, "bad") if differ else Tile("byte for byte", about, "good")
 
 
 def headline(s: dict[str, Any]) -> list[Tile]:
-    """The figures of the summary ``s`` to see first."""
+    """Return the figures of the summary ``s`` to see first."""
     return [
         agreement(s["stream_mismatches"] or s["decoded_mismatches"]),
         Tile(f"{s['compression_ratio']:.1f} : 1", f"{s['stream_bytes']:,} of {s['raw_bytes']:,} bytes"),
@@ -71,7 +71,7 @@ def render(
     errors: Sequence[Markup],
     assumed: Sequence[Sourced] = (),
 ) -> str:
-    """The page as HTML. chip: SVG text. where, errors: SVG of where cycles went, of error against time.
+    """Return the page as HTML. chip: SVG text. where, errors: SVG of where cycles went, of error against time.
 
     views: light fields side by side, of as many views. assumed: parameters, and where they come from.
     """

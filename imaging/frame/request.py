@@ -144,7 +144,7 @@ def request(
 
 
 def light_field_of(scene: str | LightField) -> LightField | None:
-    """The light field that a scene is, read where it is a file's or folder's name; None for another scene.
+    """Return the light field that a scene is, read where it is a file's or folder's name; None for another scene.
 
     Raises ParameterError.
     """
@@ -172,7 +172,7 @@ def _tell(text: str) -> None:
 
 
 def _timing(request: FrameRequest, exposure: int | None, typed: bool) -> AmpTiming:
-    """The timing of ``asked`` with its exposure; typed: its t_int stays as it is."""
+    """Return the timing of ``asked`` with its exposure; typed: its t_int stays as it is."""
     frame, sensor = request.frame, request.lit
     if frame.mode == "tof":
         return replace(frame.timing, exposure=exposure or 0)

@@ -14,7 +14,7 @@ def add_pixel(parser: ArgumentParser) -> None:
 
 
 def asked_sensor(options: Namespace, default: SensorParameters = STANDARD) -> SensorParameters:
-    """The sensor of the options ``sensor`` (``default`` without a file) and ``pixel``. Raises ParameterError."""
+    """Return the sensor of the options ``sensor`` (``default`` without a file) and ``pixel``. Raises ParameterError."""
     from talbot.pixels.tabled import tabled
 
     return tabled(read_sensor(options.sensor) if options.sensor else default, options.pixel, line)

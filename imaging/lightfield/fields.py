@@ -38,7 +38,7 @@ class Fields:
 
 
 def methods_of(text: str) -> list[str]:
-    """The methods that ``text`` names, with commas, or all, and those of STANDARD. Raises ParameterError."""
+    """Return the methods that ``text`` names, with commas, or all, and those of STANDARD. Raises ParameterError."""
     words = [word for word in text.replace(",", " ").split() if word != ALL]
     for word in words:
         check_choice("method", word, (ALL, *METHODS))
@@ -97,7 +97,7 @@ def _by_truth(
 
 
 def baselines(image: Values, truth: Values) -> dict[str, float | None]:
-    """What costs nothing: the sum image in every view, and the mean of it."""
+    """Return the baselines: the sum image in every view, and its mean."""
     gray = np.full(truth.shape, image.mean(), np.float32)
     copied = np.broadcast_to(image, truth.shape)
     return {"sum_image_psnr_db": psnr_db(copied, truth), "gray_psnr_db": psnr_db(gray, truth)}

@@ -51,7 +51,7 @@ def write(folder: Path, fields: Fields) -> None:
 
 
 def headline(s: dict[str, Any]) -> list[Tile]:
-    """The figures of the summary ``s`` to see first."""
+    """Return the figures of the summary ``s`` to see first."""
     linear, best = s["methods"]["linear"], s["methods"][s["best"]]
     free, constant = decibels(s["baselines"]["sum_image_psnr_db"]), number(s["disparity_rms_constant_px"])
     return [
@@ -104,7 +104,7 @@ def _depth(fields: Fields) -> list[Picture]:
 
 
 def _refocused(fields: Fields, top: float) -> list[Picture]:
-    """The middle view, and pictures focused far, at the focal plane and near."""
+    """Return the middle view, and pictures focused far, at the focal plane and near."""
     best = fields.best
     middle = len(best.light_field) // 2
     image = pictures.gray(best.light_field[middle, middle], high=top)
@@ -124,7 +124,7 @@ def _focus(fields: Fields) -> list[list[float]]:
 
 
 def _stack(field: Values, focus: list[list[float]], top: float) -> list[list[Image]]:
-    """A light field focused on each disparity, every second row from right to left."""
+    """Return a light field focused on each disparity, every second row from right to left."""
     rows = [[pictures.gray(refocus(field, d), high=top) for d in row] for row in focus]
     return [row[::-1] if number % 2 else row for number, row in enumerate(rows)]
 

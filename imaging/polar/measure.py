@@ -53,7 +53,7 @@ class PolarFrame:
 def read_polarization(
     result: GoldenResult, highlight: float, note: Callable[[str], None] = lambda text: None
 ) -> PolarFrame:
-    """The polarization of a raw frame of any part of the array. highlight: of a highlight's polarized light."""
+    """Return the polarization of a raw frame of any part of the array. highlight: of a highlight's polarized light."""
     note("polarization")
     start = perf_counter()
     polarized, sums, over = _estimate(result, result.decoded.samples.astype(float))

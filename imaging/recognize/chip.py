@@ -40,14 +40,14 @@ class Reading:
 
 
 def sized(display: Display) -> SensorParameters:
-    """The sensor with the array that the display's picture fills."""
+    """Return the sensor with the array that the display's picture fills."""
     rows, cols = display.size
     sensor = display.sensor
     return replace(sensor, array=replace(sensor.array, rows=rows, cols=cols))
 
 
 def frame_request(display: Display, mode: str, threshold: int, noise: float, seed: int) -> FrameRequest:
-    """The frame of a picture. mode: edge, ternary or image; the first two read the types of alpha 0 alone."""
+    """Return the frame of a picture. mode: edge, ternary or image; the first two read the types of alpha 0 alone."""
     if mode == "image":
         return request(sensor=sized(display), mode=mode, noise=noise, seed=seed)
     mask = sum(1 << int(kind) for kind in phase_types(display.sensor))
@@ -77,7 +77,7 @@ def read(
 def samples_of(
     setup: FrameRequest, front_end: FrontEnd, display: Display, pictures: npt.NDArray[np.float32], first: int = 0
 ) -> list[tuple[npt.NDArray[np.float64], FrontEnd]]:
-    """What the front end of every frame samples, and its converters; ``pictures[0]`` is frame ``first``."""
+    """Return the samples and converters of every frame; ``pictures[0]`` is frame ``first``."""
     return [
         (diodes_of(setup, pair[None], front_end, first + i), numbered(front_end, setup.sensor, first + i))
         for i, pair in enumerate(display.currents(pictures))
@@ -104,7 +104,7 @@ def _frames(
 
 
 def ternary_stream(golden: GoldenFrame) -> bytes:
-    """An edge frame as a ternary mode sends it: each code that is not 0 is the threshold with its sign.
+    """Return an edge frame as a ternary mode sends it: each code that is not 0 is the threshold with its sign.
 
     These are the shortest values of the stream as it is (docs/stream.md), so any decoder of version 3 reads them.
     """

@@ -104,7 +104,7 @@ def _npz(path: Path) -> Pictures:
 
 
 def _idx(folder: Path) -> Pictures | None:
-    """The files of MNIST and its kin, gzipped or not; the test set where there is one."""
+    """Return the files of MNIST and its kin, gzipped or not; the test set where there is one."""
     parts = []
     for patterns in IDX:
         files = [sorted(folder.glob(pattern)) for pattern in patterns]
@@ -131,7 +131,7 @@ def _idx_array(path: Path) -> npt.NDArray[np.uint8]:
 
 
 def _cifar(folder: Path) -> Pictures | None:
-    """The binary version of CIFAR-10: data_batch_*.bin and test_batch.bin; gray by Rec. 601."""
+    """Return the binary version of CIFAR-10: data_batch_*.bin and test_batch.bin; gray by Rec. 601."""
     files = [*sorted(folder.glob("data_batch_*.bin")), *folder.glob("test_batch.bin")]
     if not files:
         return None
@@ -149,7 +149,7 @@ def _cifar(folder: Path) -> Pictures | None:
 
 
 def _folders(folder: Path) -> Pictures | None:
-    """A folder a class, or train/ and test/ with these: each picture's middle square, SIZE px wide, in gray."""
+    """Return a folder a class, or train/ and test/ with these: each picture's middle square, SIZE px wide, in gray."""
     tops = [folder / name for name in ("train", "test")]
     tops = tops if all(top.is_dir() for top in tops) else [folder]
     names = sorted({inner.name for top in tops for inner in top.iterdir() if inner.is_dir()})
@@ -167,7 +167,7 @@ def _folders(folder: Path) -> Pictures | None:
 
 
 def picture(path: Path, size: int = SIZE) -> npt.NDArray[np.uint8]:
-    """The middle square of a picture file in gray, (size, size). Raises ParameterError."""
+    """Return the middle square of a picture file in gray, (size, size). Raises ParameterError."""
     try:
         with Image.open(path) as image:
             gray = image.convert("L")

@@ -69,13 +69,13 @@ def _cells(row: dict[str, Any]) -> tuple[str, ...]:
 
 
 def lines(s: dict[str, Any]) -> str:
-    """The table as Markdown."""
+    """Return the table as Markdown."""
     out = ["| " + " | ".join(HEAD) + " |", "|---|" + "---:|" * (len(HEAD) - 1)]
     return "\n".join([*out, *("| " + " | ".join(row) + " |" for row in rows(s))]) + "\n"
 
 
 def about(s: dict[str, Any]) -> str:
-    """What a page says below its title."""
+    """Return the text below a page's title."""
     height, width = s["size"]
     return (
         f"{s['pictures']:,} pictures of {height} x {width} px in {s['classes']} classes, {s['trained_on']:,} to train, "

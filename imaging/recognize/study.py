@@ -109,17 +109,17 @@ class Seen:
 
 
 def in_focus(sensor: SensorParameters, shape: tuple[int, int]) -> Display:
-    """A picture that fills the array, a sensor px for each of its px."""
+    """Return a picture that fills the array, a sensor px for each of its px."""
     return Display(sensor, shape, 1, 0.0, 0)
 
 
 def out_of_focus(sensor: SensorParameters, shape: tuple[int, int], scale: int, blur: float) -> Display:
-    """A picture before the optics as a first layer. blur: in picture px."""
+    """Return a picture before the optics as a first layer. blur: in picture px."""
     return Display(sensor, shape, scale, blur * scale)
 
 
 def see(setting: Setting, radiance: npt.NDArray[np.float32]) -> Seen:
-    """What the network gets of pictures (n, height, width), by a front of the setting. Raises ParameterError."""
+    """Return the network's input for pictures (n, height, width), by a front of the setting. Raises ParameterError."""
     if setting.by_optics:
         return _edges(setting, radiance)
     shape: tuple[int, int] = radiance.shape[1:]  # pyright: ignore[reportAssignmentType]
@@ -234,7 +234,7 @@ def _seeds(setting: Setting) -> range:
 def trained(
     setting: Setting, channels: npt.NDArray[np.float32], data: Pictures, seed: int
 ) -> tuple[Callable[[npt.NDArray[np.float32]], npt.NDArray[np.intp]], int]:
-    """A classifier of channels, and its operations a picture behind the first layer."""
+    """Return a classifier of channels, and its operations a picture behind the first layer."""
     chosen = data.split(seed)[0]
     labels = data.labels[chosen]
     if setting.classifier != "kernel":
@@ -253,7 +253,7 @@ def trained(
 
 
 def network(setting: Setting, shape: tuple[int, ...], classes: int, seed: int) -> Network:
-    """A LeNet whose first layer is the optics, or 12 filters; random ones stay as they are drawn."""
+    """Return a LeNet whose first layer is the optics, or 12 filters; random ones stay as they are drawn."""
     first = [] if setting.by_optics else [Conv(FILTERS, KERNEL, fixed=setting.front == "random")]
     return Network(lenet(shape[0], classes, first), shape, seed)
 
@@ -318,6 +318,6 @@ def run(
 
 
 def figures(result: Mapping[str, Any]) -> dict[str, Any]:
-    """A result with the mean and the spread of its accuracies."""
+    """Return a result with the mean and the spread of its accuracies."""
     spread = Spread.of(result["accuracies"])
     return {"accuracy": spread.mean, "accuracy_std": spread.std} | dict(result)

@@ -81,7 +81,7 @@ def run(options: Namespace) -> int:
 
 
 def short(name: str, values: npt.NDArray[Any]) -> npt.NDArray[Any]:
-    """The array as the file has it: what is noisy with no more bits than that is worth."""
+    """Return the array as the file has it: noisy arrays in fewer bits."""
     if values.dtype == bool:
         return values
     if name in WHOLE:

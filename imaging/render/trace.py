@@ -69,7 +69,7 @@ class Tracer:
         return mitsuba().load_dict({"type": "scene"} | objects)
 
     def _seen(self, scene: Any, integrator: Objects, v: int, u: int, film: Objects = LUMINANCE, more: int = 1) -> Any:
-        """The picture of a view, (rows, cols, channels). more: times the samples."""
+        """Return the picture of a view, (rows, cols, channels). more: times the samples."""
         dv, du = self.sampling.steps[v], self.sampling.steps[u]
         sensor = mitsuba().load_dict(perspective(self.sampling, float(dv), float(du), film))
         seed = self.seed + v * self.sampling.views + u

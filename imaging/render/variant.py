@@ -43,7 +43,7 @@ def use_transients(threads: int = 1) -> None:
 
 
 def _llvm() -> Path:
-    """The newest LLVM that Mitsuba can use."""
+    """Return the newest LLVM that Mitsuba can use."""
     found = {}
     for folder in map(Path, LIBRARIES):
         for path in [*folder.glob("libLLVM*"), *folder.glob("*/libLLVM*"), *folder.glob("llvm-*/lib/libLLVM*")]:

@@ -41,7 +41,7 @@ class World:
 
 
 def _at(x: float, y: float, z: float) -> Any:
-    """A move to x to the right, y down, z m from the camera."""
+    """Return a move to x to the right, y down, z m from the camera."""
     mi = mitsuba()
 
     return mi.ScalarTransform4f().translate([x, -y, -z])
@@ -60,7 +60,7 @@ def _scaled(*sizes: float) -> Any:
 
 
 def _diffuse(level: float | np.ndarray[Any, Any], scale: float = 1.0) -> Objects:
-    """A matt surface, of a reflectance or a texture (rows, cols), which repeats ``scale`` times."""
+    """Return a matt surface, of a reflectance or a texture (rows, cols), which repeats ``scale`` times."""
     mi = mitsuba()
 
     if isinstance(level, float):
@@ -71,7 +71,7 @@ def _diffuse(level: float | np.ndarray[Any, Any], scale: float = 1.0) -> Objects
 
 
 def _cloth(level: float, seed: int, contrast: float = 0.35) -> np.ndarray[Any, Any]:
-    """A texture of waves of several lengths and directions that repeats, (256, 256), around a level."""
+    """Return a texture of waves of several lengths and directions that repeats, (256, 256), around a level."""
     rng = np.random.default_rng((SEED, seed))
     y, x = np.mgrid[:256, :256] / 256
     waves = np.zeros((256, 256))
@@ -161,7 +161,7 @@ def fog(sampling: Sampling) -> Objects:
 
 
 def scatterer() -> Objects:
-    """The slab of `fog` that scatters, wider than the picture and the light need it."""
+    """Return the slab of `fog` that scatters, wider than the picture and the light need it."""
     near, far = FOG
     inner = {
         "type": "homogeneous",
@@ -218,13 +218,13 @@ def spheres(sampling: Sampling) -> Objects:
 
 
 def mirror(item: Objects) -> Objects:
-    """An object of a glossy material without what it scatters from below its surface."""
+    """Return an object of a glossy material without what it scatters from below its surface."""
     dark = {"diffuse_reflectance": {"type": "uniform", "value": 0.0}} if item["bsdf"]["type"] == "pplastic" else {}
     return item | {"bsdf": item["bsdf"] | dark}
 
 
 def flash() -> Objects:
-    """The modulated light, in the middle of the lens."""
+    """Return the modulated light, in the middle of the lens."""
     return {"flash": {"type": "point", "position": [0.0, 0.0, 0.0], "intensity": {"type": "uniform", "value": 1.0}}}
 
 

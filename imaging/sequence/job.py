@@ -47,7 +47,7 @@ class _Pending(NamedTuple):
 def results(
     request: FrameRequest, clip: Clip, clock: Clock, note: Callable[[str], None] = lambda text: None
 ) -> Iterator[Shown]:
-    """The frames of ``clip`` one after another, registers and state of the chip kept between them.
+    """Yield the frames of ``clip`` one after another, registers and state of the chip kept between them.
 
     request: of every frame; its scene is not used, and frame_number counts on from its own. clock: gets the wall clock
     of the steps setup, capture, build, golden, rtl (waiting for the simulator) and decode. note: called with a line
@@ -85,7 +85,7 @@ def results(
 
 
 def _timed(clip: Clip, clock: Clock) -> Iterator[tuple[np.ndarray, float]]:
-    """The frames; the time that reading them takes is that of a step."""
+    """Yield the frames; the time that reading them takes is that of a step."""
     frames = iter(clip)
     while True:
         with clock.step("read"):

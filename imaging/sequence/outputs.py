@@ -73,7 +73,7 @@ def run(
 
 
 def picture(result: FrameResult, figures: Mapping[str, Any], number: str) -> Image.Image:
-    """A frame of the animation: what the chip sent, and its figures below."""
+    """Return a frame of the animation: what the chip sent, and its figures below."""
     samples, mode = result.decoded.samples, result.request.frame.mode
     if mode == "edge":
         image = pictures.signed_codes(samples[..., 0], SCALE)
@@ -135,7 +135,7 @@ def _first(folder: Path, result: FrameResult) -> None:
 
 
 def _about(request: FrameRequest, clip: Clip, last: FrameResult) -> dict[str, Any]:
-    """What was run."""
+    """Return a description of the run."""
     frame, sensor = request.frame, request.sensor
     camera = camera_of(replace(last, request=request))
     return (
@@ -147,7 +147,7 @@ def _about(request: FrameRequest, clip: Clip, last: FrameResult) -> dict[str, An
 
 
 def _page(s: Mapping[str, Any], animation: str, last: Image.Image) -> str:
-    """The page; last: picture of the last frame, for its card in the index."""
+    """Return the page; last: picture of the last frame, for its card in the index."""
     frames = s["each"]
     tiles = [
         agreement(s["frames_that_differ"], "frames", f", {s['frames']} frames"),

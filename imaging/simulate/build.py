@@ -29,7 +29,7 @@ class Build:
 
     @classmethod
     def of(cls, sensor: SensorParameters, waves: str = "") -> "Build":
-        """The Build of a sensor."""
+        """Return the Build of a sensor."""
         array, chip, tile = sensor.array, sensor.chip, sensor.tile
         iterations = chip.cordic_iterations
         sizes = array.rows, array.cols, chip.lanes, chip.divider, chip.n_frac, iterations, tile.rows, tile.cols

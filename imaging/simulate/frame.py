@@ -42,7 +42,7 @@ class Waves:
 
 
 def host_script(before: Sequence[bytes], after: Sequence[bytes]) -> bytes:
-    """The host's script: SPI transfers ``before`` the frame, the wait for its end, transfers ``after`` it.
+    """Return the host's script: SPI transfers ``before`` the frame, the wait for its end, transfers ``after`` it.
 
     Each item is one transfer of 1..255 bytes.
     """
@@ -50,12 +50,12 @@ def host_script(before: Sequence[bytes], after: Sequence[bytes]) -> bytes:
 
 
 def transfers(items: Sequence[bytes]) -> bytes:
-    """The part of a script that plays SPI transfers of 1..255 bytes each."""
+    """Return the part of a script that plays SPI transfers of 1..255 bytes each."""
     return b"".join(TRANSFER + bytes([len(item)]) + item for item in items)
 
 
 def simulator(program: Path) -> list[object]:
-    """The words that start the bench ``program``: an executable, or .vvp of Icarus."""
+    """Return the words that start the bench ``program``: an executable, or .vvp of Icarus."""
     return ["vvp", program] if program.suffix == ".vvp" else [program]
 
 

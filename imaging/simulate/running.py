@@ -63,7 +63,7 @@ class Running:
                     left = left[os.write(self._inputs[name], left) :]
 
     def _received(self, replies: int) -> FrameRun:
-        """What the bench writes of one frame; what it has written of the next already is kept."""
+        """Return the bench's output of one frame; output of the next frame is kept."""
         start = perf_counter()
         while b"\n" not in self._got["activity"]:
             self._read()

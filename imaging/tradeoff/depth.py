@@ -81,7 +81,7 @@ def measure(point: tuple[tuple[str, int, int, int], int]) -> dict[str, Any]:
 
 
 def _coarser(samples: npt.NDArray[np.floating], step: int) -> npt.NDArray[np.floating]:
-    """The samples as codes of fewer bits."""
+    """Return the samples as codes of fewer bits."""
     return np.floor(samples / step) * step + (step - 1) / 2
 
 

@@ -38,7 +38,7 @@ Point = tuple[str, int | str, int]
 
 
 def points(quick: bool) -> list[Point]:
-    """What is changed, to which value, and rows of the array."""
+    """Return the changed field, its value, and the rows of the array."""
     if quick:
         return [("bits", 3, 24), ("bits", 8, 24), ("threshold", 32, 24)]
     every = {"bits": BITS, "threshold": THRESHOLDS, "views": VIEWS, "layout": LAYOUTS}
@@ -52,7 +52,7 @@ def _frame(size: int, views: int, layout: str) -> GoldenResult:
 
 
 def tile(layout: str) -> TileParameters:
-    """The tile of one of `LAYOUTS`."""
+    """Return the tile of one of `LAYOUTS`."""
     standard, rng = STANDARD.tile, np.random.default_rng(SEED)
     if layout == "another order":
         return replace(standard, order=tuple(rng.permutation(standard.n_types).tolist()))

@@ -40,15 +40,15 @@ class Sweep(Protocol):
     __doc__: str | None
 
     def points(self, quick: bool) -> Sequence[Any]:
-        """The points to measure; quick: fewer of them and a smaller array, for tests."""
+        """Return the points to measure; quick: fewer of them and a smaller array, for tests."""
         ...
 
     def measure(self, point: Any) -> dict[str, Any]:
-        """A row of the table."""
+        """Return a row of the table."""
         ...
 
     def plot(self, rows: Sequence[dict[str, Any]]) -> Figure:
-        """The plot of all rows."""
+        """Return the plot of all rows."""
         ...
 
 
@@ -70,7 +70,7 @@ SWEEPS: dict[str, Sweep] = {
 
 
 def measured(name: str, quick: bool = False, workers: int = 1, store: Path = STORE) -> list[dict[str, Any]]:
-    """The rows of a sweep, each kept in ``store``: a run that was killed goes on from there."""
+    """Return the rows of a sweep, each kept in ``store``: a run that was killed goes on from there."""
     call, learned = SWEEPS[name].measure, (branches.WEIGHTS, sparse.DICTIONARY)
     points = enumerate(SWEEPS[name].points(quick))
     return run([Job(f"{name}_{n}", call, (p,), (repr(p), *learned)) for n, p in points], store, name, workers)
@@ -100,7 +100,7 @@ def run_sweeps(
 
 
 def _page(out: Path, done: Sequence[str]) -> str:
-    """The page of the sweeps in ``out``."""
+    """Return the page of the sweeps in ``out``."""
     sections = []
     for name in done:
         rows, about = read_csv(out / f"{name}.csv"), " ".join((SWEEPS[name].__doc__ or "").split())

@@ -120,7 +120,7 @@ class Calibration:
 
 
 def _table(kind: PixelType) -> dict[str, Any]:
-    """A type's own response, for a JSON file; {} where it has none."""
+    """Return a type's own response, for a JSON file; {} where it has none."""
     table = kind.response
     if not isinstance(table, TableResponse):
         return {}

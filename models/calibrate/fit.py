@@ -174,7 +174,7 @@ def _seen(sweep: Sweep, pupil: Pupil, number: int) -> tuple[Floats, Floats]:
 
 
 def _plain(sweep: Sweep, pupil: Pupil, number: int) -> Samples:
-    """A type's signals without aperture and vignetting."""
+    """Return a type's signals without aperture and vignetting."""
     theta, diodes = _seen(sweep, pupil, number)
     some = slice(None, None, -(-len(theta) // INTERPOLATED) or 1)
     theta, diodes = theta[some], diodes[some]

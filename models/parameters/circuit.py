@@ -162,7 +162,7 @@ class ColumnCurves:
 
 @cache
 def circuit_columns(table: Path = TABLE) -> ColumnCurves:
-    """The column amplifiers as the circuit has them.
+    """Return the column amplifiers as the circuit has them.
 
     Parameters
     ----------

@@ -66,7 +66,7 @@ def drawn_lines(table: Path = LINES) -> LineParameters:
 
 
 def drawn_electrical(electrical: ElectricalParameters, table: Path = PIXEL) -> ElectricalParameters:
-    """A sensor's electrical parameters with those of the drawn pixel's circuit.
+    """Return a sensor's electrical parameters with those of the drawn pixel's circuit.
 
     Parameters
     ----------

@@ -276,7 +276,7 @@ def _lines(part: Any, where: str) -> Iterator[str]:
 
 
 def _response_text(kind: PixelType) -> str:
-    """A comment that names what made a type's response; it has no text itself."""
+    """Return a comment that names what made a type's response; it has no text itself."""
     if kind.response is None:
         return ""
     source = getattr(kind.response, "source", None)

@@ -221,7 +221,7 @@ class Branches:
         return out + self._convolved(self._convolved(out[None], f"{kind}/after_0"), f"{kind}/after_1", False)[0]
 
     def _convolved(self, values: Floats, name: str, positive: bool = True) -> Floats:
-        """A 4-D convolution of (channels, 5, 5, rows, cols), and what is negative left out."""
+        """Return a 4-D convolution of (channels, 5, 5, rows, cols), and what is negative left out."""
         kernel, bias = self.layers[name], self.layers[f"{name}_bias"][:, None]
         padded = np.pad(values, ((0, 0), *((1, 1),) * 4))
         out = np.empty((len(kernel), *values.shape[1:]), np.float32)

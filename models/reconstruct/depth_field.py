@@ -222,7 +222,7 @@ def _steps(fine: Floats, known: Bools, axis: int) -> tuple[Floats, Floats]:
 
 
 def _short(turns: Floats) -> Floats:
-    """The same modulo a turn, in -0.5..0.5."""
+    """Return the same modulo a turn, in -0.5..0.5."""
     return (turns + 0.5) % 1 - 0.5
 
 

@@ -198,7 +198,7 @@ def laplacian(image: Floats) -> Floats:
 
 
 def _inverse_laplacian(shape: tuple[int, int]) -> Callable[[Floats], Floats]:
-    """A function from an image to the mean-free solution of laplacian(solution) = image - mean(image)."""
+    """Return a function from an image to the mean-free solution of laplacian(solution) = image - mean(image)."""
     y, x = (2 - 2 * np.cos(np.pi * np.arange(n) / n) for n in shape)
     eigen = y[:, None] + x[None, :]
     eigen[0, 0] = np.inf

@@ -56,7 +56,7 @@ class Clip:
     read: Callable[[], Iterator[Frame]]
 
     def __iter__(self) -> Iterator[Frame]:
-        """The frames, from the first."""
+        """Yield the frames, from the first."""
         first = None
         for number, frame in enumerate(self.read()):
             first = first or frame.luminance.shape

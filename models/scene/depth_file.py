@@ -73,7 +73,7 @@ def read_depth(path: str | Path, sampling: Sampling, picture_shape: tuple[int, i
 
 
 def _alike(height: int, width: int, rows: int, cols: int) -> bool:
-    """Whether two sizes have the same proportions, to 2 %."""
+    """Return whether two sizes have the same proportions, to 2 %."""
     return abs(np.log(width / height * rows / cols)) <= 0.02
 
 

@@ -49,7 +49,7 @@ FORMS = {
 
 
 def is_video(path: Path) -> bool:
-    """Whether a file begins as a container of videos does.
+    """Return whether a file begins as a container of videos does.
 
     Parameters
     ----------

@@ -155,7 +155,7 @@ class LightField:
         return light @ REC709 if light.ndim == 3 else light
 
     def scene(self, sampling: Sampling) -> Scene:
-        """The light field before a sensor.
+        """Return the light field before a sensor.
 
         Parameters
         ----------
@@ -215,7 +215,7 @@ class LightField:
         return (f"{self.name}: {100 * share:.2g} % of the light field is below 0, to {least:.3g}: clipped to 0",)
 
     def squared(self) -> "LightField":
-        """The middle square of the views.
+        """Return the middle square of the views.
 
         Returns
         -------
@@ -249,7 +249,7 @@ class LightField:
         return rows, cols
 
     def cropped(self, rows: int, cols: int) -> "LightField":
-        """The middle of the picture.
+        """Return the middle of the picture.
 
         Parameters
         ----------

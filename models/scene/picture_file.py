@@ -303,7 +303,7 @@ def _opened(path: str | Path, field: str) -> Iterator[tuple[Any, Any]]:
 
 
 def _pixels(picture: Image.Image, path: Path, field: str) -> Pixels:
-    """A picture that Pillow reads, not loaded, upright, on white."""
+    """Return a picture that Pillow reads, not loaded, upright, on white."""
     white, depth = 255.0, _bits(picture, path)
     if isinstance(picture, PngImagePlugin.PngImageFile):
         deep = deep_pixels(partial(Image.open, path, formats=["PNG"]))
@@ -341,7 +341,7 @@ def _bits(picture: Any, path: Path) -> int:
 
 
 def _ppm_pixels(picture: Any, path: Path) -> Pixels:
-    """A PPM of more than 8 bits, which Pillow reduces to 8."""
+    """Return a PPM of more than 8 bits, which Pillow reduces to 8."""
     tile, (width, height) = picture.tile[0], picture.size
     data = path.read_bytes()[tile.offset :]
     plain = tile.codec_name == "ppm_plain"

@@ -124,7 +124,7 @@ def _block(foot: tuple[float, float, float], side: float, tall: float, turn: flo
 
 
 def _cast(name: str, sampling: Sampling, facets: Sequence[Facet]) -> Scene:
-    """The scene of the nearest facets."""
+    """Return the scene of the nearest facets."""
 
     def _view(dv: float, du: float) -> tuple[Floats, Floats]:
         return _rays(sampling, facets, dv, du)

@@ -192,7 +192,7 @@ def places(sampling: Sampling) -> tuple[Floats, Floats]:
 
 
 def plane(sampling: Sampling) -> tuple[Floats, Floats]:
-    """The plane of pictures without depth.
+    """Return the plane of pictures without depth.
 
     Parameters
     ----------

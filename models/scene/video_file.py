@@ -152,7 +152,7 @@ def _declared_end(head: bytes) -> int:
 
 
 def _pixels(frame: Any) -> Pixels:
-    """A frame as codes of 8 or 16 bits, on white."""
+    """Return a frame as codes of 8 or 16 bits, on white."""
     parts = frame.format.components
     deep, clear = max(part.bits for part in parts) > 8, any(part.is_alpha for part in parts)
     white = 65535.0 if deep else 255.0
@@ -162,7 +162,7 @@ def _pixels(frame: Any) -> Pixels:
 
 
 def _turned(light: npt.NDArray[np.floating], frame: Any) -> npt.NDArray[np.floating]:
-    """A picture as the display matrix turns and mirrors it, in quarters of a turn."""
+    """Return a picture as the display matrix turns and mirrors it, in quarters of a turn."""
     matrix = next((bytes(part) for part in frame.side_data if part.type.name == "DISPLAYMATRIX"), b"")
     if len(matrix) < 36:
         return light

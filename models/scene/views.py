@@ -215,7 +215,7 @@ class Shifted:
 
 
 def _across(image: Floats, disparity: float, du: float) -> Floats:
-    """A picture shifted along its rows."""
+    """Return a picture shifted along its rows."""
     out = np.empty_like(image)
     warp.shift_columns(out, image, np.arange(len(image[0]), dtype=np.float64) + du * disparity)
     return out

@@ -115,7 +115,7 @@ def bias_cell(masks: AnalogMasks, outputs: int) -> Cell:
 def _resistor(
     canvas: Canvas, masks: AnalogMasks, x: float, y: float, length: float
 ) -> tuple[tuple[float, float], tuple[float, float]]:
-    """A bar of diffusion from ``x`` on, its middle at ``y``, with its ends on the first metal; returns these."""
+    """Return a bar of diffusion from ``x`` on, its middle at ``y``, with its ends on the first metal; returns these."""
     base, half = masks.base, RESISTOR_WIDTH / 2
     canvas.box(base.active, x - RESISTOR_HEAD, y - half, x + length + RESISTOR_HEAD, y + half)
     around = half + IMPLANT

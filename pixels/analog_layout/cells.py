@@ -77,7 +77,7 @@ def new_canvas(masks: AnalogMasks, name: str) -> Canvas:
 
 
 def comparator_cell(masks: AnalogMasks, sizes: ComparatorSizes) -> Cell:
-    """The comparator alone; its pins are at the west ends of its tracks."""
+    """Return the comparator alone; its pins are at the west ends of its tracks."""
     canvas, circuit, axis = new_canvas(masks, "comparator"), comparator(sizes), 40.0
     drawn = devices(circuit)
     half = least_half(comparator_plans(drawn, axis, (0, 2 * axis))) + 0.6

@@ -128,7 +128,7 @@ def _kick(d: str, from_east: bool = False) -> Cap:
 
 
 def _tap_piece(t: int) -> Piece:
-    """The strip of a tap of the first diode, with its part of the decoder."""
+    """Return the strip of a tap of the first diode, with its part of the decoder."""
     tap, on = f"back_a.tap{t}.", f"on{t}."
     through = "back_a.x", "back_a.f", "seln", "start_a"
     nets = f"{tap}inner", f"{tap}outer"
@@ -418,7 +418,7 @@ def column_plan(
 def _strip(
     piece: Piece, d: Mapping[str, Device], left: float, number: int, known: Collection[str]
 ) -> tuple[Plan, dict[str, float]]:
-    """A strip, and the lines over it that are not ``known``."""
+    """Return a strip, and the lines over it that are not ``known``."""
     count = max(len(piece.n), len(piece.p))
     n, p = ([d.get(name) for name in row] + [None] * (count - len(row)) for row in (piece.n, piece.p))
     ways = (("column_a", "column_b"), ("cin_a", "cin_b"))[number] if number < 2 else ()
@@ -613,7 +613,7 @@ def _way(canvas: Canvas, track: float, x: float) -> float:
 
 
 def as_cell(canvas: Canvas, d: Mapping[str, Device], plan: ColumnPlan, strips: Sequence[Strip]) -> Cell:
-    """The drawn column with its circuit's names."""
+    """Return the drawn column with its circuit's names."""
     plates, taps = list[Plate](), list[Tap]()
     for cap, left, right in plan.plates:
         edges = right - left, cap.high - cap.low
@@ -625,7 +625,7 @@ def as_cell(canvas: Canvas, d: Mapping[str, Device], plan: ColumnPlan, strips: S
 
 
 def column_cell(masks: AnalogMasks, sizes: ColumnSizes) -> Cell:
-    """A column alone, its pins named where its lines are: what is checked and extracted."""
+    """Return a column alone, its pins named where its lines are: what is checked and extracted."""
     d, canvas = devices(sizes), new_canvas(masks, "column")
     plan = column_plan(d, sizes, masks)
     cell = as_cell(canvas, d, plan, draw_column(canvas, masks, plan))

@@ -78,7 +78,7 @@ class ColumnAmplifiers(DrawnBlock):
 
 
 def band_nets(ports: Iterable[str]) -> tuple[str, ...]:
-    """The block's nets at the ports of the band."""
+    """Return the block's nets at the ports of the band."""
     nets = NETS | {name: chip_pin(name) for name in BANK_INPUTS} | {"ibias": SOURCE}
     nets |= {f"lane_{d}{lane}": f"lane_{d}[{lane}]" for d in "ab" for lane in range(LANES)}
     return tuple(nets.get(port, port) for port in ports)
@@ -141,7 +141,7 @@ def _join(canvas: Canvas, pin: Pin) -> None:
 
 
 def frame(array: ArrayParameters, chip: ChipParameters, room: AnalogSizes) -> Block:
-    """The black box's frame, with pins in the south-east."""
+    """Return the black box's frame, with pins in the south-east."""
     block = next(candidate for candidate in blocks(array, chip, room) if candidate.name == NAME)
     first = max(pin.at_um for pin in block.pins if pin.side == "south") + room.bias_um + room.lane_um
     number = round(first / PITCH)

@@ -86,7 +86,7 @@ class Group:
         return [x for x in places if x is not None]
 
     def middles(self) -> dict[str, float]:
-        """The middle of each net."""
+        """Return the middle of each net."""
         xs: dict[str, list[float]] = {}
         for n, p, _ in self.rows:
             for net, ends in Plan(tuple(n), tuple(p), self.left, self.right, {}).spans().items():
@@ -138,7 +138,7 @@ class Band:
 
 
 def bank_rows(sizes: ColumnSizes, d: Mapping[str, Device]) -> list[list[Pair]]:
-    """The bank's pairs of devices, in strips of about one length."""
+    """Return the bank's pairs of devices, in strips of about one length."""
     circuit = next(instance.circuit for instance in band(sizes, 1).instances if instance.name == "bank")
     pairs: list[Pair] = []
     for instance in circuit.instances:
@@ -213,7 +213,7 @@ def _nets(row: tuple[Sequence[Placed], Sequence[Placed], float]) -> set[str]:
 
 
 def _bias(d: Mapping[str, Device], left: float) -> tuple[Sequence, Sequence, float]:
-    """The bias's strip."""
+    """Return the bias's strip."""
     devices = [device for name, device in d.items() if name.startswith("bias.")]
     n = [device for device in devices if device.transistor.role.startswith("n")]
     p = [device for device in devices if device.transistor.role.startswith("p")]
@@ -223,7 +223,7 @@ def _bias(d: Mapping[str, Device], left: float) -> tuple[Sequence, Sequence, flo
 
 
 def _ends(d: Mapping[str, Device], lanes: int, left: float) -> tuple[Sequence, Sequence, float]:
-    """The strip of the lanes' ends, each lane's at its pins."""
+    """Return the strip of the lanes' ends, each lane's at its pins."""
     pairs: list[Pair] = []
     for lane in range(lanes):
         for diode in "ab":
@@ -258,7 +258,7 @@ def _rails(canvas: Canvas, strips: Sequence[Strip], joints: dict[str, list[tuple
 
 
 def _device(t: Transistor) -> Device:
-    """A transistor in fingers whose contacts are on the grid."""
+    """Return a transistor in fingers whose contacts are on the grid."""
     device = Device.of(t)
     return device if round(device.finger_um / 0.005) % 2 == 0 else Device.of(t, FINGER)
 
@@ -281,7 +281,7 @@ def _ramp(canvas: Canvas, masks: AnalogMasks, sizes: ColumnSizes, bank: Group, t
 
 
 def _decoupling(canvas: Canvas, masks: AnalogMasks, sizes: ColumnSizes, bias: Group, top: float) -> list[flat.Plate]:
-    """The capacitors of the bias's lines, between the places of ways above its strip."""
+    """Return the capacitors of the bias's lines, between the places of ways above its strip."""
     strip, plates, x = bias.strips[0], list[flat.Plate](), BIAS_WEST
     tracks = {track.net: track.y for track in strip.tracks}
     for c in (c for c in flat.capacitors(band(sizes, 1)) if c.name.startswith("bias.c_")):

@@ -59,7 +59,7 @@ class Columns:
 
 
 def column_nets(number: int, lanes: int = LANES) -> tuple[str, ...]:
-    """The block's nets at the ports of a column."""
+    """Return the block's nets at the ports of a column."""
     lane, code = taken(number, lanes)
     nets = {f"column_{d}": f"column_{d}[{number}]" for d in "ab"}
     nets |= {f"{kind}_{d}": f"lane_{d}[{lane}]" for kind in ("lane", "sense") for d in "ab"}

@@ -82,7 +82,7 @@ class Converters(DrawnBlock):
 
 
 def frame(chip: ChipParameters, sizes: AnalogSizes) -> Block:
-    """The frame, with pins for the references and for what wakes the amplifiers in the south-east."""
+    """Return the frame, with pins for the references and for what wakes the amplifiers in the south-east."""
     block = next(candidate for candidate in blocks(chip=chip, sizes=sizes) if candidate.name == NAME)
     extra = (
         Pin(name, "input" if name == AMPLIFIER_ON else "inout", "south", rise(name, chip, sizes))
@@ -100,7 +100,7 @@ def rise(net: str, chip: ChipParameters, sizes: AnalogSizes) -> float:
 
 
 def lane_nets(lane: int, chip: ChipParameters, ports: tuple[str, ...]) -> tuple[str, ...]:
-    """The block's nets at the ports of a lane."""
+    """Return the block's nets at the ports of a lane."""
     index = f"[{lane}]" if chip.lanes > 1 else ""
     nets = {f"d{bit}": f"dac[{BITS * lane + bit}]" for bit in range(BITS)}
     nets |= {"en": f"en{index}", "comparator": f"comparator{index}"} | SUPPLIES
@@ -109,7 +109,7 @@ def lane_nets(lane: int, chip: ChipParameters, ports: tuple[str, ...]) -> tuple[
 
 
 def amplifier_nets(lane: int, ports: tuple[str, ...]) -> tuple[str, ...]:
-    """The block's nets at the ports of the amplifier of a lane."""
+    """Return the block's nets at the ports of the amplifier of a lane."""
     nets = {f"g{bit}": f"balance[{bit}]" for bit in range(TRIM_BITS)}
     nets |= {f"column_{diode}": f"lane_{diode}[{lane}]" for diode in DIODES} | SUPPLIES
     nets |= {"out": f"out_{lane}", "reset": f"reset_{lane}", "ibias": f"ibias_{lane}", "on": AMPLIFIER_ON}

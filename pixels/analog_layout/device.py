@@ -39,7 +39,7 @@ GRID = 0.005
 
 
 def snap(um: float) -> float:
-    """The nearest length on the grid."""
+    """Return the nearest length on the grid."""
     return round(um / GRID) * GRID
 
 
@@ -232,7 +232,7 @@ class _Drawn:
         return strap
 
     def _gates(self, starts: list[float], bar: float) -> Strap:
-        """The bar of poly, its contacts in the nitride's opening, its strap."""
+        """Return the bar of poly, its contacts in the nitride's opening, its strap."""
         base, length, y = self.masks.base, self.device.transistor.l, self.y(bar)
         middles = [start + length / 2 for start in starts]
         left, right = middles[0], middles[-1]
@@ -260,5 +260,5 @@ class _Drawn:
 
 
 def swapped(device: Device) -> Device:
-    """The device with the drain of its single finger in the west: its mirror image."""
+    """Return the device with the drain of its single finger in the west: its mirror image."""
     return replace(device, swapped=not device.swapped)

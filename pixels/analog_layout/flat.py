@@ -70,7 +70,7 @@ def spice(
     resistors: Iterable[Resistor] = (),
     fringes: Mapping[tuple[str, str], int] | None = None,
 ) -> str:
-    """The text for LVS. plates: of its capacitors. fringes: units between two nets."""
+    """Return the text for LVS. plates: of its capacitors. fringes: units between two nets."""
     lines = [f".subckt {name} {' '.join(ports)}"]
     lines += [
         f"M{t.name} {t.drain} {t.gate} {t.source} {t.bulk} {masks.models[t.role]} W={t.w:.6g}U L={t.l:.6g}U"

@@ -123,14 +123,14 @@ def legs(d: Mapping[str, Device], name: str) -> list[tuple[Device | None, Device
 
 
 def _renamed(device: Device) -> Device:
-    """A shifter's transistor whose gate has the chip's level, with the net of its track."""
+    """Return a shifter's transistor whose gate has the chip's level, with the net of its track."""
     t = device.transistor
     thick = t.role.endswith("thick")
     return replace(device, transistor=t._replace(gate=GATE_OF_VDD)) if thick and t.gate == "vdd" else device
 
 
 def row_plan(d: Mapping[str, Device], width: float, pins: Mapping[str, float]) -> RowPlan:
-    """The row in a block of ``width`` um, whose ``pins`` in the south are so far from its west.
+    """Return the row in a block of ``width`` um, whose ``pins`` in the south are so far from its west.
 
     Raises ParameterError where the row is wider, or has more nets than its pitch has tracks.
     """
@@ -187,7 +187,7 @@ def _clear(plan: Plan, jogs: Mapping[str, float]) -> bool:
 
 
 def draw_row(canvas: Canvas, masks: AnalogMasks, row: RowPlan) -> Strip:
-    """A row, its south edge at y = 0, with its part of the controls and supplies that cross all rows."""
+    """Return a row, its south edge at y = 0, with its part of the controls and supplies that cross all rows."""
     y, top = RAIL_GAP / 2, PITCH - RAIL_GAP / 2
     strip = draw_rows(canvas, masks, row.plan, y)
     for plan in (row.logic, row.thick):
@@ -238,7 +238,7 @@ def _thick(canvas: Canvas, row: RowPlan, y: float, top: float) -> None:
 
 
 def as_cell(canvas: Canvas, d: Mapping[str, Device], strip: Strip) -> Cell:
-    """The drawn row with its circuit's names."""
+    """Return the drawn row with its circuit's names."""
     terminals = tuple(
         terminal._replace(strap=terminal.strap._replace(net="vdd")) if terminal.strap.net == GATE_OF_VDD else terminal
         for terminal in strip.terminals

@@ -72,12 +72,12 @@ class RowDrivers(DrawnBlock):
 
 
 def chip_pin(name: str) -> str:
-    """The block's pin of an input of the bank: amp_row3 is amp_row[3]."""
+    """Return the block's pin of an input of the bank: amp_row3 is amp_row[3]."""
     return f"{name.rstrip('0123456789')}[{name[len(name.rstrip('0123456789')) :]}]" if name[-1].isdigit() else name
 
 
 def row_nets(number: int, rows: int) -> tuple[str, ...]:
-    """The block's nets at the ports of a row."""
+    """Return the block's nets at the ports of a row."""
     codes = taken(number)
     nets = {f"{side}_{group}": f"{side}_{group}{code}" for side in SIDES for group, code in codes.items()}
     nets |= {name: f"{name}_line" for name in CONTROLS}
@@ -86,19 +86,19 @@ def row_nets(number: int, rows: int) -> tuple[str, ...]:
 
 
 def bank_nets() -> tuple[str, ...]:
-    """The block's nets at the ports of the bank."""
+    """Return the block's nets at the ports of the bank."""
     return (*map(chip_pin, BANK_INPUTS), *BANK_OUTPUTS, NETS["vdd"], NETS["vss"])
 
 
 def _plan(d: Mapping[str, Device], array: ArrayParameters, room: AnalogSizes) -> tuple[Block, RowPlan]:
-    """The frame as the black box has it, and a row in it."""
+    """Return the frame as the black box has it, and a row in it."""
     plain = row_driver(array, room)
     south = {pin.name: pin.at_um for pin in plain.pins if pin.side == "south"}
     return plain, row_plan(d, plain.width_um, {name: south[chip_pin(name)] for name in BANK_INPUTS})
 
 
 def row_cell(masks: AnalogMasks, array: ArrayParameters, room: AnalogSizes | None = None) -> Cell:
-    """A row alone, its pins named on its tracks: what is extracted and simulated."""
+    """Return a row alone, its pins named on its tracks: what is extracted and simulated."""
     d, canvas = devices(row()), new_canvas(masks, "row")
     _, plan = _plan(d, array, room or AnalogSizes())
     cell = as_cell(canvas, d, draw_row(canvas, masks, plan))

@@ -179,7 +179,7 @@ def draw_strip(canvas: Canvas, masks: AnalogMasks, plan: Plan, y: float) -> Stri
 
 
 def draw_rows(canvas: Canvas, masks: AnalogMasks, plan: Plan, y: float) -> Strip:
-    """A strip's transistors and nets, without rails and well."""
+    """Return a strip's transistors and nets, without rails and well."""
     strip, top = Strip(plan, y), y + plan.height_um
     strip.tracks = [track._replace(y=y + track.y) for track in plan.tracks()]
     straps: list[tuple[Strap, Placed]] = []
@@ -291,7 +291,7 @@ def _assigned(
 
 
 def piece(tracks: Iterable[Strap], net: str, x: float) -> Strap | None:
-    """The piece of a net's track that reaches to ``x``, or the nearest one; None where it has none."""
+    """Return the piece of a net's track that reaches to ``x``, or the nearest one; None where it has none."""
     segments = [track for track in tracks if track.net == net]
     return min(segments, key=lambda track: max(track.left - x, x - track.right, 0.0), default=None)
 
@@ -404,7 +404,7 @@ def in_columns(
 def mirrored(
     middle: Device | None, outward: Sequence[tuple[Device, Device]], axis: float, room: float = 0.0
 ) -> tuple[Placed, ...]:
-    """A row about ``axis``: a device on it, and pairs (west, east) from there outwards."""
+    """Return a row about ``axis``: a device on it, and pairs (west, east) from there outwards."""
     placed, x = list[Placed](), 0.0
     if middle:
         x = _grid(max(middle.width_um + GAP, 3 * DROP_PITCH) / 2)

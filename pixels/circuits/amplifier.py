@@ -129,7 +129,7 @@ class AmplifierSpec:
 
     @classmethod
     def of(cls, sensor: SensorParameters | None = None, energy: EnergyParameters | None = None) -> Self:
-        """The amplifier of a sensor: its swing, the chip's clock, Table 6.1's power and frame rate."""
+        """Return the amplifier of a sensor: its swing, the chip's clock, Table 6.1's power and frame rate."""
         sensor, energy = sensor or SensorParameters(), energy or EnergyParameters()
         rate = energy.frame_rate * energy.pixels
         return cls(
@@ -251,7 +251,7 @@ def _parts(name: str, nodes: tuple[str, ...], w: float, kind: tuple[str, float],
 
 
 def ota(sizes: OtaSizes) -> Circuit:
-    """A recycling folded cascode with p inputs. Pins: inp inn out ibias on off reset resetn vdd vss.
+    """Return a recycling folded cascode with p inputs. Pins: inp inn out ibias on off reset resetn vdd vss.
 
     A part of each side of the pair drives the diodes of the other side's sink: no second current has to fit the
     tail's, whatever the supply, and all currents end with the tail's. The diodes are cascoded as the sinks are. The

@@ -49,13 +49,13 @@ def line(pin: str) -> str:
 
 
 def n(name: str, nodes: str, w: float, kind: tuple[str, float]) -> Transistor:
-    """An n transistor; nodes: drain gate source."""
+    """Return an n transistor; nodes: drain gate source."""
     drain, gate, source = nodes.split()
     return Transistor(name, drain, gate, source, "vss", kind[0], w, kind[1])
 
 
 def p(name: str, nodes: str, w: float, kind: tuple[str, float]) -> Transistor:
-    """A p transistor; nodes: drain gate source."""
+    """Return a p transistor; nodes: drain gate source."""
     drain, gate, source = nodes.split()
     return Transistor(name, drain, gate, source, "vdd", kind[0], w, kind[1])
 
@@ -66,7 +66,7 @@ def source(name: str, nodes: str, w: float, kind: tuple[str, float], parts: int 
 
 
 def _through(name: str, a: str, b: str, on: str, off: str, w: float = 0.42) -> tuple[Transistor, Transistor]:
-    """A switch of both kinds."""
+    """Return a switch of both kinds."""
     return n(f"{name}_n", f"{a} {on} {b}", w, SWITCH), p(f"{name}_p", f"{a} {off} {b}", 2 * w, SWITCH_P)
 
 
@@ -88,7 +88,7 @@ def charge_amplifier(sizes: ColumnSizes) -> Circuit:
 
 
 def tap(sizes: ColumnSizes) -> Circuit:
-    """A capacitor that holds, and its switches. Pins x f w s o on start vdd vss.
+    """Return a capacitor that holds, and its switches. Pins x f w s o on start vdd vss.
 
     w: it is at x while its row is read; s: in its column's turn. o: its far end is at f, else at start.
     """
@@ -106,7 +106,7 @@ def tap(sizes: ColumnSizes) -> Circuit:
 
 
 def holder(sizes: ColumnSizes, taps: int) -> Circuit:
-    """The second stage without Cin; w0 s0 o0 on0 and so on are of each tap.
+    """Return the second stage without Cin; w0 s0 o0 on0 and so on are of each tap.
 
     go: the gate of the lane's cascode, vcn while the column is selected, else 0.
     """

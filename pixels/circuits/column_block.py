@@ -73,7 +73,7 @@ def column_bias(sizes: ColumnSizes) -> Circuit:
 
 
 def cascode_lines() -> Circuit:
-    """The gates of the columns' cascodes: cn while a row is read, vcnb for what drives the second diode's lane.
+    """Return the gates of the columns' cascodes: cn while a row is read, vcnb for what drives the second diode's lane.
 
     Pins vcn reads readsn edge edgen cn vcnb vss.
     """
@@ -93,7 +93,7 @@ def cascode_lines() -> Circuit:
 
 
 def lane_end(sizes: ColumnSizes) -> Circuit:
-    """The end of a lane's line: its current source in a turn, else its reference.
+    """Return the end of a lane's line: its current source in a turn, else its reference.
 
     Pins lane reference turn turnn vbl vcp vdd vss.
     """
@@ -112,7 +112,7 @@ def lane_end(sizes: ColumnSizes) -> Circuit:
 
 
 def lane_line(sizes: ColumnSizes, spec: ColumnSpec) -> Circuit:
-    """A lane's line with its other columns, none of which is selected, and the one that senses its far end.
+    """Return a lane's line with its other columns, none of which is selected, and the one that senses its far end.
 
     Pins near sense far vss. A selected column's feedback is from the far end: its current has a drop on the way there.
     """
@@ -133,7 +133,7 @@ def lane_line(sizes: ColumnSizes, spec: ColumnSpec) -> Circuit:
 
 
 def clear_pulse(sizes: ColumnSizes) -> Circuit:
-    """A pulse of some CLEAR from the begin of ref on, which a current through a capacitor ends.
+    """Return a pulse of some CLEAR from the begin of ref on, which a current through a capacitor ends.
 
     Pins ref refn clear vbp vdd vss.
     """
@@ -153,7 +153,7 @@ def clear_pulse(sizes: ColumnSizes) -> Circuit:
 
 
 def bank(sizes: ColumnSizes) -> Circuit:
-    """The drivers of the lines that cross all columns. Pins BANK_INPUTS, BANK_OUTPUTS, vbp vcn vdd vss.
+    """Return the drivers of the lines that cross all columns. Pins BANK_INPUTS, BANK_OUTPUTS, vbp vcn vdd vss.
 
     A group's line is high in a turn alone. `clear` ends by itself: a current charges a capacitor from the row's start
     on. The holder's reset ends before the signal half begins, and its capacitors part from x before all else. While a
@@ -214,7 +214,7 @@ def bank(sizes: ColumnSizes) -> Circuit:
 
 
 def band(sizes: ColumnSizes, lanes: int) -> Circuit:
-    """The shared circuits of a block: bank, bias, the ends of the lanes' lines.
+    """Return the shared circuits of a block: bank, bias, the ends of the lanes' lines.
 
     Pins BANK_INPUTS, BANK_OUTPUTS, ibias BIASES level reference dark, lane_a0 lane_b0 and so on, vdd vss.
     """
@@ -233,6 +233,6 @@ def band(sizes: ColumnSizes, lanes: int) -> Circuit:
 
 
 def taken(column: int, lanes: int, tile_cols: int = PLACES) -> tuple[int, dict[str, int]]:
-    """The lane of a column, and the code of the line that it takes of each kind."""
+    """Return the lane of a column, and the code of the line that it takes of each kind."""
     tile = column // tile_cols
     return tile % lanes, {"group": tile // lanes, "k": column % tile_cols}

@@ -231,7 +231,7 @@ WAKE = 8e-9  # s of a column's turn until its transistors conduct
 
 
 def source_of(name: str) -> str:
-    """The name in EFFICIENCY of a stage's source of current."""
+    """Return the name in EFFICIENCY of a stage's source of current."""
     return "lane_top" if name == "lane" else "top"
 
 
@@ -302,6 +302,6 @@ def alone(width: float) -> float:
 
 
 def drawn(width: float) -> float:
-    """The nearest width (um) of equal fingers: one below 2 um, else an even number of at most FINGER."""
+    """Return the nearest width (um) of equal fingers: one below 2 um, else an even number of at most FINGER."""
     fingers = 1 if width < 2 else 2 * ceil(width / FINGER / 2)
     return round(max(0.42, round(width / fingers, 2)) * fingers, 2)

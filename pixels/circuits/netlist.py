@@ -109,7 +109,7 @@ class Circuit:
         return {(t.role, t.finger_um, t.l) for t in self.transistors}
 
     def lines(self, process: ModuleType) -> list[str]:
-        """The .subckt text of all circuits in it, without models.
+        """Return the .subckt text of all circuits in it, without models.
 
         process: a module like platforms.sky130.analog. A capacitor with units is ``value * cscale``: the deck sets
         ``.param cscale=1 rscale=1``, or other factors for a corner of the capacitors and of drawn resistors.
@@ -181,7 +181,7 @@ class Circuit:
                 yield f"net {net} at device {first[net]}: must have two ends, it has one"
 
     def with_capacitors(self, values: dict[str, float]) -> Self:
-        """The same circuit with other values (F) of the capacitors named; inner circuits stay."""
+        """Return the same circuit with other values (F) of the capacitors named; inner circuits stay."""
         unknown = values.keys() - {c.name for c in self.capacitors}
         if unknown:
             raise ParameterError(f"capacitor = {min(unknown)}: must be one of {self.name}'s")

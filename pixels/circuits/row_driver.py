@@ -81,7 +81,7 @@ class RowDriverSpec:
 
 
 def row_line(spec: RowDriverSpec) -> Circuit:
-    """A line as a ladder of T sections. Pins near far vss."""
+    """Return a line as a ladder of T sections. Pins near far vss."""
     ohm, farad = spec.ohm * spec.cols / SECTIONS, spec.farad * spec.cols / SECTIONS
     nodes = ["near", *(f"n{k}" for k in range(1, SECTIONS)), "far"]
     resistors, capacitors = [], []
@@ -166,7 +166,7 @@ BANK_OUTPUTS = (
 
 
 def bank() -> Circuit:
-    """The drivers of the lines that cross all rows: predecoders of both addresses, buffers of the controls.
+    """Return the drivers of the lines that cross all rows: predecoders of both addresses, buffers of the controls.
 
     Pins BANK_INPUTS, BANK_OUTPUTS, vdd vss. `<side>_<group><code>` is high where the group's bits are the code.
     `read_line` waits for the end of `ref_ctl`: until then the columns are reset, and what a well gave is lost.
@@ -193,5 +193,5 @@ def bank() -> Circuit:
 
 
 def taken(row: int) -> dict[str, int]:
-    """The code of each group that a row takes."""
+    """Return the code of each group that a row takes."""
     return {group: row >> first & (1 << last - first) - 1 for group, (first, last) in GROUPS.items()}

@@ -179,7 +179,7 @@ def biased(circuit: Circuit) -> Circuit:
 
 
 def opened(setup: Setup, spec: AmplifierSpec, circuit: Circuit, corner: Corner, seed: int | None = None) -> Simulator:
-    """An ngspice process of an amplifier with its bias and a lane's array. seed: of the models' mismatch."""
+    """Return an ngspice process of an amplifier with its bias and a lane's array. seed: of the models' mismatch."""
     lines = [*deck(biased(circuit), setup, corner, seed=seed), *to_lane(corner)]
     rails = {"vref": spec.vref, "vdd_bias": corner.supply}
     return simulator(lines, INPUTS, ("out", "lane"), corner, rails, EXACT)

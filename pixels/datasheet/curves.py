@@ -41,7 +41,7 @@ class ColumnFit:
 
 
 def later_bench(sizes: ColumnSizes, spec: ColumnSpec) -> Circuit:
-    """The bench of a column whose second tap is driven as the first was, which is at rest."""
+    """Return the bench of a column whose second tap is driven as the first was, which is at rest."""
     made = bench(sizes, spec)
     nodes = {f"{name}1": f"{name}0" for name in OF_TAP}
     nodes |= {f"{name}0": "vdd" if QUIET[f"{name}1"] else "vss" for name in OF_TAP}

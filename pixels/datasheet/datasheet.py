@@ -58,7 +58,7 @@ def over_corners(
     least: float | None = None,
     most: float | None = None,
 ) -> Row:
-    """A row of (corner, value) pairs; the worst corner is named. typical: the corner of the typical value."""
+    """Return a row of (corner, value) pairs; the worst corner is named. typical: the corner of the typical value."""
     found: Sequence[tuple[str, float]] = list(values)
     numbers = dict(found)
     far = max(found, key=lambda pair: pair[1]) if least is None else min(found, key=lambda pair: pair[1])

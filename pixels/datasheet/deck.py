@@ -23,7 +23,7 @@ PROCESSES = {"sky130": sky130}
 
 
 def process_of(name: str) -> ModuleType:
-    """The process of this name for analog circuits. Raises ParameterError."""
+    """Return the process of this name for analog circuits. Raises ParameterError."""
     check_choice("pdk", name, PROCESSES)
     return PROCESSES[name]
 
@@ -82,13 +82,13 @@ def simulator(
     rails: Mapping[str, float] | None = None,
     settings: Settings = SETTINGS,
 ) -> Simulator:
-    """An ngspice process of a deck with the supplies vdd and vss."""
+    """Return an ngspice process of a deck with the supplies vdd and vss."""
     all_rails = {"vdd": corner.supply, "vss": 0.0, **(rails or {})}
     return Simulator(lines, inputs, outputs, all_rails, corner.temperature, settings)
 
 
 def bits(values: Sequence[int | bool], period: float, high: float, delay: float = CLOCK_TO_Q) -> Points:
-    """A signal that has ``values`` in consecutive periods, each ``delay`` s late."""
+    """Return a signal that has ``values`` in consecutive periods, each ``delay`` s late."""
     points = [(0.0, high * bool(values[0]))]
     for k, (before, after) in enumerate(zip(values, values[1:], strict=False), 1):
         if before != after:

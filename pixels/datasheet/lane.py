@@ -50,7 +50,7 @@ class LaneResult:
 
 
 def open_lane(setup: Setup, sizes: LaneSizes, corner: Corner, circuit: Circuit | None = None) -> Simulator:
-    """An ngspice process of a lane with its references. circuit: instead of that of ``sizes``, with its pins."""
+    """Return an ngspice process of a lane with its references. circuit: instead of that of ``sizes``, with its pins."""
     circuit = circuit or sar_lane(sizes)
     if circuit.ports != PINS:
         raise ParameterError(f"circuit {circuit.name}: ports = {' '.join(circuit.ports)}: must be {' '.join(PINS)}")
@@ -105,7 +105,7 @@ def convert(spice: Simulator, setup: Setup, value: float, passes: int = BITS + 1
 
 
 def _search(answers: Sequence[bool]) -> tuple[list[int], int]:
-    """The codes of a search that gets these answers, and its result."""
+    """Return the codes of a search that gets these answers, and its result."""
     lane = search(True, 0)
     codes = [next(lane)]
     for answer in answers:
@@ -117,7 +117,7 @@ def _search(answers: Sequence[bool]) -> tuple[list[int], int]:
 
 
 def _codes_for(value: float) -> list[int]:
-    """The codes of an ideal search."""
+    """Return the codes of an ideal search."""
     lane = search(True, 0)
     codes = [next(lane)]
     while len(codes) < BITS:

@@ -86,7 +86,7 @@ def _discharge(setup: Setup, sizes: LaneSizes, corner: Corner) -> tuple[float, f
 
 
 def _noisy(lines: list[str], rms: float, seed: int) -> list[str]:
-    """The deck with a source of white noise at the gates of the strong-arm's pair and n latch."""
+    """Return the deck with a source of white noise at the gates of the strong-arm's pair and n latch."""
     found, inside = [f".option seed={seed}"], False
     for line in lines:
         inside = line.startswith(".subckt strong_arm") or inside and not line.startswith(".ends")

@@ -48,7 +48,7 @@ class RowDriverResult:
 def measure(
     setup: Setup, spec: RowDriverSpec, corner: Corner, driver: Circuit | None = None, around: Sequence[float] = AROUND
 ) -> RowDriverResult:
-    """The row of ``spec`` at a corner. driver: instead of `row`. around: of its lines' level."""
+    """Return the row of ``spec`` at a corner. driver: instead of `row`. around: of its lines' level."""
     found, runs, repeated = [], 0, 0
     lines = deck(bench(spec, driver or row()), setup, corner)
     for factor in around:
@@ -66,7 +66,7 @@ def measure(
 
 
 def bench(spec: RowDriverSpec, driver: Circuit) -> Circuit:
-    """The driver with a line behind each of its outputs; the lines' names are those of their far ends."""
+    """Return the driver with a line behind each of its outputs; the lines' names are those of their far ends."""
     near = tuple(f"{line}_near" for line in ROW_LINES)
     ends = [Instance(line, row_line(spec), (start, line, "vss")) for line, start in zip(ROW_LINES, near, strict=True)]
     parts = (Instance("driver", driver, (*ROW_INPUTS, *near, *SUPPLIES)), *ends)

@@ -19,7 +19,7 @@ from talbot.pixels.datasheet.support import SupportResult
 
 
 def datasheet(spec: LaneSpec, found: Found, draws: int, sensor: SensorParameters = STANDARD) -> list[Row]:
-    """The rows, with limits from the specification."""
+    """Return the rows, with limits from the specification."""
     half, share = 1e9 * spec.half_cycle, 1e12 * spec.decision_energy
     rms, _, high = interval(found.offsets)
 
@@ -76,7 +76,7 @@ def datasheet(spec: LaneSpec, found: Found, draws: int, sensor: SensorParameters
 
 
 def _amplifier(found: Found, spec: AmplifierSpec) -> list[Row]:
-    """The rows of the difference amplifier."""
+    """Return the rows of the difference amplifier."""
 
     def corners(name: str, unit: str, values: dict[str, float], most: float | None) -> Row:
         return over_corners("amplifier", name, unit, values.items(), TYPICAL, most=most)
@@ -108,7 +108,7 @@ def _amplifier(found: Found, spec: AmplifierSpec) -> list[Row]:
 
 
 def _columns(found: Found, spec: ColumnSpec) -> list[Row]:
-    """The rows of a column; LSB are those of the lane's converter in edge mode."""
+    """Return the rows of a column; LSB are those of the lane's converter in edge mode."""
 
     def row(
         name: str, unit: str, values: dict[str, float], most: float | None = None, least: float | None = None
@@ -145,7 +145,7 @@ def _columns(found: Found, spec: ColumnSpec) -> list[Row]:
 
 
 def _row_driver(found: dict[str, RowDriverResult], spec: RowDriverSpec) -> list[Row]:
-    """The rows of a row's driver."""
+    """Return the rows of a row's driver."""
 
     def row(name: str, unit: str, field: str, scale: float, **limits: float) -> Row:
         values = {corner: scale * getattr(one, field) for corner, one in found.items()}
@@ -162,7 +162,7 @@ def _row_driver(found: dict[str, RowDriverResult], spec: RowDriverSpec) -> list[
 
 
 def _support(found: dict[str, SupportResult]) -> list[Row]:
-    """The rows of switch drivers and bias."""
+    """Return the rows of switch drivers and bias."""
     spec = SupportSpec()
 
     def row(circuit: str, name: str, unit: str, field: str, scale: float, **limits: float) -> Row:

@@ -88,7 +88,7 @@ def bias_measured(setup: Setup, corner: Corner, circuit: Circuit | None = None) 
 
 
 def first_output(circuit: Circuit) -> Circuit:
-    """A bias whose outputs but the first are open."""
+    """Return a bias whose outputs but the first are open."""
     first, *others = (pin for pin in circuit.ports if pin not in ("vdd", "vss"))
     nodes = tuple("ibias" if pin == first else pin for pin in circuit.ports)
     opened = tuple(Resistor(f"open_{pin}", pin, "vss", OPEN_OHM) for pin in others)
@@ -97,7 +97,7 @@ def first_output(circuit: Circuit) -> Circuit:
 
 
 def started(setup: Setup, corner: Corner, circuit: Circuit | None = None) -> tuple[Wave, Simulator]:
-    """The bias while its supply rises from 0; circuit: instead of `bias`."""
+    """Return the bias while its supply rises from 0; circuit: instead of `bias`."""
     rails = {"vss": 0.0, "ibias": PIN}
     lines = deck(circuit or bias(), setup, corner)
     with Simulator(lines, ("vdd",), (), rails, corner.temperature, SETTINGS) as spice:

@@ -72,7 +72,7 @@ def measure(
 
 
 def joined(column: ColumnSizes, own: AmplifierSizes, spec: ColumnSpec) -> Circuit:
-    """The column's bench with the amplifier, and its bias, instead of the capacitors of its inputs."""
+    """Return the column's bench with the amplifier, and its bias, instead of the capacitors of its inputs."""
     made, driver = bench(column, spec), amplifiers.biased(amplifier(own))
     nodes = {"column_a": "far_a", "column_b": "far_b"}
     parts = *made.instances, Instance("driver", driver, tuple(nodes.get(pin, pin) for pin in driver.ports))

@@ -81,7 +81,7 @@ class ArrayLayout:
 
 
 def draw_pixels(layout: "db.Layout", array: ArrayLayout) -> dict[int, "db.Cell"]:
-    """A cell of every type, by its number; types with one drawing share it."""
+    """Return a cell of every type, by its number; types with one drawing share it."""
     cells: dict[str, db.Cell] = {}
     for pixel in array.pixels:
         if pixel.name not in cells:
@@ -101,7 +101,7 @@ def draw_tile(layout: "db.Layout", array: ArrayLayout, cells: "Mapping[int, db.C
 
 
 def draw_array(layout: "db.Layout", array: ArrayLayout, cells: "Mapping[int, db.Cell]") -> "db.Cell":
-    """The array, its south-west corner at the origin."""
+    """Return the array, its south-west corner at the origin."""
     block, process = array.block, array.pixels[0].process
     canvas = Canvas(layout, block.name, process)
     _place(canvas, array, cells)
@@ -133,7 +133,7 @@ def _place(canvas: Canvas, array: ArrayLayout, cells: "Mapping[int, db.Cell]") -
 
 
 def corner(array: ArrayLayout, row: int, col: int) -> tuple[float, float]:
-    """The south-west corner of a pixel, um; row -1 is a dummy's."""
+    """Return the south-west corner of a pixel, um; row -1 is a dummy's."""
     pitch = array.pitch_um
     return WEST + (col + DUMMIES) * pitch, SOUTH + (array.array.rows + DUMMIES - 1 - row) * pitch
 

@@ -73,6 +73,6 @@ class Canvas:
         self.square(self.process.contact_poly, x, y, CONTACT_UM + 2 * CONTACT_OPENING_UM)
 
     def snap(self, um: float) -> int:
-        """The database units of the grid point nearest to a length."""
+        """Return the database units of the grid point nearest to a length."""
         step = round(self.process.grid_um / self.layout.dbu)
         return step * round(um / self.process.grid_um)

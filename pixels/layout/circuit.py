@@ -58,7 +58,7 @@ def circuit(well_um: tuple[float, float], w_um: float, l_um: float) -> Circuit:
 
 
 def spice(name: str, circuit: Circuit, transistor: str, diode: str, bulk: str = "vssa") -> str:
-    """The subcircuit for LVS: M and D devices of these models, sizes in um and um2."""
+    """Return the subcircuit for LVS: M and D devices of these models, sizes in um and um2."""
     lines = [f".subckt {name} {' '.join(PORTS)}"]
     lines += [
         f"M{t.name} {t.drain} {t.gate} {t.source} {bulk} {transistor} W={t.w_um:g}U L={t.l_um:g}U"
@@ -71,7 +71,7 @@ def spice(name: str, circuit: Circuit, transistor: str, diode: str, bulk: str = 
 def spice_array(
     name: str, pixel: str, rows: int, cols: int, dummies: int, ring: Diode | None, diode: str, bulk: str = "vssa"
 ) -> str:
-    """The subcircuit of an array of subcircuits ``pixel``, with as many dummies on each side.
+    """Return the subcircuit of an array of subcircuits ``pixel``, with as many dummies on each side.
 
     Rows of dummies are held in reset and never read; columns of dummies end open. ring: a diode around all.
     """

@@ -89,7 +89,7 @@ def nearest_direction(angle: float) -> Point:
 
 
 def lines(normal: float, period: float, fill: float, least_width: float, least_space: float) -> Lines:
-    """The lines nearest to a grating that keep the least width and space.
+    """Return the lines nearest to a grating that keep the least width and space.
 
     normal: direction in which it modulates, rad. fill: share of metal. Raises ParameterError where the period has no
     room for both.
@@ -131,7 +131,7 @@ def polygons(grating: Lines, window: Box, shift: float, origin: Point | None = N
 
 
 def octilinear(corners: list[Point], grating: Lines) -> list[Point]:
-    """A line of `polygons` with edges at multiples of 45 degrees alone; one that has no others is as it was.
+    """Return a line of `polygons` with edges at multiples of 45 degrees alone; one that has no others is as it was.
 
     The long sides become steps, a straight run and a diagonal for each (p, q). Both have the same steps, as far apart
     along the axis on which lines repeat as the line is wide. A line ends in a straight run of its width, so that no

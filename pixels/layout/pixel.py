@@ -142,7 +142,7 @@ class PixelLayout:
         return 2 * width * height / self.geometry.pitch_um**2
 
     def gratings(self) -> tuple[Lines, Lines]:
-        """The upper grating and the analyzer on the manufacturing grid, of one pitch. Raises ParameterError.
+        """Return the upper grating and the analyzer on the manufacturing grid, of one pitch. Raises ParameterError.
 
         The sensor's y runs from row to row, down; the layout's up: gamma changes its sign.
         """
@@ -170,7 +170,7 @@ class PixelLayout:
 
 
 def pixel_layout(geometry: PixelGeometry, kind: PixelType, fit: Fit) -> PixelLayout:
-    """A type on its gratings. fit: Eq. 3.1 fitted to them, which says where its analyzers are."""
+    """Return a type on its gratings. fit: Eq. 3.1 fitted to them, which says where its analyzers are."""
     return PixelLayout(geometry, kind, rows(kind.alpha, fit))
 
 

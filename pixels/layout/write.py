@@ -51,13 +51,13 @@ def fitted(geometry: PixelGeometry, wavelength_um: float) -> Fit:
 def array_layout(
     pdk: str, rows: int, cols: int, tile: TileParameters = TileParameters(), pitch: float = ArrayParameters.pitch
 ) -> ArrayLayout:
-    """An array of a tile; ``pitch`` in m. Raises ParameterError."""
+    """Return an array of a tile; ``pitch`` in m. Raises ParameterError."""
     array = ArrayParameters(rows, cols, pitch)
     return ArrayLayout(array, tile, drawn_pixels(pdk, tile, array.pitch_um))
 
 
 def array_lef(array: ArrayLayout) -> str:
-    """The LEF of the array: outline, pins, all metals taken."""
+    """Return the LEF of the array: outline, pins, all metals taken."""
     process = array.pixels[0].process
     return lef(array.block, process.name, AnalogSizes().supply_um, [metal.lef for metal in process.metals])
 

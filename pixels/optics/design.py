@@ -96,7 +96,7 @@ def front(designs: Sequence[tuple[Design, float]]) -> list[tuple[Design, float]]
 
 
 def _made(base: PixelGeometry | None = None, **changes: object) -> PixelGeometry | None:
-    """A geometry, or None where a rule forbids it."""
+    """Return a geometry, or None where a rule forbids it."""
     try:
         geometry = PixelGeometry(**changes) if base is None else replace(base, **changes)  # pyright: ignore[reportArgumentType]
         geometry.layers(WAVELENGTHS_UM[0])  # its metals lie inside one film

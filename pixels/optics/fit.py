@@ -54,7 +54,7 @@ class Fit:
     unexplained: float
 
     def curve(self, angles: Floats) -> Floats:
-        """The formula, of mean 1 without aperture: (4, A)."""
+        """Return the formula, of mean 1 without aperture: (4, A)."""
         aperture = np.exp(-0.5 * (angles / self.sigma) ** 2)
         phase = self.beta * angles + self.alpha + self.turn * 2 * np.pi * np.array(QUADRATURE)[:, None]
         return aperture * (1 + self.m * np.cos(phase))

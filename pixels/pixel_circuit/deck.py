@@ -118,7 +118,7 @@ def analyse(deck: Iterable[str], commands: Sequence[str], wanted: Sequence[str])
 
 
 def pulses(events: Iterable[tuple[float, float]], start: float, edge: float = 1e-8) -> str:
-    """A source's PWL text: (s, V) from which time on it has which value. start: V at first."""
+    """Return a source's PWL text: (s, V) from which time on it has which value. start: V at first."""
     points, value = [(0.0, start)], start
     for at, level in events:
         points += [(at, value), (at + edge, level)]

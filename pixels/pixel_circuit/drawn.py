@@ -14,7 +14,7 @@ from talbot.platforms.pixel import pixel_process
 
 @lru_cache(maxsize=4)
 def drawn(pdk: str) -> PixelLayout:
-    """A pixel of the tile: the circuit is the same in all. Raises ParameterError."""
+    """Return a pixel of the tile: the circuit is the same in all. Raises ParameterError."""
     pixel_process(pdk)
     chosen, kind = gratings(pdk), TileParameters().types[0]
     geometry = chosen.geometries[kind.beta]

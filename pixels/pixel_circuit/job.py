@@ -38,7 +38,7 @@ FILES = "summary.json", "sensor.toml", "pixel.spice"
 
 
 def typical(pdk: str) -> Corner:
-    """The corner of the sensor file. Raises ParameterError."""
+    """Return the corner of the sensor file. Raises ParameterError."""
     return Corner("tt", 25, pixel_process(pdk).supply_v)
 
 
@@ -127,7 +127,7 @@ def make(
 
 
 def electrical_of(usual: PixelFound, found: Spread, base: ElectricalParameters) -> ElectricalParameters:
-    """The pixels' electrical parameters by the circuit; what is of amplifiers and light is as it was."""
+    """Return the pixels' electrical parameters by the circuit; what is of amplifiers and light is as it was."""
     return replace(
         base,
         full_well=round(usual.full_well),

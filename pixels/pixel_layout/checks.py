@@ -42,13 +42,13 @@ def common_decks(pdk: str) -> tuple[list[str], str]:
 
 
 def decks(pdk: str) -> tuple[str, str]:
-    """The decks of design rules and of LVS, text, with what pixels need beyond PDKMaster's."""
+    """Return the decks of design rules and of LVS, text, with what pixels need beyond PDKMaster's."""
     process, (rules, lvs) = pixel_process(pdk), common_decks(pdk)
     return "\n".join([*rules, process.masks.read_text(encoding="utf-8"), ""]), with_diodes(lvs, process)
 
 
 def with_diodes(lvs: str, process: PixelProcess) -> str:
-    """A deck of LVS that extracts the pixels' photodiodes, too. Raises StepError."""
+    """Return a deck of LVS that extracts the pixels' photodiodes, too. Raises StepError."""
     mark = "\nnetlist\n"
     if lvs.count(mark) != 1:
         raise StepError("lvs: the deck has no single line 'netlist' before which diodes could be extracted")
@@ -66,7 +66,7 @@ def unwaived(found: dict[str, int]) -> int:
 
 
 def lvs(gds: Path, spice: str, pdk: str, report: Path) -> bool:
-    """Whether the top cell of ``gds`` is the circuit that the text ``spice`` has last. Raises StepError."""
+    """Return whether the top cell of ``gds`` is the circuit that the text ``spice`` has last. Raises StepError."""
     return is_circuit(decks(pdk)[1], gds, spice, report)
 
 

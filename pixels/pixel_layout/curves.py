@@ -31,7 +31,7 @@ class Kept:
 
 
 def solve_drawn(made: PixelLayout, wavelength_um: float) -> dict[str, Any]:
-    """A type's curves, and those of endless gratings, as lists: a job."""
+    """Return a type's curves, and those of endless gratings, as lists: a job."""
     found = drawn_curves(made, wavelength_um)
     endless = respond(made.drawn, np.arcsin(found.sines), wavelength_um, orders=ORDERS).unpolarized[0]
     return {
@@ -50,7 +50,7 @@ def curves(pixels: Sequence[PixelLayout], wavelength_um: float) -> list[dict[str
 
 
 def kept(curve: dict[str, Any]) -> Kept:
-    """What the drawn pixel of a curve keeps."""
+    """Return the share of the differences that the drawn pixel of a curve keeps."""
     near = np.abs(curve["sines"]) <= np.sin(np.deg2rad(DEGREES))
     drawn, endless = (np.array(curve[name])[:, near] for name in ("shares", "endless"))
     mine, theirs = ((a - b) / (a + b) for a, b in (drawn, endless))
@@ -62,7 +62,7 @@ def kept(curve: dict[str, Any]) -> Kept:
 
 
 def table(pdk: str, wavelength_um: float, found: Sequence[dict[str, Any]]) -> dict[str, Any]:
-    """What `talbot.models.parameters.drawn_curves` reads."""
+    """Return the data that `talbot.models.parameters.drawn_curves` reads."""
     return {
         "command": "make pixel-layout CURVES=models/parameters/pixel_curves.json",
         "source": f"{pdk}, {1e3 * wavelength_um:g} nm: cuts through the drawn masks, by rigorous coupled waves",

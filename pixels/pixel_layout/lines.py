@@ -36,7 +36,7 @@ class Line:
 
 
 def extracted(made: ArrayLayout) -> dict[str, Line]:
-    """The lines `NAMES` of the pixels of an array. Raises StepError."""
+    """Return the lines `NAMES` of the pixels of an array. Raises StepError."""
 
     def farads(rows: int, cols: int) -> dict[str, dict[str, float]]:
         return _farads(replace(made, array=replace(made.array, rows=rows, cols=cols)))
@@ -52,7 +52,7 @@ def extracted(made: ArrayLayout) -> dict[str, Line]:
 
 
 def table(pdk: str, found: Mapping[str, Line]) -> dict[str, Any]:
-    """What models and circuits take of the lines: `models.parameters.drawn_lines`."""
+    """Return the lines for models and circuits: `models.parameters.drawn_lines`."""
 
     def most(names: tuple[str, ...]) -> tuple[float, float]:
         return max(found[name].ohm for name in names), max(found[name].farad["typ"] for name in names)

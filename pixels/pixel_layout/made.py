@@ -23,5 +23,5 @@ class Made:
         return max(self.array.pixels, key=lambda pixel: (pixel.kind.beta, -abs(pixel.kind.gamma_deg)))
 
     def path(self, name: str) -> Path:
-        """A file."""
+        """Return a file."""
         return self.folder / name

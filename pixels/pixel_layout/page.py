@@ -76,7 +76,7 @@ def _tiles(s: dict[str, Any]) -> list[Tile]:
 
 
 def waivers(s: dict[str, Any]) -> str:
-    """How many violations of which rules are waived, '' for none."""
+    """Return how many violations of which rules are waived, '' for none."""
     counts = {rule: one["count"] for rule, one in s["waivers"].items()}
     return f"{sum(counts.values()):,} more are waived ({', '.join(counts)})" if counts else ""
 

@@ -42,7 +42,7 @@ def panels(process: PixelProcess) -> list[tuple[str, list[tuple[GdsLayer, str]]]
 
 
 def layers(gds: Path, process: PixelProcess) -> Figure:
-    """The masks of a cell one by one."""
+    """Return the masks of a cell one by one."""
     wanted = panels(process)
     figure = Figure(figsize=(10, 5.3), layout="constrained")
     for axes, (title, masks) in zip(figure.subplots(2, (len(wanted) + 1) // 2).flat, wanted + [("", [])]):
@@ -51,7 +51,7 @@ def layers(gds: Path, process: PixelProcess) -> Figure:
 
 
 def tile(gds: Path, process: PixelProcess) -> Figure:
-    """The upper gratings of a tile, and all of its masks."""
+    """Return the upper gratings of a tile, and all of its masks."""
     figure = Figure(figsize=(10, 3.6), layout="constrained")
     first, second = figure.subplots(1, 2)
     upper = process.metals[UPPER]
@@ -63,7 +63,7 @@ def tile(gds: Path, process: PixelProcess) -> Figure:
 
 
 def corner(gds: Path, process: PixelProcess) -> Figure:
-    """The south-west corner of the array: pins, rings, dummies, the first pixels."""
+    """Return the south-west corner of the array: pins, rings, dummies, the first pixels."""
     figure = Figure(figsize=(6, 6), layout="constrained")
     axes = figure.subplots()
     shown = [(process.well, WELL), *_active(process, ACTIVE)]
@@ -90,7 +90,7 @@ def responses(curves: Sequence[Mapping[str, Any]]) -> Figure:
 
 
 def cross_section(gds: Path, made: PixelLayout, wavelength_um: float) -> Figure:
-    """What is cut at the middle of the gratings, to scale, and the light between these of a wave on the axis."""
+    """Return a cross-section at the middle of the gratings, to scale, with the light of a wave on the axis."""
     g, process = made.geometry, made.process
     pitch = g.pitch_um
     at = 0.65 * pitch

@@ -70,7 +70,7 @@ def rows(spec: AmplifierSpec, found: Pair[Amplified]) -> Iterator[Row]:
 
 
 def capacitors(made: Cell, nets: Nets, masks: AnalogMasks, spec: AmplifierSpec) -> Iterator[Row]:
-    """What the rays find in the banks: unit, steps of the trim, both inputs."""
+    """Yield what the rays find in the banks: unit, steps of the trim, both inputs."""
     unit = unit_farad(made, nets)
     off = 100 * (unit * masks.fringe_share / made.unit - 1)
     yield Row("amplifier: unit capacitor, off by", "%", 0.0, off, "capacitances", UNIT_OFF)

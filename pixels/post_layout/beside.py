@@ -25,13 +25,13 @@ class Pair(Generic[T]):
     layout: T
 
     def of(self, part: Callable[[T], Part]) -> "Pair[Part]":
-        """A part of both."""
+        """Return a part of both."""
         return Pair(self.corner, part(self.schematic), part(self.layout))
 
     def row(
         self, name: str, unit: str, value: Callable[[T], float], most: float | None = None, least: float | None = None
     ) -> Row:
-        """A characteristic of both."""
+        """Return a characteristic of both."""
         return Row(name, unit, float(value(self.schematic)), float(value(self.layout)), self.corner, most, least)
 
 

@@ -14,7 +14,7 @@ ALIGN, COMPARE = "\nalign\n", "\nok = compare\n"
 
 
 def decks(pdk: str) -> tuple[str, str]:
-    """The decks of design rules and of LVS, text. Raises StepError where PDKMaster's are not as they were."""
+    """Return the decks of design rules and of LVS, text. Raises StepError where PDKMaster's are not as they were."""
     masks = analog_masks(pdk)
     rules, lvs = common_decks(pdk)
     text = "\n".join([*rules, masks.rules.read_text(encoding="utf-8"), masks.thick.read_text(encoding="utf-8"), ""])
@@ -58,7 +58,7 @@ def lvs(gds: Path, spice: str, pdk: str, report: Path, boxes: Iterable[str] = ()
 
 
 def differences(report: Path) -> list[str]:
-    """What `lvs` found to differ, nets first, by the circuit's names, or the layout's for what it lacks."""
+    """Return the differences that `lvs` found, nets first, by the names of the circuit, else of the layout."""
     found = db.LayoutVsSchematic()
     found.read(str(report))
     compared, texts = found.xref(), []

@@ -107,7 +107,7 @@ def _um(at: tuple[int, int, int], dbu: float) -> tuple[int, float, float]:
 
 
 def _layouts(made: Cell, masks: AnalogMasks) -> tuple["db.Layout", "db.Layout"]:
-    """The cell without vias on upper plates and resistors' bodies, and without the metal over plates, too."""
+    """Return the cell without vias on upper plates and resistors' bodies, and without the metal over plates, too."""
     whole = db.Layout()
     whole.assign(made.layout)
     top = whole.top_cell()
@@ -180,7 +180,7 @@ def _nets(cut: Shapes, found: Shapes, names: Mapping[int, str], wires: Wires) ->
 
 
 def _circuit(made: Cell, pins: list[_Pin], grown: Any, nets: Nets, resistance: bool) -> Extracted:
-    """The netlist of the trees; without ``resistance`` every net is one node."""
+    """Return the netlist of the trees; without ``resistance`` every net is one node."""
     kept = np.flatnonzero(grown.kept)
     root: dict[int, int] = {}
     own: dict[int, list[int]] = {}

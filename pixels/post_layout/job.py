@@ -63,7 +63,7 @@ def cells(
     column: ColumnSizes,
     array: ArrayParameters,
 ) -> dict[str, Cell]:
-    """What is drawn and extracted, by name. lanes: that share a bias."""
+    """Return the cells that are drawn and extracted, by name. lanes: that share a bias."""
     return {
         "comparator": comparator_cell(masks, sizes.comparator),
         "sar_lane": lane_cell(masks, sizes),
@@ -153,7 +153,7 @@ def make(
 def _table(
     setup: Setup, sizes: LaneSizes, drawn: Mapping[str, tuple[Extracted, Nets]], corner: str, workers: int
 ) -> dict[str, Any]:
-    """The curves of the drawn amplifier and column for the real-number model, with sources and errors, LSB.
+    """Return the curves of the drawn amplifier and column for the real-number model, with sources and errors, LSB.
 
     Both were measured for the page: that is read.
     """
@@ -198,7 +198,7 @@ def _cell(
 
 
 def _array(nets: Nets, masks: AnalogMasks, sizes: LaneSizes, spec: LaneSpec) -> Iterator[Row]:
-    """The converter's levels from the capacitances of the drawn array: what couples to the common node counts."""
+    """Yield the converter's levels from the capacitances of the drawn array: what couples to the common node counts."""
     names = [*(f"dac.b{k}" for k in range(BITS)), "dac.bt", "dac.bh"]
     units = np.array([*(1 << k for k in range(BITS)), 1, 0.5])
     beside = np.array([nets.couplings.get((name, "top"), 0.0) for name in names])
@@ -240,7 +240,7 @@ def _measured(
 
 
 def _columns(setup: Setup, drawn: Mapping[str, Sequence[Extracted]], workers: int) -> Iterator[Pair[ColumnResult]]:
-    """A column at every corner."""
+    """Yield a column at every corner."""
     return beside("column", column.measure, ColumnResult, (setup, *column_of(setup)), drawn, workers)
 
 

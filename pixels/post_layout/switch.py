@@ -21,7 +21,7 @@ class Gaps:
 
 
 def measure(setup: Setup, spec: SupportSpec, corner: Corner, circuit: Circuit | None = None) -> Gaps:
-    """The gaps at a corner; circuit: instead of the schematic."""
+    """Return the gaps at a corner; circuit: instead of the schematic."""
     found, _ = phases(setup, spec, corner, circuit)
     return Gaps(min(found), max(found))
 

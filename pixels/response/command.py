@@ -74,7 +74,7 @@ def run(options: Namespace) -> int:
 
 
 def _one(options: Namespace, pitch_um: float) -> "tuple[PixelGeometry, float] | None":
-    """The geometry and the wavelength in um; None where no option names either. Raises ParameterError."""
+    """Return the geometry and the wavelength in um; None where no option names either. Raises ParameterError."""
     from talbot.base.arguments import real
     from talbot.pixels.optics.geometry import PixelGeometry
 

@@ -104,7 +104,7 @@ def _spread(step: float) -> Floats:
 def _rows(
     what: str, kept: Sequence[int] | Sequence[float], truth: Floats, solved: Callable[[Any], Floats]
 ) -> Iterator[Kept]:
-    """A row for each of ``kept``, against ``truth``."""
+    """Yield a row for each of ``kept``, against ``truth``."""
     for count in kept:
         start = perf_counter()
         found = solved(count)

@@ -22,7 +22,7 @@ WIDTH_UM = 2.4  # of the cross-section
 
 
 def responses(measured: Mapping[float, Measured]) -> Figure:
-    """The four diodes of each design over angle, and the formula fitted to them, dotted."""
+    """Return the four diodes of each design over angle, and the formula fitted to them, dotted."""
     figure = Figure(figsize=(4 * len(measured), 3.2), layout="constrained")
     for axes, (beta, one) in zip(figure.subplots(1, len(measured), squeeze=False)[0], measured.items(), strict=True):
         middle = len(one.fits) // 2

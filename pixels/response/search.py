@@ -32,11 +32,11 @@ class Plan:
     designs: dict[float, Design]
 
     def reached(self, beta: float) -> bool:
-        """Whether the design for ``beta`` has it."""
+        """Return whether the design for ``beta`` has it."""
         return self.designs[beta].off(beta) <= REACHED
 
     def rank(self) -> tuple[int, bool, float]:
-        """What plans are sorted by."""
+        """Return the key by which plans are sorted."""
         count, worst = self.score
         return count, self.kind == "amplitude", worst
 
@@ -86,7 +86,7 @@ class Found:
 
 
 def _gratings(design: Design) -> PixelGeometry:
-    """What designs have in common whose analyzers are at different places."""
+    """Return the fields common to designs that differ in the analyzer's place."""
     return replace(design.geometry, shift=0.0)
 
 
@@ -162,7 +162,7 @@ def _solve(points: Iterable[Point], together: int, store: Path) -> list[Design]:
 
 
 def _starts(tried: Sequence[Design], kind: str, betas: Sequence[float]) -> list[Design]:
-    """The best designs for each beta, at the wavelengths that are best for all."""
+    """Return the best designs for each beta, at the wavelengths that are best for all."""
     lights = sorted(_plans(tried, kind, betas), key=_promise, reverse=True)[:LIGHTS]
     return [
         start
@@ -177,7 +177,7 @@ def _promise(plan: Plan) -> float:
 
 
 def _worth(design: Design, beta: float) -> float:
-    """A design's figure, less the farther its beta is from the one that is asked for."""
+    """Return a design's figure, less the farther its beta is from the one that is asked for."""
     return design.fit.figure / (1 + (design.off(beta) / REACHED) ** 2)
 
 

@@ -78,12 +78,12 @@ def solve_around(geometry: PixelGeometry, wavelength_um: float) -> list[list[flo
 
 
 def name_of(kind: PixelType) -> str:
-    """A type's name: beta, then gamma and alpha in degrees."""
+    """Return a type's name: beta, then gamma and alpha in degrees."""
     return f"{kind.beta:g}/{kind.gamma_deg:g}/{np.rad2deg(kind.alpha):g}"
 
 
 def measured(design: Design, wavelengths_um: Sequence[float] | Floats, solved: Sequence[dict[str, Any]]) -> Measured:
-    """A design from the results of `solve_one`."""
+    """Return a design from the results of `solve_one`."""
     angles = np.deg2rad(DEGREES)
     shares, reflected = (np.array([part[name] for part in solved]) for name in ("shares", "reflected"))
     response = Response(design.geometry, angles, 0 * angles, np.asarray(wavelengths_um, float), shares, reflected)
@@ -91,7 +91,7 @@ def measured(design: Design, wavelengths_um: Sequence[float] | Floats, solved: S
 
 
 def at(response: Response, k: int) -> Response:
-    """A response at one of its wavelengths."""
+    """Return a response at one of its wavelengths."""
     return replace(
         response,
         wavelengths_um=response.wavelengths_um[[k]],
@@ -129,7 +129,7 @@ def beside(one: Measured) -> tuple[Fit, float]:
 
 
 def at_heights(design: Design, heights: str) -> Design:
-    """The design where the process has another table of heights."""
+    """Return the design where the process has another table of heights."""
     return measure(replace(design.geometry, heights=heights), design.wavelength_um)
 
 

@@ -29,7 +29,7 @@ def drc(gds: Path, masks: AnalogMasks, report: Path) -> dict[str, int]:
 
 
 def netlist(chip: TestChip, masks: AnalogMasks) -> str:
-    """The chip's circuit as text for LVS, pixels and all."""
+    """Return the chip's circuit as text for LVS, pixels and all."""
     base = masks.base
     ring = Diode("ring", VDDA, *chip.array.well_ring_um)
     one = spice(PIXEL, chip.array.pixels[0].circuit, base.deck_model, base.deck_diode)
@@ -42,7 +42,7 @@ def netlist(chip: TestChip, masks: AnalogMasks) -> str:
 
 
 def lvs(gds: Path, text: str, masks: AnalogMasks, report: Path) -> bool:
-    """Whether ``gds`` is the circuit ``text``, pin by pin. Raises StepError."""
+    """Return whether ``gds`` is the circuit ``text``, pin by pin. Raises StepError."""
     deck = with_diodes(analog.decks(masks.base.name)[1], masks.base)
     if deck.count(COMPARE) != 1:
         raise StepError("lvs: the deck must have one line 'ok = compare'")

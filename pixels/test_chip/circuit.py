@@ -26,7 +26,7 @@ FOLLOWER, SOURCE, SOURCE_LENGTH, REFERENCE = 20.0, 16.0, 1.0, 4.0
 
 
 def lifts() -> Circuit:
-    """A level shifter for each input. Pins: inputs, their lines, VDPWR VAPWR VGND."""
+    """Return a level shifter for each input. Pins: inputs, their lines, VDPWR VAPWR VGND."""
     supplies = LOGIC, HIGH, GROUND
     parts = tuple(Instance(line, lift(), (pin, line, *supplies)) for pin, line in INPUTS.items())
     return Circuit("lifts", (*INPUTS, *INPUTS.values(), *supplies), instances=parts)

@@ -73,7 +73,7 @@ class TestChip:
 
 
 def array_layout(pdk: str) -> ArrayLayout:
-    """The tile's pixels with edges at multiples of 45 degrees, as the shuttle's rules ask."""
+    """Return the tile's pixels with edges at multiples of 45 degrees, as the shuttle's rules ask."""
     tile = TileParameters()
     drawn = tuple(replace(pixel, octilinear=True) for pixel in drawn_pixels(pdk, tile))
     return ArrayLayout(ArrayParameters(ROWS, COLS), tile, drawn)
@@ -109,7 +109,7 @@ def draw_chip(masks: AnalogMasks) -> TestChip:
 
 
 def relabelled(layout: "db.Layout", names: Mapping[str, str]) -> "db.Layout":
-    """A copy whose top cell has the labels of ``names`` alone, with their new names."""
+    """Return a copy whose top cell has the labels of ``names`` alone, with their new names."""
     copy = db.Layout()
     copy.assign(layout)
     for index in copy.layer_indexes():
@@ -122,7 +122,7 @@ def relabelled(layout: "db.Layout", names: Mapping[str, str]) -> "db.Layout":
 
 
 def _pixels(layout: "db.Layout", array: ArrayLayout) -> tuple["db.Cell", dict[tuple[int, int], str]]:
-    """The pixels with dummies and rings, and the cell at each position; row 0 is the north one."""
+    """Return the pixels with dummies and rings, and the cell at each position; row 0 is the north one."""
     canvas = Canvas(layout, "pixels", array.pixels[0].process)
     tile, cells = array.tile, [draw(layout, pixel).cell for pixel in array.pixels]
     oblique = next(pixel for pixel in array.pixels if pixel.axis is None)
@@ -184,7 +184,7 @@ def _draw_strip(canvas: Canvas, masks: AnalogMasks, plan: Plan, y: float) -> Str
 
 
 def _renamed(device: Device) -> Device:
-    """A shifter's transistor whose gate is at the logic's supply, with the net of its track."""
+    """Return a shifter's transistor whose gate is at the logic's supply, with the net of its track."""
     t = device.transistor
     return replace(device, transistor=t._replace(gate=GATE_OF_VDD)) if t.gate == LOGIC else device
 
@@ -263,7 +263,7 @@ def _readout(
 
 
 def _row(d: Mapping[str, Device], names: Sequence[str], left: float) -> tuple[Placed, ...]:
-    """A row of transistors from ``left`` on, with room for their drops."""
+    """Return a row of transistors from ``left`` on, with room for their drops."""
     placed, x = list[Placed](), left
     for name in names:
         width = max(d[name].width_um + 0.5, 3 * 0.52) + ROOM

@@ -89,7 +89,7 @@ def write_named(chip: TestChip, path: Path) -> None:
 
 
 def line(summary: dict[str, Any], folder: Path) -> str:
-    """What the command prints of it."""
+    """Return the lines that the command prints."""
     one = summary["read"]
     return (
         f"{summary['width_um']:g} x {summary['height_um']:g} um, {summary['transistors']} transistors; design rules: "

@@ -18,7 +18,7 @@ DIRECTIONS = {"ui_in": "input", "uio_in": "input", "uo_out": "output", "uio_out"
 
 
 def lef() -> str:
-    """The LEF: outline, pins, nothing else, as the shuttle's tools write it."""
+    """Return the LEF: outline, pins, nothing else, as the shuttle's tools write it."""
     pins = []
     for name, x in ANALOG_PORTS:
         direction = DIRECTIONS.get(name.partition("[")[0], "input").upper()
@@ -39,7 +39,7 @@ def _pin(name: str, direction: str, use: str, box: tuple[float, float, float, fl
 
 
 def stub() -> str:
-    """The Verilog module, a black box: outputs are tied to ground in the layout."""
+    """Return the Verilog module, a black box: outputs are tied to ground in the layout."""
     ports = [f"inout wire {name}" for name in STRIPES]
     ports += [f"{direction} wire [7:0] {name}" for name, direction in DIRECTIONS.items()]
     ports += ["inout wire [7:0] ua", *(f"input wire {name}" for name in ("ena", "clk", "rst_n"))]
@@ -76,7 +76,7 @@ yaml_version: 6
 
 
 def page() -> str:
-    """The page docs/info.md of the shuttle's datasheet."""
+    """Return the page docs/info.md of the shuttle's datasheet."""
     return f"""## How it works
 
 {ROWS} rows of {COLS} pixels of 10 um, each with two photodiodes and three transistors a diode. Rows 0 to 3 are a tile

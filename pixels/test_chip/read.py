@@ -69,7 +69,7 @@ class Read:
 
 
 def extracted(chip: TestChip, masks: AnalogMasks, corner: str = TYPICAL) -> Extracted:
-    """The strips' transistors with the parasitics of all nets; lines to the pixels are ports, too."""
+    """Return the strips' transistors with the parasitics of all nets; lines to the pixels are ports, too."""
     ports = *INPUTS, *ANALOG, LOGIC, HIGH, SUBSTRATE
     layout = relabelled(chip.layout, {GROUND: SUBSTRATE, **{port: port for port in ports}})
 

@@ -80,7 +80,7 @@ def _scalars(part: str, before: str, text: str) -> str:
 
 
 def _without_vectors_of_one(text: str) -> str:
-    """The text with one-bit signals, fields and constants as scalars; the bit 0 of a signal is the signal."""
+    """Return the text with one-bit signals, fields and constants as scalars; the bit 0 of a signal is the signal."""
     types, *modules = re.split(r"(?m)^(?=module )", text)
     parts = [_scalars(types, r"\.", text)]
     for module in modules:

@@ -54,7 +54,7 @@ class Host:
         return self.identity
 
     def defaults(self) -> dict[str, int]:
-        """The configuration after a reset by key (models.digital.host.frame_values): the whole array."""
+        """Return the configuration after a reset by key (models.digital.host.frame_values): the whole array."""
         found = self.identity
         resets = array_resets(found["rows"], found["cols"], found["lanes"], found["tile_rows"], found["tile_cols"])
         return {f.key: resets.get(f.key, f.reset) for f in self.chip.configuration}
@@ -111,7 +111,7 @@ class Host:
         self.transfer(command("abort"))
 
     def status(self) -> dict[str, bool]:
-        """The status bits by name."""
+        """Return the status bits by name."""
         (byte,) = self.read(self.chip["busy"].byte, 1)
         return {f.name: bool(byte >> f.shift & 1) for f in self.chip.fields if f.register == "status"}
 

@@ -24,7 +24,7 @@ from pymtl3 import (
 
 @cache
 def div_state(quotient_bits: int) -> type:
-    """The state of a division: larger * (value of quotient) + rest = smaller, and 0 <= rest <= larger.
+    """Return the state of a division: larger * (value of quotient) + rest = smaller, and 0 <= rest <= larger.
 
     rest = larger only for |x| = |y| (and for zero): then every digit is the highest, and the ratio saturates.
     """

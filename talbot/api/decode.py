@@ -28,7 +28,7 @@ class DecodedFrame(Decoded):
 
 
 def decode(source: str | Path | bytes, sensor: Sensor | None = None) -> list[DecodedFrame]:
-    """The frames of a stream, at least one; damage is in each frame's bad_rows and errors.
+    """Return the frames of a stream, at least one; damage is in each frame's bad_rows and errors.
 
     source: a file, as stream.bin of a run or captured from a chip, or the bytes. sensor: of the chip, for its tile, or
     None for the thesis's. Raises ParameterError where there is no frame, OSError.

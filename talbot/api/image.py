@@ -14,14 +14,14 @@ WIDTH = 288  # px that a picture has at least
 
 
 def png(picture: Picture) -> bytes:
-    """A picture as a PNG file."""
+    """Return a picture as a PNG file."""
     out = io.BytesIO()
     picture.save(out, "PNG")
     return out.getvalue()
 
 
 def embedded(data: bytes) -> str:
-    """A PNG file as an element of a page."""
+    """Return a PNG file as an element of a page."""
     return f'<img src="data:image/png;base64,{base64.b64encode(data).decode()}">'
 
 
@@ -30,7 +30,7 @@ class Image(np.ndarray):
 
     @classmethod
     def of(cls, values: npt.ArrayLike) -> "Image":
-        """The same values, float64."""
+        """Return the same values, float64."""
         return np.ascontiguousarray(values, float).view(cls)
 
     def _repr_png_(self) -> bytes | None:
@@ -51,5 +51,5 @@ def table(values: dict[str, Any]) -> str:
 
 
 def text(value: Any) -> str:
-    """A value for people: five digits, '-' for None."""
+    """Return a value for people: five digits, '-' for None."""
     return "-" if value is None else f"{value:.5g}" if isinstance(value, float) else str(value)

@@ -68,14 +68,14 @@ class LightField:
 
     @classmethod
     def of(cls, data: scene.LightField) -> Self:
-        """The light field of the models' data."""
+        """Return the light field of the models' data."""
         field = cls.__new__(cls)
         field.data = data
         return field
 
     @classmethod
     def load(cls, path: str | Path, views: int | tuple[int, int] | None = None) -> Self:
-        """The light field in a file or folder.
+        """Return the light field in a file or folder.
 
         path: x.npy; x.npz with the array `light_field` (or one alone) and perhaps `disparity`, as lightfield.npz of
         `make lightfield`; a folder with input_Cam000.png ... (HCI 4D; gt_disp_lowres.pfm is its disparity) or
@@ -128,7 +128,7 @@ class LightField:
         return Image.of(self.data.view(v, u))
 
     def refocus(self, disparity: float) -> Image:
-        """The picture of a lens that is focused where things have this disparity, Image (height, width).
+        """Return the picture of a lens that is focused where things have this disparity, Image (height, width).
 
         disparity: px per view step, -100..100, positive towards the camera. Mean of the views, each moved by its share,
         linear luminance; views without any light, as in a round pupil's corners, do not count. Raises ParameterError.

@@ -39,7 +39,7 @@ class Run:
 
     @classmethod
     def load(cls, path: str | Path) -> Self:
-        """The run in a file or folder that `save` wrote; equal to that one. Raises ParameterError.
+        """Return the run in a file or folder that `save` wrote; equal to that one. Raises ParameterError.
 
         It has the samples and all that is computed of them; a scene that was rendered has its light field alone.
         """
@@ -57,12 +57,12 @@ class Run:
         write_run(Path(path), replace(self.result), self.summary)
 
     def __getstate__(self) -> dict[str, Any]:
-        """What is copied: the result without what can be computed again, and the figures if they are there."""
+        """Return the state to copy: the result without fields that can be computed again, and any figures."""
         kept = {"summary": self.summary} if "summary" in vars(self) else {}
         return {"result": replace(self.result)} | kept
 
     def __eq__(self, other: object) -> bool:
-        """Whether both are the same frame: chip or golden model, settings, scene, samples and bytes."""
+        """Return whether both are the same frame: chip or golden model, settings, scene, samples and bytes."""
         if not isinstance(other, Run):
             return NotImplemented
         mine, its = self.result, other.result
@@ -105,7 +105,7 @@ class Run:
     def reconstruct(
         self, what: str = "image", *, disparity: npt.ArrayLike | None = None, method: str | None = None
     ) -> Image | LightField:
-        """What the samples show.
+        """Return what the samples show.
 
         image: 2-D, relative radiance, Image (rows, cols); in edge mode rebuilt from the differences, of mean 0.
         edges (edge and raw mode): one image of differences a pixel type, in codes, Image (types, tile rows, tile cols).

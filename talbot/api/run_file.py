@@ -29,7 +29,7 @@ PLAIN = {
 
 class _Reader(pickle.Unpickler):
     def find_class(self, module: str, name: str) -> Any:
-        """A class of talbot, or one of `PLAIN`."""
+        """Return a class of talbot, or one of `PLAIN`."""
         if name in PLAIN.get(module, ()):
             return super().find_class(module, name)
         if module.startswith("talbot.") and "." not in name:
@@ -58,7 +58,7 @@ def write_run(path: Path, result: GoldenResult, summary: Mapping[str, Any]) -> N
 
 
 def read_run(path: Path) -> tuple[GoldenResult, dict[str, Any]]:
-    """The result and the summary in a file or folder of `write_run`. Raises ParameterError."""
+    """Return the result and the summary in a file or folder of `write_run`. Raises ParameterError."""
     file = path / FILE if path.is_dir() else path
     if not file.is_file():
         raise ParameterError(f"path = {str(path)!r}: no such file; must be a file or folder of Run.save")

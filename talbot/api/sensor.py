@@ -109,14 +109,14 @@ class Sensor:
 
     @classmethod
     def of(cls, parameters: SensorParameters) -> Self:
-        """The sensor of these parameters."""
+        """Return the sensor of these parameters."""
         sensor = cls.__new__(cls)
         object.__setattr__(sensor, "parameters", parameters)
         return sensor
 
     @classmethod
     def load(cls, path: str | Path) -> Self:
-        """The sensor in a file, sensor.toml. Raises ParameterError."""
+        """Return the sensor in a file, sensor.toml. Raises ParameterError."""
         return cls.of(read_sensor(path))
 
     def save(self, path: str | Path) -> None:
@@ -171,7 +171,7 @@ class Sensor:
             return Run(job.simulate_frame(self._request(scene, mode, settings), steps.note))
 
     def golden(self, scene: Seen = "motorcycle", mode: str = "edge", **settings: Unpack[Settings]) -> Run:
-        """The frame of `simulate` by the golden model alone: the same bytes, no cycles, no energy."""
+        """Return the frame of `simulate` by the golden model alone: the same bytes, no cycles, no energy."""
         with Steps(job.STEPS[:-1]) as steps:
             return Run(job.golden_result(self._request(scene, mode, settings), steps.note))
 
@@ -223,7 +223,7 @@ class Sensor:
         return request(sensor=self.parameters, scene=seen, mode=mode, **options)
 
     def __repr__(self) -> str:
-        """What is not the default, by name."""
+        """Return the parameters that differ from the default, by name."""
         changed = {name: value for name, value in _values(self.parameters).items() if value != _values(STANDARD)[name]}
         whole = {name: getattr(untabled(self.parameters), name) for name in OBJECTS}
         changed |= {name: value for name, value in whole.items() if value != getattr(STANDARD, name)}

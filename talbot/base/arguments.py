@@ -52,7 +52,7 @@ def span(field: str, text: str, low: int, high: int) -> tuple[int, int]:
 
 
 def real(field: str, text: str, low: float, high: float) -> float:
-    """A number in [low, high]."""
+    """Return a number in [low, high]."""
     try:
         value = float(text)
     except ValueError:
@@ -63,7 +63,7 @@ def real(field: str, text: str, low: float, high: float) -> float:
 
 
 def integer(field: str, text: str, low: int, high: int, base: int = 10, also: str = "") -> int:
-    """An integer in low..high; also: what else the field may be, for the error."""
+    """Return an integer in low..high; also: what else the field may be, for the error."""
     try:
         value = int(text, base)
     except ValueError:

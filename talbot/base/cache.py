@@ -65,18 +65,18 @@ def cached(folder: Path | str, make: Callable[[Path], object]) -> Path:
 
 
 def _names(folder: Path) -> list[str]:
-    """The files below ``folder`` that count as its content: not what Python keeps next to its modules."""
+    """Return the files below ``folder`` that count as its content: not what Python keeps next to its modules."""
     files = (path for path in folder.rglob("*") if path.is_file() and "__pycache__" not in path.parts)
     return sorted(str(path.relative_to(folder)) for path in files)
 
 
 def _state(file: Path) -> str:
-    """The digest of a file, and whether it can be run."""
+    """Return the digest of a file, and whether it can be run."""
     return digest(file) + RUNS * os.access(file, os.X_OK)
 
 
 def _sound(folder: Path) -> bool:
-    """Whether every file that was made in ``folder`` is as it was; what was added later does not count."""
+    """Return whether every file that was made in ``folder`` is as it was; what was added later does not count."""
     try:
         files = json.loads((folder / CONTENT).read_text(encoding="utf-8"))
         return all(kept in (state := _state(folder / name), state.removesuffix(RUNS)) for name, kept in files.items())

@@ -51,7 +51,7 @@ def svg(figure: Figure) -> Markup:
 
 @own_style()
 def described(figure: Figure) -> str:
-    """What a figure shows, in words: titles, axes and series of each part."""
+    """Return a description of a figure: titles, axes and series of each part."""
     parts = []
     for axes in figure.axes:
         title = next((text for where in ("left", "center", "right") if (text := axes.get_title(where))), "")

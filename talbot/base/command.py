@@ -155,7 +155,7 @@ def guarded(program: str, call: Callable[[], int], folders: Sequence[Path] = ())
 
 
 def _silence() -> bool:
-    """Whether standard output takes nothing more; Python's end does not try again then."""
+    """Return whether standard output takes nothing more; Python's end does not try again then."""
     try:
         sys.stdout.flush()
     except OSError:
@@ -165,7 +165,7 @@ def _silence() -> bool:
 
 
 def one_line(error: Exception) -> str:
-    """The first line of an error's message and, of a tool's output after it, the first line with an error."""
+    """Return the first line of an error's message and, of a tool's output after it, the first line with an error."""
     lines = [line.strip() for line in str(error).splitlines() if line.strip()] or [type(error).__name__]
     detail = next((line for line in lines[1:] if "error" in line.lower()), lines[-1])
     return lines[0] if len(lines) == 1 else f"{lines[0]} {detail}"

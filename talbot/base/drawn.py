@@ -8,7 +8,7 @@ from talbot.base.kept import kept
 
 
 def drawn(chart: Literal["bars", "curves"], *arguments: object, **named: object) -> Markup:
-    """The SVG of a chart of these arguments, now or earlier."""
+    """Return the SVG of a chart of these arguments, now or earlier."""
     return kept("charts", _drawn, chart, arguments, named)
 
 

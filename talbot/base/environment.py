@@ -90,5 +90,5 @@ def start_again() -> None:
 
 
 def _of_python(name: str) -> bool:
-    """Whether Python itself reads the variable when it starts."""
+    """Return whether Python itself reads the variable when it starts."""
     return name.startswith("PYTHON") or name in ("LANG", "LC_ALL", "LC_CTYPE")

@@ -44,12 +44,12 @@ class Job:
         return digest(self.name, code(self.call.__module__), *self.inputs)
 
     def file(self, store: Path) -> Path:
-        """The file of the kept result in the folder ``store``."""
+        """Return the file of the kept result in the folder ``store``."""
         return store / f"{self.name}.{self.digest}.json"
 
 
 def worker_count(text: str) -> int:
-    """A number of processes from an argument: 1 or more, or -1 for all cores."""
+    """Return a number of processes from an argument: 1 or more, or -1 for all cores."""
     count = int(text) if text.lstrip("-").isdecimal() else 0
     if count < 1 and count != -1:
         raise argparse.ArgumentTypeError(f"{text!r}: must be 1 or more, or -1 for all cores")
@@ -85,7 +85,7 @@ def run(jobs: Iterable[Job], store: Path | str, title: str, workers: int = -1) -
 
 
 def kept(file: Path) -> list[Any]:
-    """The one value of a JSON file; [] where there is no file, or not the whole of one."""
+    """Return the one value of a JSON file; [] where there is no file, or not the whole of one."""
     try:
         return [json.loads(file.read_text(encoding="utf-8"))]
     except (FileNotFoundError, ValueError):
@@ -122,7 +122,7 @@ def _keep(job: Job, file: Path) -> str:
 
 
 def _not_finite(value: Any, name: str = "") -> Iterator[str]:
-    """The names of the numbers in JSON that are NaN or infinite, each with its value."""
+    """Yield the names of the numbers in JSON that are NaN or infinite, each with its value."""
     if is_dataclass(value) and not isinstance(value, type):
         value = asdict(value)
     if isinstance(value, dict | list | tuple):

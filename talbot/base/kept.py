@@ -78,7 +78,7 @@ def afresh() -> Iterator[None]:
 
 
 def content(value: object) -> tuple[str, set[str]]:
-    """The digest of an object's content, and the package's modules whose code it consists of. Raises Unnamed.
+    """Return the digest of an object's content, and the package's modules whose code it consists of. Raises Unnamed.
 
     Objects are their class and attributes; of a dataclass, its fields; a function is its name and what it holds.
     """
@@ -143,7 +143,7 @@ def _parts(value: Any, modules: set[str], above: tuple[int, ...]) -> Iterator[by
 
 @functools.cache
 def _installed(module: str) -> bool:
-    """Whether a module is Python's or of an installed package, whose code stays as it is."""
+    """Return whether a module is Python's or of an installed package, whose code stays as it is."""
     file = getattr(sys.modules.get(module), "__file__", None)
     if file is None:
         return module in sys.builtin_module_names

@@ -35,7 +35,7 @@ def build(root: Path) -> Path:
 
 
 def unwritable(folder: Path) -> Path | None:
-    """The first of ``folder``, or what is above it, and its folders in which this user may not write."""
+    """Return the first of ``folder``, or what is above it, and its folders in which this user may not write."""
     existing = next(path for path in (folder, *folder.absolute().parents) if os.path.lexists(path))
     if not os.access(existing, os.W_OK | os.X_OK):
         return existing

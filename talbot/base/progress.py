@@ -39,7 +39,7 @@ def say(text: str) -> None:
 def each(
     items: Iterable[T], title: str, name: Callable[[T], object] = lambda item: "", total: int | None = None
 ) -> Iterator[T]:
-    """The items; a bar on a terminal, elsewhere a line as one ends, with the seconds since the line before.
+    """Yield the items; a bar on a terminal, elsewhere a line as one ends, with the seconds since the line before.
 
     Within a step of `Steps` they move its bar. Items that take no time share a line. total: how many, where ``items``
     does not tell.
@@ -61,7 +61,7 @@ def each(
 
 
 def ended(step: str, seconds: float) -> str:
-    """A line about a step that ended."""
+    """Return a line about a step that ended."""
     return f"{step}: {seconds:.1f} s"
 
 

@@ -27,11 +27,11 @@ class Varied:
     limits: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
     def uses(self, name: str) -> bool:
-        """Whether the result follows the field ``name``."""
+        """Return whether the result follows the field ``name``."""
         return any(_within(name, key) for key in self.used)
 
     def fixes(self, name: str) -> str:
-        """The reason for which the field ``name`` cannot vary, '' where it can."""
+        """Return the reason for which the field ``name`` cannot vary, '' where it can."""
         return next((reason for key, reason in self.fixed.items() if _within(name, key)), "")
 
     def check(self, sensor: SensorParameters, *also: SensorParameters) -> None:
@@ -100,7 +100,7 @@ def _within(name: str, key: str) -> bool:
 
 
 def _text(value: Any) -> str:
-    """A value as a line of an error has it."""
+    """Return a value as a line of an error has it."""
     if isinstance(value, tuple) and value and not isinstance(value[0], int):
         return f"{len(value)} pixel types" if value != STANDARD.tile.types else "the standard's pixel types"
     if isinstance(value, tuple):

@@ -81,7 +81,7 @@ class Tree:
         self._digests: dict[Path, str] = {}
 
     def digest(self, files: Iterable[Path]) -> str:
-        """The digest of files: their places below the root and their contents."""
+        """Return the digest of files: their places below the root and their contents."""
         for file in (files := list(files)):
             self._digests[file] = self._digests.get(file) or digest(file)
         return digest(
@@ -135,7 +135,7 @@ class Tree:
                 yield Reference(names[file])
 
     def _resolved(self, reference: Reference, chosen: Mapping[str, str]) -> tuple[Text | None, list[Reference]]:
-        """The text that ``reference`` adds (None: a re-export) and what that refers to."""
+        """Return the text that ``reference`` adds (None: a re-export) and what that refers to."""
         text = self._text(reference.module)
         if text.plain and reference.name in dict(text.imports):
             return None, [dict(text.imports)[reference.name]]
@@ -162,7 +162,7 @@ class Tree:
         return self._texts[module]
 
     def _imports(self, syntax: Syntax, package: str) -> Iterator[tuple[str, Reference]]:
-        """The references of import statements by the name that each binds."""
+        """Yield the references of import statements by the name that each binds."""
         for level, named, names in syntax.imports:
             if level < 0:
                 yield from ((name, Reference(name)) for name, _ in names if name in self.modules)
@@ -211,7 +211,7 @@ def _syntax(text: str) -> Syntax:
 
 @cache
 def _parsed() -> dict[str, Syntax]:
-    """What earlier processes read of texts; nothing where the file is not as `_keep` wrote it."""
+    """Return the texts that earlier processes parsed; nothing where the file is not as `_keep` wrote it."""
     with contextlib.suppress(OSError, ValueError, TypeError):
         check, found = json.loads(PARSED.read_bytes())
         if check == _check(found):
@@ -267,7 +267,7 @@ def _strings(nodes: list[ast.AST]) -> Iterator[str]:
 
 
 def _started(nodes: list[ast.AST]) -> Iterator[str]:
-    """What follows "-m" in a list: modules that a process runs."""
+    """Yield what follows "-m" in a list: modules that a process runs."""
     for node in nodes:
         if isinstance(node, (ast.List, ast.Tuple)):
             texts = [element.value if isinstance(element, ast.Constant) else None for element in node.elts]
@@ -293,7 +293,7 @@ def _meant(name: str, chosen: Mapping[str, str]) -> bool:
 
 
 def _plain(tree: ast.Module) -> bool:
-    """Whether an __init__.py holds a docstring, imports and __all__ alone."""
+    """Return whether an __init__.py holds a docstring, imports and __all__ alone."""
     return all(
         isinstance(node, (ast.Import, ast.ImportFrom))
         or isinstance(node, ast.Expr)

@@ -27,7 +27,7 @@ PATIENCE = 10.0  # s that files may take to appear
 
 
 def supervised(program: Callable[[], int]) -> int:
-    """The exit status of ``program``, run in a child; 128 + the number of the signal that ended it.
+    """Return the exit status of ``program``, run in a child; 128 + the number of the signal that ended it.
 
     Inside a supervised run: the program's status, run here. A signal that this process ignores (nohup) is left ignored.
     """
@@ -130,7 +130,7 @@ def _end_of(child: int, ends: set[signal.Signals]) -> tuple[int, int]:
 
 
 def _reaped() -> tuple[int, int] | None:
-    """A child that ended and its status; None where none has."""
+    """Return a child that ended and its status; None where none has."""
     try:
         found = os.waitpid(-1, os.WNOHANG)
     except ChildProcessError:

@@ -117,7 +117,7 @@ def plain(path: Path) -> Path:
 
 @cache
 def _links() -> Path:
-    """The folder of this process's links, which goes with it."""
+    """Return the folder of this process's links, which goes with it."""
     folder = tempfile.gettempdir() if PLAIN.fullmatch(tempfile.gettempdir()) else "/tmp"
     links = Path(tempfile.mkdtemp(prefix="talbot-links-", dir=folder))
     atexit.register(shutil.rmtree, links, ignore_errors=True)
@@ -176,7 +176,7 @@ def finish(
 
 
 def _missing(program: str) -> ToolError:
-    """The error of a program that is not there."""
+    """Return the error of a program that is not there."""
     name = Path(program).name
     return ToolError(f"{name}: not found; install it with: make tools (Debian: apt-get install {name})")
 

@@ -82,7 +82,7 @@ def compile_runtime(folder: Path, options: Sequence[object], names: Sequence[str
 
 
 def has_headers(names: Sequence[str]) -> bool:
-    """Whether the C++ compiler finds these header files."""
+    """Return whether the C++ compiler finds these header files."""
     included = [word for name in names for word in ("-include", name)]
     return not finish([*CXX, "-fsyntax-only", *included, "-x", "c++", "/dev/null"]).returncode
 

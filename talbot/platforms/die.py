@@ -18,5 +18,5 @@ class TopMetal:
 
 
 def top_metal(pdk: str) -> TopMetal:
-    """The top metal of ``pdk``. Raises ParameterError for a process without one."""
+    """Return the top metal of ``pdk``. Raises ParameterError for a process without one."""
     return import_module(f"talbot.platforms.{package(pdk, PROCESSES, ' for a whole die')}.layers").TOP

@@ -32,12 +32,12 @@ class ExtractionPlatform:
     model: Callable[[str, float, Collection[str]], str]
 
     def conductor(self, name: str) -> Layer:
-        """The conductor with the LEF name ``name``."""
+        """Return the conductor with the LEF name ``name``."""
         return next(layer for layer in self.conductors if layer.lef == name)
 
 
 def extraction_platform(pdk: str) -> ExtractionPlatform:
-    """The process ``pdk`` for extraction. Raises ParameterError."""
+    """Return the process ``pdk`` for extraction. Raises ParameterError."""
     return import_module(f"talbot.platforms.{package(pdk)}.extraction").PLATFORM
 
 

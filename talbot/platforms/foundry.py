@@ -27,7 +27,7 @@ class FoundryChecks:
 
 
 def foundry_checks(pdk: str) -> FoundryChecks | None:
-    """The foundry's checks of a process; None for one without."""
+    """Return the foundry's checks of a process; None for one without."""
     return import_module(f"talbot.platforms.{package(pdk)}.foundry").CHECKS if pdk in PROCESSES else None
 
 

@@ -83,5 +83,5 @@ class LayoutPlatform:
 
 
 def layout_platform(pdk: str) -> LayoutPlatform:
-    """The process ``pdk`` for the layout flow. Raises ParameterError."""
+    """Return the process ``pdk`` for the layout flow. Raises ParameterError."""
     return import_module(f"talbot.platforms.{package(pdk)}.layout").PLATFORM

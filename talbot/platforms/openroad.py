@@ -49,6 +49,6 @@ class OpenRoadPlatform(PlaceAndRoute):
 
 
 def openroad_platform(pdk: str) -> OpenRoadPlatform:
-    """The process ``pdk`` for OpenROAD. Raises ParameterError."""
+    """Return the process ``pdk`` for OpenROAD. Raises ParameterError."""
     folder = package(pdk, PROCESSES, " with a foundry's cells")
     return import_module(f"talbot.platforms.{folder}.openroad").PLATFORM

@@ -55,7 +55,7 @@ class OpticalStack:
     grid_um: float = 0.005
 
     def metal(self, field: str, name: str) -> Metal:
-        """The metal ``name``. Raises ParameterError, which calls it ``field``, for one that is not there."""
+        """Return the metal ``name``. Raises ParameterError, which calls it ``field``, for one that is not there."""
         for metal in (*self.metals, *([self.gate] if self.gate else [])):
             if metal.name == name:
                 return metal

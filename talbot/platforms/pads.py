@@ -56,5 +56,5 @@ class PadProcess:
 
 
 def pad_process(pdk: str) -> PadProcess:
-    """The pads of ``pdk``. Raises ParameterError for a process without them."""
+    """Return the pads of ``pdk``. Raises ParameterError for a process without them."""
     return import_module(f"talbot.platforms.{package(pdk, PROCESSES, ' for a die with pads')}.pads").PROCESS

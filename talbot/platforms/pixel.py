@@ -58,7 +58,7 @@ class PixelProcess:
 
 
 def pixel_process(pdk: str) -> PixelProcess:
-    """The process ``pdk`` for pixels. Raises ParameterError for one whose pixels are not drawn."""
+    """Return the process ``pdk`` for pixels. Raises ParameterError for one whose pixels are not drawn."""
     return import_module(f"talbot.platforms.{package(pdk, PROCESSES, ' for a drawn pixel')}.pixel").PROCESS
 
 

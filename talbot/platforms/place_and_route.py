@@ -87,5 +87,5 @@ class PlaceAndRoute:
 
 
 def place_and_route(pdk: str) -> PlaceAndRoute:
-    """The process ``pdk`` with the cells that are drawn here. Raises ParameterError."""
+    """Return the process ``pdk`` with the cells that are drawn here. Raises ParameterError."""
     return import_module(f"talbot.platforms.{package(pdk, PROCESSES, ' for OpenROAD')}.place_and_route").PLATFORM

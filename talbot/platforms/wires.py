@@ -29,7 +29,7 @@ class Wires:
 
 
 def wire_corner(corner: str) -> str:
-    """The corner of wires for one of cells: the most for slow ones (ss...), the least for fast ones (ff...)."""
+    """Return the corner of wires for one of cells: the most for slow ones (ss...), the least for fast ones (ff...)."""
     return {"ss": "max", "ff": "min"}.get(corner[:2], "typ")
 
 

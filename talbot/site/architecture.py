@@ -86,7 +86,7 @@ def _blocks() -> list[str]:
 
 
 def plans() -> list[TestPlan]:
-    """The test plans of all blocks."""
+    """Return the test plans of all blocks."""
     return [load_plan(path) for path in sorted((ROOT / "verif").glob("*.testplan.yaml"))]
 
 

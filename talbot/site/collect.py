@@ -62,7 +62,7 @@ def collect(root: Path, source: Path) -> list[str]:
 
 
 def page_of(name: Path) -> Path:
-    """The place of a document in the source of the site."""
+    """Return the place of a document in the source of the site."""
     return Path("index.md") if name == Path("README.md") else name
 
 
@@ -86,7 +86,7 @@ def linked(text: str, name: Path, root: Path, broken: list[str]) -> str:
 
 
 def contents(source: Path) -> str:
-    """The site's contents, for the end of the index: every document in one of PARTS."""
+    """Return the site's contents, for the end of the index: every document in one of PARTS."""
     every = [path.relative_to(source).with_suffix("").as_posix() for path in source.rglob("*.md")]
     named = {name for names in PARTS.values() for name in names}
     lines = []

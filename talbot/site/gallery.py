@@ -38,7 +38,7 @@ Made by `make` before this page; `build/index.html` leads to their own pages.
 
 
 def frames() -> dict[str, Run]:
-    """A frame in every mode."""
+    """Return a frame in every mode."""
     sensor = Sensor(rows=SIDE, cols=SIDE)
     life_size = sensor.replace(focus=3.0, scale=1.0)  # unscaled, the scene is a few metres deep
     return {mode: (life_size if mode == "tof" else sensor).golden(mode=mode) for mode in MODES}

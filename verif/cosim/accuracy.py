@@ -49,7 +49,7 @@ class Accuracy:
         check_real("gmin", self.gmin, 1e-16, 1e-9)
 
     def cards(self, lines: Iterable[str]) -> list[str]:
-        """The models' lines, as `bodies` asks."""
+        """Return the models' lines, as `bodies` asks."""
         return [line if self.bodies else BODIES.sub("rbodymod = 0", line) for line in lines]
 
     @property

@@ -25,7 +25,7 @@ Drive = Callable[..., str]  # name, V at 1; half, rise, fall, low: see `deck.sou
 
 
 def sized(pdk: str, spec: LaneSpec, lane: LaneSizes) -> tuple[AmplifierSpec, AmplifierSizes]:
-    """The amplifier of a lane of ``spec``."""
+    """Return the amplifier of a lane of ``spec``."""
     return amplifier_of(Setup(pdk, spec), lane)
 
 

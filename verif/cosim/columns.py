@@ -115,12 +115,12 @@ def lines(
 
 
 def begun(volts: Mapping[str, float]) -> str:
-    """The line of a deck by which nodes begin at ``volts``, one at least."""
+    """Return the line of a deck by which nodes begin at ``volts``, one at least."""
     return ".ic " + " ".join(f"v({name})={volt:.6g}" for name, volt in volts.items())
 
 
 def amplifier_bias(lane: int, rest: Mapping[str, float]) -> str:
-    """The line by which the bias of a lane's amplifier begins at the levels of the columns' bias."""
+    """Return the line by which the bias of a lane's amplifier begins at the levels of the columns' bias."""
     return begun({f"xbias{lane}.{name}": rest[f"xcolumn_source.{name}"] for name in SOURCE})
 
 
@@ -129,7 +129,7 @@ def _of_column(net: str, c: int) -> str:
 
 
 def nets(circuit: Circuit, inside: str = "") -> Iterator[str]:
-    """What is inside a circuit and the circuits in it, by SPICE's names: xback_a.xtap0.inner."""
+    """Yield what is inside a circuit and the circuits in it, by SPICE's names: xback_a.xtap0.inner."""
     ends = [*(t.nodes for t in circuit.transistors), *((c.a, c.b) for c in circuit.capacitors)]
     ends += [one.nodes for one in circuit.instances]
     yield from (inside + net for net in sorted({net for nodes in ends for net in nodes} - set(circuit.ports)))

@@ -103,7 +103,7 @@ def build(
     row: "RowOfPixels | None" = None,
     drawn: bool = False,
 ) -> Deck:
-    """The circuit that reads one row.
+    """Return the circuit that reads one row.
 
     values: LSB at (column, sub-sample). lanes: of the chip; only those that serve one of these columns are built, with
     ``everything`` all. unsigned: the range of all values; else -128..127. row: pixels instead of ideal columns. drawn:
@@ -269,7 +269,7 @@ def _source(
     fall: float = 0.0,
     low: float = 0.0,
 ) -> str:
-    """A control, ``low`` or ``high`` V where its bit is 0 or 1; returns its node.
+    """Return a control, ``low`` or ``high`` V where its bit is 0 or 1; returns its node.
 
     half: while clk is low alone. rise, fall: s by which its changes to 1 and to 0 are late.
     """
@@ -279,7 +279,7 @@ def _source(
 
 
 def _selector() -> Circuit:
-    """The switch from a column to its lane. Pins: a b on vdd vss."""
+    """Return the switch from a column to its lane. Pins: a b on vdd vss."""
     through = (
         Transistor("n", "a", "on", "b", "vss", "n_lvt", SELECT_W, LENGTH),
         Transistor("p", "a", "off", "b", "vdd", "p_lvt", 2 * SELECT_W, 0.35),

@@ -44,7 +44,7 @@ def value_of(value: float, column: int, edge: bool, fault: Fault | None) -> floa
 
 
 def code_of(value: float, lane: int, unsigned: bool, threshold: int, fault: Fault | None) -> int:
-    """The code of ``value`` (LSB) on a lane with ``fault``, in charge alone.
+    """Return the code of ``value`` (LSB) on a lane with ``fault``, in charge alone.
 
     A capacitor that is missing samples nothing and adds nothing: a code without its bit is compared with the value
     times what is left of the 256 units.

@@ -27,7 +27,7 @@ def circuits() -> Mapping[str, Circuit]:
 
 
 def flat(net: str) -> str:
-    """A net's name where its instance has no circuits in it: xcolumn0.on1.m of xcolumn0.xon1.m."""
+    """Return a net's name where its instance has no circuits in it: xcolumn0.on1.m of xcolumn0.xon1.m."""
     return re.sub(r"(?<=\.)x(?=\w+\.)", "", net)
 
 

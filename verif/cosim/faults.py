@@ -22,7 +22,7 @@ class Fault:
 
     @classmethod
     def parse(cls, text: str) -> "Fault":
-        """The fault of a text like capacitor:0:7. Raises ParameterError."""
+        """Return the fault of a text like capacitor:0:7. Raises ParameterError."""
         kind, *where = text.split(":")
         if kind not in KINDS or len(where) != KINDS[kind].count("{}") or not all(w.isdecimal() for w in where):
             forms = ", ".join(kind + ":n" * words.count("{}") for kind, words in KINDS.items())

@@ -68,7 +68,7 @@ class Run:
 
 
 def program(sensor: SensorParameters, note: Callable[[str], None] = lambda text: None) -> Path:
-    """The compiled lock-step for ``sensor``. Raises ToolError, also where libngspice is missing."""
+    """Return the compiled lock-step for ``sensor``. Raises ToolError, also where libngspice is missing."""
     if not ctypes.util.find_library(LIBRARY) or not has_headers(["ngspice/sharedspice.h"]):
         raise ToolError("libngspice: not found; install it (Debian: apt-get install libngspice0-dev)")
     sources = [PACKAGE / "pixels" / "afe.sv", HERE / "front_end.sv", FRAME / "bench.sv"]

@@ -110,14 +110,14 @@ def amplifier(sizes: PixelSizes) -> list[str]:
 
 
 def clear() -> Circuit:
-    """The switch across an amplifier's capacitor. Pins: a on b vss."""
+    """Return the switch across an amplifier's capacitor. Pins: a on b vss."""
     return Circuit(
         "charge_clear", ("a", "on", "b", "vss"), (Transistor("n", "a", "on", "b", "vss", "n", 0.65, LENGTH),)
     )
 
 
 def sampler() -> Circuit:
-    """The switch of a sample. Pins: a b on vdd vss; of transistors that leak little: a row converts in 10 us.
+    """Return the switch of a sample. Pins: a b on vdd vss; of transistors that leak little: a row converts in 10 us.
 
     What a switch leaves depends on the value: 0.34 % of it on 500 fF. Transistors of half its width, with both ends at
     the sample and the opposite gate, take it.
@@ -172,7 +172,7 @@ def lines(
 
 
 def row_line(name: str, places: Sequence[str], sizes: PixelSizes, cut: str = "") -> list[str]:
-    """A line of the row from <name>_row on, with a node <name><place> at each pixel; open before ``cut``."""
+    """Return a line of the row from <name>_row on, with a node <name><place> at each pixel; open before ``cut``."""
     deck, before = [], f"{name}_row"
     for place in places:
         ohm, near, before = sizes.cut if place == cut else sizes.line_resistance, before, f"{name}{place}"
@@ -181,7 +181,7 @@ def row_line(name: str, places: Sequence[str], sizes: PixelSizes, cut: str = "")
 
 
 def _column(column: str, names: tuple[str, str]) -> list[str]:
-    """A pixel and the amplifiers of its two lines; names: of the lines that its diodes a and b are on."""
+    """Return a pixel and the amplifiers of its two lines; names: of the lines that its diodes a and b are on."""
     a, b = (f"line_{name}{column}" for name in names)
     return [
         f"Xpixel{column} well_a{column} well_b{column} {a} {b} reset{column} read{column} level 0 pixel",

@@ -183,7 +183,7 @@ class RowRequest:
         return {(int(c), s): float(values[s, 0, c]) for c in np.flatnonzero(read[0]) for s in range(len(values))}
 
     def lane_of(self, column: int) -> int:
-        """The lane that converts a column."""
+        """Return the lane that converts a column."""
         return column // self.frame[0].tile.cols % self.lanes
 
     @cached_property
@@ -200,7 +200,7 @@ class RowRequest:
         return tuple({at: v for at, v in self.values.items() if self.lane_of(at[0]) == lane} for lane in self.read[1])
 
     def decks(self, accuracy: Accuracy | None = None) -> tuple[Deck, ...]:
-        """The circuit: of each lane that the row reads, or one of all."""
+        """Return the circuit: of each lane that the row reads, or one of all."""
         return tuple(
             build(
                 values,
@@ -328,14 +328,14 @@ def read_row(asked: RowRequest, note: Callable[[str], None] = lambda text: None,
 
 
 def _held(c: lockstep.Cycle, column: int, sub: int, asked: RowRequest) -> npt.NDArray[np.int64]:
-    """The cycles in which a position is held."""
+    """Return the cycles in which a position is held."""
     width = asked.frame[0].tile.cols
     place = (c.group == column // (width * asked.lanes)) & (c.k == column % width) & (c.sub == sub)
     return np.flatnonzero(c.hold & place)
 
 
 def _search_of(c: lockstep.Cycle, held: int, lane: int) -> Iterator[int]:
-    """The cycles in which a lane decides on what it held in a cycle."""
+    """Yield the cycles in which a lane decides on what it held in a cycle."""
     for i in range(held + 1, len(c.hold)):
         if c.deciding[i, lane]:
             yield i
@@ -346,7 +346,7 @@ def _search_of(c: lockstep.Cycle, held: int, lane: int) -> Iterator[int]:
 def _first_difference(
     c: lockstep.Cycle, lane: int, column: int, sub: int, asked: RowRequest
 ) -> tuple[int, float] | None:
-    """The first decision on a sample in which circuit and model differ."""
+    """Return the first decision on a sample in which circuit and model differ."""
     for held in _held(c, column, sub, asked):
         for i in _search_of(c, held, lane):
             if c.answer[i, lane] != c.expected[i, lane]:

@@ -29,7 +29,7 @@ FAULTY = RowRequest(mode="edge", cols=12, lanes=2, types=2, amplifier=True, colu
 
 
 def accuracy(note: Callable[[str], None], asked: RowRequest = ONE) -> list[dict[str, Any]]:
-    """A line for each of SETTINGS: run time, and the decisions' times next to the reference's. Raises ToolError.
+    """Return a line for each of SETTINGS: run time, and the decisions' times next to the reference's. Raises ToolError.
 
     The reference is the default's drive off-line with TIGHT; decisions of another drive are compared as long as their
     questions are the same.
@@ -82,7 +82,7 @@ def faults(note: Callable[[str], None], asked: RowRequest = FAULTY) -> list[dict
 
 
 def leaving_out(note: Callable[[str], None]) -> list[dict[str, Any]]:
-    """What is left out, simulated all the same.
+    """Return the parts that are left out, simulated for comparison.
 
     Cycles of an integration, a lane that is not read, what lanes share, resistances of the transistors' bodies.
     """

@@ -35,7 +35,7 @@ def torch() -> Any:
 
 
 def dense(weights: Weights, patches: Any) -> Any:
-    """What its dense layers add to each patch: from (..., 163) to (..., 2025)."""
+    """Return the dense layers' correction of each patch: from (..., 163) to (..., 2025)."""
     nn = torch().nn.functional
     for number in range(len(DENSE) - 1):
         patches = nn.linear(patches, weights[f"dense_{number}"], weights[f"dense_{number}_bias"])
@@ -44,7 +44,7 @@ def dense(weights: Weights, patches: Any) -> Any:
 
 
 def encoded(weights: Weights, patches: Any) -> Any:
-    """What the autoencoder adds: from (n, PATCHES, PATCHES, 163) to (n, 1, 5, 5, rows, cols)."""
+    """Return the autoencoder's correction: from (n, PATCHES, PATCHES, 163) to (n, 1, 5, 5, rows, cols)."""
     nn, pt = torch().nn.functional, torch()
     values = dense(weights, patches).reshape(*patches.shape[:3], VIEWS**2, PATCH, PATCH)
     tile = sensor().tile
@@ -59,7 +59,7 @@ def encoded(weights: Weights, patches: Any) -> Any:
 
 
 def convolved(weights: Weights, values: Any, name: str) -> Any:
-    """A 4-D convolution of (n, channels, 5, 5, rows, cols)."""
+    """Return a 4-D convolution of (n, channels, 5, 5, rows, cols)."""
     nn, kernel = torch().nn.functional, weights[name]
     rows, cols = values.shape[-2:]
     near = nn.pad(values.flatten(4), (0, 0, 1, 1, 1, 1)).unfold(2, 3, 1).unfold(3, 3, 1)  # (n, c, 5, 5, px, 3, 3)
@@ -70,7 +70,7 @@ def convolved(weights: Weights, values: Any, name: str) -> Any:
 
 
 def turned(weights: Weights, back: Any) -> Any:
-    """What the other branch adds: from (n, 3, 5, 5, rows, cols) to (n, 1, 5, 5, rows, cols)."""
+    """Return the other branch's correction: from (n, 3, 5, 5, rows, cols) to (n, 1, 5, 5, rows, cols)."""
     last = len(CHANNELS) - 2
     for number in range(last):
         back = torch().nn.functional.relu(convolved(weights, back, f"conv_{number}"))

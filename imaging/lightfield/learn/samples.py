@@ -38,7 +38,7 @@ class Shot(NamedTuple):
 
 
 def sensor(size: int = SIZE) -> SensorParameters:
-    """The standard sensor, of ``size`` x ``size`` pixels."""
+    """Return the standard sensor, of ``size`` x ``size`` pixels."""
     return SensorParameters(array=ArrayParameters(size, size))
 
 
@@ -48,7 +48,7 @@ def light_fields(seeds: Sequence[int], size: int = SIZE) -> Iterator[Values]:
 
 
 def shots(seeds: Sequence[int], size: int = SIZE) -> Iterator[Shot]:
-    """The scenes of `light_fields`, and what the diodes see of them."""
+    """Yield the scenes of `light_fields`, and what the diodes see of them."""
     chip = sensor(size)
     operator = CaptureOperator(replace(chip, optics=replace(chip.optics, views=PUPIL)))
     for view in (_view(seed, size) for seed in seeds):
@@ -95,5 +95,5 @@ def _plane(seed: int, size: int) -> View:
 
 
 def noisy(pair: Values, noise: float, rng: np.random.Generator) -> Values:
-    """The samples with Gaussian noise of this standard deviation."""
+    """Return the samples with Gaussian noise of this standard deviation."""
     return pair + noise * rng.standard_normal(pair.shape)

@@ -45,11 +45,11 @@ class Divider:
     iterations: int = 10
 
     def golden(self, x: Inputs, y: Inputs, noise_floor: int = 0) -> QuadResult:
-        """The golden model's responses."""
+        """Return the golden model's responses."""
         return divide(self.variant, self.n_frac, self.iterations, x, y, noise_floor)
 
     def verilog(self) -> tuple[str, str]:
-        """The Verilog and the name of its top module. Raises ParameterError."""
+        """Return the Verilog and the name of its top module. Raises ParameterError."""
         top = type(quad_divider(self.variant, self.n_frac, self.iterations)).__name__
         chip = ChipParameters(n_frac=self.n_frac, cordic_iterations=self.iterations)
         return translate(top, SensorParameters(chip=chip)), top
@@ -91,7 +91,7 @@ def pack(x: Inputs, y: Inputs) -> npt.NDArray[np.uint32]:
 
 
 def unpack(responses: npt.NDArray[np.uint64], bits: int) -> QuadResult:
-    """The fields of DivResp messages with a ratio of ``bits``."""
+    """Return the fields of DivResp messages with a ratio of ``bits``."""
     widths = {"amp": 8, "amp_valid": 1, "phase": 8, "zero": 1, "ratio": bits, "octant": 3}  # from bit 0 up
     found, shift = {}, 0
     for name, width in widths.items():
@@ -143,7 +143,7 @@ def measure(divider: Divider, rtl: bool = True) -> Figures:
 
 
 def row(found: Figures) -> str:
-    """A line of the table. A column without a meaning for the variant is a dash."""
+    """Return a line of the table. A column without a meaning for the variant is a dash."""
     values = {name: getattr(found, name, None) for name in COLUMNS} | vars(found.divider)
     values["n_frac" if found.divider.variant == "cordic" else "iterations"] = None
     cells = ("-" if values[name] is None else COLUMNS[name].format(values[name]) for name in COLUMNS)

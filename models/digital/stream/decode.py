@@ -102,7 +102,7 @@ class _Start(NamedTuple):
 
 
 def _find_header(data: bytes, at: int, tile: TileParameters) -> _Start | str:
-    """The first header at or after ``at``, or the reason why the bytes at ``at`` are none."""
+    """Return the first header at or after ``at``, or the reason why the bytes at ``at`` are none."""
     reason, position = "", at
     while position >= 0:
         try:

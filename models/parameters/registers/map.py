@@ -132,7 +132,7 @@ class RegisterMap:
         return tuple(f for f in self.fields if f.register == "state")
 
     def with_resets(self, resets: Mapping[str, int]) -> "RegisterMap":
-        """The same map with other values after reset.
+        """Return the same map with other values after reset.
 
         Parameters
         ----------
@@ -252,7 +252,7 @@ def register_map() -> RegisterMap:
 
 
 def _kept(key: str) -> tuple[Field, ...]:
-    """The fields of an earlier process; none where the file is of another source, or damaged."""
+    """Return the fields of an earlier process; none where the file is of another source, or damaged."""
     try:
         of, check, values = json.loads(KEPT.read_text(encoding="utf-8"))
         fields = tuple(replace(Field(*row), choices=tuple(map(tuple, row[-2]))) for row in values)

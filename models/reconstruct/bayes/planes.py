@@ -188,7 +188,7 @@ def _taps(places: Floats, count: int) -> npt.NDArray[np.float32]:
 
 @lru_cache(maxsize=32)
 def _root(high: int, wide: int, prior: FieldPrior) -> npt.NDArray[np.float32]:
-    """A root of the covariance of the texture's pixels."""
+    """Return a root of the covariance of the texture's pixels."""
     y, x = np.indices((high, wide), float).reshape(2, -1)
     covariance = prior.covariance(y[:, None] - y, x[:, None] - x)
     covariance[np.diag_indices(len(y))] += 1e-9

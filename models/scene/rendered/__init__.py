@@ -54,7 +54,7 @@ def manifest() -> dict[str, Any]:
 
 
 def rendered(name: str, sampling: Sampling) -> Scene:
-    """A rendered scene.
+    """Return a rendered scene.
 
     Parameters
     ----------

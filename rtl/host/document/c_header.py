@@ -42,14 +42,14 @@ def c_header(chip: RegisterMap) -> str:
 
 
 def _range(name: str, fields: Sequence[Field]) -> Iterator[str]:
-    """The bytes that hold fields."""
+    """Yield the bytes that hold fields."""
     first, last = fields[0].byte, fields[-1].address + fields[-1].size
     yield f"#define ASP_{name}_ADDRESS {first:#04x}u"
     yield f"#define ASP_{name}_SIZE {last - first}u"
 
 
 def _list(name: str, what: str, fields: Sequence[Field]) -> list[str]:
-    """A macro that calls its argument FIELD(name, NAME) for every field."""
+    """Return a macro that calls its argument FIELD(name, NAME) for every field."""
     calls = [f"    FIELD({f.name}, {f.name.upper()})" for f in fields]
     return (
         [f"/* {what}, ascending: FIELD(name, stem of its macros) */", f"#define {name}(FIELD) \\"]

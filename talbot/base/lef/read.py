@@ -61,7 +61,7 @@ def read_macros(text: str) -> dict[str, Macro]:
 
 
 def read_macro(text: str) -> Macro:
-    """The first macro. Raises ParameterError without one, and for a pin without a rectangle."""
+    """Return the first macro. Raises ParameterError without one, and for a pin without a rectangle."""
     macro = next(iter(read_macros(text).values()), None)
     if macro is None:
         raise ParameterError("lef = no MACRO: must be the LEF of a macro")

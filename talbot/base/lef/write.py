@@ -54,12 +54,12 @@ def library(site: str, width_um: float, height_um: float, macros: Iterable[str])
 
 
 def size(width_um: float, height_um: float) -> str:
-    """The statement SIZE."""
+    """Return the statement SIZE."""
     return f"SIZE {width_um:.3f} BY {height_um:.3f}"
 
 
 def um(box: "db.Box", dbu: float) -> Box:
-    """A box of KLayout in um; dbu: um a database unit."""
+    """Return a box of KLayout in um; dbu: um a database unit."""
     return box.left * dbu, box.bottom * dbu, box.right * dbu, box.top * dbu
 
 

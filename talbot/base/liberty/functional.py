@@ -15,7 +15,7 @@ UNITS = {
 
 
 def library(name: str, **attributes: Value) -> Group:
-    """An empty library."""
+    """Return an empty library."""
     return Group("library", (name,), {"delay_model": "table_lookup", **attributes})
 
 

@@ -31,11 +31,11 @@ class Group:
         return group
 
     def all(self, kind: str, **wanted: Value) -> "list[Group]":
-        """The groups of ``kind`` in this one whose attributes equal ``wanted``."""
+        """Return the groups of ``kind`` in this one whose attributes equal ``wanted``."""
         return [g for g in self.groups if g.kind == kind and all(g.attributes.get(k) == v for k, v in wanted.items())]
 
     def one(self, kind: str, *arguments: str) -> "Group | None":
-        """The first group of ``kind`` whose arguments begin with ``arguments``."""
+        """Return the first group of ``kind`` whose arguments begin with ``arguments``."""
         return next((g for g in self.groups if g.kind == kind and g.arguments[: len(arguments)] == arguments), None)
 
     @property

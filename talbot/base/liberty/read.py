@@ -17,7 +17,7 @@ _CELL = re.compile(r'^[ \t]*cell\s*\(\s*"?([\w.$]+)"?\s*\)\s*\{', re.M)
 
 
 def read(path: str | Path) -> Group:
-    """The outermost group of a Liberty file. Raises ParameterError naming what is wrong."""
+    """Return the outermost group of a Liberty file. Raises ParameterError naming what is wrong."""
     return parse(text_of(path), str(path))
 
 
@@ -51,22 +51,22 @@ def parse(text: str, origin: str = "liberty") -> Group:
 
 
 def names(text: str) -> set[str]:
-    """The names of the cells in the text of a Liberty file, which is not read further."""
+    """Return the names of the cells in the text of a Liberty file, which is not read further."""
     return {match[1] for match in _CELL.finditer(text)}
 
 
 def is_library(path: Path) -> bool:
-    """Whether a file begins as a Liberty file does, after comments: library (...)."""
+    """Return whether a file begins as a Liberty file does, after comments: library (...)."""
     return bool(_LIBRARY.match(text_of(path)[:10_000]))
 
 
 def is_whole(path: Path) -> bool:
-    """Whether a file ends as a Liberty file does, before comments: with a brace."""
+    """Return whether a file ends as a Liberty file does, before comments: with a brace."""
     return bool(_END.search(text_of(path)[-1_000:]))
 
 
 def areas(path: Path) -> dict[str, float]:
-    """The area of every cell of a Liberty file, in its own unit (um2)."""
+    """Return the area of every cell of a Liberty file, in its own unit (um2)."""
     return {cell.name: cell.number("area") for cell in read(path).all("cell")}
 
 
@@ -126,7 +126,7 @@ class _Reader:
         return found
 
     def head(self) -> tuple[str, list[Token]]:
-        """A statement's name and, after it, its arguments in parentheses."""
+        """Return a statement's name and, after it, its arguments in parentheses."""
         name, _ = self.next()
         if not self.mark("("):
             raise ParameterError(f"liberty = {self.origin}: {name!r} must be followed by ':' or '('")
@@ -137,7 +137,7 @@ class _Reader:
         return name, arguments
 
     def group(self, kind: str, arguments: list[Token]) -> Group:
-        """The group whose head has been read."""
+        """Return the group whose head has been read."""
         if not self.mark("{"):
             raise ParameterError(f"liberty = {self.origin}: {kind!r} must be a group")
         group = Group(kind, tuple(text for text, _ in arguments))

@@ -117,12 +117,12 @@ class Section:
 
 
 def data_url(image: Image, kind: str = "PNG", **options: Any) -> str:
-    """An image inside a page."""
+    """Return an image inside a page."""
     return _url(encoded(image, kind, **options), kind)
 
 
 def encoded(image: Image, kind: str = "PNG", **options: Any) -> bytes:
-    """The bytes of a file of an image."""
+    """Return the bytes of a file of an image."""
     out = io.BytesIO()
     image.save(out, kind, **options)
     return out.getvalue()
@@ -133,7 +133,7 @@ def _url(data: bytes, kind: str) -> str:
 
 
 def units(value: object) -> str:
-    """A text with its units as people write them: um2 as µm²."""
+    """Return a text with its units as people write them: um2 as µm²."""
     text = value if isinstance(value, str) else str(value)
     for ascii_form, written in UNITS:
         text = re.sub(ascii_form, written, text)
@@ -167,7 +167,7 @@ def contained(html: str) -> Markup:
 
 
 def card(title: str, tiles: Sequence[Tile] = (), picture: Image | None = None) -> str:
-    """What the index shows of a page, as JSON."""
+    """Return a page's card in the index, as JSON."""
     src = ""
     if picture:
         small = picture.convert("RGB")

@@ -12,7 +12,7 @@ VOID = {"area", "base", "br", "col", "embed", "hr", "img", "input", "link", "met
 
 
 def faults(html: str) -> list[str]:
-    """What is wrong with a page, an entry each; [] where all is right."""
+    """Return the faults of a page, an entry each; [] without any."""
     page = _Page()
     page.feed(html)
     page.close()

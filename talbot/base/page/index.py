@@ -37,7 +37,7 @@ def cards(folder: Path) -> list[Card]:
 
 
 def told_apart(cards: Sequence[Card]) -> list[Card]:
-    """The cards, those of one title with what their folder or file is called, too."""
+    """Return the cards, those of one title with what their folder or file is called, too."""
     titles = Counter(card.title for card in cards)
     places = Counter((card.title, Path(card.folder).name) for card in cards)
     out = []
@@ -61,7 +61,7 @@ def refresh(folder: Path) -> Path:
 
 
 def read(path: Path, folder: Path) -> Card | None:
-    """The card of a page below ``folder``, None where it has none."""
+    """Return the card of a page below ``folder``, None where it has none."""
     with path.open(encoding="utf-8", errors="replace") as file:
         found = CARD.search(file.read(HEAD))
     if not found:

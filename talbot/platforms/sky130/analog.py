@@ -74,7 +74,7 @@ def _tables() -> dict[str, dict[str, list[float]]]:
 
 
 def operating(role: str, length: float, efficiency: float) -> Operating:
-    """A transistor (role, um) of SIZED at gm/Id = ``efficiency`` (1/V, 5..22), of the tables.
+    """Return a transistor (role, um) of SIZED at gm/Id = ``efficiency`` (1/V, 5..22), of the tables.
 
     Raises KeyError for a length without a table, ParameterError for an efficiency out of range.
     """
@@ -102,7 +102,7 @@ def resistance(process: str, celsius: float) -> float:
 
 
 def unit_cells(mismatch: float) -> tuple[UnitCell, ...]:
-    """The smallest unit of each kind whose mismatch (rms, relative) is no more than ``mismatch``.
+    """Return the smallest unit of each kind whose mismatch (rms, relative) is no more than ``mismatch``.
 
     From sky130_fd_pr: `cap_vpp_01p8x01p8_m1m2_noshield` (7.833e-16 F; 0.0183 * 0.85105 * sqrt(0.50527); 0.786..1.214),
     an even number of them, so that half a unit is cells, too; `cap_mim_m3_1` (2 fF/um2 + 0.19 fF/um; 2.8 % um; 1.778,
@@ -129,7 +129,7 @@ def instance(
     l: float,  # noqa: E741
     fingers: int = 0,
 ) -> str:
-    """A transistor's line: drain, gate, source, bulk; w, l in um.
+    """Return a transistor's line: drain, gate, source, bulk; w, l in um.
 
     fingers: as many models of a part of ``w``, sources at both ends; 0: one model, from 2 um on with the junctions of
     two fingers that share the drain.
@@ -163,7 +163,7 @@ def finger(
     count: int,
     junctions: tuple[float, ...],
 ) -> str:
-    """A transistor of ``count`` fingers of ``w``. junctions: um2 of source and drain, um around, of a finger."""
+    """Return a transistor of ``count`` fingers of ``w``. junctions: um2 of source and drain, um around, of a finger."""
     size = {
         "w": w,
         "l": l,

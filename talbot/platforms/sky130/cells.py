@@ -32,7 +32,7 @@ UNUSED = {
 
 
 def folder() -> Path:
-    """The library's folder in the wheel. Raises ToolError when it is not installed."""
+    """Return the library's folder in the wheel. Raises ToolError when it is not installed."""
     return wheel() / LIBRARY
 
 
@@ -48,7 +48,7 @@ def file(cell: str, suffix: str) -> Path:
 
 
 def area(cell: str) -> float:
-    """The um2 of a cell: SIZE in its LEF."""
+    """Return the um2 of a cell: SIZE in its LEF."""
     macro = read_macros(file(cell, "lef").read_text(encoding="utf-8"))[f"{LIBRARY}__{cell}"]
     return macro.width_um * macro.height_um
 

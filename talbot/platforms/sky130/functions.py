@@ -63,7 +63,7 @@ def small_liberty() -> str:
 
 
 def cells() -> Iterator[str]:
-    """The name of every cell with a drive strength ('nand2_1'), sorted by file."""
+    """Yield the name of every cell with a drive strength ('nand2_1'), sorted by file."""
     for path in sorted((folder() / "cells").glob("*/*_[0-9]*.functional.v")):
         yield path.name.removesuffix(".functional.v").removeprefix(f"{LIBRARY}__")
 

@@ -110,7 +110,7 @@ def cards(models: str, process: str, sizes: Collection[tuple[str, float, float]]
 
 
 def _fitted(card: Iterable[str], polarity: str) -> list[str]:
-    """The lines of a subcircuit with FIT and STRAIN of ``polarity``, 'n' or 'p'."""
+    """Return the lines of a subcircuit with FIT and STRAIN of ``polarity``, 'n' or 'p'."""
 
     def line(text: str) -> str:
         if text.lower().startswith("m"):
