@@ -136,7 +136,7 @@ def _integrals() -> list[Case]:
 
 
 def _unseen_diode() -> Case:
-    """m = 1, beta = 0: the second diode receives nothing; its capacitor ratio would be infinite."""
+    """Check m = 1, beta = 0: the second diode receives nothing; its capacitor ratio would be infinite."""
     g = gains(np.array([-1.0, 1.0]))
     return Case(
         "trim of a pixel with one blind diode",
@@ -227,7 +227,7 @@ def _adjoint() -> Case:
 
 
 def _one_view() -> Case:
-    """One view compared with 25 equal ones, in single precision."""
+    """Compare one view with 25 equal ones, in single precision."""
     sensor = SensorParameters(array=ArrayParameters(12, 18))
     image = np.random.default_rng(0).random((12, 18), np.float32)
     few = CaptureOperator(sensor, "float32", angular=False).forward(image[None, None])

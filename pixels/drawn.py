@@ -1,4 +1,4 @@
-"""What of a sensor the drawn circuits can and cannot vary: fields and reasons, for `talbot.base.sensor.Varied`."""
+"""Fields of a sensor that the drawn circuits can and cannot vary, with reasons, for `talbot.base.sensor.Varied`."""
 
 from talbot.base.sensor import Varied
 

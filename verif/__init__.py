@@ -1,1 +1,1 @@
-"""What spans blocks: harnesses, exhaustive runs, two simulators."""
+"""Verification that spans blocks."""

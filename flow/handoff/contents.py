@@ -1,4 +1,4 @@
-"""What the archive holds, and where each part comes from."""
+"""Contents of the archive and the source of each part."""
 
 import json
 import re

@@ -18,7 +18,7 @@ def pinout(lef: str) -> str:
 
 
 def datasheet(design: Design, summary: Mapping[str, Any], lef: str, waivers: Sequence[Mapping[str, str]]) -> str:
-    """One page: size, timing by corner, power, what was checked, what was waived. A figure not measured is a dash."""
+    """Return a page: size, timing by corner, power, checks, waivers. A figure that was not measured is a dash."""
     macro = read_macro(lef)
     io, clock = design.io, design.clock
     tests, density, stimulus = summary.get("gate_tests"), summary.get("density") or {}, summary.get("stimulus")

@@ -1,4 +1,4 @@
-"""How OpenROAD is called (`base.openroad`)."""
+"""The call of OpenROAD (`base.openroad`)."""
 
 from talbot.base.openroad import command
 

@@ -38,7 +38,7 @@ class Stage:
         return f"{self.name}.{self.corner}" if self.corner else self.name
 
     def command(self) -> list[str]:
-        """Its program and arguments."""
+        """Program and arguments."""
         script = f"{self.name}.tcl"
         return [TCL_YOSYS, "-q", "-c", script] if self.name == "synth" else openroad.command(script, "max")
 
@@ -71,7 +71,7 @@ def pdk_root(tech: OpenRoadPlatform, environment: Mapping[str, str] = os.environ
 
 
 def missing_tools() -> list[str]:
-    """Of the programs that the stages call, those that are not installed."""
+    """Return the stages' programs that are not installed."""
     return [*(["yosys"] if not shutil.which("yosys") else []), *(["openroad"] if not openroad.program() else [])]
 
 

@@ -1,4 +1,4 @@
-"""What Yosys' command stat counted, in the format of its releases up to 2024 and of those since."""
+"""Counts of Yosys' command stat, in the formats of releases up to 2024 and since."""
 
 import re
 

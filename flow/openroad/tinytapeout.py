@@ -11,7 +11,7 @@ from talbot.platforms.sky130.tinytapeout import CONFIG, FRAME
 
 @dataclass(frozen=True)
 class Project:
-    """What a project's page says beyond its design. ui, uo, uio: pins 0..7, '' for unused."""
+    """Text of a project's page. ui, uo, uio: pins 0..7, '' for unused."""
 
     title: str
     description: str

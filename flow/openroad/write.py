@@ -1,4 +1,4 @@
-"""All that a design's run needs, in one folder: Verilog, SDC, Tcl, and projects for flow-scripts and LibreLane."""
+"""The files of a design's run: Verilog, SDC, Tcl, and projects for flow-scripts and LibreLane."""
 
 from pathlib import Path
 

@@ -20,7 +20,7 @@ YOSYS_MISSING = "yosys: not found; make setup installs it (the Python package py
 
 @dataclass(frozen=True)
 class Size:
-    """Of one top, everything below it included.
+    """Size of a top, with everything below it.
 
     cells: all standard cells. flip_flops: those that hold state. gates: NAND2 equivalents, all together.
     flip_flop_gates: those of the flip-flops. by_type: cells of each type.

@@ -36,7 +36,7 @@ class Bench:
     holes: int
 
     def sweep(self, note: Callable[[str], None] = lambda text: None) -> Sweep:
-        """Everything that is measured."""
+        """Measurements of a bench."""
         sensor = self.request.lit
         tile, (rows, cols) = sensor.tile, sensor.shape
         if np.bincount(tile.type_map(rows, cols).ravel(), minlength=tile.n_types).min() == 0:

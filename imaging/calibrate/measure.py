@@ -23,7 +23,7 @@ Values = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Calibrated:
-    """What the bench gives."""
+    """Result of the bench."""
 
     sweep: Sweep
     calibration: Calibration

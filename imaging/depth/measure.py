@@ -39,7 +39,7 @@ NOISE = 1.0  # codes, of a tap: of the converter and the light, not less
 
 @dataclass(frozen=True, eq=False)
 class Depth:
-    """What the frames give. depth: by method, in m, (rows, cols), the leading one first; sure: where it is known."""
+    """Depths of the frames. depth: by method, in m, (rows, cols), the leading one first; sure: where it is known."""
 
     frames: DepthFrames
     field: DepthField
@@ -159,7 +159,7 @@ def _coded(frames: DepthFrames, estimator: FieldEstimator, white: float) -> dict
 
 
 def _multipath(frames: DepthFrames) -> dict[str, float] | None:
-    """What light by other ways does to the depth by the sums' phase, in m, without noise; of a scene that has some."""
+    """Return the errors (m) of the depth of the sums' phase by multipath, without noise."""
     if frames.straight is None:
         return None
     phase, straight = (demodulate(taps)[0] for taps in (np.moveaxis(frames.sums.exposed.ideal, 2, 0), frames.straight))

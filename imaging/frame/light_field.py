@@ -36,21 +36,21 @@ class Seen(Protocol):
 
 
 class Readout(Protocol):
-    """What of a frame an estimate is from: `result.GoldenResult`."""
+    """Parts of a frame from which light fields are estimated: `result.GoldenResult`."""
 
     @property
     def request(self) -> FrameRequest:
-        """Its parameters."""
+        """Parameters of the frame."""
         ...
 
     @property
     def exposed(self) -> Seen:
-        """Its scene, of which the number of views counts."""
+        """Scene, of which the number of views counts."""
         ...
 
     @property
     def decoded(self) -> DecodedFrame:
-        """Its samples."""
+        """Decoded samples."""
         ...
 
     @cached_property
@@ -60,7 +60,7 @@ class Readout(Protocol):
 
 
 class Part(NamedTuple):
-    """What of the array is read: a rectangle of whole tiles, (rows, cols), of pixel types, bool (types,)."""
+    """Part of the array that is read: a rectangle of whole tiles, (rows, cols), of pixel types, bool (types,)."""
 
     box: tuple[slice, slice]
     types: tuple[bool, ...]

@@ -57,7 +57,7 @@ def snr(error: Values, signal: Values) -> float | None:
 
 
 def sent_quality(result: GoldenResult) -> dict[str, float | None]:
-    """Of the decoded samples against the noiseless ones: snr_db, snr_nothing_sent_db, edges, phases."""
+    """Return figures of the decoded samples against the noiseless ones: snr_db, snr_nothing_sent_db, edges, phases."""
     frame, read, samples = result.request.frame, result.golden.read, result.decoded.samples
     ideal = ideal_samples(result.exposed.ideal, frame)[read]
     error = decoding_error(samples, result.exposed.ideal, read, frame)
@@ -90,7 +90,7 @@ def _edges(sent: Codes, ideal: Values, frame: FrameParameters) -> dict[str, floa
 
 
 def image_quality(result: GoldenResult) -> dict[str, float | str | None]:
-    """Of the 2-D image against the scene's centre view: PSNR and SSIM, of flat gray, of codecs at as many bytes.
+    """Return PSNR and SSIM of the 2-D image against the scene's centre view, of flat gray, of codecs at as many bytes.
 
     image_jpegxl_absent: why JPEG XL has no figure here; None where it has.
     """
@@ -147,7 +147,7 @@ def coded_sum(result: GoldenResult) -> Values:
 
 
 def field_quality(result: GoldenResult) -> dict[str, float | str | None]:
-    """Of the light field read back in raw mode, against the scene's: method, PSNR, and that of the sum image copied."""
+    """Return method and PSNR of the light field in raw mode against the scene's, and of the copied sum image."""
     if result.request.frame.mode != "raw":
         return {"light_field_method": None, "light_field_psnr_db": None, "light_field_psnr_copied_db": None}
     # Corners that the round pupil does not reach have no light
@@ -164,7 +164,7 @@ def field_quality(result: GoldenResult) -> dict[str, float | str | None]:
 
 
 def depth_quality(result: GoldenResult) -> dict[str, float | None]:
-    """Of the depth in time of flight, against the scene's where the amplitude is not 0, in m; of one depth for all."""
+    """Return the RMS error of the depth in time of flight in m, where the amplitude is not 0; of one depth for all."""
     truth, error = result.exposed.scene.depth, depth_error(result)
     if truth is None or error is None or np.isnan(error).all():
         return {"depth_rms_m": None, "depth_rms_constant_m": None}

@@ -33,11 +33,11 @@ Note = Callable[[str], None]
 
 
 class Found(Protocol):
-    """What a reconstruction gives: its figures are ``summary``."""
+    """Result of a reconstruction: its figures are ``summary``."""
 
     @property
     def summary(self) -> dict[str, Any]:
-        """Of summary.json."""
+        """Figures of summary.json."""
         ...
 
 

@@ -31,7 +31,7 @@ class Views:
 
     @classmethod
     def of(cls, caption: str, views: Sequence[Sequence[Image]], scale: Scale | None = None) -> "Views":
-        """Of pictures, row by row."""
+        """Pictures, row by row."""
         return cls(caption, len(views), sprite(views, min(VIEW, SHEET // len(views))), scale)
 
     @cached_property

@@ -87,7 +87,7 @@ class FrameRequest:
 
     @property
     def of_frame(self) -> "FrameRequest":
-        """What of it decides a frame of a scene that is loaded: the content of what is kept depends on no file."""
+        """Fields that decide a frame of a loaded scene: kept results depend on no file."""
         return replace(self, scene=self.name, depth=None, waves=None, waves_format=WAVES[0], out=None)
 
     @property

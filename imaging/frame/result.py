@@ -1,4 +1,4 @@
-"""What one run of the main job holds: its exposure, the chip's frame and the golden one."""
+"""Results of the main job: exposure, the chip's frame, the golden frame."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -62,7 +62,7 @@ class GoldenResult:
 
     @property
     def by_content(self) -> "GoldenResult":
-        """Itself as an argument of `kept`: without what changes from run to run."""
+        """The result as an argument of `kept`: without fields that change from run to run."""
         return GoldenResult(self.request.of_frame, self.exposed, self.golden, self.decoded)
 
     @cached_property

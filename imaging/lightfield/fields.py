@@ -28,7 +28,7 @@ ALL = "all"
 
 @dataclass(frozen=True, eq=False)
 class Fields:
-    """What one raw frame gives. found: by method. best: by `BEST`."""
+    """Light fields of a raw frame. found: by method. best: by `BEST`."""
 
     result: GoldenResult
     truth: Values

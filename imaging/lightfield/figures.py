@@ -11,7 +11,7 @@ SSIM_WINDOW = 7  # px
 
 
 def figures(estimate: Values, truth: Values, free: float | None) -> dict[str, float | None]:
-    """Of a light field against the true one: PSNR, SSIM (mean of the views), gain over the copied image, parallax.
+    """Return PSNR, SSIM (mean of the views), gain over the copied image and parallax of a light field.
 
     slope, correlation: of the difference of opposite outer views, horizontal and vertical, to the true one; None where
     the true views are equal. free: PSNR (dB) of the copied sum image, which the gain is against.

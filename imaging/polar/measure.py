@@ -30,7 +30,7 @@ POLARIZED = 0.02  # degree below which the truth has no angle
 
 @dataclass(frozen=True, eq=False)
 class PolarFrame:
-    """What a raw frame tells of polarization. tags: highlights. plain: by demosaicing alone, (s1, s2).
+    """Polarization from a raw frame. tags: highlights. plain: by demosaicing alone, (s1, s2).
 
     disparity: in px per view step, as found and without the highlights; of a frame of a scene with highlights.
     """

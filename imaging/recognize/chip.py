@@ -26,7 +26,7 @@ MODES = "edge", "ternary", "image"
 
 @dataclass(frozen=True)
 class Reading:
-    """What the chip sends of pictures.
+    """Frames of pictures as the chip sends them.
 
     codes: (n, rows, cols), 0 where it does not read. bytes: of a frame, mean. energy: in J, mean, lower and higher
     reading. share: of the samples, that are not 0. image_energy: with every sample converted and sent as a byte.

@@ -24,7 +24,7 @@ SOME = 600  # pictures of a curve's point
 
 @dataclass(frozen=True, eq=False)
 class Study:
-    """What a run measures.
+    """Settings of a run.
 
     fronts: of the table, the first is the headline's. base: of all settings. curves: names, of `study.CURVES` and wake.
     some: pictures of a curve's point. draws: of random types. verilog: whether the chip's Verilog reads a sample.
@@ -53,7 +53,7 @@ class Study:
 
 @dataclass(frozen=True, eq=False)
 class Recognition:
-    """What was measured. rows: of the table by name. lines: of each curve, (point, result). alarms: by contrast."""
+    """Measurements. rows: of the table by name. lines: of each curve, (point, result). alarms: by contrast."""
 
     study: Study
     rows: Mapping[str, dict[str, Any]]
@@ -99,7 +99,7 @@ def measure(task: Study, folder: Path) -> Recognition:
 
 
 def as_trained(task: Study) -> bool:
-    """Whether the pictures, hence the split, and the setting are those with which the shipped weights were trained.
+    """Return whether pictures, split and setting are those of the shipped weights' training.
 
     On a part of the digits they would be tested with pictures of their training.
     """

@@ -45,7 +45,7 @@ SIX = (2, 3)  # tile of six random types
 
 @dataclass(frozen=True)
 class Setting:
-    """One way to see pictures and to classify them.
+    """A front and a classifier with their parameters.
 
     front: asp, ternary, gradient, image; same_bytes (an image of at most ``bytes``), random or learned (filters on the
     image). scale: sensor px along a picture px. blur: of a point, in picture px, positive behind the focal plane.

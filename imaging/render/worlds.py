@@ -1,4 +1,4 @@
-"""What is rendered: Mitsuba's objects, in metres of the scene, and the lens that they are made for."""
+"""Rendered scenes: Mitsuba's objects, in metres of the scene, and their lens."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

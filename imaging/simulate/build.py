@@ -1,4 +1,4 @@
-"""What a simulator of the frame bench is elaborated for."""
+"""Parameters of an elaborated simulator of the frame bench."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -16,7 +16,7 @@ NO_FRAME_END = 4  # exit status of the bench
 
 @dataclass(frozen=True)
 class FrameRun:
-    """What one simulation gave.
+    """Result of a simulation.
 
     stream: bytes that left the chip. miso: bytes that came back over SPI. activity: cycles that each pin of the front
     end was high, by pin (bench.sv). integrated: cycles that each row of pixels integrated, as its driver sees it.

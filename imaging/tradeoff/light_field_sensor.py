@@ -1,4 +1,4 @@
-"""What the sensor costs in the light field that `linear` and `mixture` give back of the motorcycle: bits of the
+"""Light fields by `linear` and `mixture` over parameters of the sensor, of the motorcycle: bits of the
 converters (the chip has 8; others are the analog values of the same exposure, rounded), the threshold of edge mode
 (sums of an image frame with the differences of an edge frame, those below it 0, by the golden chip), views that are
 given back, and layouts [Jayasuriya2017, Fig. 3.4, 3.5]: the prototype's tile, its types in another order, types of

@@ -133,7 +133,7 @@ def fit_types(sweep: Sweep, pupil: Pupil) -> list[TypeFit]:
 
 
 def calibrated(sweep: Sweep, pitch: float) -> tuple[Calibration, Pupil, list[TypeFit]]:
-    """Everything that a sweep tells.
+    """Quantities fitted to a sweep.
 
     Parameters
     ----------

@@ -54,7 +54,7 @@ def cordic(x: npt.ArrayLike, y: npt.ArrayLike, iterations: int = 10, noise_floor
 
 
 def rotate(x: Ints, y: Ints, z: Ints, i: int, angle: int) -> tuple[Ints, Ints, Ints]:
-    """One step: turn (x, y) by atan(2^-i) towards the x axis and count the angle in z.
+    """Turn (x, y) by atan(2^-i) towards the x axis and count the angle in z.
 
     Parameters
     ----------

@@ -42,7 +42,7 @@ class _Lanes(Protocol):
 
 
 def decisions(unsigned: bool, threshold: int) -> Generator[int, bool, tuple[int, bool]]:
-    """One conversion as a generator: yields DAC codes, expects the comparator's decision on each.
+    """Yield the DAC codes of a conversion; expects the comparator's decision on each.
 
     Edge mode (not unsigned) with a threshold T first compares v >= level(T) and v >= level(1 - T). Then follow 8
     decisions, MSB first. A code that is inside the window after these is set to zero.

@@ -379,7 +379,7 @@ def _undamaged(field: str, path: str | Path, part: str = "the image") -> Iterato
 
 
 def _checked(pixels: Pixels, path: str | Path, low: float = 0.0, high: float = 1.0, field: str = "scene") -> Pixels:
-    """Its values in range: integers as uint8 or uint16, floating point in ``low``..``high``."""
+    """Return the values in range: integers as uint8 or uint16, floating point in ``low``..``high``."""
     values, white = pixels
     smallest, largest = float(values.min()), float(values.max())
     if values.dtype.kind != "f":

@@ -20,7 +20,7 @@ DTYPES = ("float32", "float64")
 
 @dataclass(frozen=True)
 class Sampling:
-    """One array size, one angular sampling, one camera.
+    """Array size, angular sampling and camera of a scene.
 
     Attributes
     ----------

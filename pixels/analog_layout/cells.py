@@ -59,7 +59,7 @@ class Cell:
         return len(self.transistors)
 
     def spice(self, masks: AnalogMasks) -> str:
-        """Its text for LVS."""
+        """Netlist for LVS."""
         return flat.spice(
             self.cell.name, self.ports, self.transistors, masks, self.plates, self.resistors, self.matched
         )

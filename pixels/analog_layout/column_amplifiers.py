@@ -66,7 +66,7 @@ class ColumnAmplifiers(DrawnBlock):
         return self.columns.count * self.columns.column.count + self.band.cell.count
 
     def spice(self, masks: AnalogMasks) -> str:
-        """Its text for LVS; pins that it does not use are none of its ports."""
+        """Netlist for LVS; unused pins are no ports."""
         column, band = self.columns.column, self.band.cell
         parts = [(column, column_nets(k, self.lanes)) for k in range(self.columns.count)]
         parts.append((band, band_nets(band.ports)))

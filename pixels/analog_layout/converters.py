@@ -70,7 +70,7 @@ class Converters(DrawnBlock):
         return sum(cell.count * len(nets) for cell, nets in self.parts)
 
     def spice(self, masks: AnalogMasks) -> str:
-        """Its text for LVS."""
+        """Netlist for LVS."""
         ports = dict.fromkeys(pin.name for pin in self.block.pins if pin.name != "unsigned_")
         lines = [
             f"X{cell.cell.name}{k} {' '.join(instance_nets)} {cell.cell.name}"

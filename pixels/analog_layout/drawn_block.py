@@ -27,8 +27,8 @@ class DrawnBlock(ABC):
 
     @abstractmethod
     def spice(self, masks: AnalogMasks) -> str:
-        """Its text for LVS; pins that it does not use are none of its ports."""
+        """Netlist for LVS; unused pins are no ports."""
 
     def lef(self, masks: AnalogMasks) -> str:
-        """Its LEF: all metals taken."""
+        """LEF of the block: all metals are obstructed."""
         return lef(self.block, masks.base.name, AnalogSizes().supply_um, [metal.lef for metal in masks.base.metals])

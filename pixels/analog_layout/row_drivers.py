@@ -63,7 +63,7 @@ class RowDrivers(DrawnBlock):
         return self.rows * self.row.count + self.bank.count
 
     def spice(self, masks: AnalogMasks) -> str:
-        """Its text for LVS."""
+        """Netlist for LVS."""
         ports = list(dict.fromkeys(pin.name for pin in self.block.pins))
         lines = [f"X{k} {' '.join(row_nets(k, self.rows))} {self.row.cell.name}" for k in range(self.rows)]
         lines.append(f"Xbank {' '.join(bank_nets())} {self.bank.cell.name}")

@@ -165,12 +165,12 @@ class ColumnSpec:
 
     @property
     def well(self) -> float:
-        """F of a well."""
+        """Capacitance of a well, F."""
         return self.full_well * ELEMENTARY_CHARGE / self.fall
 
     @property
     def lsb(self) -> float:
-        """V of the lane's line for an LSB of its converter."""
+        """Voltage of the lane's line for an LSB of its converter, V."""
         return LaneSpec().lsb / GAIN
 
 
@@ -218,7 +218,7 @@ class ColumnSizes:
 
     @property
     def follows(self) -> float:
-        """V of the lane's line for a V of start: what rises to start takes its part."""
+        """Volts of the lane's line for a volt of start: the capacitor that rises to start takes a part."""
         return 1 - self.kick / self.hold
 
 

@@ -51,7 +51,7 @@ class DacSizes:
 
     @property
     def total(self) -> float:
-        """F of all capacitors at the top plate, without parasitics."""
+        """Capacitance at the top plate, without parasitics, F."""
         return (CODES + 0.5) * self.unit
 
     def attenuation(self, load: float) -> float:
@@ -87,9 +87,9 @@ def size(spec: LaneSpec, process: ModuleType, load: float) -> DacSizes:
 
 
 def _switches(name: str, width: float, *, fixed: str = "") -> Circuit:
-    """One bottom plate. Pins: bottom in sample samplen d refp refn vdd vss; with ``fixed`` (refp or refn) without d.
+    """Return the switches of a bottom plate. Pins: bottom in sample samplen d refp refn vdd vss.
 
-    A fixed one samples `in` and then goes to its reference.
+    With ``fixed`` (refp or refn) there is no d: the plate samples `in` and then goes to this reference.
     """
     low = "n", max(0.65, round(LOW_SHARE * width / 0.05) * 0.05), SWITCH_LENGTH
     high = "p_lvt", round(HIGH_SHARE * max(width, 0.65) / 0.05) * 0.05, 0.35

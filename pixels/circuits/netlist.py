@@ -117,7 +117,7 @@ class Circuit:
         return [line for circuit in self.circuits().values() for line in circuit.own_lines(process)]
 
     def own_lines(self, process: ModuleType) -> list[str]:
-        """Its own .subckt text."""
+        """Text of its .subckt."""
         text = [f".subckt {self.name} {' '.join(self.ports)}", *self.devices(process)]
         for c in self.capacitors:
             text.append(f"C{c.name} {c.a} {c.b} {{{c.value:.6g}*{'cscale' if c.units else '1'}}}")

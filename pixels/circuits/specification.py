@@ -107,12 +107,12 @@ class LaneSpec:
 
     @property
     def lsb(self) -> float:
-        """V at the lane's input."""
+        """An LSB at the lane's input, V."""
         return (self.refp - self.refn) / CODES
 
     @property
     def half_cycle(self) -> float:
-        """S: what the DAC has to settle, and the comparator to decide."""
+        """Time for the DAC to settle, and for the comparator to decide, s."""
         return 0.5 / self.f_clk
 
     @property

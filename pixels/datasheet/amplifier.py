@@ -81,7 +81,7 @@ def measure(
     corner: Corner,
     circuit: Circuit | None = None,
 ) -> AmplifierResult:
-    """Everything of an amplifier that drives the input of ``lane``. circuit: instead of that of ``sizes``."""
+    """Measure an amplifier that drives the input of ``lane``. circuit: instead of that of ``sizes``."""
     lsb, load = setup.spec.lsb, load_of(setup, lane, corner)
     most = REACH * 128 * lsb / sizes.gain  # V between the columns
     end = END * spec.hold
@@ -131,7 +131,7 @@ def faults(
     corner: Corner,
     circuit: Circuit | None = None,
 ) -> list[str]:
-    """What is wrong with an amplifier, by the name of the part: columns, gain, the weight of every bit of the trim."""
+    """Return the faults of an amplifier by part: columns, gain, the weight of every bit of the trim."""
     load, lsb = load_of(setup, lane, corner), setup.spec.lsb
     with opened(setup, spec, circuit or amplifier(sizes), corner) as spice:
 
@@ -165,7 +165,7 @@ def ktc(setup: Setup, sizes: AmplifierSizes, corner: Corner) -> float:
 
 
 def load_of(setup: Setup, lane: LaneSizes, corner: Corner) -> float:
-    """F of the lane's array."""
+    """Return the capacitance of the lane's array, F."""
     return lane.dac.total * setup.scale(corner) * (1 + PARASITIC)
 
 
@@ -249,7 +249,7 @@ def clocked(
 
 
 def _energy(wave: Wave, spec: AmplifierSpec, corner: Corner) -> tuple[float, float]:
-    """J of a sample, and A while the amplifier is off: of it, of its bias, and a lane's share of the bias at rest."""
+    """Return the energy of a sample, J, and currents at rest, A: amplifier, bias, a lane's share of the bias."""
     start, until, last = WAKE * spec.hold, 4 * spec.hold, LATER * spec.hold
     off, rest = (wave.charge(rail, until, last) / (last - until) for rail in ("vdd", "vdd_bias"))
     on = wave.charge("vdd", start, until) + wave.charge("vdd_bias", start, until) - rest * (until - start)

@@ -126,7 +126,7 @@ class ColumnResult:
 def measure(
     setup: Setup, spec: ColumnSpec, sizes: ColumnSizes, corner: Corner, circuit: Circuit | None = None
 ) -> ColumnResult:
-    """Everything of a column. circuit: instead of the bench of ``sizes``."""
+    """Measure a column. circuit: instead of the bench of ``sizes``."""
     start, runs, repeated = trimmed(setup, spec, sizes, corner, circuit), TRIMS, 0
     end, lsb = turn_of(spec) + spec.cycle, spec.lsb
     with opened(setup, spec, sizes, corner, start, circuit=circuit) as spice:
@@ -170,7 +170,7 @@ def mean_of(spice: Simulator, spec: ColumnSpec, corner: Corner) -> tuple[float, 
 def trimmed(
     setup: Setup, spec: ColumnSpec, sizes: ColumnSizes, corner: Corner, circuit: Circuit | None = None
 ) -> tuple[float, float]:
-    """V of `start_a` and `start` at which a column without light is at the lanes' references."""
+    """Return `start_a` and `start`, V, at which a column without light is at the lanes' references."""
     end, start = turn_of(spec) + spec.cycle, (spec.dark, spec.dark)
     for _ in range(TRIMS):
         with opened(setup, spec, sizes, corner, start, circuit=circuit) as spice:
@@ -182,7 +182,7 @@ def trimmed(
 def nearer(
     start: tuple[float, float], lanes: tuple[float, float], spec: ColumnSpec, sizes: ColumnSizes
 ) -> tuple[float, float]:
-    """V of `start_a` and `start` that bring ``lanes``, V of both without light, to their references."""
+    """Return `start_a` and `start`, V, that bring ``lanes``, V of both without light, to their references."""
     a, b = (volt + (spec.dark - lane) / sizes.follows for volt, lane in zip(start, lanes, strict=True))
     return a, b
 
@@ -196,7 +196,7 @@ def offset(
     seed: int,
     pixel: bool = False,
 ) -> float:
-    """LSB by which both diodes' lines differ without light, of a column with the models' own mismatch.
+    """Return the offset between both diodes' lines without light, LSB, of a column with the models' mismatch.
 
     pixel: of its pixel's switches alone, which all others are without. With looser tolerances than other figures have:
     0.17 LSB off at most, in a third of the time.
@@ -276,7 +276,7 @@ def bench(sizes: ColumnSizes, spec: ColumnSpec) -> Circuit:
 
 @cache
 def at_rest(setup: Setup, sizes: ColumnSizes, corner: Corner) -> dict[str, float]:
-    """V of the bias's lines."""
+    """Return the voltages of the bias lines, V."""
     parts = (
         Instance("bias", bias(), ("ibias", "vdd", "vss")),
         Instance("lines", column_bias(sizes), ("ibias", *BIASES, "level", "vdd", "vss")),
@@ -378,12 +378,12 @@ def sample(
 
 
 def turn_of(spec: ColumnSpec) -> float:
-    """S at which the turn begins that is not late."""
+    """Return the time at which the turn begins, s."""
     return (2 * REST + spec.settle + spec.read) * spec.cycle
 
 
 def _energy(wave: Wave, spec: ColumnSpec, corner: Corner) -> float:
-    """J of a pixel: of the row's read, of its turn, and a pixel's time of the block's bias."""
+    """Return the energy of a pixel, J: read, turn, and its share of the block's bias."""
     read = wave.charge("vdd", REST * spec.cycle, turn_of(spec) - 0.5 * spec.cycle)
     turn = wave.charge("vdd", turn_of(spec) - 0.5 * spec.cycle, turn_of(spec) + 1.5 * spec.cycle)
     steady = wave.charge("vdd_bias", 0.1 * spec.cycle, 0.9 * spec.cycle) / (0.8 * spec.cycle) + BIAS

@@ -60,7 +60,7 @@ def decisions(setup: Setup, sizes: LaneSizes, corner: Corner, circuit: Circuit |
 
 
 def offsets(setup: Setup, sizes: LaneSizes, corner: Corner, seed: int, circuit: Circuit | None = None) -> list[float]:
-    """Offsets of BATCH comparators with the models' mismatch, LSB at the lane's input: V(inn) above V(inp) at balance.
+    """Return offsets of BATCH comparators with mismatch, LSB at the lane's input: V(inn) above V(inp) at balance.
 
     One beyond REACH is +-REACH.
     """

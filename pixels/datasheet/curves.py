@@ -1,4 +1,4 @@
-"""What the model takes of a column: what of a diode's charge reaches its lane, and how much more it has in a sum.
+"""Curves of a column for the model: a diode's signal at its lane, and its weight in a sum.
 
 In a sum the charge amplifiers have other loads than in a difference, the second diode's the larger one: it is not yet
 at rest as the read ends, the first diode's is. In the reads of taps after the first the second diode's holder takes no
@@ -32,7 +32,7 @@ PROOF = 0.87, 0.47  # of a full well, of both diodes: between those of FILLS
 
 @dataclass(frozen=True)
 class ColumnFit:
-    """What was fitted. error, sum_error: LSB of the lane's converter by which ``curves`` are off at PROOF, in edge mode
+    """Fitted curves. error, sum_error: LSB of the lane's converter by which ``curves`` are off at PROOF, in edge mode
     and of the sums of the first and of the second tap."""
 
     curves: ColumnCurves
@@ -69,7 +69,7 @@ def fitted(
     alone = [(0.0, 0.0), *((fill, 0.0) for fill in FILLS[1:]), *((0.0, fill) for fill in FILLS[1:])]
 
     def lanes(circuit: Circuit, image: bool) -> npt.NDArray[np.float64]:
-        """V of both lanes at each of ``alone`` and at PROOF, less those without light: (points, 2)."""
+        """Return both lanes' voltages at each of ``alone`` and at PROOF, less those without light, V: (points, 2)."""
         with opened(setup, spec, sizes, corner, start, image, circuit=circuit) as spice:
             waves = [sample(spice, spec, corner, a * spec.fall, b * spec.fall, image) for a, b in (*alone, PROOF)]
         volts = np.array([[wave.at("far_a", end), wave.at("far_b", end)] for wave in waves])

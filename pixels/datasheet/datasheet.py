@@ -25,7 +25,7 @@ class Row:
 
     @property
     def passes(self) -> bool:
-        """Whether every value is inside the limits."""
+        """True if every value is inside the limits."""
         values = [value for value in (self.low, self.typical, self.high) if value is not None]
         return all(
             (self.least is None or value >= self.least) and (self.most is None or value <= self.most)

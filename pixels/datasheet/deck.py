@@ -30,7 +30,7 @@ def process_of(name: str) -> ModuleType:
 
 @dataclass(frozen=True)
 class Setup:
-    """What is common to all runs: process, specification, and the spread of capacitors (low, high) of its units."""
+    """Process, specification and spread of unit capacitors (low, high), common to all runs."""
 
     pdk: str
     spec: LaneSpec
@@ -106,14 +106,14 @@ def clock(periods: int, period: float, high: float, phase: float = 0.5) -> Point
 
 
 def settling(wave: Wave, node: str, begin: float, rest: float, within: float) -> float:
-    """S after ``begin`` from which a node stays within so many V of what it has at ``rest`` (s)."""
+    """Return the time after ``begin``, s, from which a node stays ``within`` V of its value at ``rest`` (s)."""
     return settled(wave.time, wave.voltage[node] - wave.at(node, rest), begin, rest, within)
 
 
 def settled(
     time: npt.NDArray[np.float64], off: npt.NDArray[np.float64], begin: float, end: float, within: float
 ) -> float:
-    """S after ``begin`` from which, until ``end``, what is ``off`` V of its level is no more than so many V."""
+    """Return the time after ``begin``, s, from which, until ``end``, the error ``off`` stays ``within`` V."""
     inside = (time > begin) & (time < end)
     return float(time[inside][np.abs(off[inside]) > within].max(initial=begin) - begin)
 

@@ -18,7 +18,7 @@ TYPICAL = "tt_027C_1v80"  # the corner of typical values
 
 @dataclass(frozen=True)
 class Found:
-    """What was measured, by corner name."""
+    """Measurements by corner."""
 
     decisions: dict[str, Decisions]
     lanes: dict[str, LaneResult]

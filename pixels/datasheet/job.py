@@ -292,7 +292,7 @@ def _everywhere(
 
 
 def converter(spec: LaneSpec, sizes: LaneSizes, found: Found, column_spec: ColumnSpec) -> dict[str, Any]:
-    """What `models/afe` takes of the circuit, each with its source and the fit's error where there is one (LSB)."""
+    """Return the figures for `models/afe`, each with its source and the fit's error where there is one (LSB)."""
     rms, low, high = interval(found.offsets)
     rms_a, low_a, high_a = interval([one.offset for one in found.amplifier_draws])
     rms_c, low_c, high_c = interval(found.column_offsets)
@@ -351,7 +351,7 @@ def amplifier_curve(points: Sequence[tuple[float, float]]) -> tuple[dict[str, fl
 
 
 def polynomial(points: Sequence[tuple[float, float]]) -> tuple[tuple[float, ...], float]:
-    """What an amplifier adds at (ideal, sampled) values (LSB): of 1, x, x2, x3, x = ideal / 128; the largest rest."""
+    """Return an amplifier's error polynomial (LSB) in 1, x, x2, x3, x = ideal / 128, and the largest residual."""
     ideal, got = np.array(points).T
     bend = np.polynomial.polynomial.polyfit(ideal / 128, got - ideal, len(AMPLIFIER) - 1)
     rest = got - ideal - np.polynomial.polynomial.polyval(ideal / 128, bend)
@@ -359,6 +359,6 @@ def polynomial(points: Sequence[tuple[float, float]]) -> tuple[tuple[float, ...]
 
 
 def _left(spec: LaneSpec, result: LaneResult) -> float:
-    """LSB that are left of a step of the range at the strobe: exponential from half an LSB on."""
+    """Return the residue of a step of the range at the strobe, LSB: exponential from half an LSB on."""
     constants = np.log(256 / 0.5)
     return float(256 * np.exp(-spec.half_cycle / max(result.settling / constants, 1e-12)))

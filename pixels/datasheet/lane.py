@@ -61,7 +61,7 @@ def open_lane(setup: Setup, sizes: LaneSizes, corner: Corner, circuit: Circuit |
 def run_codes(
     spice: Simulator, setup: Setup, values: Sequence[float], samples: Sequence[bool], codes: Sequence[int]
 ) -> Wave:
-    """One transient: in each cycle the input (LSB above code 0), whether it is sampled, and the DAC's code."""
+    """Run a transient: in each cycle the input (LSB above code 0), whether it is sampled, and the DAC's code."""
     spec, vdd = setup.spec, spice.rails["vdd"]
     period, count = 1 / spec.f_clk, len(codes)
     middle = (spec.refp + spec.refn) / 2
@@ -81,7 +81,7 @@ def run_codes(
 
 
 def difference(wave: Wave, when: float) -> float:
-    """V of the comparator's inputs, positive where the code's level is reached."""
+    """Return the comparator's input voltages, V, positive where the code's level is reached."""
     return wave.at("xcell.other", when) - wave.at("xcell.top", when)
 
 
@@ -126,7 +126,7 @@ def _codes_for(value: float) -> list[int]:
 
 
 def measure(setup: Setup, sizes: LaneSizes, corner: Corner, circuit: Circuit | None = None) -> LaneResult:
-    """Everything of a lane at one corner."""
+    """Measure a lane at a corner."""
     period = 1 / setup.spec.f_clk
     with open_lane(setup, sizes, corner, circuit) as spice:
         held = [(192.0, 192 - DROOP_CODES)] * DROOP_CYCLES
@@ -182,7 +182,7 @@ def _decided(spice: Simulator, setup: Setup, codes: Sequence[int]) -> list[tuple
 
 
 def faults(setup: Setup, sizes: LaneSizes, corner: Corner, circuit: Circuit | None = None) -> list[str]:
-    """What is wrong with a lane, by the name of the part: the comparator's inputs, and the weight of every bit."""
+    """Return the faults of a lane by part: the comparator's inputs, and the weight of every bit."""
     spec, found = setup.spec, []
     with open_lane(setup, sizes, corner, circuit) as spice:
         wave = run_codes(spice, setup, [192.0] * 2 + [64.0] * 2, [True, False] * 2, [128] * 4)
@@ -207,18 +207,18 @@ def faults(setup: Setup, sizes: LaneSizes, corner: Corner, circuit: Circuit | No
 
 
 def _settled(wave: Wave, start: float, end: float, within: float) -> float:
-    """S after ``start`` from which the comparator's input stays within so many V of its value at ``end``."""
+    """Return the time after ``start``, s, from which the comparator's input stays ``within`` V of its end."""
     volts = wave.voltage["xcell.other"] - wave.voltage["xcell.top"]
     return settled(wave.time, volts - difference(wave, end), start, end, within)
 
 
 def _energy(wave: Wave, rail: str, period: float, volts: float) -> float:
-    """J a decision of a conversion: the charge from the first decision's cycle on, an eighth of it."""
+    """Return the energy of a decision, J: an eighth of the charge from the first decision's cycle on."""
     return wave.charge(rail, period, (BITS + 1) * period) * volts / BITS
 
 
 def inl(levels: Sequence[tuple[int, float]]) -> tuple[float, float, float]:
-    """Offset (at code 128), gain error (from end to end), and the peak off the line through the ends, LSB."""
+    """Return offset (at code 128), gain error (end to end), peak deviation from the line through the ends, LSB."""
     codes, errors = np.array(levels).T
     order = np.argsort(codes)
     codes, errors = codes[order], errors[order]

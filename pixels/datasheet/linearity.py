@@ -55,7 +55,7 @@ def area(sizes: DacSizes) -> float:
 
 
 class Bits(NamedTuple):
-    """Of one lane: ENOB from a sine at 0.98 of the range, and INL and DNL (LSB) from a ramp's histogram."""
+    """Return ENOB of a lane from a sine at 0.98 of the range, and INL and DNL (LSB) from a ramp's histogram."""
 
     enob: float
     inl: float

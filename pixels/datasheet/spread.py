@@ -90,7 +90,7 @@ def noise(
 def _rms(
     setup: Setup, spec: AmplifierSpec, sizes: AmplifierSizes, corner: Corner, more: list[str], reset: float, what: str
 ) -> float:
-    """V rms of ``what`` over BAND."""
+    """Return the noise of ``what`` over BAND, V rms."""
     volts = {"vdd": corner.supply, "vdd_bias": corner.supply, "vss": 0.0, "vref": spec.vref, "on": corner.supply}
     volts |= {"reset": reset, "column_b": spec.reset_level}
     volts |= {f"g{k}": corner.supply * (k == TRIM_BITS - 1) for k in range(TRIM_BITS)}

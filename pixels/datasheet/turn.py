@@ -1,4 +1,4 @@
-"""What a cycle leaves of a column's turn at the lane's array, behind column, lane's line and difference amplifier.
+"""Residue of a column's turn at the lane's array after a cycle, behind column, lane's line and difference amplifier.
 
     cycle    | wake  | hold  |
     on       |_/‾‾‾‾‾|‾‾‾‾‾‾‾|‾‾‾
@@ -47,7 +47,7 @@ def measure(
     corner: Corner,
     *drawn: Circuit,
 ) -> TurnResult:
-    """Of a column that is trimmed first. drawn: circuits instead of those of ``sizes``."""
+    """Measure a column that is trimmed first. drawn: circuits instead of those of ``sizes``."""
     (spec, of_amplifier), lsb = specs, setup.spec.lsb
     alone, made = bench(sizes[0], spec), joined(*sizes, spec)
     for one in drawn:

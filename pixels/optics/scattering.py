@@ -65,7 +65,7 @@ class Scattering:
 
 
 def spread(each: Complexes) -> Complexes:
-    """One matrix over all orders (..., cN, cN) from a matrix of each order (..., N, c, c)."""
+    """Return a matrix over all orders (..., cN, cN) from a matrix of each order (..., N, c, c)."""
     *batch, n, c, _ = each.shape
     out = np.zeros((*batch, c, n, c, n), complex)
     at = np.arange(n)

@@ -27,7 +27,7 @@ LINEAR = ".option gmin=1e-18 abstol=1e-13 reltol=1e-4 itl1=500"  # of analyses a
 
 @dataclass(frozen=True)
 class Bench:
-    """What surrounds a pixel; assumed, since there is no column amplifier in transistors.
+    """Surroundings of a pixel; assumed, since there is no column amplifier in transistors.
 
     sink_a: of each column, 1e-7..1e-3 A. low_v: least voltage that the sink needs, 0..1 V. rows: of pixels on a column,
     1..4096. gate_v: of an active reset line, 1..5.5 V; the select line has the process's own.

@@ -151,7 +151,7 @@ def sources(usual: PixelFound, found: Spread) -> dict[str, str]:
 
 
 def sensor_table(summary: Mapping[str, Any], came: Mapping[str, str]) -> dict[str, Any]:
-    """What `models.parameters.drawn_electrical` takes: values, their sources, and how far corners are from them."""
+    """Return the data of `models.parameters.drawn_electrical`: values, sources, and deviations of corners."""
     corners = summary["corners"]
     figures = ("full_well", "dark_noise", "gain_uv", "linearity", "lag", "dark_current", "gates_ff")
     return {
@@ -174,7 +174,7 @@ def sensor_file(sensor: SensorParameters, came: Mapping[str, str]) -> str:
 
 
 def _efficiency(pdk: str) -> dict[str, dict[str, float]]:
-    """Of the light on a pixel, what makes electrons in its diodes, at the gratings' wavelength, by beta."""
+    """Return quantum efficiencies at the gratings' wavelength, by beta: of the gratings, of a pixel."""
     chosen, fill = gratings(pdk), drawn(pdk).fill_factor
     found = {
         f"{beta:g}": fitted(geometry, chosen.wavelength_um).quantum_efficiency

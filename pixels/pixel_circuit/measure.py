@@ -1,4 +1,4 @@
-"""One corner of the pixel: charge against voltage, whole frames, noise, dark current; and what mismatch spreads."""
+"""Measurements of the pixel at a corner: charge against voltage, whole frames, noise, dark current, mismatch."""
 
 from dataclasses import dataclass
 from math import sqrt
@@ -72,7 +72,7 @@ class PixelFound:
 
     @property
     def dark_noise(self) -> float:
-        """Of a read against the next reset: both have reset noise, by the closed form, and the follower's."""
+        """Noise of a read against the next reset: both have reset noise, by the closed form, and the follower's."""
         return sqrt(2) * float(np.hypot(self.reset_closed, self.read_noise))
 
 
@@ -187,7 +187,7 @@ def _light(
 
 
 def _reset_noise(deck: list[str], corner: Corner, gate_v: float) -> tuple[float, float]:
-    """V rms on the node while it is reset, and its capacitance (F) then, with the reset transistor's channel."""
+    """Return noise (V rms) and capacitance (F) of the node while it is reset, with the reset transistor's channel."""
     lines = [f"Vrst pixel_reset 0 {gate_v:g} ac 1", "Vread read 0 0", "Vb photo_b 0 2"]
     deck = [LINEAR if line == OPTIONS else line for line in deck]
     volts = total_noise([*deck, *lines], "noise v(photo_a) Vrst dec 20 1 1e14")
@@ -198,14 +198,14 @@ def _reset_noise(deck: list[str], corner: Corner, gate_v: float) -> tuple[float,
 
 
 def _read_noise(deck: list[str], gate_v: float, node_v: float) -> float:
-    """V rms on the column with the node at a voltage: thermal and 1/f noise of follower and select."""
+    """Return the noise on the column, V rms, with the node at a voltage: thermal and 1/f of follower and select."""
     lines = ["Vrst pixel_reset 0 0", f"Vread read 0 {gate_v:g}", f"Vnode photo_a 0 {node_v:g} ac 1", "Vb photo_b 0 2"]
     deck = [LINEAR if line == OPTIONS else line for line in deck]
     return total_noise([*deck, *lines], f"noise v(column_a) Vnode dec 20 {NOISE_FROM:g} {NOISE_TO:g}")
 
 
 def total_noise(deck: list[str], command: str) -> float:
-    """V rms of an analysis of noise over its frequencies. Raises ToolError where ngspice has no numbers.
+    """Return the total of a noise analysis, V rms. Raises ToolError where ngspice has no numbers.
 
     ngspice's own sum is not a number for some spectra that are; one is not where it has died away, at the highest
     frequencies, which are left out.
@@ -215,7 +215,7 @@ def total_noise(deck: list[str], command: str) -> float:
 
 
 def summed(hertz: Floats, volts: Floats) -> float:
-    """V rms of a spectrum in V a root hertz; see `total_noise`."""
+    """Return the total of a spectrum in V a root hertz, V rms; see `total_noise`."""
     known = int(np.argmin(np.isfinite(volts))) if not np.isfinite(volts).all() else len(volts)
     power = volts[:known] ** 2 * hertz[:known]  # in each e-fold of the frequency
     if known < 2 or (known < len(volts) and power[-1] > DIED * power.max()):
@@ -230,7 +230,7 @@ def _dark_current(deck: list[str], node_v: float) -> float:
 
 
 def _gates(deck: list[str], read_v: float, gate_v: float, node_v: float) -> float:
-    """F of a pixel's gates on its reset or its select line, the greater, each line active."""
+    """Return the capacitance of a pixel's gates on its reset or select line, the greater, F."""
     deck = [LINEAR if line == OPTIONS else line for line in deck]
     lines = [f"Va photo_a 0 {node_v:g}", f"Vb photo_b 0 {node_v:g}"]
     farads = []

@@ -23,7 +23,7 @@ WAIVERS = {
 
 
 def common_decks(pdk: str) -> tuple[list[str], str]:
-    """What drawn cells of all kinds are checked by: the rules as pieces of a deck, and PDKMaster's deck of LVS."""
+    """Checks of all drawn cells: the rules as pieces of a deck, and PDKMaster's deck of LVS."""
     tech = layout_platform(pdk)
 
     def make(folder: Path) -> None:

@@ -70,7 +70,7 @@ def table(pdk: str, found: Mapping[str, Line]) -> dict[str, Any]:
 
 
 def _farads(made: ArrayLayout) -> dict[str, dict[str, float]]:
-    """F of the lines in the middle, at the corners of wires."""
+    """Return the capacitance of the lines in the middle of the array, F, at the corners of wires."""
     layout = db.Layout()
     layout.dbu = 0.001
     top = draw_array(layout, made, draw_pixels(layout, made))
@@ -98,7 +98,7 @@ def _farads(made: ArrayLayout) -> dict[str, dict[str, float]]:
 
 
 def _ohm(made: PixelLayout, name: str) -> float:
-    """Of a line's metal from one edge of the pixel to the other, with what branches off it."""
+    """Return the resistance of a line's metal from one edge of the pixel to the other, with its branches."""
     layout = db.Layout()
     layout.dbu = 0.001
     cell = draw(layout, made).cell

@@ -1,4 +1,4 @@
-"""What is drawn of a sensor, and where its files are."""
+"""The drawn pixel array of a sensor, and its files."""
 
 from dataclasses import dataclass
 from pathlib import Path

@@ -18,7 +18,7 @@ Part = TypeVar("Part")
 
 @dataclass(frozen=True)
 class Pair(Generic[T]):
-    """What was found at a corner, of the schematic and of the layout."""
+    """Measurements at a corner, of the schematic and of the layout."""
 
     corner: str
     schematic: T

@@ -36,7 +36,7 @@ def drc(gds: Path, pdk: str, report: Path) -> dict[str, int]:
 
 
 def lvs(gds: Path, spice: str, pdk: str, report: Path, boxes: Iterable[str] = ()) -> bool:
-    """Whether the top cell of ``gds`` is the circuit that ``spice``, text, has last, port by port. Raises StepError.
+    """Return whether the top cell of ``gds`` is the last circuit of ``spice``, text, port by port. Raises StepError.
 
     boxes: cells, their ports labelled, that are compared once, and their instances by their pins; all others are flat.
     What reaches into one from above is a pin that its circuit does not have.

@@ -16,7 +16,7 @@ from talbot.pixels.post_layout.row import Row
 def measure(
     setup: Setup, spec: ColumnSpec, sizes: ColumnSizes, corner: Corner, drawn: Circuit | None = None
 ) -> ColumnResult:
-    """Everything of a column; drawn: instead of the circuit."""
+    """Measure a column; drawn: instead of the circuit."""
     bench = column.bench(sizes, spec).replaced(drawn) if drawn else None
     return column.measure(setup, spec, sizes, corner, bench)
 

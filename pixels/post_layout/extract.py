@@ -96,7 +96,7 @@ def extract(made: Cell, masks: AnalogMasks, wires: Wires, resistance: bool = Tru
 
 
 def unit_farad(made: Cell, nets: Nets) -> float:
-    """F of a unit of the fringe capacitors by the rays, the mean over all; 0 without any. Raises StepError."""
+    """Return the mean capacitance of a fringe unit by the rays, F; 0 without any. Raises StepError."""
     if lost := [pair for pair in made.matched if pair not in nets.couplings]:
         raise StepError(f"extraction: nets {' and '.join(lost[0])} must have a capacitor between them")
     return sum(nets.couplings[pair] for pair in made.matched) / max(1, sum(made.matched.values()))

@@ -17,6 +17,6 @@ class Row:
 
     @property
     def passes(self) -> bool:
-        """Whether the layout is inside the limit."""
+        """True if the layout is inside the limit."""
         below = self.most is None or abs(self.layout) <= self.most
         return below and (self.least is None or self.layout >= self.least)

@@ -14,7 +14,7 @@ from talbot.pixels.post_layout.row import Row
 
 @dataclass(frozen=True)
 class Gaps:
-    """S with both phases low."""
+    """Time with both phases low, s."""
 
     shortest: float
     longest: float

@@ -26,7 +26,7 @@ SAMPLES_KEPT, SAMPLES_ALL = (1024, 2048, 4096, 8192), 65536
 
 @dataclass(frozen=True)
 class Kept:
-    """One row. what: "orders", ...; kept: how many of it. error: greatest, of a share of light. seconds: to solve."""
+    """A row. what: "orders", ...; kept: how many of it. error: greatest, of a share of light. seconds: to solve."""
 
     what: str
     kept: float

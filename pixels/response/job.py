@@ -101,7 +101,7 @@ def _curves(plan: Plan) -> dict[float, Measured]:
 def _compared(
     plan: Plan, others: Sequence[str], optics: OpticsParameters
 ) -> tuple[dict[float, list[Kept]], dict[float, Floats], dict[str, dict[float, Design]]]:
-    """Of every design: errors against run time, rays around the axis, and the other tables of heights."""
+    """Return errors against run time, rays around the axis, and the other tables of heights, of every design."""
     chosen = [(beta, (design.geometry, plan.wavelength_um)) for beta, design in plan.designs.items()]
     jobs = [
         Job(f"errors-{beta:g}", errors, (*arguments, optics), (*arguments, optics.nu_max, optics.views))

@@ -42,7 +42,7 @@ class Plan:
 
     @property
     def score(self) -> tuple[int, float]:
-        """How many betas are reached, and the figure of the worst of these."""
+        """Number of betas that are reached, and the figure of the worst."""
         figures = [design.fit.figure for beta, design in self.designs.items() if self.reached(beta)]
         return len(figures), min(figures, default=0.0)
 

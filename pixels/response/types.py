@@ -45,7 +45,7 @@ class Measured:
 
     @property
     def level(self) -> float:
-        """What the formula of mean 1 (`Fit.curve`) is to be multiplied by to be shares."""
+        """Factor from the formula of mean 1 (`Fit.curve`) to shares."""
         shares = at(self.response, len(self.fits) // 2).unpolarized
         return float(shares.mean() / self.fit.curve(self.response.angles).mean())
 

@@ -34,7 +34,7 @@ RESET, SETTLE = 20e-6, 20e-6  # s: a reset; from its end to the first sample
 
 @dataclass(frozen=True)
 class Exposure:
-    """What a read measures. row, col: the pixel. ampere: photocurrents of its diodes. seconds: between both samples.
+    """Settings of a read. row, col: the pixel. ampere: photocurrents of its diodes. seconds: between both samples.
 
     others_ampere: photocurrent of every other diode. vdda: V of the pixels' supply, 1..3.3. bias: A of the current in.
     """
@@ -50,7 +50,7 @@ class Exposure:
 
 @dataclass(frozen=True)
 class Read:
-    """What a read gave, V at the pads, a before b. reset, dark, end: during reset, after it, after the exposure.
+    """Result of a read, V at the pads, a before b. reset, dark, end: during reset, after it, after the exposure.
 
     nodes: V that the diodes fell between both samples. milliwatt: of the supplies and the bias.
     """
@@ -63,7 +63,7 @@ class Read:
 
     @property
     def gain(self) -> tuple[float, float]:
-        """V at the pad for each V at the diode."""
+        """Volts at the pad for each volt at the diode."""
         a, b = ((dark - end) / node for dark, end, node in zip(self.dark, self.end, self.nodes, strict=True))
         return a, b
 

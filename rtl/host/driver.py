@@ -9,7 +9,7 @@ from talbot.models.parameters.registers import Field, array_resets, register_map
 
 
 class Code(IntEnum):
-    """What went wrong."""
+    """Error of the driver."""
 
     IDENTITY = 2  # no AspChip answers, or one with another register map
     RANGE = 3  # a value does not fit its field

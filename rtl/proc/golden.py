@@ -108,7 +108,7 @@ class Memory:
 
 @dataclass
 class Run:
-    """What a program did. stopped: within the limit of instructions. registers: at the stop."""
+    """Result of a program. stopped: within the limit of instructions. registers: at the stop."""
 
     memory: Memory
     accesses: list[Access] = field(default_factory=list)

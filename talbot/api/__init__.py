@@ -1,1 +1,1 @@
-"""What `import talbot` offers, a module for each subject."""
+"""The Python API, `import talbot`: a module for each subject."""

@@ -110,7 +110,7 @@ class LightField:
 
     @property
     def name(self) -> str:
-        """Its name in reports."""
+        """Name in reports."""
         return self.data.name
 
     @property

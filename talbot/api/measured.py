@@ -22,7 +22,7 @@ DISPARITIES = 21  # as `make depth` tries them
 
 @dataclass(frozen=True, eq=False)
 class Measured:
-    """What a run measures. summary: the figures, as in summary.json of the command."""
+    """Figures of a run. summary: the figures, as in summary.json of the command."""
 
     summary: dict[str, Any]
 

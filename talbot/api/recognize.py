@@ -21,7 +21,7 @@ SHIPPED = 8  # px, of the pictures that the shipped weights know
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Recognition:
-    """What the chip sends of pictures, and what a classifier makes of it.
+    """Pictures as the chip sends them, classified.
 
     features: (n, height, width, channels), for a network of one's own. classes: the answer for each picture, (n,).
     labels: the truth, None without. test: which pictures were not trained on. summary: figures, as in summary.json.

@@ -1,4 +1,4 @@
-"""One frame: its samples, its bytes, its figures, and what can be made of them."""
+"""A frame: samples, bytes, figures, reconstructions."""
 
 from dataclasses import replace
 from functools import cached_property
@@ -29,7 +29,7 @@ SHOWN = ("scene", "mode", "rows", "cols", "stream_bytes", "raw_bytes", "conversi
 
 
 class Run:
-    """One frame that was read out, by the chip's Verilog or by the golden model.
+    """A frame that was read out, by the chip's Verilog or by the golden model.
 
     result: everything that was computed on the way (imaging/frame/result.py).
     """

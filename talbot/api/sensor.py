@@ -45,7 +45,7 @@ Seen = str | Path | LightField | npt.NDArray[Any]
 
 
 class Settings(TypedDict, total=False):
-    """What `Sensor.simulate` says of them."""
+    """See `Sensor.simulate`."""
 
     seed: int
     noise: float

@@ -1,1 +1,1 @@
-"""What every floor above the models shares: files, caches, jobs, tools, steps, GDS, LEF, Liberty, pages."""
+"""Infrastructure of all layers above the models: files, caches, jobs, tools, steps, GDS, LEF, Liberty, pages."""

@@ -1,4 +1,4 @@
-"""What a kept result's key is made of, and folders that are expensive to make, kept under that key.
+"""Keys of kept results, and folders kept under such a key.
 
 Every cache of the project (simulators, cells, layout steps, proofs, mutants, coverage, jobs) names its results with
 `digest`: of the code that decides them (`base.sources.code`), of their parameters, of the tools' versions and of the

@@ -63,7 +63,7 @@ def _kept(text: str) -> str:
 
 
 def is_full(error: BaseException | None) -> bool:
-    """Whether a disk that is full, or a quota, is the reason of ``error``; what a tool or a library says of it, too."""
+    """Return whether a full disk or a quota is the cause of ``error``, also in the words of a tool or library."""
     while error:
         if isinstance(error, OSError) and error.errno in FULL:
             return True

@@ -27,7 +27,7 @@ from talbot.models.parameters import ParameterError
 
 @dataclass(frozen=True)
 class Job:
-    """One call: ``call(*arguments)`` returns JSON or dataclasses (which `base.records.from_json` reads back).
+    """A call: ``call(*arguments)`` returns JSON or dataclasses (which `base.records.from_json` reads back).
 
     name: unique among the jobs of a run, a file name. inputs: paths (their content counts), texts and numbers that
     decide the result next to the code of ``call``, which is found by itself.

@@ -15,7 +15,7 @@ SHOWN = 60  # characters of a value in an error
 
 @dataclass(frozen=True)
 class Varied:
-    """What a command does with the fields of a sensor file. A name is a field, or a table for all of its fields.
+    """Fields of a sensor file that a command varies or refuses. A name is a field, or a table for all of its fields.
 
     used: the result follows them. fixed: the result depends on them, and they cannot vary yet: the reason of each.
     limits: of used fields, least and greatest value where these are narrower than the sensor's own.

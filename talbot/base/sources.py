@@ -35,7 +35,7 @@ TEXTS = 5000  # that are kept there at most
 
 @dataclass(frozen=True)
 class Reference:
-    """What one file needs: a module, and of it a name ('' for all of it)."""
+    """A module that a file needs, and a name in it ('' for all of it)."""
 
     module: str
     name: str = ""
@@ -43,7 +43,7 @@ class Reference:
 
 @dataclass(frozen=True)
 class Text:
-    """What a module's text refers to.
+    """References of a module's text.
 
     imports: with the name that each binds; named: modules that strings name; patterns: of f-strings, for modules'
     names; files: data files that strings name; plain: whether it is an __init__.py of re-exports alone.

@@ -75,7 +75,7 @@ def keep_freed_memory() -> None:
 
 
 def _passed_on(parent: int) -> Callable[[int, object], None]:
-    """Of a child: the signal goes to its parent, which is about to kill it, and nothing more is said.
+    """End a child silently: the signal goes to its parent, which kills it.
 
     A worker that the signal ended, too, is no error.
     """

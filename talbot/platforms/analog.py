@@ -1,4 +1,4 @@
-"""What drawn analog circuits need of a process beyond the pixels: thresholds, capacitors, names."""
+"""Process data of drawn analog circuits beyond the pixels': thresholds, capacitors, names."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -50,7 +50,7 @@ class AnalogMasks:
     connections: Mapping[str, str]
 
     def mim_farad(self, width_um: float, height_um: float) -> float:
-        """F of a capacitor, typical."""
+        """Return the typical capacitance of a capacitor, F."""
         return 1e-15 * (self.mim_area * width_um * height_um + self.mim_edge * 2 * (width_um + height_um))
 
     def finger_um(self, farad: float) -> float:

@@ -1,4 +1,4 @@
-"""What a whole die needs of a process beyond the blocks' metals: the thick metal above them."""
+"""Process data of a die beyond the blocks' metals: the thick metal above them."""
 
 from dataclasses import dataclass
 from importlib import import_module

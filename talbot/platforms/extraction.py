@@ -1,4 +1,4 @@
-"""What `cells.extract` and `cells.lef` need of a process: layers, coefficients and names of device models."""
+"""Process data of `cells.extract` and `cells.lef`: layers, coefficients and names of device models."""
 
 from collections.abc import Callable, Collection
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""What the layout flow (KLayout and the steps of flow.layout) needs of a process: one object a process."""
+"""Process data of the layout flow (KLayout and the steps of flow.layout): one object a process."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field

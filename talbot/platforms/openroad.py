@@ -1,4 +1,4 @@
-"""What the OpenROAD backend needs of a process with its foundry's standard cells: one object a process.
+"""Process data of the OpenROAD backend with the foundry's standard cells: one object a process.
 
 Paths are those of a PDK as open_pdks installs it (ciel, volare), relative to PDK_ROOT.
 """

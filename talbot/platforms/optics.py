@@ -1,4 +1,4 @@
-"""What light meets on its way to the silicon: heights of a process's metals and films, and what they are made of."""
+"""The optical stack of a process: heights and materials of its metals and films."""
 
 from dataclasses import dataclass
 from importlib import import_module

@@ -1,4 +1,4 @@
-"""What the pads of a die need of a process: the factory that draws them, and the masks that it leaves out."""
+"""Process data of a die's pads: the factory that draws them, and the masks that it lacks."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

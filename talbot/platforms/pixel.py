@@ -1,4 +1,4 @@
-"""What a drawn pixel needs of a process: masks of its transistors and wells, contacts, rules that no deck has."""
+"""Process data of a drawn pixel: masks of its transistors and wells, contacts, rules that no deck has."""
 
 from dataclasses import dataclass
 from importlib import import_module

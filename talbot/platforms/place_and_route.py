@@ -1,4 +1,4 @@
-"""What OpenROAD's stages (flow/layout/tcl) read of a process and of a library of cells: one object a library."""
+"""Data of a process and a library of cells for OpenROAD's stages (flow/layout/tcl): one object a library."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field

@@ -122,7 +122,7 @@ class Driver:
 
     @property
     def done(self) -> bool:
-        """Whether every item is taken."""
+        """Return whether every item is taken."""
         return self.sent == len(self.items)
 
 

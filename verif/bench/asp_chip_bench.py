@@ -110,7 +110,7 @@ async def reset_in_the_middle_of_anything(dut):
 
 @cocotb.test(timeout_time=5, timeout_unit="ms")
 async def the_shown_frame(dut):
-    """Its bytes are compared between simulators (test/bench_test.py)."""
+    """Send a frame whose bytes are compared between simulators (test/bench_test.py)."""
     bench = ChipBench(dut)
     await bench.begin()
     got = await bench.frame(FRAMES[SHOWN])

@@ -1,4 +1,4 @@
-"""How exactly ngspice solves the circuit of a row, and what is tried when it gives up."""
+"""Settings of ngspice for the circuit of a row, and those tried after a failure."""
 
 import re
 from collections.abc import Iterable

@@ -35,7 +35,7 @@ def circuits(sizes: AmplifierSizes) -> tuple[Circuit, ...]:
 
 
 def column_volts(spec: LaneSpec, sizes: AmplifierSizes, gain: float) -> float:
-    """V of a column for each LSB of a diode, of which a difference is to be ``gain`` LSB at the lane."""
+    """Return volts of a column for an LSB of a diode, so that a difference of 1 LSB is ``gain`` LSB at the lane."""
     return gain * spec.lsb / sizes.gain
 
 

@@ -40,7 +40,7 @@ NO_TRANSIENT = ".control", "optran 1 1 1 0 0 0", ".endc"  # for an operating poi
 
 
 class Trim(NamedTuple):
-    """What a trim found.
+    """Result of a trim.
 
     start: V of start_a and start at which a pixel without light leaves its lanes at dark. rest: V of RESTING and vdd.
     column: V that this leaves at line_a, line_b and every net of a column. repeated: of the transients, those that
@@ -54,7 +54,7 @@ class Trim(NamedTuple):
 
 
 def circuits(spec: ColumnSpec, sizes: ColumnSizes) -> tuple[Circuit, ...]:
-    """All that the lines of a deck call."""
+    """Subcircuits that the lines of a deck call."""
     parts = column(sizes), column_bias(sizes), clear_pulse(sizes), lane_end(sizes), lane_line(sizes, spec), bias()
     return (*parts, cascode_lines(), pixel(spec.well, "n_thick", THICK))
 

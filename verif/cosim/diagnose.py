@@ -37,7 +37,7 @@ def dictionary(row: RowRequest) -> Iterator[Fault]:
 
 
 def value_of(value: float, column: int, edge: bool, fault: Fault | None) -> float:
-    """What the amplifiers of ``column`` make with ``fault`` of ``value`` (LSB): none through a line that is cut."""
+    """Return the output of ``column`` with ``fault`` for ``value`` (LSB); 0 through a line that is cut."""
     if fault == Fault("diodes", (column,)) and edge:
         return -value
     return 0.0 if fault and fault.kind == "row" and column >= fault.where[0] else value

@@ -57,7 +57,7 @@ class Cycle:
 
 @dataclass(frozen=True)
 class Run:
-    """What a lock-step gave. time: s (points,); waves: V of every saved node; stats: seconds, cycles, time points."""
+    """Result of a lock-step. time: s (points,); waves: V of every saved node; stats: seconds, cycles, time points."""
 
     stream: bytes
     cycles: Cycle
@@ -89,7 +89,7 @@ def run(
     max_cycles: int = 1_000_000,
     note: Callable[[str], None] = lambda text: None,
 ) -> Run:
-    """One frame; where ngspice gives up, again with the next of ``accuracy.ladder``.
+    """Run a frame; where ngspice fails, again with the next of ``accuracy.ladder``.
 
     decks: the parts of the circuit. whole: see `RowRequest`. note: called now and then with how far it is. Raises
     ToolError after the last.

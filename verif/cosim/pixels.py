@@ -25,7 +25,7 @@ LINES = ("reset", "read")
 
 @dataclass(frozen=True)
 class PixelSizes:
-    """What a row is made of.
+    """Parts of a row.
 
     Attributes
     ----------
@@ -72,7 +72,7 @@ class PixelSizes:
 
     @property
     def well(self) -> float:
-        """F of a well, and of an amplifier's capacitor."""
+        """Capacitance of a well, and of an amplifier's capacitor, F."""
         return self.full_well * ELEMENTARY_CHARGE / self.swing
 
 

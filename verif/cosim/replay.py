@@ -22,7 +22,7 @@ FLAG = re.compile(r"(?P<kind>sample|strobe|d|select)(?P<a>\d+)(?:_(?P<b>\d+))?")
 
 
 def controls(deck: Deck, cycles: Cycle, lanes: int, tile_cols: int) -> dict[str, npt.NDArray[np.bool_]]:
-    """Of each source of ``deck``, its bit in every cycle of the circuit: as front_end.sv makes it from the pins."""
+    """Return the bit of each source of ``deck`` in every cycle, as front_end.sv makes it from the pins."""
     found = {}
     for line in deck.drive:
         name = line.split()[0].removeprefix("v")

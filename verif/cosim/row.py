@@ -1,4 +1,4 @@
-"""One row through the chip's Verilog with the circuit in the loop, and its codes next to the real-number model's."""
+"""A row through the chip's Verilog with the circuit in the loop, and its codes and the real-number model's."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -267,7 +267,7 @@ class Row:
 
     @cached_property
     def at_lane(self) -> npt.NDArray[np.float64]:
-        """LSB at the lane's input as its sample ends, of each sample, less the real-number model's."""
+        """Errors at the lane's input as its sample ends, LSB off the real-number model."""
         run, zero, off = self.run, 128 * (self.request.mode != "edge"), []
         for s in self.samples:
             end = (_held(run.cycles, s.column, s.sub, self.request)[0] + 1) * self.request.timing.period
@@ -278,7 +278,7 @@ class Row:
 
     @property
     def level_off(self) -> npt.NDArray[np.float64]:
-        """LSB by which the lane's levels are off in the search of each sample: 0 of an ideal lane.
+        """Errors of the lane's levels in the search of each sample, LSB: 0 of an ideal lane.
 
         The comparator's inputs just before the strobe are a line through the two codes nearest to balance; its zero is
         the level that the value at the lane's input has.
@@ -297,7 +297,7 @@ class Row:
 
     @property
     def beyond(self) -> npt.NDArray[np.bool_]:
-        """Whether a code is not the model's, and farther from the model's value than half an LSB and the noise."""
+        """Whether a code is not the model's, and farther from its value than half an LSB and the noise."""
         stated = circuit_converter()
         far = 0.5 + float(np.hypot(stated.noise, stated.ktc))
         return np.array([s.code != s.expected and abs(s.code - s.value) > far for s in self.samples])
@@ -356,7 +356,7 @@ def _first_difference(
 
 
 def decision_times(run: lockstep.Run, decks: Sequence[Deck], timing: Timing) -> npt.NDArray[np.float64]:
-    """S from the middle of the strobe's rise until the comparator's outputs are half the supply apart."""
+    """Return the time, s, from the strobe's rise until the comparator's outputs are half the supply apart."""
     times = np.full(run.cycles.answer.shape, np.nan)
     for deck, lane in [(one, lane) for one in decks for lane in one.lanes]:
         half = 0.5 * deck.supply

@@ -18,7 +18,7 @@ KINDS = {"v_line": "line", "v_branch": "branch", "v_toggle": "toggle", "v_expr":
 
 @dataclass(frozen=True)
 class Point:
-    """One thing that Verilator counts.
+    """A point that Verilator counts.
 
     kind: 'line', 'branch', 'expression' or 'toggle'. module: in the Verilog. what: 'if', 'else', 'block', ...,
     '(a==1 && b==0) => 0' or 'signal[3]:0->1'. code: the text of its line. nth: index among identical points of the
@@ -58,7 +58,7 @@ class Source(NamedTuple):
 
 @dataclass(frozen=True)
 class Count:
-    """How often a point was hit."""
+    """Number of hits of a point."""
 
     point: Point
     times: int

@@ -34,7 +34,7 @@ class Row:
 
     @property
     def bad(self) -> bool:
-        """Whether a cell is bad."""
+        """Return whether a cell is bad."""
         return any(cell.kind == "bad" for cell in self.cells)
 
 

@@ -37,7 +37,7 @@ STEPS = (
 
 @dataclass(frozen=True)
 class Outcome:
-    """How a step ended. problem: one line, '' where it wrote its results. by_block: these."""
+    """Result of a step. problem: one line, '' where it wrote its results. by_block: these."""
 
     step: Step
     seconds: float

@@ -78,7 +78,7 @@ def turned(weights: Weights, back: Any) -> Any:
 
 
 def forward(weights: Weights, kind: str, patches: Any, back: Any) -> Any:
-    """What is added to the sum image, (n, 25, rows, cols); by the dense layers (n, 25, PATCHES**2 * rows, cols)."""
+    """Return what is added to the sum image, (n, 25, rows, cols); by dense layers (n, 25, PATCHES**2 * rows, cols)."""
     if kind == "dense":
         patches_out = dense(weights, patches).reshape(len(patches), PATCHES**2, VIEWS**2, PATCH, PATCH)
         return patches_out.transpose(1, 2).flatten(2, 3)

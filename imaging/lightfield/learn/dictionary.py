@@ -27,7 +27,7 @@ class Learned:
 
     @property
     def text(self) -> str:
-        """Its figures in a line."""
+        """Figures in a line."""
         s = self.summary
         return f"{s['atoms']} atoms leave {s['error']:.4f} RMS of patches whose own is {s['rms']:.4f}"
 

@@ -21,7 +21,7 @@ MAIN = Path(__file__).parent / "main.cpp"
 
 @dataclass(frozen=True)
 class DividerRun:
-    """What one simulation gave.
+    """Result of a simulation.
 
     responses: uint64 (n,), DivResp messages, as many as came. cycles: of the simulation. seconds: wall clock. latency,
     interval: the least and the most, in cycles.

@@ -374,7 +374,7 @@ class FieldEstimator:
         return mean.astype(np.float32), np.sqrt(np.maximum(spread, 0)).astype(np.float32)
 
     def _plain(self, groups: Windows) -> npt.NDArray[np.bool_]:
-        """Whether noise explains each window's difference from the nearest uniform scene, (block rows, block cols)."""
+        """Return where noise explains a window's difference from a uniform scene, (block rows, block cols)."""
         plain = np.zeros((len(self.blocks.y.blocks), len(self.blocks.x.blocks)), bool)
         totals = self.covariances.weights.sum((1, 2))
         for down, across, samples in groups:

@@ -1,4 +1,4 @@
-"""What a page must not have: requests, pictures without a text, tables that a narrow screen cuts."""
+"""Faults of a page: requests, pictures without a text, tables that a narrow screen cuts."""
 
 import re
 from html.parser import HTMLParser

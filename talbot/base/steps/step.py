@@ -1,4 +1,4 @@
-"""What a step declares: its inputs, outputs, parameters, metrics and tools."""
+"""The declaration of a step: inputs, outputs, parameters, metrics and tools."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields
@@ -23,7 +23,7 @@ Files = Mapping[str, Path]  # by the name of an input or output
 
 
 class Step(Generic[P]):
-    """One step: a subclass of ``Step[P]`` declares what it reads and writes and implements `run`.
+    """A step: a subclass of ``Step[P]`` declares what it reads and writes and implements `run`.
 
     P is a frozen dataclass whose fields have a unit in their metadata (NoParameters for none). name: of the step's
     folder and record. inputs: name -> 'step.output' or the name of a file given to the Runner. outputs: name -> file

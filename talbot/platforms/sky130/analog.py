@@ -1,4 +1,4 @@
-"""What analog circuits take from SKY130: transistors by their role, the unit capacitor's candidates, supply.
+"""SKY130 for analog circuits: transistors by their role, the unit capacitor's candidates, supply.
 
 Roles keep the process's names out of the circuits. Mismatch is the models' own: `mc_mm_switch` of the wheel's cards
 draws threshold, oxide and offset voltage of every instance. What a pair's gate-source voltage then spreads by was

@@ -60,7 +60,7 @@ def junction(process: str) -> dict[str, float]:
 
 
 def capacitance(process: str, area_um2: float, perimeter_um: float, volts: float) -> float:
-    """F of a junction with this reverse bias at the card's own temperature, in closed form."""
+    """Return the capacitance of a junction with this reverse bias at the card's temperature, in closed form, F."""
     j = junction(process)
     floor = j["cj"] * area_um2 / (1 + volts / j["pb"]) ** j["mj"]
     return floor + j["cjsw"] * perimeter_um / (1 + volts / j["php"]) ** j["mjsw"]
