@@ -72,7 +72,7 @@ def pytest_addoption(parser):
         action="append",
         default=[],
         metavar="NAME=FILE[:MODULE]",
-        help="Verilog in place of what the tests build as NAME (rtl/harness/README.md): AmpCtrl=gates.v",
+        help="Verilog instead of what the tests build as NAME (rtl/harness/README.md): AmpCtrl=gates.v",
     )
     group.addoption(
         "--netlist-in",

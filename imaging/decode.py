@@ -18,7 +18,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     """Arguments of `talbot decode`."""
     parser.add_argument("file", type=Path, help="stream.bin of a run, or captured from a chip")
     add_sensor(parser)
-    parser.add_argument("--out", type=Path, help="the .npz; further frames: X-1.npz ... (default: beside FILE)")
+    parser.add_argument("--out", type=Path, help="the .npz; further frames: X-1.npz ... (default: next to FILE)")
 
 
 def run(options: Namespace) -> int:

@@ -96,7 +96,7 @@ def _print(s: dict[str, Any], folder: Path) -> None:
         print(f"  {name:<50}{error:>9} {share:>8}  in {known:>7} of the pixels; in all {whole:>9}")
     less = s["left_out"]
     if less:
-        print(f"  nothing moves: three taps take {less['seconds']:.2f} s in place of {s['seconds']:.2f} s")
+        print(f"  nothing moves: three taps take {less['seconds']:.2f} s instead of {s['seconds']:.2f} s")
     wrong = s["multipath"]
     if wrong:
         error, middle = (f"{1e3 * wrong[key]:.1f} mm" for key in ("rms_m", "median_m"))

@@ -39,7 +39,7 @@ def write(folder: Path, depth: Depth) -> None:
     np.savez(folder / "depth.npz", allow_pickle=False, **arrays)
     shown = _depths(depth)
     groups = [
-        Section("Every method beside what costs nothing", head=HEAD, rows=rows(s)),
+        Section("Every method, with baselines", head=HEAD, rows=rows(s)),
         Section("Depth", "Gray: the number of turns is not known, or there is no phase.", pictures=shown),
         Section(
             "Refocused", "Phase through the whole lens: sharp at one depth, mixed at others.", pictures=_focus(depth)

@@ -107,7 +107,7 @@ def add_frame_arguments(
 
     add("--sensor", help="sensor file; talbot sensor prints one to start from. What is given here replaces what it has")
     add_pixel(parser)
-    add("--calibration", help="calibration.json of talbot calibrate, known in place of the sensor's true optics")
+    add("--calibration", help="calibration.json of talbot calibrate, used instead of the sensor's true optics")
     add_camera_arguments(parser, camera)
     add_numbers("views")
     add("--mode", default="edge", help="one of " + ", ".join(MODES))

@@ -35,7 +35,7 @@ def write(folder: Path, frame: PolarFrame) -> None:
         about=line(s),
         tiles=_headline(s),
         sections=[
-            Section("Every method beside what costs nothing", head=HEAD, rows=_rows(s)),
+            Section("Every method, with baselines", head=HEAD, rows=_rows(s)),
             Section("Angle", "Gray: no polarization seen. The scale is cyclic.", pictures=angles),
             Section("Degree", pictures=_degrees(frame)),
             Section("Highlights", _tagged(s), pictures=_highlights(frame)),

@@ -99,7 +99,7 @@ def write(folder: Path, result: Recognition) -> None:
         about=about(s),
         tiles=_headline(s),
         sections=[
-            Section("Every front compared with what costs nothing", NOTE, head=HEAD, rows=rows(s)),
+            Section("Every front, with baselines", NOTE, head=HEAD, rows=rows(s)),
             Section("Pictures, and what is sent of them", pictures=shown),
             *_curves(result),
             *_alarms(result),

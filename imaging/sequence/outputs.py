@@ -114,7 +114,7 @@ def rate_line(s: Mapping[str, Any]) -> str:
     clock = f"{s['rtl_cycles_per_s'] / 1e6:.1f} M cycles/s"
     return (
         f"{s['frames_per_s']:.1f} frames/s once set up ({s['frames_per_s_in_all']:.1f} in all); ms a frame: {text}; "
-        f"beside them the simulator {1e3 * s['rtl_s'] / s['frames']:.1f}, {clock}; "
+        f"in parallel the simulator {1e3 * s['rtl_s'] / s['frames']:.1f}, {clock}; "
         f"processor time: Python {python:.1f}, simulator {simulator:.1f}"
     )
 

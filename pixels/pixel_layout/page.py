@@ -87,7 +87,7 @@ def _sections(s: dict[str, Any]) -> list[Section]:
         Section(
             "Design rules",
             f"PDKMaster's deck, the masks' and the pixels' own rules, over {rows} x {cols} pixels with {DUMMIES} "
-            "dummies on each side, rings, buses and pins: every type beside all of its neighbours. What is waived:",
+            "dummies on each side, rings, buses and pins: every type with all of its neighbours. What is waived:",
             head=("rule", "count", "reason"),
             rows=[(rule, str(one["count"]), one["reason"]) for rule, one in s["waivers"].items()],
             numbers=False,
@@ -108,7 +108,7 @@ def _sections(s: dict[str, Any]) -> list[Section]:
         ),
         Section(
             "What the drawn pixel does to light",
-            "The drawn masks, cut across the lines and solved rigorously, beside the endless gratings of the same "
+            "The drawn masks, cut across the lines and solved rigorously, compared with infinite gratings of the same "
             "diodes, -20..20 degrees: least-squares share of the differences (a - b) / (a + b) that is kept, their "
             "correlation, and light. Of the rest of the pixel, transistors and bars, nothing reaches a well.",
             charts=[svg(pictures.responses(s["curves"]))],
@@ -131,7 +131,7 @@ def _sections(s: dict[str, Any]) -> list[Section]:
             rows=[(name, f"{100 * share:.1f} %") for name, share in s["density"].items()],
         ),
         Section(
-            "What is drawn, beside what was solved",
+            "Drawn and solved",
             "On the manufacturing grid and under the process's rules; beta, m and quantum efficiency of the drawn "
             "gratings by the same solution as of the solved ones, which knows no pixel's edge and no fill factor.",
             head=("type", "lines along", "off, degrees", "period um", "fill", "analyzer", "beta", "m", "efficiency"),

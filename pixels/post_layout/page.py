@@ -70,7 +70,7 @@ def write(folder: Path, s: dict[str, Any], process: PixelProcess) -> None:
         sections=[
             *(Section(one.title, pictures=[one]) for one in pictures),
             Section(
-                "Layout beside schematic",
+                "Layout and schematic",
                 "The same measurements of the circuit alone and of the extracted layout: drawn junctions, resistance "
                 "and capacitance of all nets. The DAC's levels also from the capacitances alone, all 256.",
                 head=("characteristic", "unit", "schematic", "layout", "limit", "", "corner"),

@@ -33,7 +33,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--pdk", default="sky130", help="process, sky130 or ihp-sg13g2")
     parser.add_argument("--heights", help="which published table of heights, where the process has several")
     parser.add_argument("--kind", default="all", help="amplitude, interleaved, photogate, or all: the best one")
-    note = "of one geometry, which is solved in place of the search"
+    note = "of one geometry, which is solved instead of the search"
     numbers = {name: f"{said}, {low:g}..{high:g}" for name, (said, low, high) in NUMBERS.items()}
     numbers["period_um"] = f"{NUMBERS['period_um'][0]}, 0.1..half of the pitch"
     numbers["pitch_um"] += " (default: the sensor's)"

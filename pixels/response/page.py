@@ -82,7 +82,7 @@ def write(
             ),
             Section("Over wavelength", charts=[svg(figure) for figure in _spectra(measured)]),
             Section(
-                "Closed forms beside it",
+                "Closed forms",
                 "beta = 2 pi z / (n d) for small angles, z between the gratings' middles; half a Talbot depth is n d^2 "
                 "/ wavelength.",
                 head=("beta", "closed form", "gap um", "gap in half Talbot depths"),
@@ -161,7 +161,7 @@ def _finite(measured: dict[float, Measured]) -> Section:
         figures = (f"{one.fit.beta:.1f}: {coarse.beta:.1f}", f"{one.fit.m:.2f}: {coarse.m:.2f}", f"{off:.2f}")
         rows.append((f"{beta:g}", *figures, *(f"{100 * share:.0f} %" for share in leaving)))
     head = ("beta", "beta, rigorous: scalar", "m", "rms difference", *(f"leaving at {angle} deg" for angle in CROSSING))
-    text = "Scalar waves through thin lines beside the rigorous solution, and the share of the light through a pixel's "
+    text = "Scalar waves through thin lines and the rigorous solution, and the share of the light through a pixel's "
     text += "gratings that reaches the silicon outside the pixel: by scalar waves, light on one pixel alone."
     return Section("Scalar waves, and the pixel's edge", text, head=head, rows=rows)
 

@@ -53,7 +53,7 @@ def add_arguments(parser: ArgumentParser) -> None:
         help="that are transistors: all, of the columns and lanes; lanes (in edge mode); none",
     )
     add("--extracted", action="store_true", help="each row again, with the drawn circuits and their parasitics")
-    add("--study", action="store_true", help="error against run time on one sample, beside an off-line reference, too")
+    add("--study", action="store_true", help="error against run time on one sample, relative to an off-line reference")
     add("--faults", action="store_true", help="faults planted in the circuit, and what the codes say of each, too")
     add("--out", type=Path, help="folder for the results (default: build/cosim)")
 
@@ -141,7 +141,7 @@ def _print(s: dict[str, Any], folder: Path) -> None:
         print(f"  {line['name']}: {error}{line['time_points']} time points, {line['seconds']:.1f} s")
     for line in s["left_out"]:
         print(
-            f"  left out: {line['name']}: {line['seconds']:.1f} s of processor in place of {line['seconds_with']:.1f}, "
+            f"  left out: {line['name']}: {line['seconds']:.1f} s of processor instead of {line['seconds_with']:.1f}, "
             f"error {line['error_lsb']:.4f} LSB at the lane"
         )
     for line in s["faults"]:

@@ -112,5 +112,5 @@ def leaving_out(note: Callable[[str], None]) -> list[dict[str, Any]]:
                 "codes": [[s.code for s in row.samples] for row in (a, b)],
             }
         )
-        note(f"{name}: {lines[-1]['seconds']:.1f} s in place of {lines[-1]['seconds_with']:.1f}")
+        note(f"{name}: {lines[-1]['seconds']:.1f} s instead of {lines[-1]['seconds_with']:.1f}")
     return lines
