@@ -65,7 +65,7 @@ def check_header(header: StreamHeader, sensor: SensorParameters) -> None:
 
 
 def describe(frame: DecodedFrame) -> str:
-    """Return a line: the frame's header, what is wrong with it, and its counts."""
+    """Return a line: the frame's header, its damage, and its counts."""
     h, rows = frame.header, frame.layout.rows.size
     wrong = [*frame.errors, *([f"bad rows: {ranges(frame.bad_rows)}"] if frame.bad_rows else [])]
     counts = "counts lost" if frame.made is None else f"{frame.made} conversions, {frame.left_out} left out"

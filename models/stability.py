@@ -292,7 +292,7 @@ def _no_edges() -> Case:
 
 
 def _polarizations() -> list[Case]:
-    """Angle of polarization near its wrap, and what has none: darkness, full pixels, a missing orientation."""
+    """Check the angle of polarization near its wrap, in darkness, full pixels, without an orientation."""
     tile, shape = TileParameters(), (16, 18)
     gamma = np.array([t.gamma for t in tile.types])[tile.type_map(*shape)]
     out = []

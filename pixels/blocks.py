@@ -137,7 +137,7 @@ def lane_lines(chip: ChipParameters, sizes: AnalogSizes) -> list[tuple[str, floa
 
 
 def pixel_array(array: ArrayParameters) -> Block:
-    """Return the pixels alone, without what a drawn array has around them."""
+    """Return the pixels alone, without dummies and rings."""
     width, height = array.cols * array.pitch * 1e6, array.rows * array.pitch * 1e6
     return Block(
         "pixel_array",

@@ -40,7 +40,7 @@ def visit_constant(visitor: ast.NodeVisitor, node: ast.Constant):
 
 
 def restore(module: ModuleType = ast) -> None:
-    """Give ``module`` what it lacks of these names."""
+    """Add these names to ``module`` where it lacks them."""
     if hasattr(module, "Num"):
         return
     module.Num, module.Str = Num, Str

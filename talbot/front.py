@@ -115,7 +115,7 @@ def listing(make: bool) -> str:
 
 
 def main() -> None:
-    """Print what `make help` shows."""
+    """Print the text of `make help`."""
     print("make COMMAND, for example: make sim SCENE=photo.png THRESHOLD=12\n")
     print(listing(make=True))
     print("\nA command's options are variables. make COMMAND-help lists them: make sim-help")

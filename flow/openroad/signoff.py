@@ -1,4 +1,4 @@
-"""Checks of what the stages made, by the steps that check the layouts of the embedded back end."""
+"""Checks of the stages' results, by the sign-off steps of flow.layout."""
 
 import json
 import re

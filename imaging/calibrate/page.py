@@ -50,7 +50,7 @@ def write(folder: Path, done: Calibrated) -> None:
 
 
 def picture_rows(s: dict[str, Any]) -> list[tuple[str, ...]]:
-    """Rows of the summary ``s``: methods, then what costs nothing."""
+    """Rows of the summary ``s``: methods, then baselines."""
     picture = s["picture"]
     rows = [(name, number(db), number(picture["true_optics"][name])) for name, db in picture["calibrated"].items()]
     free = [("sum image in every view", "sum_image_psnr_db"), ("gray", "gray_psnr_db")]

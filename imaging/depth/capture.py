@@ -44,7 +44,7 @@ class DepthFrames:
         return (self.sums, self.phases, *self.pairs, *self.coded)
 
     def about(self) -> dict[str, Any]:
-        """Figures of what was read, differences of all frames together."""
+        """Return figures of the frames, differences of all together."""
         every = [about(frame) for frame in self.all]
         wrong = {name: sum(part[name] for part in every) for name in ("stream_mismatches", "decoded_mismatches")}
         return every[0] | wrong

@@ -149,7 +149,7 @@ def _three(estimator: FieldEstimator, diodes: Values, white: float) -> tuple[Dep
 
 
 def _coded(frames: DepthFrames, estimator: FieldEstimator, white: float) -> dict[str, Coded]:
-    """Depth of what the code's taps see: by their sums, and by the middle view of their depth field."""
+    """Return the depth of coded light: by the taps' sums, and by the middle view of their depth field."""
     if not frames.coded:
         return {}
     electrical = frames.coded[0].sensor.electrical

@@ -1,4 +1,4 @@
-"""The sensor's die, drawn to scale from its parameters, with what this frame used of it."""
+"""The sensor's die, drawn to scale from its parameters, with the parts that a frame used."""
 
 import numpy as np
 

@@ -126,7 +126,7 @@ def add_frame_arguments(
 
 
 def add_camera_arguments(parser: ArgumentParser, default: CameraParameters) -> None:
-    """Options of the lens; what is not given is the sensor's."""
+    """Options of the lens; defaults are the sensor's."""
     for name, words in CAMERA.items():
         parser.add_argument(f"--{name}", help=words.format(default=default))
 
@@ -239,7 +239,7 @@ def request_of(a: Namespace, sensor: SensorParameters | None = None, sequence: b
 
 
 def camera_of(a: Namespace, camera: CameraParameters) -> CameraParameters:
-    """Return the ``camera`` with what the options ``a`` change."""
+    """Return the ``camera`` with the changes of the options ``a``."""
     field = {"focal": "focal_length", "pupil": "exit_pupil"}
     texts = {name: getattr(a, name) for name in (option.replace("-", "_") for option in CAMERA)}
     chosen = {field.get(n, n): real(n, v, 0, float("inf")) for n, v in texts.items() if v is not None}

@@ -1,4 +1,4 @@
-"""The figures of one run: what summary.json holds, each measured or counted in this run."""
+"""The figures of summary.json, each measured or counted in the run."""
 
 import sys
 from collections.abc import Iterable
@@ -130,7 +130,7 @@ def image_mode(events: Events, samples: int) -> Events:
 
 
 def _by_sample(events: Events) -> float:
-    """Energy (J) of what the mode decides: converters in the lower reading, digital part by the layout, pads."""
+    """Return the energy (J) of converters (lower reading), digital part (by the layout) and pads."""
     parts = EnergyParameters().frame(events)
     return sum(parts[name][0] for name in ("adcs", "digital", "pads"))
 

@@ -57,7 +57,7 @@ def simulate(
 
 
 class Chip:
-    """The chip in one running simulation (see `chip`): what is in its registers stays from frame to frame."""
+    """The chip in one running simulation (see `chip`): its registers stay from frame to frame."""
 
     def __init__(self, bench: Running) -> None:
         self._bench = bench
@@ -92,7 +92,7 @@ def chip(program: Path, front_end: FrontEnd, taps: int, stall: int = 0) -> Itera
 
 
 def _with_status(run: FrameRun, after: Sequence[bytes]) -> HardwareFrame:
-    """Return the run with what the transfers ``after`` its frame brought back, at the end of its SPI bytes."""
+    """Return the run with the bytes of the transfers ``after`` its frame at the end of its SPI bytes."""
     replies, end = [], len(run.miso)
     for transfer in reversed(after):
         replies.insert(0, run.miso[end - len(transfer) : end])

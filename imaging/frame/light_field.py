@@ -1,4 +1,4 @@
-"""The light field of a raw frame: what of it is read, its prior, and its estimate by the methods' names."""
+"""The light field of a raw frame: the part that is read, its prior, and its estimate by a method's name."""
 
 from dataclasses import replace
 from functools import cached_property, lru_cache
@@ -148,7 +148,7 @@ def prior_of(result: Readout, near: float | None = None, far: float | None = Non
 
 
 def estimator_of(result: Readout, prior: FieldPrior) -> FieldEstimator:
-    """The estimator for what is read of a frame. Raises ParameterError where that is not every tile of a window."""
+    """Return the estimator for the part that is read. Raises ParameterError unless it is whole tiles of a window."""
     scene, part = result.exposed.scene, whole_tiles(result)
     pupil = scene.views if scene.render is None else PUPIL
     return _estimator(_cut(result.sensor, part), scene.views, prior, pupil, part.types)
@@ -170,7 +170,7 @@ def sent_pair(result: Readout) -> tuple[Values, npt.NDArray[np.bool_]]:
 
 
 def full(samples: npt.NDArray[np.floating], axes: tuple[int, ...]) -> npt.NDArray[np.bool_]:
-    """Where any of the samples along ``axes``, in LSB, is full: what else it holds is not known."""
+    """Return where any of the samples along ``axes``, in LSB, is full, so that its light is not known."""
     return np.asarray((samples > FULL - HEADROOM).any(axes))
 
 

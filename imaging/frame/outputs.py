@@ -150,7 +150,7 @@ def _depth(result: GoldenResult, summary: dict[str, Any]) -> Picture:
 
 
 def _within(result: GoldenResult, image: Values, low: float, high: float) -> tuple[Values, float, float]:
-    """Return the image, white outside the rectangle of what is read: no sample of the frame is there."""
+    """Return the image, white outside the rectangle that is read."""
     out, part = np.full_like(image, high), part_read(result.golden.read)
     out[part] = image[part]
     return out, low, high

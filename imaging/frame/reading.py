@@ -119,7 +119,7 @@ def run(
 
 
 def about(result: GoldenResult) -> dict[str, Any]:
-    """Figures that every summary has: what was read, and whether chip and golden model agree."""
+    """Return the figures of every summary: the frame, and whether chip and golden model agree."""
     scene = result.exposed.scene
     return {
         "scene": result.request.name,

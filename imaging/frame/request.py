@@ -155,7 +155,7 @@ def light_field_of(scene: str | LightField) -> LightField | None:
 
 
 def _tell_changes(field: LightField, rows: int, cols: int) -> None:
-    """Print what of a light field the sensor does not see as it is."""
+    """Print which parts of a light field the sensor does not see unchanged."""
     (height, width), prefix = field.shape, f"talbot: light field {field.name}: "
     if (height, width) != (rows, cols):
         step = min(height / rows, width / cols)

@@ -1,4 +1,4 @@
-"""Wake-up: is anything there? A detector counts what changes from frame to frame, in a scene that drifts in light."""
+"""Wake-up: a detector counts changes from frame to frame, in a scene under drifting light."""
 
 from dataclasses import dataclass
 from typing import Any

@@ -27,7 +27,7 @@ def focal(sampling: Sampling) -> float:
 
 
 def perspective(sampling: Sampling, dv: float, du: float, film: dict[str, Any]) -> dict[str, Any]:
-    """Mitsuba's camera of the view (dv, du), in steps from the middle one. film: its type and what that needs."""
+    """Mitsuba's camera of the view (dv, du), in steps from the middle one. film: its type and options."""
     mi = mitsuba()
 
     rows, cols = sampling.shape

@@ -78,7 +78,7 @@ class Tracer:
         return mitsuba().render(scene, **asked)
 
     def _depth(self, objects: Objects, dv: float = 0.0, du: float = 0.0) -> Floats:
-        """Planar depth of what the middle of every pixel of a view shows, in m of the scene, (rows, cols)."""
+        """Return the planar depth at the middle of every pixel of a view, in m of the scene, (rows, cols)."""
         origin, aim = rays(self.sampling, dv, du)
         length = np.linalg.norm(aim, axis=0)
         ray = mitsuba().Ray3f(mitsuba().Point3f(*origin), mitsuba().Vector3f(*(aim / length)))

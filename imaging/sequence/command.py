@@ -41,7 +41,7 @@ def run(options: Namespace) -> int:
 
 
 def _with_scene(parser: ArgumentParser) -> None:
-    """The options with a default for each, for what of them is typed."""
+    """Return the typed options with defaults for the others."""
     parser.add_argument("--scene")
     add_frame_arguments(parser, FIXED)
 

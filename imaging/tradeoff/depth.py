@@ -48,7 +48,7 @@ def _frames(size: int) -> DepthFrames:
 
 
 def measure(point: tuple[tuple[str, int, int, int], int]) -> dict[str, Any]:
-    """Error of a method, and its seconds a frame without what is done once a sensor."""
+    """Return a method's error and its seconds a frame, without the preparation for a sensor."""
     (method, taps, disparities, bits), size = point
     frames = _frames(size)
     result, step = frames.sums, 1 << (8 - bits)

@@ -61,7 +61,7 @@ SETTINGS: Sequence[tuple[str, Mapping[str, Any]]] = (
 
 
 def points(quick: bool) -> list[Point]:
-    """Noise of `NOISES`, method, what is changed of its settings, and rows of the array."""
+    """Return noise of `NOISES`, method, changed settings, and rows of the array."""
     noises, size = (list(NOISES)[:2], 48) if quick else (list(NOISES), 192)
     every = [(n, name, change, size) for n in noises for name, change in SETTINGS if NOISES[n] is None or not change]
     short = [point for point in every if point[1] in ("direct", "linear", "sparse") and point[2] != {"stride": 2}]
@@ -80,7 +80,7 @@ def noisy(result: GoldenResult, noise: float) -> npt.NDArray[np.floating]:
 
 
 def measure(point: Point) -> dict[str, Any]:
-    """Quality and seconds of a method with these settings; what is done once a sensor is not in the seconds."""
+    """Return quality and seconds of a method with these settings, without the preparation for a sensor."""
     label, name, change, size = point
     noise = NOISES[label]
     result = _frame(size)
@@ -108,7 +108,7 @@ def measure(point: Point) -> dict[str, Any]:
 
 
 def plot(rows: Sequence[dict[str, Any]]) -> Figure:
-    """PSNR against time: for each noise a line through what nothing beats in both, and points for the rest."""
+    """Draw PSNR against time: for each noise a line through the Pareto front, and points for the others."""
     series: dict[str, list[tuple[float, float, str]]] = {}
     for noise in dict.fromkeys(r["noise"] for r in rows):
         best = -np.inf

@@ -39,7 +39,7 @@ class Layer(ABC):
 
     @abstractmethod
     def _forward(self, x: Floats, rng: np.random.Generator | None) -> Floats:
-        """Compute the output (n, ...) of an input (n, ...); rng is for what is random in training, else None."""
+        """Compute the output (n, ...) of an input (n, ...); rng: for random parts in training, else None."""
 
     @abstractmethod
     def _backward(self, g: Floats) -> Floats:

@@ -1,4 +1,4 @@
-"""Disparity without what highlights tell of it: a mirror image is at another depth than the surface that shows it."""
+"""Disparity without highlights: a mirror image is at another depth than the surface that shows it."""
 
 import numpy as np
 import numpy.typing as npt

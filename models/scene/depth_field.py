@@ -1,4 +1,4 @@
-"""Depth of what a view shows, for time of flight."""
+"""Depth in a view, for time of flight."""
 
 from collections.abc import Callable
 

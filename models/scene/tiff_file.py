@@ -147,7 +147,7 @@ def tiff_pixels(path: Path, field: str, number: int, page: TiffPage) -> Pixels:
 
 
 def _check(path: Path, field: str, page: TiffPage) -> None:
-    """Refuse by name what is no gray or colour picture."""
+    """Refuse files that are no gray or colour picture, by name."""
     photometric, kind = int(page.photometric), int(page.sampleformat)
     bits = page.bitspersample
     extra = page.samplesperpixel - COLOURS.get(photometric, 0)

@@ -32,7 +32,7 @@ class Second:
 
     @cached_property
     def own(self) -> tuple[Floats, Bools]:
-        """Disparity of what this picture shows, and where it alone shows it, both (rows, cols)."""
+        """Return the disparity in this picture, and where it alone shows the surface, both (rows, cols)."""
         everywhere = np.ones(self.first.shape, bool)
         here = np.full(self.first.shape, warp.NO_SURFACE)
         warp.splat(here, self.first, everywhere, -self.scale, -self.offset, 0.0, 0.0)

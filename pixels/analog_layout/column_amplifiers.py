@@ -91,7 +91,7 @@ def draw_column_amplifiers(
     chip: ChipParameters,
     room: AnalogSizes | None = None,
 ) -> ColumnAmplifiers:
-    """Draw all columns and what drives them. Raises ParameterError where they do not fit."""
+    """Draw all columns and their drivers. Raises ParameterError where they do not fit."""
     room = room or AnalogSizes()
     if array.pitch_um != PITCH:
         raise ParameterError(f"pitch = {array.pitch:g}: must be {PITCH * 1e-6:g}, that of the drawn columns")

@@ -82,7 +82,7 @@ class Converters(DrawnBlock):
 
 
 def frame(chip: ChipParameters, sizes: AnalogSizes) -> Block:
-    """Return the frame, with pins for the references and for what wakes the amplifiers in the south-east."""
+    """Return the frame, with pins for the references and the amplifiers' wake signal in the south-east."""
     block = next(candidate for candidate in blocks(chip=chip, sizes=sizes) if candidate.name == NAME)
     extra = (
         Pin(name, "input" if name == AMPLIFIER_ON else "inout", "south", rise(name, chip, sizes))
@@ -193,7 +193,7 @@ def _x(lane: int, room: AnalogSizes) -> float:
 
 
 def _gap(lane: int, room: AnalogSizes) -> float:
-    """X between a lane and what is east of it."""
+    """X between a lane and its neighbour in the east."""
     return (lane + 1) * room.lane_um
 
 

@@ -108,7 +108,7 @@ def nand_of(inputs: int) -> Circuit:
 
 
 def lift() -> Circuit:
-    """A level shifter and what drives the line. Pins a line vdd vddr vss; the line is at vddr where a is at vdd."""
+    """A level shifter and the line's driver. Pins a line vdd vddr vss; the line is at vddr where a is at vdd."""
 
     def n(name: str, drain: str, gate: str, source: str, w: float) -> Transistor:
         return Transistor(name, drain, gate, source, "vss", "n_thick", w, THICK)

@@ -17,7 +17,7 @@ CODES = 256
 
 
 def one_digit(value: float) -> float:
-    """``value`` to one significant digit, which is what the powers of Table 6.1 have."""
+    """Return ``value`` to one significant digit, as the powers of Table 6.1."""
     return float(f"{value:.0e}")
 
 

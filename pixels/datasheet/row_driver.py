@@ -1,4 +1,4 @@
-"""A row's driver with its lines at one corner: levels, settling, slew, energy, what an idle row takes."""
+"""A row's driver with its lines at one corner: levels, settling, slew, energy, leakage of an idle row."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -113,7 +113,7 @@ def draw_array(layout: "db.Layout", array: ArrayLayout, cells: "Mapping[int, db.
 
 
 def draw_surroundings(canvas: Canvas, array: ArrayLayout) -> None:
-    """Draw what is around the pixels: rings, ends of rows and columns, buses of the supplies in the east."""
+    """Draw the surroundings of the pixels: rings, ends of rows and columns, buses of the supplies in the east."""
     _rings(canvas, array)
     _ends(canvas, array)
     _buses(canvas, array)

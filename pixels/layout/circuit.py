@@ -1,4 +1,4 @@
-"""The pixel as a circuit: what is drawn, what LVS compares it with, what SPICE simulates."""
+"""The pixel as a circuit, for LVS and SPICE."""
 
 from dataclasses import dataclass
 

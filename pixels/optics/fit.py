@@ -61,7 +61,7 @@ class Fit:
 
     @property
     def figure(self) -> float:
-        """Signal to shot noise of a difference: m sqrt(quantum efficiency), times what the formula explains."""
+        """Signal to shot noise of a difference: m sqrt(quantum efficiency), times the explained share."""
         return float(self.m * np.sqrt(self.quantum_efficiency) * max(0.0, 1 - self.unexplained))
 
     def as_dict(self) -> dict[str, float]:
@@ -112,7 +112,7 @@ def phase_slope(response: Response) -> float:
 
 
 def _linear(angles: Floats, curves: Floats, turn: int, beta: float, sigma: float) -> tuple[Floats, Floats]:
-    """Best mean, cosine and sine of the formula, and what remains (4, A)."""
+    """Best mean, cosine and sine of the formula, and the residual (4, A)."""
     aperture = np.exp(-0.5 * (angles / sigma) ** 2)
     phase = beta * angles + turn * 2 * np.pi * np.array(QUADRATURE)[:, None]
     basis = np.stack([np.broadcast_to(aperture, phase.shape), aperture * np.cos(phase), aperture * np.sin(phase)])

@@ -1,4 +1,4 @@
-"""The drawn amplifier and the drawn bias measured as their schematics are, and what the banks have by the rays."""
+"""The drawn amplifier and the drawn bias measured as their schematics, and the banks' capacitances by the rays."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -70,7 +70,7 @@ def rows(spec: AmplifierSpec, found: Pair[Amplified]) -> Iterator[Row]:
 
 
 def capacitors(made: Cell, nets: Nets, masks: AnalogMasks, spec: AmplifierSpec) -> Iterator[Row]:
-    """Yield what the rays find in the banks: unit, steps of the trim, both inputs."""
+    """Yield the banks' capacitances by the rays: unit, steps of the trim, both inputs."""
     unit = unit_farad(made, nets)
     off = 100 * (unit * masks.fringe_share / made.unit - 1)
     yield Row("amplifier: unit capacitor, off by", "%", 0.0, off, "capacitances", UNIT_OFF)

@@ -1,4 +1,4 @@
-"""The pixel of a process: gratings of its metals that make the tile's types, what they do to light, and how well."""
+"""The pixel of a process: gratings in its metals for the tile's types, and their response to light."""
 
 from argparse import ArgumentParser, Namespace
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""AdcBank: the converter lanes of a row and what drives them."""
+"""AdcBank: the converter lanes of a row and their control."""
 
 from talbot.rtl.adc_bank.adc_bank_cl import AdcBankCL
 from talbot.rtl.adc_bank.adc_bank_fl import AdcBankFL

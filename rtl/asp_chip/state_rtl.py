@@ -1,4 +1,4 @@
-"""The states of the state machines and what waits: a host reads why a frame does not end."""
+"""The register `state`: states of the machines and which handshakes wait, for a frame that does not end."""
 
 from pymtl3 import Bits2, Bits3, Component, InPort, OutPort, concat, update
 

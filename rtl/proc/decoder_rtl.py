@@ -1,4 +1,4 @@
-"""Decoder at RTL: what the pipeline does for an instruction's word, and its immediate."""
+"""Decoder at RTL: control signals and immediate of an instruction's word."""
 
 from pymtl3 import Bits1, Bits3, Bits12, Component, InPort, OutPort, Wire, concat, mk_bitstruct, sext, update
 

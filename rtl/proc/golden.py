@@ -51,7 +51,7 @@ Execution = Generator[Fetch | Access | Receive | Send, int, list[int]]
 
 
 def execution(hart_id: int = 0) -> Execution:
-    """Yield what a program requests, from pc 0 until the processor stops; returns the registers."""
+    """Yield a program's requests, from pc 0 until the processor stops; returns the registers."""
     registers, pc = [0] * 32, 0
     while True:
         op = decode((yield Fetch(pc)))

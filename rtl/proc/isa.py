@@ -1,4 +1,4 @@
-"""RV32I of Proc: the instruction table, encoding, decoding, and what an instruction computes [Waterman2019]."""
+"""RV32I of Proc: the instruction table, encoding, decoding and semantics [Waterman2019]."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""Light fields: one's own, those of files, and estimates; what they show."""
+"""Light fields: arrays, files and estimates, with refocusing and disparity."""
 
 import math
 from contextlib import ExitStack

@@ -1,4 +1,4 @@
-"""The pixel itself: gratings in the metal of a process, and what they do to light."""
+"""The pixel: gratings in the metal of a process, and their response to light."""
 
 import numpy as np
 import numpy.typing as npt

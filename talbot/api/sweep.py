@@ -15,7 +15,7 @@ from talbot.models.parameters import check_choice
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Tradeoff:
-    """A table and its plot. text: what was varied and measured. rows: a dict for each point. figure: Matplotlib's."""
+    """A table and its plot. text: varied and measured quantities. rows: a dict for each point. figure: Matplotlib's."""
 
     text: str
     rows: Sequence[dict[str, Any]]

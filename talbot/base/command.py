@@ -61,7 +61,7 @@ class Parser(argparse.ArgumentParser):
         return [action for action in self._actions if not isinstance(action, argparse._HelpAction)]
 
     def parse_known_args(self, *arguments: Any, **named: Any) -> tuple[Any, list[str]]:
-        """Refuse what is left over, with the nearest option."""
+        """Refuse unknown arguments; names the nearest option."""
         namespace, rest = super().parse_known_args(*arguments, **named)
         if rest:
             options = [name for action in self.actions for name in action.option_strings]
@@ -69,7 +69,7 @@ class Parser(argparse.ArgumentParser):
         return namespace, rest
 
     def _check_value(self, action: argparse.Action, value: Any) -> None:
-        """Refuse what is not a choice: the nearest is named, or all."""
+        """Refuse a value that is no choice; names the nearest, or all."""
         choices = list(action.choices or ())
         if choices and value not in choices:
             near = _near(str(value), [str(choice) for choice in choices])

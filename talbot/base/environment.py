@@ -41,7 +41,7 @@ def clean(environment: Mapping[str, str] = os.environ) -> dict[str, str]:
 
 
 def with_unpacked(environment: Mapping[str, str]) -> dict[str, str]:
-    """Return the variables that find what requirements/tools.sh unpacked; {} where it has not."""
+    """Return the variables that find the tools of requirements/tools.sh; {} without them."""
     folder = os.path.join(_cache(environment), "talbot", "tools")
     if not os.path.isdir(os.path.join(folder, "bin")):
         return {}

@@ -45,7 +45,7 @@ def internal(program: str, error: Exception) -> int:
 
 
 def _kept(text: str) -> str:
-    """Write ``text`` to a file in the first folder that takes it; what to do with it."""
+    """Write ``text`` to a file in the first writable folder, and return what a user should do with it."""
     here = Path(__file__).parents[2]
     run = os.environ.get(RUN)  # its folder goes with the run: beside it
     elsewhere = Path(run).parent if run else Path(tempfile.gettempdir())

@@ -51,7 +51,7 @@ def check_file(field: str, path: Path) -> None:
 
 @contextlib.contextmanager
 def part_folder(folder: Path) -> Iterator[Path]:
-    """Yield a temporary folder in ``folder``, removed at the end; what killed processes left there goes, too."""
+    """Yield a temporary folder in ``folder``, removed at the end; leftovers of killed processes are removed, too."""
     part = folder / f"{PART}{os.getpid()}-{secrets.token_hex(4)}"
     writing(part)
     folder.mkdir(parents=True, exist_ok=True)

@@ -152,7 +152,7 @@ def _installed(module: str) -> bool:
 
 
 def _bound(folder: Path, most: int) -> None:
-    """Remove what was used least recently, until the files of ``folder`` have ``most`` bytes."""
+    """Remove the least recently used files until the files of ``folder`` have ``most`` bytes."""
     states = []
     for file in folder.iterdir():
         with contextlib.suppress(OSError):

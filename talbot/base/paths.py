@@ -1,4 +1,4 @@
-"""Where the package, the repository and what is built from it are."""
+"""Places of the package, the repository and its build."""
 
 import os
 import sys

@@ -224,7 +224,7 @@ def _check(found: object) -> str:
 
 
 def _keep(before: int) -> None:
-    """Keep what was read, where it is more than ``before`` texts."""
+    """Keep the parsed texts, where they are more than ``before`` texts."""
     known = _parsed()
     if len(known) > before:
         found = {key: astuple(syntax) for key, syntax in list(known.items())[-TEXTS:]}

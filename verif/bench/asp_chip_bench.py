@@ -51,7 +51,7 @@ class ChipBench(Bench):
         self.registers = CHIP.image(CHIP.configuration, reset)
 
     async def write(self, frame):
-        """The frame's configuration, less what the registers hold."""
+        """The frame's configuration that differs from the registers."""
         writes = [w for w in frame_writes(frame, TRIMS) if self.registers.get(w[0]) != w[1]]
         for transfer in write_transfers(writes):
             await self.spi.transfer(transfer)

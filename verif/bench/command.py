@@ -31,7 +31,7 @@ class BenchRun:
 
 
 def bench(block: str, simulator: str, seed: int) -> BenchRun:
-    """Run a block's bench; what cannot be built or run is a failed test."""
+    """Run a block's bench; one that cannot be built or run is a failed test."""
     with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
         stream = Path(folder) / "stream"
         try:

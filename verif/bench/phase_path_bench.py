@@ -47,7 +47,7 @@ class PhasePathBench(Bench):
         super().__init__(dut, self.source, self.sink)
 
     async def begin(self, reset=True):
-        """Reset, or begin after the frame before, with a new configuration; returns what a frame must say."""
+        """Reset, or begin after the frame before, with a new configuration; returns the expected messages."""
         on, noise_floor = random.random() < 0.8, random.choice((0, 1, 20, 255))
         self.dut.on.value, self.dut.noise_floor.value = int(on), noise_floor
         self.source.pace, self.sink.pace = (random.choice((0.1, 0.5, 0.9, 1)) for _ in range(2))

@@ -62,7 +62,7 @@ class Accuracy:
 
     @property
     def ladder(self) -> "tuple[Accuracy, ...]":
-        """These, then what is tried after them: Gear's method; also looser tolerances; also a greater gmin."""
+        """These, then for retries: Gear's method; also looser tolerances; also a greater gmin."""
         gear = replace(self, method="gear")
         loose = replace(gear, reltol=max(self.reltol, 5e-3), chgtol=1e-14)
         return self, gear, loose, replace(loose, gmin=1e-12)

@@ -129,7 +129,7 @@ def _of_column(net: str, c: int) -> str:
 
 
 def nets(circuit: Circuit, inside: str = "") -> Iterator[str]:
-    """Yield what is inside a circuit and the circuits in it, by SPICE's names: xback_a.xtap0.inner."""
+    """Yield the nodes of a circuit and of the circuits in it, by SPICE's names: xback_a.xtap0.inner."""
     ends = [*(t.nodes for t in circuit.transistors), *((c.a, c.b) for c in circuit.capacitors)]
     ends += [one.nodes for one in circuit.instances]
     yield from (inside + net for net in sorted({net for nodes in ends for net in nodes} - set(circuit.ports)))

@@ -1,4 +1,4 @@
-"""The circuit of one row: its netlist, and what drives each of its switches."""
+"""The circuit of a row: netlist, and drive of each switch."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -245,7 +245,7 @@ def _row(
 
 
 def _subcircuits(circuit: Circuit) -> list[str]:
-    """Each of a circuit's subcircuits as one text, so that what two circuits share is written once."""
+    """Return each of a circuit's subcircuits as a text, so that shared ones are written a single time."""
     texts: list[list[str]] = []
     for line in circuit.lines(analog):
         if line.startswith(".subckt"):

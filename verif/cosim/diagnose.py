@@ -1,4 +1,4 @@
-"""Which fault explains the codes of a row: every fault of a dictionary, computed, against what left the chip."""
+"""Diagnosis: the fault of a dictionary whose computed codes are those of a row."""
 
 from collections.abc import Iterator
 from typing import NamedTuple

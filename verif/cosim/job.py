@@ -1,4 +1,4 @@
-"""The rows of one `talbot cosim`, what was measured of them, and their files."""
+"""The rows of a `talbot cosim`, their figures and files."""
 
 from collections.abc import Callable, Sequence
 from typing import Any

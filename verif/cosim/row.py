@@ -335,7 +335,7 @@ def _held(c: lockstep.Cycle, column: int, sub: int, asked: RowRequest) -> npt.ND
 
 
 def _search_of(c: lockstep.Cycle, held: int, lane: int) -> Iterator[int]:
-    """Yield the cycles in which a lane decides on what it held in a cycle."""
+    """Yield the cycles in which a lane decides on the value held in a cycle."""
     for i in range(held + 1, len(c.hold)):
         if c.deciding[i, lane]:
             yield i

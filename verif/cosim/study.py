@@ -72,7 +72,7 @@ def _line(name: str, row: Row, first: Row, exact: npt.NDArray[np.float64]) -> di
 
 
 def faults(note: Callable[[str], None], asked: RowRequest = FAULTY) -> list[dict[str, Any]]:
-    """Each of PLANTED in the circuit of ``asked``, and what its codes say. Raises ToolError."""
+    """Return the diagnosis of each of PLANTED in the circuit of ``asked``. Raises ToolError."""
     lines = []
     for fault in (None, *PLANTED):
         found = diagnose(read_row(replace(asked, fault=fault)))

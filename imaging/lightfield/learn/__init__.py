@@ -1,1 +1,1 @@
-"""Learning what the methods of light fields know: from scenes that are made for it."""
+"""Training of the learned methods of light fields, on scenes made for it."""

@@ -94,7 +94,7 @@ def importance() -> npt.NDArray[np.float32]:
 
 
 def crop(shot: Shot, kind: str, rng: np.random.Generator) -> tuple[npt.NDArray[np.float32], ...]:
-    """Patches, back-projection and what `forward` is to give of a noisy crop that begins with a tile."""
+    """Return patches, back-projection and target of `forward` for a noisy crop that begins with a tile."""
     tile = sensor().tile
     firsts = [np.arange(PATCHES) * period for period in (tile.rows, tile.cols)]
     at = []

@@ -92,7 +92,7 @@ def iterate_frames(data: bytes, tile: TileParameters = TileParameters()) -> Iter
 
 
 class _Start(NamedTuple):
-    """The start of a frame: where, the header and the header as sent, and what is wrong there."""
+    """The start of a frame: where, the header and the header as sent, and the error there."""
 
     position: int
     header: StreamHeader

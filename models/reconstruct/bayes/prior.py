@@ -96,7 +96,7 @@ class FieldPrior:
 
     @property
     def fine(self) -> Floats:
-        """Those that the mixture tries: `grid` and what is between."""
+        """Disparities that the mixture tries: `grid` and points between."""
         return np.linspace(self.far, self.near, (self.disparities - 1) * (self.between + 1) + 1)
 
     @property

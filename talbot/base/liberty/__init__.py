@@ -1,1 +1,1 @@
-"""Liberty files: a tree of groups, its text, and what is made from areas and functions alone."""
+"""Liberty files: a tree of groups, its text, and libraries from areas and functions alone."""

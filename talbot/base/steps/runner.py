@@ -148,7 +148,7 @@ class Runner:
         ended = {step.name: Event() for step in steps}
 
         def begin(step: Step[Any]) -> None:
-            """Wait for what ``step`` needs, then run it."""
+            """Wait for the inputs of ``step``, then run it."""
             try:
                 for name in needs[step.name]:
                     ended[name].wait()
