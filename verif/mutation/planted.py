@@ -1,6 +1,8 @@
 """Bugs that escaped before (planted.yaml), each in a copy of the sources: the block's tests must fail."""
 
+import re
 import shutil
+import subprocess
 import sys
 import tempfile
 from collections.abc import Iterable
@@ -68,6 +70,22 @@ def jobs(blocks: Iterable[str]) -> list[tuple[str, Job]]:
 
 def is_caught(bug: Planted) -> bool:
     """Return whether a test of the bug fails. Raises ToolError where the tests cannot run with it."""
+    done = attempt(bug, "-x")
+    statuses = pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED
+    if done.returncode not in statuses or count("error", done.stdout):
+        raise ToolError(f"{bug.name}: its tests cannot run: {(done.stdout + done.stderr)[-1500:]}")
+    return done.returncode == pytest.ExitCode.TESTS_FAILED
+
+
+def count(outcome: str, output: str) -> int:
+    """Return the number of tests with an ``outcome``, 'failed' or 'error', in pytest's summary."""
+    summary = [line for line in output.splitlines() if re.search(r" in [\d.]+s\b", line)]
+    found = re.search(rf"\b(\d+) {outcome}s?\b", summary[-1]) if summary else None
+    return int(found[1]) if found else 0
+
+
+def attempt(bug: Planted, *more: str) -> subprocess.CompletedProcess[str]:
+    """Run the tests of a bug in a copy of the sources. more: options of pytest."""
     text = bug.text()
     with tempfile.TemporaryDirectory(prefix="talbot-") as temporary:
         copy = Path(temporary) / "talbot"
@@ -75,8 +93,5 @@ def is_caught(bug: Planted) -> bool:
         (ROOT / "build").mkdir(exist_ok=True)
         (copy / "build").symlink_to(ROOT / "build")
         (copy / bug.file).write_text(text, encoding="utf-8")
-        options = "-x", "-p", "no:cacheprovider", "-p", "no:xdist", "--hypothesis-seed=1"
-        done = finish([sys.executable, "-m", "pytest", *options, *bug.tests], {"PYTHONPATH": str(copy)}, copy)
-    if done.returncode not in (pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED) or " error" in done.stdout:
-        raise ToolError(f"{bug.name}: its tests cannot run: {(done.stdout + done.stderr)[-1500:]}")
-    return done.returncode == pytest.ExitCode.TESTS_FAILED
+        options = *more, "-p", "no:cacheprovider", "-p", "no:xdist", "--hypothesis-seed=1"
+        return finish([sys.executable, "-m", "pytest", *options, *bug.tests], {"PYTHONPATH": str(copy)}, copy)

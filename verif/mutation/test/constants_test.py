@@ -6,7 +6,9 @@ from dataclasses import replace
 import pytest
 
 from talbot.base.paths import ROOT
+from talbot.base.tools import ToolError
 from talbot.verif.mutation.constants import FREE, WITNESSES, constants, is_noticed, jobs
+from talbot.verif.mutation.planted import count, is_caught
 
 
 def test_every_constant_differs_from_the_source():
@@ -39,3 +41,19 @@ def test_a_change_is_noticed():
     assert is_noticed(bug)
     ((text, _),) = bug.changes
     assert not is_noticed(replace(bug, changes=((text, f"{text}\n"),)))
+
+
+@pytest.mark.slow
+def test_tests_that_cannot_run_notice_nothing():
+    bug = next(bug for bug in constants() if "4 and 10 exchanged" in bug.name)
+    ((text, _),) = bug.changes
+    wrong = replace(bug, changes=((text, f"{text}\nraise ValueError\n"),))
+    assert not is_noticed(replace(wrong, tests=bug.tests[1:]))
+    with pytest.raises(ToolError, match="its tests cannot run"):
+        is_caught(wrong)
+
+
+def test_counts_are_those_of_the_summary():
+    text = "trailer.py:50: error\n1 failed, 2 errors in 3.21s\n"
+    assert (count("failed", text), count("error", text), count("error", "x: error\n1 failed in 0.1s")) == (1, 2, 0)
+    assert count("failed", "no summary") == 0
