@@ -9,6 +9,7 @@ from pymtl3 import Bits1, Bits2, Bits8, Bits10, Component, InPort, OutPort, Wire
 from talbot.rtl.adc_bank.ports import declare_ports
 from talbot.rtl.edge_adc import EdgeAdc
 from talbot.rtl.messages import FRAME, SAMPLE
+from talbot.rtl.sizes import check_size
 
 
 class LaneResult(Component):
@@ -33,6 +34,7 @@ class AdcBank(Component):
     """The converters of a row (README.md); lanes: a power of two in 1..32."""
 
     def construct(s, lanes=8):
+        check_size(lanes=lanes)
         Lanes = mk_bits(lanes)
 
         # Interface

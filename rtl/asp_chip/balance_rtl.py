@@ -2,6 +2,8 @@
 
 from pymtl3 import Bits3, Bits5, Bits10, Component, InPort, OutPort, Wire, clog2, mk_bits, trunc, update, zext
 
+from talbot.rtl.sizes import check_tile
+
 
 class Balance(Component):
     """The trim of a pixel. order: pixel type of each position, row by row; tile_rows, tile_cols: 1..4, 1..6.
@@ -11,6 +13,7 @@ class Balance(Component):
     """
 
     def construct(s, order, tile_rows, tile_cols, trim_bits, trim_stride):
+        check_tile(order, tile_rows, tile_cols)
         n = max(len(order), 4)  # so that an index of the table is as wide as a position
         Kinds, Trims = mk_bits(5 * n), mk_bits(24 * trim_stride)
         KindSelect, TrimSelect = mk_bits(clog2(5 * n + 1)), mk_bits(clog2(24 * trim_stride + 1))

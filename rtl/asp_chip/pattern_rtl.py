@@ -19,6 +19,8 @@ from pymtl3 import (
     zext,
 )
 
+from talbot.rtl.sizes import check_size
+
 
 class Pattern(Component):
     """With `on`, `comparator` compares the pattern's value at the pixel that `hold` sampled; else it is `analog`.
@@ -27,6 +29,7 @@ class Pattern(Component):
     """
 
     def construct(s, lanes):
+        check_size(lanes=lanes)
         Lanes = mk_bits(lanes)
         Codes = mk_bits(8 * max(lanes, 2))  # PyMTL cannot slice a whole signal in a loop
         MIDDLE = Bits6(0x20)

@@ -21,6 +21,7 @@ from pymtl3.stdlib.stream.ifcs import RecvIfcRTL, SendIfcRTL
 
 from talbot.rtl.messages import SAMPLE, ScanMsg
 from talbot.rtl.quad_divider import quad_divider
+from talbot.rtl.sizes import check_size
 
 IN_FLIGHT_MAX = 63  # more than any divider holds
 
@@ -115,6 +116,7 @@ class PhasePath(Component):
     """Four taps to phase and amplitude (README.md). divider, n_frac, iterations: see rtl.quad_divider."""
 
     def construct(s, lanes=8, divider="radix4", n_frac=8, iterations=10):
+        check_size(lanes=lanes, divider=divider, n_frac=n_frac, iterations=iterations)
         Lanes = mk_bits(lanes)
         FIRST = Lanes(1)
 

@@ -2,11 +2,11 @@
 
 from pymtl3 import Bits4, Component, InPort, OutPort, Wire, clog2, concat, mk_bits, sext, trunc, update, update_ff, zext
 
-from talbot.models.parameters import check_int
-from talbot.models.parameters.divider import ITERATIONS_MAX, ITERATIONS_MIN, cordic_angles
+from talbot.models.parameters.divider import ITERATIONS_MAX, cordic_angles
 from talbot.rtl.messages import DivReq, div_resp
 from talbot.rtl.quad_divider.angle_rtl import Fold, Unfold
 from talbot.rtl.quad_divider.iterative_rtl import IterativeDivider
+from talbot.rtl.sizes import check_size
 
 RATIO_BITS = 8  # of the response; the ratio of CORDIC is 0
 
@@ -165,5 +165,5 @@ class Cordic(IterativeDivider):
     """The phase by CORDIC, without a ratio. iterations: 4..16, also the number of fraction bits."""
 
     def construct(s, iterations=10):
-        check_int("iterations", iterations, ITERATIONS_MIN, ITERATIONS_MAX)
+        check_size(iterations=iterations)
         super().construct(CordicDatapath(iterations), RATIO_BITS)

@@ -3,12 +3,11 @@
 from pymtl3 import Bits4, Component, InPort, OutPort, Wire, mk_bits, update, update_ff, zext
 from pymtl3.stdlib.stream.ifcs import RecvIfcRTL, SendIfcRTL
 
-from talbot.models.parameters import check_int
-from talbot.models.parameters.divider import N_FRAC_MAX, N_FRAC_MIN
 from talbot.rtl.messages import DivReq, div_resp
 from talbot.rtl.quad_divider.angle_rtl import Fold, PhaseIndex, Unfold
 from talbot.rtl.quad_divider.digit_rtl import Radix2Digit, Radix4Digit, div_state
 from talbot.rtl.quad_divider.iterative_rtl import IterativeDivider
+from talbot.rtl.sizes import check_size
 
 
 class Operands(Component):
@@ -100,7 +99,7 @@ class QuadDividerRadix2(IterativeDivider):
     """One bit of the ratio a cycle: the smallest variant. n_frac: 4..16."""
 
     def construct(s, n_frac=8):
-        check_int("n_frac", n_frac, N_FRAC_MIN, N_FRAC_MAX)
+        check_size(n_frac=n_frac)
         super().construct(DividerDatapath(n_frac, Radix2Digit), n_frac)
 
 
@@ -108,7 +107,7 @@ class QuadDividerRadix4(IterativeDivider):
     """Two bits of the ratio a cycle. n_frac: 4..16."""
 
     def construct(s, n_frac=8):
-        check_int("n_frac", n_frac, N_FRAC_MIN, N_FRAC_MAX)
+        check_size(n_frac=n_frac)
         super().construct(DividerDatapath(n_frac, Radix4Digit), n_frac)
 
 
@@ -138,7 +137,7 @@ class QuadDividerPipelined(Component):
     """A stage per bit: one result a cycle. The whole pipeline stops while its result is not taken. n_frac: 4..16."""
 
     def construct(s, n_frac=8):
-        check_int("n_frac", n_frac, N_FRAC_MIN, N_FRAC_MAX)
+        check_size(n_frac=n_frac)
 
         s.recv = RecvIfcRTL(DivReq)
         s.send = SendIfcRTL(div_resp(n_frac))

@@ -2,19 +2,16 @@
 
 from pymtl3 import Component
 
-from talbot.models.parameters import DIVIDERS, check_choice, check_int
-from talbot.models.parameters.divider import ITERATIONS_MAX, ITERATIONS_MIN, N_FRAC_MAX, N_FRAC_MIN
 from talbot.rtl.quad_divider.cordic_rtl import RATIO_BITS, Cordic
 from talbot.rtl.quad_divider.quad_divider_rtl import QuadDividerPipelined, QuadDividerRadix2, QuadDividerRadix4
+from talbot.rtl.sizes import check_size
 
 DIVIDING = {"radix2": QuadDividerRadix2, "radix4": QuadDividerRadix4, "pipelined": QuadDividerPipelined}
 
 
 def check_variant(variant: str, n_frac: int, iterations: int) -> None:
     """Raise ParameterError unless the divider exists."""
-    check_choice("divider", variant, DIVIDERS)
-    check_int("n_frac", n_frac, N_FRAC_MIN, N_FRAC_MAX)
-    check_int("iterations", iterations, ITERATIONS_MIN, ITERATIONS_MAX)
+    check_size(divider=variant, n_frac=n_frac, iterations=iterations)
 
 
 def quad_divider(variant: str, n_frac: int = 8, iterations: int = 10) -> Component:

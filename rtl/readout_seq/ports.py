@@ -6,8 +6,9 @@ from typing import NamedTuple
 from pymtl3 import InPort, OutPort
 from pymtl3.stdlib.stream.ifcs import SendIfcRTL
 
-from talbot.models.parameters import COLS_MAX, LANES, ROWS_MAX, ParameterError, TileParameters, check_choice, check_int
+from talbot.models.parameters import ParameterError
 from talbot.rtl.messages import step_msg
+from talbot.rtl.sizes import check_size, check_tile
 
 WINDOW = ("row0", "row1", "col0", "col1")
 
@@ -26,10 +27,8 @@ class Edges(NamedTuple):
 
 def edges(rows: int, cols: int, lanes: int, order: Sequence[int], tile_rows: int, tile_cols: int) -> Edges:
     """Return the edges of an array of rows x cols pixels. Raises ParameterError if the ports cannot address it."""
-    check_int("rows", rows, 1, ROWS_MAX)
-    check_int("cols", cols, 1, COLS_MAX)
-    check_choice("lanes", lanes, LANES)
-    TileParameters(tile_rows, tile_cols, TileParameters().types[: tile_rows * tile_cols], tuple(order))
+    check_size(rows=rows, cols=cols, lanes=lanes)
+    check_tile(order, tile_rows, tile_cols)
     last_row, last_col = (rows - 1) // tile_rows, (cols - 1) // tile_cols
     if max(last_row, last_col) > 255:
         raise ParameterError(f"array = {rows} x {cols}: must be at most 256 x 256 tiles of {tile_rows} x {tile_cols}")

@@ -8,6 +8,7 @@ from talbot.rtl.run_length.crc_rtl import Crc16, Crc32
 from talbot.rtl.run_length.header_rtl import HeaderBytes
 from talbot.rtl.run_length.packer_rtl import PayloadPacker
 from talbot.rtl.run_length.ports import HEADER_PORTS, declare_ports
+from talbot.rtl.sizes import check_size
 
 MARK_PLACE = COUNTS // 2  # upper bits of the index of the trailer's mark
 
@@ -16,6 +17,8 @@ class RunLength(Component):
     """The stream encoder (README.md). rows, cols, lanes, tile_rows, tile_cols: of the chip, in the header."""
 
     def construct(s, rows, cols, lanes, tile_rows, tile_cols):
+        check_size(rows=rows, cols=cols, lanes=lanes, tile_rows=tile_rows, tile_cols=tile_cols)
+
         # Interface
         declare_ports(s)
 
