@@ -14,7 +14,7 @@ from pathlib import Path
 from talbot.rtl.harness.ports import Port, split
 from talbot.rtl.replay import load
 from talbot.signoff.netlist.verilog import modules
-from talbot.verif.coverage.program import tool
+from talbot.verif.verilated.program import tool
 
 STARTED = "started"
 LARGE = 5000  # bits, from which on the last induction is of constants alone

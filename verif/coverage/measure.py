@@ -11,7 +11,7 @@ from talbot.base.tools import ToolError
 from talbot.rtl.replay import load
 from talbot.verif.coverage.points import POINTS
 from talbot.verif.coverage.ports import Recorded
-from talbot.verif.coverage.program import Registers, compile_program
+from talbot.verif.verilated.program import Registers, compile_program
 
 KINDS = {"v_line": "line", "v_branch": "branch", "v_toggle": "toggle", "v_expr": "expression"}
 

@@ -7,7 +7,7 @@ from typing import Any
 from talbot.rtl.harness.driven import Driven
 from talbot.rtl.harness.netlists import Netlist
 from talbot.rtl.harness.ports import ports_of
-from talbot.verif.coverage.program import compile_program
+from talbot.verif.verilated.program import compile_program
 
 
 def netlist_in_verilator(dut: Any, netlist: Netlist, cells: Iterable[Path]) -> Driven:

@@ -13,8 +13,8 @@ from talbot.base.paths import PACKAGE
 from talbot.models.parameters import ParameterError, SensorParameters
 from talbot.rtl.tops import TOPS, build_top
 from talbot.verif.coverage.points import POINTS
-from talbot.verif.coverage.program import Registers
 from talbot.verif.formal import manifest
+from talbot.verif.verilated.program import Registers
 
 KINDS = "line", "branch", "expression", "toggle"
 

@@ -1,7 +1,8 @@
 """Every property proven, every cover point reached, every mutated twin detected: build/verify/formal.json.
 
 The exit status is 1 unless every property is proven by every engine named for it, every cover point of its wrapper is
-reached, and every twin fails. A timeout is not a proof.
+reached, and every twin fails. A counterexample, an induction that is too weak and a timeout are different results;
+--show writes the trace of the first two as a waveform and as a test.
 """
 
 import sys
@@ -17,19 +18,23 @@ from talbot.base.records import from_json
 from talbot.base.tools import located
 from talbot.models.parameters import ParameterError
 from talbot.rtl.tops import TOPS
-from talbot.verif.formal import manifest
-from talbot.verif.formal.engine import UNKNOWN, version
+from talbot.verif.formal import manifest, owners, sizes
+from talbot.verif.formal.engine import UNDECIDED, version
 from talbot.verif.formal.freedom import FreedomResult
-from talbot.verif.formal.necessity import NecessityResult
+from talbot.verif.formal.necessity import ConjunctResult, NecessityResult
 from talbot.verif.formal.plan import pieces
 from talbot.verif.formal.proof import Proof
 from talbot.verif.formal.prove import CoverResult, ProofResult, TwinResult
+from talbot.verif.formal.replay import show
 from talbot.verif.results import OUT, PROVEN, BlockResults, Property, write_step
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """All results of a proof. engines: by engine. twins: by property. needs, freedom: of its assumptions."""
+    """All results of a proof. engines: by engine. twins: by property. needs, freedom: of its assumptions.
+
+    only_here: conjuncts of its assumptions that they do not have at the first size.
+    """
 
     proof: Proof
     engines: dict[str, ProofResult]
@@ -37,6 +42,7 @@ class Outcome:
     twins: dict[str, TwinResult]
     needs: NecessityResult = field(default_factory=NecessityResult)
     freedom: FreedomResult = field(default_factory=FreedomResult)
+    only_here: Sequence[str] = ()
 
     @property
     def properties(self) -> list[Property]:
@@ -66,12 +72,13 @@ class Outcome:
         missing, twins = ([], {}) if self.proof.size_of else (self.covers.missing, self.twins)
         return [
             *(
-                f"{name} = {result.result} by {engine}: must be proven ({', '.join(result.failing) or result.output})"
+                f"{name} = {result.result} by {engine}: must be proven ({result.cause(self.proof)})"
                 for engine, result in self.engines.items()
                 if result.result != PROVEN
             ),
             *(
-                f"{name}.{label} = not reached: every cover point must be, in {self.proof.cover_depth} steps"
+                f"{name}.{label} = {self.covers.status or 'not reached'}: every cover point must be reached, in "
+                f"{self.proof.cover_depth} steps"
                 for label in missing
             ),
             *(
@@ -80,41 +87,63 @@ class Outcome:
                 if not twin.fails
             ),
             *(f"{name}.{conjunct} = needless: the proof must fail without it" for conjunct in self.needs.needless),
+            *(f"{name}.{conjunct} = at this size alone: must be at the first" for conjunct in self.only_here),
+            *(f"{name}.{conjunct} = timeout: the proof must fail without it" for conjunct in self.needs.undecided),
             *(
                 f"{name}: {problem}"
                 for problem in (self.freedom.problems(self.proof.never, " ".join(self.proof.tied).split()))
-                if self.freedom.reached
+                if self.freedom.reached or self.freedom.status
             ),
         ]
 
 
-def collect(proofs: Iterable[Proof], store: Path, workers: int = -1) -> list[Outcome]:
-    """Run every job of ``proofs``. store: folder of the kept results. workers: processes, -1 for all cores."""
-    checked: dict[Path, str] = {}  # by wrapper, the proof with which its assumptions are checked
-    for proof in manifest.every():
-        checked.setdefault(proof.wrapper, proof.name)
-    planned = [(proof, [*pieces(proof, present(proof), checked[proof.wrapper] == proof.name)]) for proof in proofs]
+def collect(proofs: Iterable[Proof], store: Path, workers: int = -1, every_size: bool = False) -> list[Outcome]:
+    """Run every job of ``proofs``.
+
+    store: folder of the kept results. workers: processes, -1 for all cores. every_size: check the assumptions at each.
+    """
+    first_of = firsts(manifest.every())
+    planned = [
+        (proof, [*pieces(proof, present(proof), every_size or first_of[proof.name] == proof.name)]) for proof in proofs
+    ]
     results = iter(run_jobs([piece.job for _, parts in planned for piece in parts], store, "formal", workers))
-    outcomes = []
+    outcomes, conjuncts = [], {}
     for proof, parts in planned:
-        by_kind = {kind: {} for kind in (ProofResult, CoverResult, TwinResult, NecessityResult, FreedomResult)}
+        kinds = ProofResult, CoverResult, TwinResult, NecessityResult, FreedomResult, ConjunctResult
+        by_kind = {kind: {} for kind in kinds}
         for piece in parts:
             result = from_json(piece.kind, next(results))
-            if UNKNOWN in vars(result).values():  # tried again next time
+            if is_undecided(result):  # tried again next time
                 piece.job.file(store).unlink(missing_ok=True)
             by_kind[piece.kind][piece.name] = result
         first = next((outcome for outcome in outcomes if outcome.proof.name == proof.size_of), None)
+        needs = by_kind[NecessityResult].get("necessity", NecessityResult())
+        conjuncts[proof.name] = [*needs.needed, *needs.needless, *needs.undecided]
+        listed = by_kind[ConjunctResult].get("conjuncts", ConjunctResult()).names
         outcomes.append(
             Outcome(
                 proof,
                 by_kind[ProofResult],
                 first.covers if first else by_kind[CoverResult]["cover"],
                 first.twins if first else by_kind[TwinResult],
-                by_kind[NecessityResult].get("necessity", NecessityResult()),
+                needs,
                 by_kind[FreedomResult].get("freedom", FreedomResult()),
+                [name for name in listed if name not in conjuncts.get(first_of[proof.name], listed)],
             )
         )
     return outcomes
+
+
+def firsts(proofs: Iterable[Proof]) -> dict[str, str]:
+    """Return proof -> the first proof of its wrapper, with which the assumptions are checked."""
+    by_wrapper: dict[Path, str] = {}
+    return {proof.name: by_wrapper.setdefault(proof.wrapper, proof.name) for proof in proofs}
+
+
+def is_undecided(result: object) -> bool:
+    """Return whether a result of a piece has a timeout."""
+    fields = vars(result)
+    return any(value in UNDECIDED for value in fields.values()) or bool(fields.get("undecided"))
 
 
 def present(proof: Proof) -> list[str]:
@@ -165,16 +194,38 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--only", action="append", metavar="BLOCK", choices=TOPS, help="a block (may be repeated)")
     parser.add_argument("--proof", action="append", metavar="NAME", help="a proof by its name (may be repeated)")
     parser.add_argument("--out", type=Path, default=OUT, help="folder of formal.json")
+    parser.add_argument(
+        "--every-size", action="store_true", help="check the assumptions at every size, not at the first of a wrapper"
+    )
+    parser.add_argument(
+        "--show", action="store_true", help="write the shortest trace of a --proof that fails: a waveform and a test"
+    )
     parser.add_argument("--workers", type=worker_count, default=-1, help="processes; default: all cores")
+
+
+def shown(options: Namespace, proofs: Sequence[Proof]) -> int:
+    """Write and print the trace of each --proof; returns 1 if there is one, else 0.
+
+    Raises ParameterError without --proof, ToolError for a timeout.
+    """
+    if not options.proof:
+        raise ParameterError("show = True: must be with --proof")
+    traces = {proof.name: show(proof, options.out / "formal") for proof in proofs if proof.name in options.proof}
+    for name, text in traces.items():
+        print(text or f"{name} = proven: no trace")
+    return int(any(traces.values()))
 
 
 def run(options: Namespace) -> int:
     """Run the proofs; returns 1 if something is not proven, else 0."""
     proofs = chosen(manifest.every(), options)
-    outcomes = collect(proofs, options.out / "formal", options.workers)
+    if options.show:
+        return shown(options, proofs)
+    outcomes = collect(proofs, options.out / "formal", options.workers, options.every_size)
     write_step("formal", summary(outcomes), options.out)
     print(table(outcomes))
+    general = [*owners.problems(manifest.every(), owners.contract()), *sizes.problems(manifest.every())]
     for engine in sorted({e for proof in proofs for e in proof.engines} - {"boolector"}):
         if not located(engine):
             print(f"{engine} = not found: second engine skipped; make tools installs it", file=sys.stderr)
-    return failures(line for outcome in outcomes for line in outcome.problems)
+    return failures([*general, *(line for outcome in outcomes for line in outcome.problems)])

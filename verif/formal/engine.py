@@ -16,7 +16,8 @@ from talbot.base.environment import of_tools
 from talbot.base.tools import ToolError, finish, located
 from talbot.verif.formal.netlist import Netlist
 
-PASSED, FAILED, UNKNOWN = "passed", "failed", "unknown"
+PASSED, FAILED, TIMEOUT, UNKNOWN = "passed", "failed", "timeout", "unknown"
+UNDECIDED = TIMEOUT, UNKNOWN
 
 
 class FormalError(ToolError):
@@ -75,11 +76,16 @@ def flat(designs: Mapping[str, str], wrapper: str, top: str, assumed: Iterable[s
     return [*lines, f"select -assert-none t:$assume{listed} t:$fair t:$live %u"]
 
 
-def smt2(only: str | None = None) -> list[str]:
-    """Return the Yosys commands that write the flat module to proof.smt2. only: the one assertion to keep."""
+def smt2(only: str | None = None, invariants: bool = True) -> list[str]:
+    """Return the Yosys commands that write the flat module to proof.smt2.
+
+    only: the one assertion to keep. invariants: whether to keep those of the induction, inv_...
+    """
     lines, asserts = [], "t:$assert"
     if only:
         lines += [f"select -assert-count 1 {asserts} c:{only} %i", f"chformal -assert -remove {asserts} c:{only} %d"]
+    if not invariants:
+        lines += [f"chformal -assert -remove {asserts} c:inv_* %i"]
     return [
         *lines,
         "setundef -undriven -anyseq",
@@ -91,7 +97,7 @@ def smt2(only: str | None = None) -> list[str]:
 
 @dataclass(frozen=True)
 class Answer:
-    """What yosys-smtbmc reports. status: 'passed', 'failed' or 'unknown'. wall_s: seconds it took."""
+    """What yosys-smtbmc reports. status: 'passed', 'failed', 'timeout' or 'unknown'. wall_s: seconds it took."""
 
     status: str
     output: str
@@ -107,13 +113,13 @@ class Workplace:
         wrapper: str,
         top: str,
         assumed: Iterable[str],
-        only: str | None = None,
+        write: Iterable[str] = (),
         edit: Callable[[Netlist], None] | None = None,
     ) -> None:
         """Write the files and run Yosys. Raises FormalError where it refuses them.
 
-        texts: module -> its Verilog. assumed: labels of the only assumptions there may be. only: the one assertion to
-        keep. edit: changes the flat netlist.
+        texts: module -> its Verilog. assumed: labels of the only assumptions there may be. write: Yosys commands that
+        write the flat module, by default `smt2`. edit: changes the flat netlist.
         """
         self.folder = tempfile.TemporaryDirectory(prefix="talbot-formal-")
         self.path = Path(self.folder.name)
@@ -130,7 +136,7 @@ class Workplace:
             edit(netlist)
             (self.path / "edited.json").write_text(json.dumps(netlist.design), encoding="utf-8")
             read = ["read_json edited.json"]
-        self._yosys([*read, *smt2(only)])
+        self._yosys([*read, *(write or smt2())])
 
     def _json(self, name: str) -> dict[str, Any]:
         return json.loads((self.path / f"{name}.json").read_text(encoding="utf-8"))
@@ -169,7 +175,7 @@ class Workplace:
         except subprocess.TimeoutExpired:
             os.killpg(process.pid, 9)
             output = process.communicate()[0] + f"timeout after {timeout} s"
-            return Answer(UNKNOWN, output, time.monotonic() - begin)
+            return Answer(TIMEOUT, output, time.monotonic() - begin)
         reported = re.findall(r"Status: (\w+)", output)
         status = {"PASSED": PASSED, "FAILED": FAILED}.get(reported[-1] if reported else "", UNKNOWN)
         if (status == PASSED) != (process.returncode == 0):

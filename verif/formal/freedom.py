@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from itertools import combinations
 
-from talbot.verif.formal.engine import UNKNOWN, Workplace
+from talbot.verif.formal.engine import UNDECIDED, Workplace
 from talbot.verif.formal.netlist import Bit, Netlist
 from talbot.verif.formal.proof import Proof
 
@@ -17,7 +17,7 @@ SMALL = 2  # bits of a signal all values of which count
 class FreedomResult:
     """The cover points by their conditions, literals with a space between. outputs: literals of the block's outputs.
 
-    tied: inputs at a constant. status: UNKNOWN after a timeout.
+    tied: inputs at a constant. status: one of UNDECIDED, or ''.
     """
 
     reached: list[str] = field(default_factory=list)
@@ -29,6 +29,8 @@ class FreedomResult:
 
     def problems(self, never: Iterable[str], tied: Iterable[str]) -> list[str]:
         """Return what ``never`` (regular expressions) and ``tied`` (inputs) leave open, one line each."""
+        if self.status:
+            return [f"inputs = {self.status}: {len(self.missing)} of their values are not reached yet"]
         alone = {name for name in self.missing if PAIR not in name}
         odd = [
             name
@@ -175,6 +177,6 @@ def freedom(proof: Proof, texts: dict[str, str], wrapper: str) -> FreedomResult:
         [n for n in found.names if n not in got],
         found.outputs,
         found.tied,
-        answer.status if answer.status == UNKNOWN else "",
+        answer.status if answer.status in UNDECIDED else "",
         round(answer.wall_s, 2),
     )

@@ -23,8 +23,7 @@ def failure(proof: Proof, store: Path) -> str:
     if result.result == PROVEN:
         return ""
     job.file(store).unlink(missing_ok=True)  # tried again next time
-    failing = ", ".join(result.failing) or result.output
-    return f"{proof.name} = {result.result} by {engine}: must be proven ({failing})"
+    return f"{proof.name} = {result.result} by {engine}: must be proven ({result.cause(proof)})"
 
 
 class ProofsFile(pytest.File):

@@ -10,6 +10,7 @@ import yaml
 from talbot.base.paths import PACKAGE
 from talbot.models.parameters import ParameterError
 from talbot.rtl.tops import TOPS
+from talbot.verif.formal.owners import parse
 from talbot.verif.formal.proof import ENGINES, RESET, Proof, Twin, labels
 
 SIZE = "rows", "cols", "lanes", "tile_rows", "tile_cols"
@@ -48,6 +49,7 @@ def _sizes(entry: dict[str, Any]) -> Iterator[dict[str, Any]]:
 def _proof(folder: Path, entry: dict[str, Any]) -> Proof:
     entry = dict(entry)
     entry["wrapper"] = folder / entry["wrapper"]
+    entry["assumptions"] = {label: parse(label, owner) for label, owner in entry.get("assumptions", {}).items()}
     entry["twins"] = {name: Twin(**twin) for name, twin in entry["twins"].items()}
     for key in ("engines", "generated", "sources"):
         entry[key] = tuple(entry.get(key, ()))
@@ -62,7 +64,7 @@ def _proof(folder: Path, entry: dict[str, Any]) -> Proof:
         raise ParameterError(f"{proof.name}.twins = {odd}: every property must have a twin, and every twin a property")
     if odd := set(named.assumptions) - {RESET} ^ set(proof.assumptions):
         raise ParameterError(
-            f"{proof.name}.assumptions = {', '.join(sorted(odd))}: each in the wrapper must be listed with its reason"
+            f"{proof.name}.assumptions = {', '.join(sorted(odd))}: each in the wrapper must be listed with its owner"
         )
     if not named.covers:
         raise ParameterError(f"{proof.name}.wrapper = no cover point: must have one")

@@ -4,7 +4,7 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from talbot.verif.formal.engine import Workplace
+from talbot.verif.formal.engine import UNDECIDED, Workplace
 from talbot.verif.formal.netlist import Conjunct, Netlist
 from talbot.verif.formal.proof import Proof
 from talbot.verif.formal.prove import prove
@@ -13,30 +13,48 @@ from talbot.verif.results import PROVEN
 
 @dataclass(frozen=True)
 class NecessityResult:
-    """Conjuncts by their text. needed: the proof fails without it. needless: it does not."""
+    """Conjuncts by their text. needed: the proof fails without it. needless: it holds. undecided: timeouts."""
 
     needed: list[str] = field(default_factory=list)
     needless: list[str] = field(default_factory=list)
     wall_s: float = 0.0
+    undecided: list[str] = field(default_factory=list)
 
 
-def necessity(proof: Proof, texts: dict[str, str], wrapper: str, label: str = "") -> NecessityResult:
-    """Try the proof without each conjunct of its assumptions; label: of those to try, by default all."""
-    conjuncts: list[Conjunct] = []
+@dataclass(frozen=True)
+class ConjunctResult:
+    """The conjuncts of the assumptions of a proof, by their text."""
+
+    names: list[str] = field(default_factory=list)
+
+
+def conjuncts(proof: Proof, texts: dict[str, str], wrapper: str) -> ConjunctResult:
+    """Return the conjuncts of the assumptions of a proof at its size; no engine runs."""
+    return ConjunctResult([name for _, name in _conjuncts(proof, texts, wrapper)])
+
+
+def _conjuncts(proof: Proof, texts: dict[str, str], wrapper: str) -> list[tuple[Conjunct, str]]:
+    found: list[Conjunct] = []
     Workplace(
         texts,
         wrapper,
         proof.top,
         proof.assumed,
-        edit=lambda netlist: conjuncts.extend(c for a in netlist.of_type("$assume") for c in netlist.conjuncts(a)),
+        edit=lambda netlist: found.extend(c for a in netlist.of_type("$assume") for c in netlist.conjuncts(a)),
     ).folder.cleanup()
-    needed, needless, wall = [], [], 0.0
-    for conjunct in (c for c in conjuncts if c.assumption.endswith(label)):
-        without = prove(proof, proof.engines[0], texts, wrapper, dropping(conjunct))
+    return [(conjunct, f"{conjunct.assumption}: {said(conjunct.source, wrapper)}") for conjunct in found]
+
+
+def necessity(proof: Proof, texts: dict[str, str], wrapper: str, label: str = "") -> NecessityResult:
+    """Try the proof without each conjunct of its assumptions; label: of those to try, by default all."""
+    needed, needless, undecided, wall = [], [], [], 0.0
+    for conjunct, name in _conjuncts(proof, texts, wrapper):
+        if not conjunct.assumption.endswith(label):
+            continue
+        without = prove(proof, proof.engines[0], texts, wrapper, dropping(conjunct), search=False)
         wall += without.wall_s
-        name = f"{conjunct.assumption}: {said(conjunct.source, wrapper)}"
-        (needless if without.result == PROVEN else needed).append(name)
-    return NecessityResult(needed, needless, round(wall, 2))
+        (needless if without.result == PROVEN else undecided if without.result in UNDECIDED else needed).append(name)
+    return NecessityResult(needed, needless, round(wall, 2), undecided)
 
 
 def dropping(conjunct: Conjunct) -> Callable[[Netlist], None]:

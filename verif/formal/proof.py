@@ -29,6 +29,19 @@ class Twin:
 
 
 @dataclass(frozen=True)
+class Owner:
+    """What an assumption rests on; neither: it defines a constant of the wrapper (verif.formal.owners).
+
+    proven: PROOF.LABEL, a property of the block that drives the input. names: in the assumption -> in that property.
+    contract: a line of the interface contract in docs/chip.md.
+    """
+
+    proven: str = ""
+    names: dict[str, str] = field(default_factory=dict)
+    contract: str = ""
+
+
+@dataclass(frozen=True)
 class Proof:
     """The properties of one wrapper.
 
@@ -39,10 +52,11 @@ class Proof:
     twin_depth: steps within which every cover point must be reached and every twin must fail. engines: the first also
     runs covers and twins. timeout: s. generated: names in verif.formal.tables, text put before the wrapper. sources:
     files read before the wrapper. defines: macros of the wrapper. why: reason for the depth. twins: property -> Twin.
-    assumptions: label -> the neighbour's property or the document that it follows from (but RESET). never: regular
+    assumptions: label -> what it follows from (but RESET). never: regular
     expression of cover points of its inputs that cannot be reached (verif.formal.freedom) -> the reason. tied: inputs
     of the modules that have a constant, with spaces between -> the reason. size_of: the proof that this one repeats
-    at another size: its covers and twins count for both. slow: no test of `make test`.
+    at another size: its covers and twins count for both. tested: parameter of the block -> the test of every
+    value, where the proofs have some alone (verif.formal.sizes). slow: no test of `make test`.
     free_depth: steps within which the inputs must take their values. free_from: register of
     the wrapper -> value that it begins with there, all others with any; by default they begin in reset.
     """
@@ -56,7 +70,7 @@ class Proof:
     depth: int
     why: str
     twins: dict[str, Twin]
-    assumptions: dict[str, str] = field(default_factory=dict)
+    assumptions: dict[str, Owner] = field(default_factory=dict)
     never: dict[str, str] = field(default_factory=dict)
     tied: dict[str, str] = field(default_factory=dict)
     sensor: dict[str, Any] = field(default_factory=dict)
@@ -68,6 +82,7 @@ class Proof:
     sources: tuple[Path, ...] = ()
     defines: dict[str, Any] = field(default_factory=dict)
     size_of: str | None = None
+    tested: dict[str, str] = field(default_factory=dict)
     slow: bool = False
     free_depth: int = 8
     free_from: dict[str, int] = field(default_factory=dict)

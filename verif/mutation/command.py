@@ -20,7 +20,6 @@ from talbot.base.sources import code
 from talbot.models.parameters import ParameterError
 from talbot.rtl.replay import load
 from talbot.rtl.tops import TOPS
-from talbot.verif.coverage.program import compile_program
 from talbot.verif.coverage.testplan import folder_of
 from talbot.verif.coverage.traces import recorded
 from talbot.verif.mutation.constants import jobs as constants
@@ -38,6 +37,7 @@ from talbot.verif.mutation.mutants import Mutant, generate, with_mutants
 from talbot.verif.mutation.operators import rewritten
 from talbot.verif.mutation.planted import jobs as bugs
 from talbot.verif.results import OUT, SEED, BlockResults, Mutants, write_step
+from talbot.verif.verilated.program import compile_program
 
 NUMBERS = {  # of mutants of bits, and as many of the text
     "AmpCtrl": 12,

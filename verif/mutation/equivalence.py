@@ -8,8 +8,8 @@ from pathlib import Path
 from talbot.base.paths import PACKAGE
 from talbot.base.tools import ToolTimeout
 from talbot.rtl.harness.ports import Port, split, validity
-from talbot.verif.coverage.program import tool
 from talbot.verif.mutation.mutants import BITS, yosys
+from talbot.verif.verilated.program import tool
 
 # What scorr has reduced to a constant without registers, pdr leaves undecided: iprove, of a few conflicts, says so
 REDUCE = "scorr; dc2; scorr; iprove -N 1 -C 10"

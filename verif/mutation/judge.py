@@ -11,14 +11,14 @@ from talbot.imaging.simulate.divider import exhaustive, simulator
 from talbot.models.parameters import SensorParameters
 from talbot.rtl.replay import Trace, load
 from talbot.signoff.netlist.verilog import modules
-from talbot.verif.coverage.program import compile_program
 from talbot.verif.formal import design, manifest
 from talbot.verif.formal.proof import Proof
-from talbot.verif.formal.prove import prove
+from talbot.verif.formal.prove import COUNTEREXAMPLE, TOO_WEAK, prove
 from talbot.verif.mutation.equivalence import DIFFERENT, EQUIVALENT, UNKNOWN, compare, the_same
 from talbot.verif.mutation.mutants import Mutant, yosys
 from talbot.verif.mutation.trial import attempt
 from talbot.verif.results import PROVEN
+from talbot.verif.verilated.program import compile_program
 
 KILLED, SURVIVED = "killed", "survived"
 SPARE = 1000  # cycles that a failing test may run longer
@@ -109,9 +109,11 @@ def judge(path: str, folder: str, mutant: Mutant) -> Judgement:
         changed = [text for text in texts.values() if text != verilog]
         if not any(re.search(rf"(?m)^module {mutant.module}\b", text) for text in changed):
             continue  # it is about other parts
-        if prove(proof, proof.engines[0], texts, design.wrapper(proof)).result != PROVEN:
+        result = prove(proof, proof.engines[0], texts, design.wrapper(proof), search=False).result
+        if result in (COUNTEREXAMPLE, TOO_WEAK):
             return Judgement(KILLED, f"proof {proof.name}")
-        holding.append(proof.name)
+        if result == PROVEN:
+            holding.append(proof.name)
     verdict, cycles = compare(verilog, head.cls, head.ports, number)
     if verdict == EQUIVALENT or verdict == UNKNOWN and holding:
         return Judgement(EQUIVALENT, ", ".join(holding) if verdict == UNKNOWN else "")

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from talbot.verif.coverage.measure import sources_of
-from talbot.verif.coverage.program import tool
+from talbot.verif.verilated.program import tool
 
 PREPARE = "read_verilog -sv dut.v; hierarchy -check -top {top}; proc; opt_expr; opt_muxtree; opt_clean"
 BITS = 16  # of the input `mutant`

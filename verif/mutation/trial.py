@@ -18,8 +18,8 @@ from talbot.rtl.harness.translate import translate_component
 from talbot.rtl.replay import Trace, whole_level
 from talbot.rtl.replay.recorder import OneLevel
 from talbot.signoff.netlist.verilog import modules
-from talbot.verif.coverage.program import compile_program
 from talbot.verif.mutation.mutants import Mutant
+from talbot.verif.verilated.program import compile_program
 
 OPTIONS = (
     "-x",

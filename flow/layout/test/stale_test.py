@@ -135,7 +135,7 @@ CACHES = {
         ("imaging/simulate/divider/main.cpp", {"divider", "mutant"}),
         ("cells/spice/engine.py", {"cell"}),
         ("verif/formal/engine.py", {"proof", "mutant"}),
-        ("verif/coverage/main.cpp", {"coverage", "mutant", "trace"}),  # conftest.py can run netlists in that program
+        ("verif/verilated/main.cpp", {"coverage", "mutant", "trace"}),  # conftest.py can run netlists in that program
         ("flow/layout/chain.py", set()),
     ],
 )

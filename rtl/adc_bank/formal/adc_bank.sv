@@ -58,7 +58,7 @@ module AdcBankProof (
   wire enters = take && !(samples && step__msg[`LANES - 1:0] == 0);
   wire leaves = sent && (!is_sample || last);
 
-  reg first = 1, was_reset, was_val, was_rdy, was_sample, was_inside, was_blocked;
+  reg first = 1, was_reset, was_val, was_rdy, was_sample, was_inside, was_blocked, was_unsigned;
   reg [11:0] was_msg;
   reg [`LANES + 22:0] was_pins;
   reg [1:0] was_mode, quiet;
@@ -68,7 +68,7 @@ module AdcBankProof (
     first <= 0; was_reset <= reset; was_val <= scan__val; was_rdy <= scan__rdy; was_msg <= scan__msg;
     was_sample <= take && samples && !reset; was_blocked <= !reset && (take || at_pins && leaving && !leaves);
     was_pins <= reset ? 0 : take ? step__msg[`LANES + 22:0] : {row, group, k, sub, en};
-    was_mode <= mode; was_threshold <= threshold; was_inside <= inside != 0 || take;
+    was_mode <= mode; was_unsigned <= unsigned_; was_threshold <= threshold; was_inside <= inside != 0 || take;
     quiet <= reset || busy || hold || scan__val || inside == 0 || is_sample && !mine ? 0 : quiet + !(&quiet);
     if (reset) begin
       inside <= 0; conversions <= 0; zeros <= 0;
@@ -97,6 +97,8 @@ module AdcBankProof (
       a_config: assume (!was_inside || mode == was_mode && threshold == was_threshold);
       p_reset: assert (!was_reset || {scan__val, hold, en, row, group, k, sub, made, left_out} == 0
                                      && dac == 0 && step__rdy && idle);
+      // A lane's configuration is constant while it converts
+      p_config: assert (!busy || unsigned_ == was_unsigned && threshold == was_threshold);
       // The step at the pins
       p_hold: assert (hold == was_sample);
       p_pins: assert ({row, group, k, sub, en} == was_pins && unsigned_ == (mode != 0));

@@ -49,13 +49,13 @@ module AmpCtrlProof (
 
   // The previous cycle
   reg first = 1;
-  reg was_reset, was_accept, was_zero, was_free, was_busy, was_ref, was_err;
+  reg was_reset, was_start, was_accept, was_zero, was_free, was_busy, was_ref, was_err;
   reg [1:0] was_tap;
   reg [3:0] was;
   wire [3:0] phases = {pixel_reset, integrate, cm_reset, read};
   reg [30:0] was_rank;
   always @(posedge clk) begin
-    first <= 0; was_reset <= reset; was_accept <= accept; was_zero <= zero; was_free <= hold_free;
+    first <= 0; was_reset <= reset; was_start <= start; was_accept <= accept; was_zero <= zero; was_free <= hold_free;
     was_busy <= busy; was <= phases; was_rank <= rank; was_ref <= ref_ctl;
     was_err <= cfg_err; was_tap <= tap;
   end
@@ -148,6 +148,9 @@ module AmpCtrlProof (
       p_sample: assert (sample == (ref_ctl ? so_far == d_settle : read && so_far == d_read));
     end
     if (!first) begin
+      // An error lasts until the next start
+      p_quiet: assert (!was_reset || !cfg_err);
+      p_level: assert (!was_err || cfg_err || was_start || was_reset);
       inv_state: assert (state != 7 && busy == (state != IDLE));
       inv_after: assert (state == IDLE || (after != CM_RESET || resets != 0) && after != GUARD && after < SIGNAL);
       inv_pins: assert (phases == ({state == RESET, state == INTEGRATE, state == CM_RESET, state >= REFERENCE}

@@ -30,6 +30,10 @@ module FrontProof (
   (* hierconn *) wire [1:0] \resets.released.stages ;
   (* hierconn *) wire \state.was_sync , \state.seq_told , \state.amp_told ;
 
+  (* anyconst *) wire [9:0] bit_of;
+  wire choice = cfg[bit_of];
+  reg was_choice;
+
   // The cycle before, and what has been reported since the start
   reg [1:0] edges = 2;
   wire first = edges != 0;
@@ -38,7 +42,7 @@ module FrontProof (
   reg was_frame_val, was_frame_rdy, cfg_told, amp_told;
   reg [7:0] was_data, was_frame_msg;
   always @(posedge clk) begin
-    edges <= edges - first; late <= {late[0], reset}; was_engine <= engine; was_start <= start;
+    was_choice <= choice; edges <= edges - first; late <= {late[0], reset}; was_engine <= engine; was_start <= start;
     was_amp_start <= amp_start; was_seq_busy <= seq_busy; was_seq_err <= seq_err; was_amp_err <= amp_err;
     was_sync <= frame_sync; was_val <= link_val; was_rdy <= link_rdy; was_data <= link_data;
     was_frame_val <= frame_val; was_frame_rdy <= frame_rdy; was_frame_msg <= frame_msg;
@@ -49,7 +53,9 @@ module FrontProof (
   always @* begin
     if (first) a_reset: assume (reset);
     else begin
-      a_engine: assume (!was_engine || !frame_sync && !seq_busy && !seq_err && !amp_err);
+      a_sync_quiet: assume (!was_engine || !frame_sync);
+      a_seq_quiet: assume (!was_engine || !seq_busy && !seq_err);
+      a_amp_quiet: assume (!was_engine || !amp_err);
       a_frame: assume (was_engine || !was_frame_val || was_frame_rdy || frame_val && frame_msg == was_frame_msg);
       a_sync: assume (!frame_val || frame_sync);
       a_seq: assume (!seq_busy || was_seq_busy || was_start);
@@ -68,6 +74,8 @@ module FrontProof (
       // ... which never holds a frame up: they exclude one another
       p_apart: assert (!(busy && (loop_enable || loop_val)) && (!loop_val || loop_enable));
       p_start: assert (!start || !busy && !loop_enable && !loop_val);
+      // RegFile locks the configuration, of which this is any bit, while a frame runs
+      p_config: assert (!busy || choice == was_choice);
       p_busy: assert (busy == (seq_busy || frame_sync || was_sync && !was_engine));
       p_done: assert (done == (was_sync && !was_engine && !frame_sync && !engine));
       p_once: assert (cfg_strobe == (seq_err && !cfg_told && !engine)

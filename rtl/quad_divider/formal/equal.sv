@@ -17,8 +17,7 @@ module EqualProof (input clk, input reset);
   always @(posedge clk) turn <= turn + !(&turn);
 
   always @* begin
-    if (turn == 0) a_reset: assume (reset);
-    else a_once: assume (!reset);
+    a_reset: assume (reset == (turn == 0));
     p_taken: assert (!ask || rdy2 && rdy4 && rdyp);
     p_answered: assert (turn < 11 || val2 && val4 && valp);
     p_equal24: assert (turn == 0 || !(val2 && val4) || msg2 == msg4);

@@ -85,7 +85,7 @@ module ReadoutSeqProof (
                      : {2'd1, current, part, state == 6 ? here[12:0] : 13'd0};
   reg first = 1, was_busy, was_reset, was_val, was_rdy, was_starts, was_start_ok, was_start_bad, was_lands, was_free,
       was_bank_idle, was_last, was_given_up, was_cfg_err, was_waits, was_row_left,
-      was_passes;
+      was_passes, was_start;
   reg [24 + `LANES:0] was_msg;
   reg [103:0] was_choice;
   reg [9:0] was_amp_row, held_row;
@@ -95,7 +95,7 @@ module ReadoutSeqProof (
     first <= 0; was_busy <= busy; was_reset <= reset; was_val <= step__val; was_rdy <= step__rdy; was_msg <= step__msg;
     was_choice <= choice; was_free <= hold_free; was_bank_idle <= bank_idle; was_cfg_err <= cfg_err;
     was_amp_row <= amp_row; was_rank <= rank; was_cycles <= cycles;
-    was_starts <= starts && !reset;
+    was_start <= start; was_starts <= starts && !reset;
     was_start_ok <= starts && window_ok && wanted;
     was_start_bad <= starts && !window_ok;
     was_lands <= lands; was_passes <= over && !slot_reads;
@@ -139,6 +139,10 @@ module ReadoutSeqProof (
       p_reset: assert (!was_reset || {busy, done, cfg_err, amp_start, step__val, amp_row, reset_row, slot_resets,
                         slot_opens, cycles} == 0 && hold_free && slot_reads);
       p_four_tap: assert (four_tap == (mode == 3));
+      // What the chip's status is about
+      p_quiet: assert (!was_reset || !busy && !cfg_err);
+      p_begins: assert (!busy || was_busy || was_start);
+      p_level: assert (!was_cfg_err || cfg_err || was_start || was_reset);
       p_cycles: assert (cycles == (was_reset || busy && !was_busy ? 64'd0 : was_cycles + was_busy));
     end
     if (!first && !was_reset) begin

@@ -32,7 +32,7 @@ module ByteQueueProof (input clk, input reset, input put, input [7:0] octet, inp
 
   always @* begin
     if (first) a_reset: assume (reset);
-    a_put: assume (!put || ready);
+    else a_put: assume (!put || ready);
     if (!first && !was_reset) begin
       p_order: assert (!(take && following && ahead == 0) || send__msg == followed);
       p_val: assert (send__val == (inside != 0));

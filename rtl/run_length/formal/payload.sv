@@ -47,7 +47,7 @@ module PayloadProof (
   always @* begin
     if (first) a_reset: assume (reset);
     // RunLengthCtrl: one action at a time, samples and ends of segments only while there is room
-    a_control: assume (push + flush <= 1 && (ready || !push && !flush));
+    else a_control: assume (push + flush <= 1 && (ready || !push && !flush));
     if (!first && !was_reset) begin
       p_bit: assert (!(take && following && before < 8) || octet[7 - before] == followed);
       p_bytes: assert (val == (inside >= 8));

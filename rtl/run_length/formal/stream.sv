@@ -20,6 +20,7 @@ module StreamProof (
   (* hierconn *) wire \dut.queue.put ;
   (* hierconn *) wire [7:0] \dut.queue.octet ;
   (* hierconn *) wire [1:0] \dut.queue.count ;
+  (* hierconn *) wire \dut.queue.ready ;
   (* hierconn *) wire \dut.packer.push ;
   (* hierconn *) wire \dut.packer.flush ;
   (* hierconn *) wire \dut.packer.restart ;
@@ -144,14 +145,15 @@ module StreamProof (
               || put && !payload && part == MARK && n == 1));
       p_code: assert (\dut.packer.code == recv__msg[7:0] && \dut.packer.threshold == threshold
                       && \dut.packer.coded == (mode == 0));
-      p_packer: assert (push + flush <= 1 && (\dut.packer.ready || !push && !flush));
-      p_queue: assert (!put || \dut.queue.count < 2);
-      p_sync: assert (!send__val || frame_sync);
       p_sync_low: assert (!frame_sync || part != IDLE);
       p_time: assert (quiet < 4);
-      p_stable: assert (!was_val || was_rdy || send__val && send__msg == was_msg);
     end
     if (!first) begin
+      p_packer: assert (push + flush <= 1 && (\dut.packer.ready || !push && !flush));
+      p_queue: assert (!put || \dut.queue.ready );
+      p_sync: assert (!send__val || frame_sync);
+      p_quiet: assert (!was_reset || !frame_sync);
+      p_stable: assert (was_reset || !was_val || was_rdy || send__val && send__msg == was_msg);
       inv_part: assert (\dut.control.state == part && part <= DRAIN && \dut.control.index == n
               && \dut.control.open == open);
       inv_index: assert (part == HEADER ? n < 32 : part == MARK ? n < 2 : part == TRAILER ? n < 14 : n == 0);

@@ -17,10 +17,10 @@ from talbot.rtl.tops import TOPS
 from talbot.verif.coverage.constants import constant_bits
 from talbot.verif.coverage.measure import Point, Transition, measure, sources_of
 from talbot.verif.coverage.ports import Recorded
-from talbot.verif.coverage.program import compile_program
 from talbot.verif.coverage.spi import transfers
 from talbot.verif.coverage.testplan import Exclusion, Machine, TestPlan, folder_of, load_plan, plan_file
 from talbot.verif.coverage.verdict import judge, matches, ranges
+from talbot.verif.verilated.program import compile_program
 
 CYCLES = [(1, 1, 0)] * 3 + [(1, 0, 1)] * 30 + [(0, 0, 1)] * 30  # go, reset, comparator
 

@@ -140,7 +140,7 @@ def test_an_input_that_is_not_free_is_found(tmp_path, changes, missing):
     "name, find, added, part",
     [
         ("edge_adc", "a_config: assume", "a_x: assume (threshold < 64);", "a_x: "),
-        ("reg_file", "if (first) a_reset", "a_x: assume (first || !reset);", "a_x: "),
+        ("reg_file_384x384_8", "if (first) a_reset", "a_x: assume (first || !reset);", "a_x: "),
         ("stream_9x13_2", "if (first) a_reset", "a_x: assume (first || decimation < 2 && !reset);", "a_x: "),
     ],
 )

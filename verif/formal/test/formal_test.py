@@ -12,7 +12,9 @@ from talbot.base.command import main
 from talbot.base.paths import ROOT
 from talbot.models.parameters import ParameterError
 from talbot.verif.formal import command, design, manifest
+from talbot.verif.formal.freedom import freedom
 from talbot.verif.formal.items import ProofsFile, failure
+from talbot.verif.formal.necessity import necessity
 from talbot.verif.formal.plan import pieces
 from talbot.verif.formal.proof import Twin, labels
 from talbot.verif.formal.prove import CoverResult, ProofResult, TwinResult, cover, prove, twin
@@ -91,30 +93,54 @@ def test_a_property_that_is_always_true_is_caught_through_its_twin(queue, tmp_pa
 def test_a_wrong_property_is_not_proven(queue, tmp_path):
     wrong = changed(queue, tmp_path, "assert (inside <= 2 &&", "assert (inside <= 1 &&")
     result = prove(dataclasses.replace(wrong, depth=8), "boolector", design.exported(wrong), design.wrapper(wrong))
-    assert result.result == "failed" and result.failing == ["p_room"]
+    assert result.result == "counterexample" and result.failing == ["p_room"]
 
 
 def test_the_proof_of_a_block_is_a_test_that_names_what_fails(queue, tmp_path):
     wrong = changed(queue, tmp_path, "assert (inside <= 2 &&", "assert (inside <= 1 &&")
     assert failure(queue, tmp_path / "kept") == ""
-    message = "byte_queue = failed by boolector: must be proven (p_room)"
+    message = (
+        "byte_queue = counterexample by boolector: must be proven (p_room; talbot formal --proof byte_queue --show)"
+    )
     twins = {"p_room": Twin("a text that a bug has changed", "")}
     assert failure(dataclasses.replace(wrong, depth=8, twins=twins), tmp_path / "kept") == message
     assert len(list((tmp_path / "kept").glob("*.json"))) == 1
 
 
-def test_what_only_induction_refutes_is_unknown(queue, tmp_path):
-    """A failed induction step is neither a counterexample nor a proof."""
+@pytest.fixture
+def loose(queue, tmp_path):
+    """The proof of the byte queue without its invariant of the count."""
     loose = changed(queue, tmp_path, "\\dut.count == inside && inside <= 2", "inside <= 3")
-    result = prove(dataclasses.replace(loose, depth=1), "boolector", design.exported(loose), design.wrapper(loose))
-    assert result.result == "unknown"
+    return dataclasses.replace(loose, depth=1)
+
+
+def test_what_only_induction_refutes_is_no_counterexample(loose):
+    result = prove(loose, "boolector", design.exported(loose), design.wrapper(loose))
+    assert result.result == "induction too weak"
     found = command.Outcome(loose, {"boolector": result}, NO_COVERS, {})
-    assert "= unknown by boolector: must be proven" in found.problems[0]
+    assert "= induction too weak by boolector: must be proven" in found.problems[0]
 
 
-def test_a_timeout_is_unknown(queue):
+def test_a_bug_that_the_induction_step_finds_is_a_counterexample_from_reset(queue):
+    texts, wrapper = design.broken(queue, design.exported(queue), design.wrapper(queue), "p_order")
+    result = prove(dataclasses.replace(queue, depth=1), "boolector", texts, wrapper)
+    assert result.result == "counterexample" and result.failing == ["p_order"]
+
+
+def test_a_timeout_is_neither(queue):
     late = dataclasses.replace(queue, timeout=0.01)
-    assert prove(late, "boolector", design.exported(late), design.wrapper(late)).result == "unknown"
+    arguments = late, design.exported(late), design.wrapper(late)
+    result = prove(late, "boolector", *arguments[1:])
+    assert result.result == "timeout"
+    found = command.Outcome(late, {"boolector": result}, cover(*arguments), {}, freedom=freedom(*arguments))
+    assert [line.split(":")[0] for line in found.problems] == [
+        "RunLength.byte_queue = timeout by boolector",
+        "RunLength.byte_queue.c_full = timeout",
+        "RunLength.byte_queue.c_through = timeout",
+        "RunLength.byte_queue",
+    ]
+    assert "inputs = timeout: " in found.problems[-1]
+    assert necessity(*arguments).undecided and not necessity(*arguments).needed
 
 
 def test_assumptions_that_contradict_each_other_reach_no_cover_point(queue, tmp_path):

@@ -10,7 +10,6 @@ from talbot.rtl.asp_chip.balance_rtl import Balance
 from talbot.rtl.harness.ports import Port, ports_of
 from talbot.rtl.harness.translate import translate_component
 from talbot.rtl.tops import build_top
-from talbot.verif.coverage.program import compile_program
 from talbot.verif.coverage.test.coverage_test import recorded, recorded_cycles
 from talbot.verif.coverage.testplan import folder_of
 from talbot.verif.mutation import command
@@ -19,6 +18,7 @@ from talbot.verif.mutation.equivalence import DIFFERENT, ENGINES, EQUIVALENT, co
 from talbot.verif.mutation.judge import SURVIVED, judge, mutated, one_mutant, own_tests
 from talbot.verif.mutation.mutants import Mutant, generate, shares, with_mutants
 from talbot.verif.mutation.trial import attempt
+from talbot.verif.verilated.program import compile_program
 
 pytestmark = pytest.mark.needs("yosys", "yosys-abc")
 

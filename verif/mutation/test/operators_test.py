@@ -7,7 +7,6 @@ import pytest
 from talbot.models.parameters import SensorParameters
 from talbot.rtl.harness.translate import translate_component
 from talbot.rtl.tops import build_top
-from talbot.verif.coverage.program import compile_program
 from talbot.verif.coverage.test.coverage_test import recorded_cycles
 from talbot.verif.mutation.equivalence import DIFFERENT, compare
 from talbot.verif.mutation.operators import (
@@ -20,6 +19,7 @@ from talbot.verif.mutation.operators import (
     rewritten,
     triggered,
 )
+from talbot.verif.verilated.program import compile_program
 
 PART = Module(True, {"a": 4, "b": 4, "c": 1, "q": 4}, ["a", "b", "q"], {"__const__X": 9})
 

@@ -6,7 +6,8 @@
 // every value FIRST..LAST of the input `mutant`, a fresh model each, to its first difference.
 // --points: Verilator's coverage; FILE.first has it after the first cycle, in which constants take their values.
 // --states: lines 'register reset from to times', of registers in consecutive cycles.
-// `program --drive MUTANT`: reads lines from stdin and writes the outputs (rtl/harness/icarus.py).
+// `program --drive MUTANT [--settled]`: reads lines from stdin and writes the outputs (rtl/harness/icarus.py), those
+// before the first edge as 0 unless --settled.
 
 #include <cstdint>
 #include <cstdio>
@@ -134,7 +135,7 @@ static long run(const std::vector<Cycle>& cycles, std::uint64_t mutant, bool all
   return first;
 }
 
-static int converse(std::uint64_t mutant) {
+static int converse(std::uint64_t mutant, bool known) {
   VerilatedContext context;
   context.randReset(2);
   context.randSeed(1);
@@ -144,7 +145,6 @@ static int converse(std::uint64_t mutant) {
   char* line = nullptr;
   std::size_t room = 0;
   std::string answer(OUT_BITS, '0');      // before the first edge, registers have no value
-  bool known = false;
   while (getline(&line, &room, stdin) > 0) {
     if (line[0] == '1') {
       known = true;
@@ -164,7 +164,7 @@ static int converse(std::uint64_t mutant) {
 }
 
 int main(int argc, char** argv) {
-  if (argc == 3 && !std::strcmp(argv[1], "--drive")) return converse(std::atol(argv[2]));
+  if ((argc == 3 || argc == 4) && !std::strcmp(argv[1], "--drive")) return converse(std::atol(argv[2]), argc == 4);
   const char *points = nullptr, *states = nullptr;
   long first = 0, last = 0;
   bool all = true;
