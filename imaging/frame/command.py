@@ -265,10 +265,10 @@ def _print_figures(s: dict[str, Any], folder: Path) -> None:
         print(f"  light field {calibrated}; with the true optics instead of the calibration {true}")
     if depth_line(s):
         print(f"  {depth_line(s)}")
-    if s["capture_error_codes"] is not None:
+    if s["quadrature_error_codes"] is not None:
         print(
             f"  captured through {s['camera']['views']} views along the pupil, "
-            f"{s['capture_error_codes']:.2f} codes RMS from 31"
+            f"quadrature {s['quadrature_error_codes']:.2f} codes RMS from 31"
             + ", the most: these err themselves"
             * (s["camera"]["views"] == 31)
         )
@@ -282,3 +282,5 @@ def _print_figures(s: dict[str, Any], folder: Path) -> None:
         print(f"  {light_line(s)}")
     print(f"  simulated at {s['rtl_cycles_per_s'] / 1e6:.1f} M cycles/s; wall clock {sum(s['wall_s'].values()):.1f} s")
     print(f"  look at {folder / 'report.html'}")
+    if s["hidden_light_codes"] is not None:
+        print(f"  light that the middle view does not see: {s['hidden_light_codes']:.2f} codes RMS of the differences")

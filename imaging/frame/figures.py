@@ -276,7 +276,8 @@ def _tools() -> dict[str, str]:
 def summarize_golden(result: GoldenResult) -> dict[str, Any]:
     """Figures of a frame that the golden chip can give: no cycles, no energy.
 
-    capture_error_codes: RMS of the captured differences against 31 x 31 views, on a probe.
+    quadrature_error_codes: RMS of the captured differences against 31 x 31 views, on a probe. hidden_light_codes: RMS,
+    there, of what the differences have of light that the middle view does not see, where the scene knows it.
     raw_bytes: one byte a sample sent. psnr_db: decoded samples against the noiseless analog values, peak 255 codes; of
     phase and amplitude, the amplitude alone. Figures of quality: docs/figures.md.
     """
@@ -294,7 +295,7 @@ def summarize_golden(result: GoldenResult) -> dict[str, Any]:
         | {"threshold": frame.threshold, "lanes": sensor.chip.lanes, "noise": request.noise, "seed": request.seed}
         | {"window": vars(frame.window), "mask": f"{frame.mask:#08x}", "decimation": frame.decimation}
         | {"camera": camera_of(result), "exposure": exposure_of(result)}
-        | {"capture_error_codes": result.exposed.views.error}
+        | {"quadrature_error_codes": result.exposed.views.error, "hidden_light_codes": result.exposed.views.hidden}
         | {"trims_at_end": trims_at_end(result.exposed.front_end.trim)}
         | {"phase": frame.phase, "pixels": int(golden.read.sum()), "samples": golden.samples}
         | {"conversions_made": golden.made, "conversions_left_out": golden.left_out}

@@ -42,7 +42,7 @@ def measure(point: tuple[float, float, int]) -> dict[str, Any]:
         "f_number": f_number,
         "focus_m": focus,
         "views": summary["camera"]["views"],
-        "capture_error_codes": summary["capture_error_codes"],
+        "quadrature_error_codes": summary["quadrature_error_codes"],
         "capture_s": seconds,
         "frame_ms": 1e3 * summary["frame_s_at_clock"],
         "integration_ms": 1e3 * summary["exposure"]["integration_s"],

@@ -11,7 +11,8 @@ from talbot.models.capture.pupil import Region, cells, integrate
 from talbot.models.parameters import AmpTiming, ParameterError, SensorParameters, check_int, check_real
 from talbot.models.pixel.trim import optical_gains
 from talbot.models.plan import LeftOut, Plan, codes_per_unit
-from talbot.models.scene import Scene
+from talbot.models.scene import Sampling, Scene
+from talbot.models.scene.views import Pictured, Shifted
 
 Values = npt.NDArray[np.float64]
 
@@ -32,12 +33,15 @@ class Views(NamedTuple):
     most : int
         Views along the pupil's diameter where most are needed.
     error : float or None
-        RMS error of the differences against REFERENCE views in codes, where they are measured; None where the scene
-        has no other views than its own.
+        Of the quadrature: RMS error of the differences against REFERENCE views in codes, where they are measured; None
+        where the scene has no other views than its own.
     left_out : tuple of LeftOut
         Views that are not rendered.
     tried : tuple of (int, float, float)
         Views, their RMS error in codes and their time in s, where they are measured.
+    hidden : float or None
+        RMS in codes, there, by which the differences of the middle view and its disparity are off: light that other
+        views show and the middle view does not. None where the scene does not know that light.
     """
 
     regions: tuple[Region, ...]
@@ -45,6 +49,7 @@ class Views(NamedTuple):
     error: float | None
     left_out: tuple[LeftOut, ...] = ()
     tried: tuple[tuple[int, float, float], ...] = ()
+    hidden: float | None = None
 
 
 def choose_views(
@@ -92,12 +97,14 @@ def choose_views(
         return Views((Region(scene.views, everywhere),), scene.views, None)
     probe = _Probe(scene, sensor, timing)
     if views is not None:
-        error = _rms(probe.error(views))
-        return Views((Region(views, everywhere),), views, error, (), tuple(probe.tried))
+        error = probe.error(views)
+        hidden = probe.hidden(views, error)
+        return Views((Region(views, everywhere),), views, _rms(error), (), tuple(probe.tried), hidden)
     grid, goal = probe.error(scene.views), (SAFETY * bound) ** 2
     if _rms(grid) ** 2 <= goal:
         saved = _saved(scene, everywhere, scene.views)
-        return Views((Region(scene.views, everywhere),), scene.views, _rms(grid), saved, tuple(probe.tried))
+        hidden = probe.hidden(scene.views, grid)
+        return Views((Region(scene.views, everywhere),), scene.views, _rms(grid), saved, tuple(probe.tried), hidden)
     spans = _spans(scene, sensor)
     order = np.argsort(spans[probe.pixels], kind="stable")
     most, error = REFERENCE, np.zeros_like(grid)
@@ -112,7 +119,7 @@ def choose_views(
     quiet = spans <= (rising[few[-1]] if few.size else -1.0)
     rms = _rms(np.where(quiet[probe.pixels], grid, error))
     regions = tuple(r for r in (Region(scene.views, quiet), Region(most, ~quiet)) if r.pixels.any())
-    return Views(regions, most, rms, _saved(scene, quiet, most), tuple(probe.tried))
+    return Views(regions, most, rms, _saved(scene, quiet, most), tuple(probe.tried), probe.hidden(most, error))
 
 
 def captured(
@@ -162,17 +169,27 @@ class _Probe:
         gains = optical_gains(sensor.tile, sensor.optics)
         self.gains = gains[sensor.tile.type_map(*scene.shape)][self.pixels]
         self.tried: list[tuple[int, float, float]] = []
-        self.reference = self._differences(REFERENCE)
+        self.reference = self._differences(scene, REFERENCE)
 
     def error(self, views: int) -> Values:
         """Error of a number of views in codes, (pixels,)."""
         start = perf_counter()
-        error = self._differences(views) - self.reference
+        error = self._differences(self.scene, views) - self.reference
         self.tried.append((views, _rms(error), perf_counter() - start))
         return error
 
-    def _differences(self, views: int) -> Values:
-        a, b = integrate(self.scene, self.sensor, Region(views, self.pixels))[0][:, self.pixels]
+    def hidden(self, views: int, error: Values) -> float | None:
+        """RMS of `Views.hidden` through as many views as have this error; None where the scene does not know it."""
+        scene = self.scene
+        if not callable(scene.render) or isinstance(scene.render, Pictured | Shifted) or scene.disparity is None:
+            return None
+        middle = (np.asarray(values, float) for values in (scene.image, scene.disparity))
+        alone = Pictured(*middle, Sampling.of(self.sensor))
+        visible = Scene(scene.name, scene.views, None, scene.image, scene.disparity, render=alone)
+        return _rms(self._differences(visible, views) - self.reference - error)
+
+    def _differences(self, scene: Scene, views: int) -> Values:
+        a, b = integrate(scene, self.sensor, Region(views, self.pixels))[0][:, self.pixels]
         return self.unit * (a - self.gains * b)
 
 

@@ -94,7 +94,7 @@ def test_a_slower_lens_takes_longer_and_fewer_views(tables):
     times, views = ([r[name] for r in lenses] for name in ("frame_ms", "views"))
     assert times == sorted(times) and len(set(times)) == len(times) == 2
     assert views == sorted(views, reverse=True) and views[0] > views[-1]
-    assert len({r["focus_m"] for r in rows}) == 2 and all(r["capture_error_codes"] < 0.5 for r in rows)
+    assert len({r["focus_m"] for r in rows}) == 2 and all(r["quadrature_error_codes"] < 0.5 for r in rows)
 
 
 def test_more_nodes_err_less_for_uniform_light(few):

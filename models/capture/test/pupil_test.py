@@ -10,6 +10,7 @@ from talbot.models.afe import FrontEnd, trim_codes
 from talbot.models.capture import CaptureOperator, Exposure, Region, capture, choose_views, integrate
 from talbot.models.capture.pupil import cells
 from talbot.models.parameters import (
+    AmpTiming,
     ArrayParameters,
     CameraParameters,
     FrameParameters,
@@ -21,6 +22,7 @@ from talbot.models.pixel import measured_gains, optical_gains
 from talbot.models.pixel.weights import raw_weights
 from talbot.models.plan import codes_per_unit, plan
 from talbot.models.scene import Sampling, load
+from talbot.models.scene.views import Pictured
 
 ROWS, COLS = 24, 36
 LENSES = {"default": (1.2, 0.207), "slower": (2.0, 0.18), "farther": (2.8, 0.26)}  # f-number, focus
@@ -251,3 +253,13 @@ def test_impossible_views():
     for arguments, field in (({"views": 32}, "views"), ({"bound": 0.0}, "bound")):
         with pytest.raises(ParameterError, match=field):
             choose_views(scene, sensor, FrameParameters(sensor.full_window).timing, **arguments)
+
+
+def test_light_that_the_middle_view_does_not_see():
+    """None where the views are those of the middle one, some between leaves, unknown of a photograph"""
+    sensor = SensorParameters(array=ArrayParameters(48, 48))
+    leaves, coins = (load(name, Sampling.of(sensor)) for name in ("leaves:7", "coins"))
+    seen = Pictured(leaves.image, leaves.disparity, Sampling.of(sensor))
+    alone = replace(leaves, field=None, render=lambda mask: seen(mask))
+    hidden = [choose_views(scene, sensor, AmpTiming(), 7).hidden for scene in (alone, leaves, coins)]
+    assert hidden[0] < 1e-9 and hidden[1] > 0.5 and hidden[2] is None
