@@ -247,7 +247,15 @@ def camera_of(a: Namespace, camera: CameraParameters) -> CameraParameters:
 
 
 def _print_figures(s: dict[str, Any], folder: Path) -> None:
-    from talbot.imaging.frame.figures import camera_line, depth_line, energy_line, exposure_line, light_line, trims_line
+    from talbot.imaging.frame.figures import (
+        camera_line,
+        depth_line,
+        energy_line,
+        exposure_line,
+        full_line,
+        light_line,
+        trims_line,
+    )
     from talbot.imaging.frame.merit import against, decibels, light_field, sent
 
     print(
@@ -256,6 +264,8 @@ def _print_figures(s: dict[str, Any], folder: Path) -> None:
     )
     print(f"  {camera_line(s)}")
     print(f"  {exposure_line(s)}")
+    if full_line(s):
+        print(f"  {full_line(s)}")
     print(f"  {s['stream_bytes']:,} bytes for {s['raw_bytes']:,} values ({s['compression_ratio']:.2f}:1); {sent(s)}")
     print(f"  2-D image: {against(s)}")
     if s["light_field_psnr_db"] is not None:
@@ -272,6 +282,8 @@ def _print_figures(s: dict[str, Any], folder: Path) -> None:
             + ", the most: these err themselves"
             * (s["camera"]["views"] == 31)
         )
+    if s["hidden_light_codes"] is not None:
+        print(f"  light that the middle view does not see: {s['hidden_light_codes']:.2f} codes RMS of the differences")
     if trims_line(s):
         print(f"  {trims_line(s)}")
     print(
@@ -282,5 +294,3 @@ def _print_figures(s: dict[str, Any], folder: Path) -> None:
         print(f"  {light_line(s)}")
     print(f"  simulated at {s['rtl_cycles_per_s'] / 1e6:.1f} M cycles/s; wall clock {sum(s['wall_s'].values()):.1f} s")
     print(f"  look at {folder / 'report.html'}")
-    if s["hidden_light_codes"] is not None:
-        print(f"  light that the middle view does not see: {s['hidden_light_codes']:.2f} codes RMS of the differences")

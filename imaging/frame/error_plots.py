@@ -37,7 +37,9 @@ def _threshold(result: FrameResult, summary: dict[str, Any]) -> Markup:
     sensor, exposed = result.request.sensor, result.exposed
     frame = replace(result.request.frame, threshold=0, frame_number=0)
     program = str(result.program)  # the name of its folder is its content
-    measured = kept("thresholds", swept, program, sensor, frame, exposed.samples, exposed.ideal, exposed.front_end)
+    measured = kept(
+        "thresholds", swept, program, sensor, frame, exposed.samples, exposed.ideal, exposed.front_end, result.counted
+    )
     points, labelled = [], 0
     for threshold, size, cycles, quality in measured:
         if quality is None:
@@ -53,19 +55,25 @@ def _threshold(result: FrameResult, summary: dict[str, Any]) -> Markup:
 
 
 def swept(
-    program: str, sensor: SensorParameters, frame: FrameParameters, samples: Values, ideal: Values, front_end: FrontEnd
+    program: str,
+    sensor: SensorParameters,
+    frame: FrameParameters,
+    samples: Values,
+    ideal: Values,
+    front_end: FrontEnd,
+    counted: npt.NDArray[np.bool_],
 ) -> list[tuple[int, int, int, float | None]]:
     """Run ``frame`` through the Verilog at each threshold of LADDER: (threshold, bytes, cycles, SNR in dB).
 
-    samples, ideal: of one exposure, as in `Exposed`. Raises ToolError.
+    samples, ideal: of one exposure, as in `Exposed`. counted: pixels that the SNR is of. Raises ToolError.
     """
 
     def at(threshold: int) -> tuple[int, int, int, float | None]:
         changed = replace(frame, threshold=threshold)
         chip = hardware.simulate(Path(program), sensor, changed, samples, front_end)
         golden = golden_frame(samples, sensor, changed, front_end)
-        error = decoding_error(golden.sent, ideal, golden.read, changed)
-        return threshold, len(chip.stream), chip.status["cycles"], snr(error, ideal[golden.read])
+        error = decoding_error(golden.sent, ideal, counted, changed)
+        return threshold, len(chip.stream), chip.status["cycles"], snr(error, ideal[counted])
 
     with ThreadPoolExecutor(SIMULATORS) as pool:
         return list(pool.map(at, LADDER))

@@ -170,7 +170,8 @@ def camera_of(result: GoldenResult) -> dict[str, float | None]:
 def exposure_of(result: GoldenResult) -> dict[str, Any]:
     """Return how long a row integrates, and the light: lux of the room, to volts and codes of a white diode.
 
-    white_electrons: before the first common-mode reset. deviating_rows: rows that integrated other than the formula
+    white_electrons: before the first common-mode reset, if no well were full; white_volts, white_codes: of the well.
+    deviating_rows: rows that integrated other than the formula
     says, by the pins of the chip; of the golden chip none.
     """
     request, timing = result.request, result.request.frame.exposing
@@ -182,6 +183,7 @@ def exposure_of(result: GoldenResult) -> dict[str, Any]:
     if request.frame.mode != "tof":
         light = request.room.white(sensor.array.pitch, sensor.optics.nu_max)._asdict()
     electrons = e.white_current * cycles[0] / sensor.chip.f_clk / ELEMENTARY_CHARGE
+    held = min(electrons, e.full_well)
     return (
         {
             "rows": timing.exposure,
@@ -189,7 +191,8 @@ def exposure_of(result: GoldenResult) -> dict[str, Any]:
             "slot_cycles": slot_cycles(timing, request.frame.mode == "tof"),
         }
         | {"integration_cycles": sum(cycles), "integration_s": seconds, "white": light, "white_electrons": electrons}
-        | {"white_volts": e.swing * electrons / e.full_well, "white_codes": electrons / e.lsb_electrons}
+        | {"white_volts": e.swing * held / e.full_well, "white_codes": held / e.lsb_electrons}
+        | {"full_well_electrons": e.full_well}
         | {"deviating_rows": sum(measured[row] != sum(cycles) for row in rows)}
     )
 
@@ -204,10 +207,21 @@ def exposure_line(summary: dict[str, Any]) -> str:
     if lit:
         text += f", {lit['room_lux']:g} lux: {lit['sensor_lux']:.3g} lux at the pixels, {lit['irradiance']:.3g} W/m2"
         text += f", {1e12 * lit['current']:.3g} pA"
-    return (
-        f"{text}; white gives {x['white_electrons']:,.0f} electrons a diode = {x['white_volts']:.2g} V"
-        f" = {x['white_codes']:.3g} codes"
-    )
+    volts = f"= {x['white_volts']:.2g} V = {x['white_codes']:.3g} codes"
+    if x["white_electrons"] <= x["full_well_electrons"]:
+        return f"{text}; white gives {x['white_electrons']:,.0f} electrons a diode {volts}"
+    times = x["white_electrons"] / x["full_well_electrons"]
+    well = f"the full well of {x['full_well_electrons']:,.0f} electrons {volts}"
+    return f"{text}; white is {times:.3g} times {well}, at which it clips"
+
+
+def full_line(summary: dict[str, Any]) -> str:
+    """Pixels with a full well, which no figure counts, '' if none."""
+    full, pixels = summary["full_pixels"], summary["pixels"]
+    if not full:
+        return ""
+    share = 100 * full / pixels
+    return f"{full:,} of {pixels:,} pixels ({share:.3g} %) have a full well: no figure counts them"
 
 
 def camera_line(summary: dict[str, Any]) -> str:
@@ -285,8 +299,9 @@ def summarize_golden(result: GoldenResult) -> dict[str, Any]:
     sensor, frame = request.sensor, request.frame
     ideal, marks = result.exposed.ideal, MARK.size * decoded.segments
     sent, size = golden.read.sum() * golden.sent.shape[2], len(result.stream)
-    span = np.ptp(ideal_samples(ideal, frame)[golden.read]) if golden.read.any() else 0.0
-    error = decoding_error(decoded.samples, ideal, golden.read, frame)
+    counted, full = result.counted, int((golden.read & result.exposed.full).sum())
+    span = np.ptp(ideal_samples(ideal, frame)[counted]) if counted.any() else 0.0
+    error = decoding_error(decoded.samples, ideal, counted, frame)
     rest = size - HEADER_BYTES - TRAILER_BYTES - marks
     parts = {"header": HEADER_BYTES, "samples": rest, "marks": marks, "trailer": TRAILER_BYTES}
     ratio = float(sent) / max(size, 1)
@@ -297,7 +312,7 @@ def summarize_golden(result: GoldenResult) -> dict[str, Any]:
         | {"camera": camera_of(result), "exposure": exposure_of(result)}
         | {"quadrature_error_codes": result.exposed.views.error, "hidden_light_codes": result.exposed.views.hidden}
         | {"trims_at_end": trims_at_end(result.exposed.front_end.trim)}
-        | {"phase": frame.phase, "pixels": int(golden.read.sum()), "samples": golden.samples}
+        | {"phase": frame.phase, "pixels": int(golden.read.sum()), "full_pixels": full, "samples": golden.samples}
         | {"conversions_made": golden.made, "conversions_left_out": golden.left_out}
         | {"comparator_decisions": golden.decisions}
         | {"stream_bytes": size, "raw_bytes": int(sent), "bytes": parts, "compression_ratio": ratio}

@@ -21,7 +21,17 @@ from talbot.imaging.frame.request import FrameRequest
 from talbot.imaging.frame.result import Exposed, FrameResult, GoldenResult
 from talbot.imaging.simulate.frame import Waves
 from talbot.models.afe import FrontEnd, trim_codes, trim_gain
-from talbot.models.capture import Exposure, Region, Views, captured, exposed, instants, integrate, moving_currents
+from talbot.models.capture import (
+    Exposure,
+    Region,
+    Views,
+    captured,
+    exposed,
+    full_pixels,
+    instants,
+    integrate,
+    moving_currents,
+)
 from talbot.models.capture import expose as expose_pair
 from talbot.models.chip import GoldenFrame, front_end_of, golden_frame
 from talbot.models.digital.stream import decode_stream
@@ -99,7 +109,7 @@ def expose(
 
 def _samples(
     request: FrameRequest, scene: Scene, todo: Plan, front_end: FrontEnd | None, views: Views | None, number: int
-) -> tuple[Views, FrontEnd, Values, Values, Values]:
+) -> tuple[Views, FrontEnd, Values, Values, Values, npt.NDArray[np.bool_]]:
     """All of an exposure but its scene and plan; the arguments as of `expose`."""
     sensor, frame = request.lit, request.frame
     front_end = numbered(front_end or trimmed(request), sensor, number)
@@ -112,7 +122,8 @@ def _samples(
     noisy = diodes_of(request, pairs, front_end, number)
     clean = diodes_of(replace(request, noise=0.0), pairs, front_end, number) if request.noise else noisy
     ideal = np.moveaxis(front_end.values(clean, frame.mode), 0, 2)
-    return views, front_end, noisy, clean, ideal
+    exposure, balance = _exposure(request, request.noise, number), trim_gain(front_end.trim)
+    return views, front_end, noisy, clean, ideal, full_pixels(pairs, sensor, exposure, balance)
 
 
 def trimmed(request: FrameRequest) -> FrontEnd:

@@ -108,7 +108,7 @@ def error_maps(result: GoldenResult, summary: dict[str, Any]) -> list[Picture]:
     out = []
     if frame.mode == "edge":
         error = np.full(golden.read.shape, np.nan)
-        error[golden.read] = decoding_error(decoded.samples, result.exposed.ideal, golden.read, frame)[:, 0]
+        error[result.counted] = decoding_error(decoded.samples, result.exposed.ideal, result.counted, frame)[:, 0]
         caption = "error of the decoded differences: less those without noise, window and rounding; "
         caption += f"SNR {decibels(summary['snr_db'])}"
         out.append(_error("differences", caption, error, "codes"))

@@ -58,7 +58,7 @@ def snr(error: Values, signal: Values) -> float | None:
 
 def sent_quality(result: GoldenResult) -> dict[str, float | None]:
     """Return figures of the decoded samples against the noiseless ones: snr_db, snr_nothing_sent_db, edges, phases."""
-    frame, read, samples = result.request.frame, result.golden.read, result.decoded.samples
+    frame, read, samples = result.request.frame, result.counted, result.decoded.samples
     ideal = ideal_samples(result.exposed.ideal, frame)[read]
     error = decoding_error(samples, result.exposed.ideal, read, frame)
     phases: dict[str, float | None] = {}
@@ -107,12 +107,14 @@ def image_figures(result: GoldenResult, size: int, codecs: Sequence[str], versio
     """
     part = part_read(result.golden.read)
     truth, seen = np.asarray(result.exposed.scene.image, float)[part], coded_sum(result)[part]
+    clear = ~result.exposed.full[part]
     images = {"": result.image[part], "_gray": np.zeros_like(truth), "_sum": seen}
     images |= {f"_{name}": coded(seen, name, size) for name in codecs}
     out: dict[str, float | None] = {}
     for name, shown in images.items():
-        out[f"image_psnr{name}_db"] = None if shown is None else psnr_without_mean_db(shown, truth)
-        out[f"image_ssim{name}"] = None if shown is None else ssim(shown, truth)
+        seen_at_all = shown is not None and clear.any()
+        out[f"image_psnr{name}_db"] = psnr_without_mean_db(shown[clear], truth[clear]) if seen_at_all else None
+        out[f"image_ssim{name}"] = ssim(shown, truth, clear) if seen_at_all else None
     return out
 
 
@@ -122,15 +124,17 @@ def part_read(read: npt.NDArray[np.bool_]) -> tuple[slice, slice]:
     return slice(rows[0], rows[-1] + 1), slice(cols[0], cols[-1] + 1)
 
 
-def ssim(image: Values, truth: Values) -> float | None:
-    """Structural similarity after the image has the mean of the truth, peak 1."""
+def ssim(image: Values, truth: Values, clear: npt.NDArray[np.bool_] | None = None) -> float | None:
+    """Structural similarity after the image has the mean of the truth, peak 1; clear: where, None is everywhere."""
     if min(truth.shape) < SSIM_WINDOW:
         return None
     from skimage.metrics import structural_similarity  # it imports much of SciPy
 
-    level = image - image.mean() + truth.mean()
-    similarity: Any = structural_similarity(level, truth, data_range=1.0, win_size=SSIM_WINDOW)
-    return float(similarity)
+    clear = np.ones(truth.shape, bool) if clear is None else clear
+    level = image - image[clear].mean() + truth[clear].mean()
+    _, similarity = structural_similarity(level, truth, data_range=1.0, win_size=SSIM_WINDOW, full=True)
+    inner = (slice(SSIM_WINDOW // 2, -(SSIM_WINDOW // 2)),) * 2  # whole windows
+    return float(similarity[inner][clear[inner]].mean()) if clear[inner].any() else None
 
 
 def coded_sum(result: GoldenResult) -> Values:
@@ -155,11 +159,16 @@ def field_quality(result: GoldenResult) -> dict[str, float | str | None]:
     truth = np.asarray(result.exposed.scene.full_light_field, float)[part]
     field = result.estimate.light_field[part]
     copied = np.broadcast_to(result.image[part[1:]], truth.shape)
+    clear = ~result.exposed.full[part[1:]]
+
+    def _psnr(estimate: Values) -> float | None:
+        return psnr_db(estimate[..., clear], truth[..., clear]) if clear.any() else None
+
     out: dict[str, float | str | None] = {"light_field_method": result.light_field_method}
-    out |= {"light_field_psnr_db": psnr_db(field, truth), "light_field_psnr_copied_db": psnr_db(copied, truth)}
+    out |= {"light_field_psnr_db": _psnr(field), "light_field_psnr_copied_db": _psnr(copied)}
     if result.request.calibration:
         true = replace(result, request=replace(result.request, calibration=None))
-        out["light_field_psnr_true_optics_db"] = psnr_db(true.estimate.light_field[part], truth)
+        out["light_field_psnr_true_optics_db"] = _psnr(true.estimate.light_field[part])
     return out
 
 
@@ -176,10 +185,10 @@ def depth_quality(result: GoldenResult) -> dict[str, float | None]:
 
 
 def depth_map(result: GoldenResult) -> Values:
-    """Return the depth in time of flight, (rows, cols) in m, NaN where there is no amplitude."""
+    """Return the depth in time of flight, (rows, cols) in m, NaN where there is no amplitude or a well is full."""
     phase, strength = result.echo
     depth = depth_of(phase, result.request.sensor.electrical.f_mod)
-    return np.where(result.golden.read & (strength > 0), depth, np.nan)
+    return np.where(result.counted & (strength > 0), depth, np.nan)
 
 
 def depth_error(result: GoldenResult) -> Values | None:
@@ -192,11 +201,14 @@ def depth_error(result: GoldenResult) -> Values | None:
 
 
 def image_error(result: GoldenResult) -> Values:
-    """The 2-D image, brought to the mean of the scene's centre view, less this view; NaN where nothing is read."""
+    """The 2-D image, brought to the mean of the scene's centre view, less this view.
+
+    NaN where nothing is read and where a well is full.
+    """
     part = part_read(result.golden.read)
     truth, error = np.asarray(result.exposed.scene.image, float)[part], np.full(result.image.shape, np.nan)
     error[part] = result.image[part] - result.image[part].mean() + truth.mean() - truth
-    return error
+    return np.where(result.exposed.full, np.nan, error)
 
 
 def quality(result: GoldenResult) -> dict[str, Any]:

@@ -11,7 +11,15 @@ from PIL.Image import Image
 
 from talbot.base import page
 from talbot.base.page import Picture, Scale, Tile
-from talbot.imaging.frame.figures import camera_line, digital_line, energy_line, exposure_line, light_line, trims_line
+from talbot.imaging.frame.figures import (
+    camera_line,
+    digital_line,
+    energy_line,
+    exposure_line,
+    full_line,
+    light_line,
+    trims_line,
+)
 from talbot.imaging.frame.merit import decibels, nothing_sent, table
 from talbot.imaging.frame.pictures import sprite
 from talbot.models.parameters.sources import Sourced
@@ -82,6 +90,7 @@ def render(
         "digital": digital_line(summary),
         "light": light_line(summary),
         "trims": trims_line(summary),
+        "full": full_line(summary),
     }
     shown = {"pictures": pictures, "sheets": sheets, "views": views, "where": where, "errors": errors}
     return page.render(

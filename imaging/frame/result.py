@@ -34,7 +34,8 @@ class Exposed:
 
     views: how many views of which pixels.
     samples: (taps, rows, cols, 2), what the front end samples. clean: the same without noise. ideal: (rows, cols,
-    subs), the values ahead of the converters, in LSB, of the clean ones.
+    subs), the values ahead of the converters, in LSB, of the clean ones. full: (rows, cols), pixels with a full well,
+    whose values no figure counts.
     """
 
     scene: Scene
@@ -44,6 +45,7 @@ class Exposed:
     samples: npt.NDArray[np.float64]
     clean: npt.NDArray[np.float64]
     ideal: npt.NDArray[np.float64]
+    full: npt.NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,12 +74,18 @@ class GoldenResult:
         sensor = calibration.applied(sensor) if calibration else sensor
         return replace(sensor, optics=replace(sensor.optics, views=self.exposed.scene.views))
 
+    @property
+    def counted(self) -> npt.NDArray[np.bool_]:
+        """Pixels that are read and have no full well: those that the figures are of, (rows, cols)."""
+        return np.asarray(self.golden.read & ~self.exposed.full)
+
     @cached_property
     def rebuilt(self) -> Rebuilt:
         """The 2-D image rebuilt from the decoded edges and the scene's disparity."""
         exposed, edges = self.exposed, self.decoded.samples[..., 0]
         trim, timing = exposed.front_end.trim, self.request.frame.exposing
-        return kept("rebuilt", rebuild, edges, self.decoded.read, exposed.scene, self.sensor, trim, timing)
+        read = self.decoded.read & ~exposed.full
+        return kept("rebuilt", rebuild, edges, read, exposed.scene, self.sensor, trim, timing)
 
     @property
     def edges(self) -> npt.NDArray[np.float64]:

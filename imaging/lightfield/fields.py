@@ -67,15 +67,16 @@ def read_back(
     methods = applicable(operator) if set(methods) == {*METHODS} else methods
     for name in methods:
         check_method(name, operator)
-    free, estimates, figured = baselines(result.image, seen), {}, {}
+    clear = result.counted
+    free, estimates, figured = baselines(result.image, seen, clear), {}, {}
     for name in each(methods, "method", str):
         got, seconds = measure(name, estimator, operator, sent)
         got = unsure(got, bad, estimator)
         float_got = measure(name, estimator, operator, ideal)[0]
         estimates[name] = got._replace(light_field=got.light_field * corners)
-        figured[name] = figures(got.light_field * corners, seen, free["sum_image_psnr_db"]) | seconds
+        figured[name] = figures(got.light_field * corners, seen, free["sum_image_psnr_db"], clear) | seconds
         figured[name]["left_out"] = got.plain
-        figured[name]["psnr_db_float"] = psnr_db(float_got.light_field * corners, seen)
+        figured[name]["psnr_db_float"] = _psnr(float_got.light_field * corners, seen, clear)
     summary = about(result) | {"methods": figured, "best": BEST, "baselines": free}
     if result.request.calibration:
         note("with the true optics")
@@ -93,14 +94,19 @@ def _by_truth(
     true = replace(result, request=replace(result.request, calibration=None))
     estimator, operator, corners = estimator_of(true, prior), CaptureOperator(true.sensor), reached(true)
     estimates = {name: measure(name, estimator, operator, sent)[0].light_field for name in methods}
-    return {name: psnr_db(field * corners, seen) for name, field in estimates.items()}
+    return {name: _psnr(field * corners, seen, true.counted) for name, field in estimates.items()}
 
 
-def baselines(image: Values, truth: Values) -> dict[str, float | None]:
-    """Return the baselines: the sum image in every view, and its mean."""
+def baselines(image: Values, truth: Values, clear: npt.NDArray[np.bool_]) -> dict[str, float | None]:
+    """Return the baselines: the sum image in every view, and its mean. clear: pixels that count, (rows, cols)."""
     gray = np.full(truth.shape, image.mean(), np.float32)
     copied = np.broadcast_to(image, truth.shape)
-    return {"sum_image_psnr_db": psnr_db(copied, truth), "gray_psnr_db": psnr_db(gray, truth)}
+    return {"sum_image_psnr_db": _psnr(copied, truth, clear), "gray_psnr_db": _psnr(gray, truth, clear)}
+
+
+def _psnr(estimate: Values, truth: Values, clear: npt.NDArray[np.bool_]) -> float | None:
+    """Return the PSNR in dB of the pixels that are ``clear``, None where none is."""
+    return psnr_db(estimate[..., clear], truth[..., clear]) if clear.any() else None
 
 
 def depth_figures(result: GoldenResult, estimate: Estimate) -> dict[str, float | None]:

@@ -10,14 +10,20 @@ Values = npt.NDArray[np.floating]
 SSIM_WINDOW = 7  # px
 
 
-def figures(estimate: Values, truth: Values, free: float | None) -> dict[str, float | None]:
+def figures(
+    estimate: Values, truth: Values, free: float | None, clear: npt.NDArray[np.bool_] | None = None
+) -> dict[str, float | None]:
     """Return PSNR, SSIM (mean of the views), gain over the copied image and parallax of a light field.
 
     slope, correlation: of the difference of opposite outer views, horizontal and vertical, to the true one; None where
-    the true views are equal. free: PSNR (dB) of the copied sum image, which the gain is against.
+    the true views are equal. free: PSNR (dB) of the copied sum image, which the gain is against. clear: pixels that
+    count in all but SSIM, (rows, cols); None is all.
     """
-    psnr = psnr_db(estimate, truth)
-    slope, correlation = parallax(estimate, truth)
+    if clear is not None and not clear.any():
+        return dict.fromkeys(("psnr_db", "ssim", "gain_db", "slope", "correlation"))
+    some = slice(None) if clear is None or clear.all() else clear
+    psnr = psnr_db(estimate[..., some], truth[..., some])
+    slope, correlation = parallax(estimate[..., some], truth[..., some])
     gain = None if psnr is None or free is None else psnr - free
     return {"psnr_db": psnr, "ssim": ssim(estimate, truth), "gain_db": gain, "slope": slope, "correlation": correlation}
 

@@ -13,8 +13,8 @@ from talbot.imaging.frame.result import FrameResult
 def of_frame(result: FrameResult) -> dict[str, Any]:
     """Figures of a frame, as of summary.json of `talbot sim` (imaging/frame/figures.py); SNR against nothing sent."""
     golden, chip, frame, ideal = result.golden, result.chip, result.request.frame, result.exposed.ideal
-    error = decoding_error(result.decoded.samples, ideal, golden.read, frame)
-    signal = ideal_samples(ideal, frame)[golden.read]
+    error = decoding_error(result.decoded.samples, ideal, result.counted, frame)
+    signal = ideal_samples(ideal, frame)[result.counted]
     signal = signal if frame.mode == "edge" else signal - signal.mean(0)
     energy = energy_of(result)
     return {

@@ -1,7 +1,7 @@
 """Capture: the light field becomes the samples that the analog front end converts."""
 
 from talbot.models.capture.expose import Exposure, expose
-from talbot.models.capture.frame import capture, currents, exposed
+from talbot.models.capture.frame import capture, currents, exposed, full_pixels
 from talbot.models.capture.moving import instants, moving_currents
 from talbot.models.capture.operator import CaptureOperator
 from talbot.models.capture.pupil import Region, cells, integrate
@@ -21,6 +21,7 @@ __all__ = [
     "currents",
     "expose",
     "exposed",
+    "full_pixels",
     "instants",
     "integrate",
     "moving_currents",

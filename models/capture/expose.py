@@ -1,6 +1,7 @@
 """Exposure: photocurrent becomes the samples of the analog front end, in SI units, with noise."""
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, NamedTuple
 
@@ -19,6 +20,8 @@ from talbot.models.parameters import (
 )
 
 NOISE_MAX = 100.0
+SIGMAS = 3.0  # of its noise, by which a well that counts as full may be below a full one
+NEAR = 0.5  # of a full well, which that is at most
 
 
 @dataclass(frozen=True)
@@ -139,20 +142,9 @@ def expose(
         raise ParameterError(f"pair = {pair.dtype} {pair.shape}: must be (2, rows, cols), finite and not negative")
     e, n = exposure.electrical, exposure.noise
     dtype = pair.dtype
-    moving = exposure.generator(1 + tap)
     pixels, columns = _fixed_pattern(e, n, exposure.seed, pair.shape, dtype)
-    pair, none = np.ascontiguousarray(pair), np.empty((0, 0, 0), dtype)
-
-    resets = exposure.generator(301 + tap)
-    g = dtype.type(1) if balance is None else np.asarray(balance, dtype)
-    wells = np.zeros(pair.shape, dtype)
-    for number, seconds in enumerate(exposure.intervals):
-        if number:
-            common = np.minimum(wells[0] / g, wells[1])
-            wells[0] -= g * common
-            wells[1] -= common
-            wells += _draw(resets, pair.shape, dtype, e.ktc_noise * n)
-        collect(wells, pair, pixels, dtype.type(seconds), moving.standard_normal(pair.shape, dtype) if n else none)
+    none = np.empty((0, 0, 0), dtype)
+    *_, wells = _filled(pair, exposure, pixels, balance, tap)
     z, pink = none, np.empty((0, 0, 0))
     if n:
         z = exposure.generator(201 + tap).standard_normal(pair.shape, dtype) if e.read_noise else none
@@ -160,6 +152,52 @@ def expose(
     out = np.empty((*pair.shape[1:], 2), dtype)
     read(out, wells, pixels, z, pink, e.flicker_noise, columns, n)
     return out
+
+
+def full_wells(
+    pair: npt.NDArray[np.floating], exposure: Exposure, balance: npt.ArrayLike | None = None
+) -> npt.NDArray[np.bool_]:
+    """Tell pixels one of whose wells is full at the end of an interval, or may be with its noise.
+
+    Their sum and difference are those of the wells, not of the light.
+
+    Parameters
+    ----------
+    pair, exposure, balance
+        As in `expose`.
+
+    Returns
+    -------
+    bool (rows, cols)
+        True where a well without noise reaches a full one less `SIGMAS` of shot noise and gain, at most `NEAR` of it.
+    """
+    e, clear = exposure.electrical, replace(exposure, noise=0.0)
+    near = min(SIGMAS * exposure.noise * float(np.hypot(1 / np.sqrt(e.full_well), e.gain_fpn)), NEAR)
+    pixels, _ = _fixed_pattern(e, 0.0, exposure.seed, pair.shape, pair.dtype)
+    out = np.zeros(pair.shape[1:], bool)
+    for wells in _filled(pair, clear, pixels, balance, 0):
+        out |= (wells >= (1 - near) * e.full_well).any(0)
+    return out
+
+
+def _filled(
+    pair: npt.NDArray[np.floating], exposure: Exposure, pixels: Pixels, balance: npt.ArrayLike | None, tap: int
+) -> Iterator[npt.NDArray[np.floating]]:
+    """Electrons at the end of every interval, before the reset after it; the same array (2, rows, cols)."""
+    dtype, noise = pair.dtype, exposure.noise
+    moving, resets = exposure.generator(1 + tap), exposure.generator(301 + tap)
+    pair, none = np.ascontiguousarray(pair), np.empty((0, 0, 0), dtype)
+    g = dtype.type(1) if balance is None else np.asarray(balance, dtype)
+    wells = np.zeros(pair.shape, dtype)
+    for number, seconds in enumerate(exposure.intervals):
+        if number:
+            common = np.minimum(wells[0] / g, wells[1])
+            wells[0] -= g * common
+            wells[1] -= common
+            wells += _draw(resets, pair.shape, dtype, exposure.electrical.ktc_noise * noise)
+        z = moving.standard_normal(pair.shape, dtype) if noise else none
+        collect(wells, pair, pixels, dtype.type(seconds), z)
+        yield wells
 
 
 def _flicker(exposure: Exposure, tap: int, shape: tuple[int, ...]) -> npt.NDArray[np.float64]:

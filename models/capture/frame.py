@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from talbot.models.capture.expose import Exposure, expose
+from talbot.models.capture.expose import Exposure, expose, full_wells
 from talbot.models.capture.pupil import Region, Wave, integrate
 from talbot.models.parameters import ParameterError, SensorParameters
 from talbot.models.pixel.polarization import transmission
@@ -81,9 +81,34 @@ def exposed(
     array (taps, rows, cols, 2)
         As in `capture`.
     """
-    kinds = sensor.tile.type_map(*pairs.shape[2:])
-    ratio = None if balance is None else np.asarray(balance, pairs.dtype)[kinds]
+    ratio = _ratio(pairs, sensor, balance)
     return np.stack([expose(pair, exposure, ratio, tap) for tap, pair in enumerate(pairs)])
+
+
+def full_pixels(
+    pairs: Floats, sensor: SensorParameters, exposure: Exposure, balance: npt.ArrayLike | None = None
+) -> npt.NDArray[np.bool_]:
+    """Tell the pixels that have a full well in any tap of a frame.
+
+    Parameters
+    ----------
+    pairs, sensor, exposure, balance
+        As in `exposed`.
+
+    Returns
+    -------
+    bool (rows, cols)
+        As of `full_wells`.
+    """
+    ratio = _ratio(pairs, sensor, balance)
+    return np.any([full_wells(pair, exposure, ratio) for pair in pairs], axis=0)
+
+
+def _ratio(pairs: Floats, sensor: SensorParameters, balance: npt.ArrayLike | None) -> Floats | None:
+    """Capacitor ratio of every pixel, (rows, cols), from those of the types."""
+    if balance is None:
+        return None
+    return np.asarray(balance, pairs.dtype)[sensor.tile.type_map(*pairs.shape[2:])]
 
 
 def currents(

@@ -8,6 +8,9 @@ from talbot.imaging.frame.codecs import CODECS, coded
 from talbot.imaging.frame.figures import (
     depth_line,
     energy_line,
+    exposure_line,
+    exposure_of,
+    full_line,
     mismatches,
     psnr,
     summarize_golden,
@@ -114,6 +117,39 @@ def test_trims_at_an_end_are_said():
     assert trims_at_end([0, 511, 510, -512, -511]) == [1, 3]
     assert "types 1, 3 are at the end" in trims_line({"trims_at_end": [1, 3]})
     assert trims_line({"trims_at_end": []}) == ""
+
+
+def test_full_wells_count_in_no_figure():
+    """Light that fills every well makes a difference of two full wells: no edge, no signal, no image"""
+    result = golden_result(request(16, 24, scene="saturated"))
+    assert (result.decoded.samples != 0).any() and result.exposed.full.all()  # what trims make of two full wells
+    summary = summarize_golden(result)
+    names = "snr_db", "psnr_db", "edge_precision", "edge_recall", "image_psnr_db", "image_ssim"
+    assert [summary[name] for name in names] == [None] * len(names)
+    assert summary["full_pixels"] == summary["pixels"] == 16 * 24 and not result.rebuilt.image.any()
+    line = full_line(summary)
+    assert "384 of 384 pixels (100 %) have a full well" in line and full_line(summary | {"full_pixels": 0}) == ""
+
+
+def test_figures_of_a_highlight_are_those_of_the_rest():
+    """Whatever a full pixel sends changes no figure"""
+    result = golden_result(request(48, 48, scene="specular"))
+    full, samples = result.exposed.full, result.decoded.samples.copy()
+    assert 0 < full.mean() < 0.5
+    samples[full] = 99
+    altered = replace(result, decoded=replace(result.decoded, samples=samples))
+    assert sent_quality(altered) == sent_quality(result) and image_quality(altered) == image_quality(result)
+    samples[~full] = 99
+    assert sent_quality(altered) != sent_quality(result)
+
+
+def test_white_beyond_the_full_well_clips_and_is_said():
+    summary = {"frame_s_at_clock": 0.03}
+    asked = request(4, 6, scene="flat:50"), request(4, 6, scene="flat:50", lux=1e6, timing={"t_int": 65535})
+    dim, bright = (summary | {"exposure": exposure_of(golden_result(frame))} for frame in asked)
+    assert "clips" not in exposure_line(dim) and "V = 102 codes" in exposure_line(dim)
+    assert bright["exposure"]["white_volts"] == 1.0 and bright["exposure"]["white_codes"] == pytest.approx(127.5)
+    assert "times the full well of 100,000 electrons = 1 V = 127 codes, at which it clips" in exposure_line(bright)
 
 
 def test_psnr():

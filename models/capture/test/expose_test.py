@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from scipy.stats import poisson
 
 from talbot.models.capture import Exposure, expose
+from talbot.models.capture.expose import full_wells
 from talbot.models.capture.shot import photon_count
 from talbot.models.parameters import ELEMENTARY_CHARGE, AmpTiming, ElectricalParameters, ParameterError
 
@@ -174,3 +175,14 @@ def test_exposures_of_a_sequence_have_the_pattern_in_common():
     each = np.std(several, axis=0).mean()
     assert each > 0.1 and np.mean(several, axis=0).std() > 5 * each / np.sqrt(30)
     assert np.corrcoef((several[0] - several[1]).ravel(), (several[2] - several[3]).ravel())[0, 1] < 0.1
+
+
+@pytest.mark.parametrize("n_cm", [0, 3])
+def test_full_wells_are_those_that_an_interval_fills(n_cm):
+    """A reset takes what both wells have in common: what filled one before it is still known"""
+    exposure = Exposure(QUIET, AmpTiming(n_cm=n_cm, exposure=20))
+    full = QUIET.full_well * ELEMENTARY_CHARGE / QUIET.white_current / exposure.intervals[0]
+    light = full * np.array([0.5, 0.97, 1.0, 3.0])
+    pair = np.stack([light, light])[:, None]
+    np.testing.assert_array_equal(full_wells(pair, exposure), [[False, False, True, True]])
+    assert (expose(pair, exposure)[0, 2:].max() > 127) == (n_cm == 0)  # LSB: after resets the samples do not tell it
