@@ -24,8 +24,10 @@ MEANING = {
 def host_pins() -> str:
     """Return the table of the pins that a host or a board drives or reads. Raises KeyError for one that is no port."""
     ports = {name: (direction, bits) for direction, name, bits in _ports()}
+    rows = ((pin, *ports[pin], text) for pin, text in MEANING.items())
     return table(
-        ["pin", "direction", "bits", "meaning"], ((f"`{pin}`", *ports[pin], text) for pin, text in MEANING.items())
+        ["pin", "direction", "meaning"],
+        ((f"`{pin}[{bits}]`" if bits > 1 else f"`{pin}`", direction, text) for pin, direction, bits, text in rows),
     )
 
 
