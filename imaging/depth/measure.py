@@ -15,7 +15,7 @@ from talbot.imaging.frame.result import PHASE_TURN, GoldenResult
 from talbot.models.digital.phase import phase_samples
 from talbot.models.pixel.time_of_flight import SPEED_OF_LIGHT, demodulate
 from talbot.models.reconstruct import white_sum
-from talbot.models.reconstruct.bad_pixels import beside, dead_pixels
+from talbot.models.reconstruct.bad_pixels import dead_pixels, dilated
 from talbot.models.reconstruct.bayes import Estimate, FieldEstimator, FieldPrior
 from talbot.models.reconstruct.coded import Coded, coded_depth
 from talbot.models.reconstruct.depth_field import DepthField, depth_field, foreground, refocused, still, unwrap
@@ -74,7 +74,7 @@ def read_depth(frames: DepthFrames, prior: FieldPrior, note: Callable[[str], Non
     white = white_sum(result.request.lit, result.request.frame.exposing)
     diodes = frames.diodes()
     dead = dead_pixels(diodes.sum(0) / (2 * white))
-    over = beside(full(diodes, (0, 1)) | dead, prior.margin)
+    over = dilated(full(diodes, (0, 1)) | dead, prior.margin)
     estimator = estimator_of(result, replace(prior, **COARSE))
     estimator.prepare(mixture=True)  # what is done once a sensor
     start = perf_counter()
@@ -218,8 +218,8 @@ def _behind(
     phasors, sampling = field.phasors, Sampling.of(result.sensor)
     rough = _beyond(np.angle(phasors[middle, middle]), limit, ambiguity)[~near[middle, middle]]
     ends = camera.disparity(np.quantile(rough, (0.98, 0.02)), sampling)
-    # Rays beside the occluder's are mixtures: those farther from it go first
-    clear = [~beside(near, width) for width in CLEAR]
+    # Rays next to the occluder's are mixtures: those farther from it go first
+    clear = [~dilated(near, width) for width in CLEAR]
     depth, mixed, apart = np.zeros((3, *scene.shape))
     off, seen = np.full(scene.shape, np.inf), np.zeros(scene.shape, bool)
     # Each pixel from where its own depth is in focus

@@ -73,10 +73,10 @@ def lead_line(s: dict[str, Any]) -> str:
     """Return the leading method of the summary ``s``, its error where it is reliable, and the baseline."""
     lead = s["depth_method"]
     error, _, sure, _ = _row(s["methods"][lead], s["range_m"])
-    beside = f"one depth for all {number(s['baselines']['constant']['rms_m'], 4, ' m')}"
+    baseline = f"one depth for all {number(s['baselines']['constant']['rms_m'], 4, ' m')}"
     if lead != SINE:
-        beside += f", without the code {number(s['methods'][SINE]['rms_m'], 4, ' m')}"
-    return f"{TEXTS[lead]}: {error} RMS in {sure} of the pixels ({beside})"
+        baseline += f", without the code {number(s['methods'][SINE]['rms_m'], 4, ' m')}"
+    return f"{TEXTS[lead]}: {error} RMS in {sure} of the pixels ({baseline})"
 
 
 def _headline(s: dict[str, Any]) -> list[Tile]:

@@ -43,7 +43,7 @@ from talbot.models.plan import Plan, plan
 from talbot.models.scene import Sampling, Scene, load
 
 Values = npt.NDArray[np.float64]
-BENCH = 4  # the noise of a frame beside those of the four taps
+BENCH = 4  # the noise of a frame after those of the four taps
 STEPS = ("setup", "capture", "build", "rtl", "decode", "report")
 
 

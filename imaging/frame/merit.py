@@ -73,11 +73,11 @@ def table(s: Summary) -> list[tuple[str, str, str]]:
     for what, key, shown in (("PSNR", "image_psnr{}_db", decibels), ("SSIM", "image_ssim{}", ratio)):
         rows.append((f"2-D image, {what}", shown(s[key.format("")]), _images(s, key, shown)))
     if s["light_field_psnr_db"] is not None:
-        beside = f"2-D image in every view: {decibels(s['light_field_psnr_copied_db'])}"
-        rows.append((f"light field by {s['light_field_method']}, PSNR", decibels(s["light_field_psnr_db"]), beside))
+        baseline = f"2-D image in every view: {decibels(s['light_field_psnr_copied_db'])}"
+        rows.append((f"light field by {s['light_field_method']}, PSNR", decibels(s["light_field_psnr_db"]), baseline))
     if s["depth_rms_m"] is not None:
-        beside = f"one depth for all: {100 * s['depth_rms_constant_m']:.3g} cm"
-        rows.append(("depth, RMS error", f"{100 * s['depth_rms_m']:.3g} cm", beside))
+        baseline = f"one depth for all: {100 * s['depth_rms_constant_m']:.3g} cm"
+        rows.append(("depth, RMS error", f"{100 * s['depth_rms_m']:.3g} cm", baseline))
     return rows
 
 

@@ -49,8 +49,8 @@ def repaired(pair: Floats, dead: Bools) -> Floats:
     return np.where(dead, median_filter(light, AROUND), pair).astype(pair.dtype)
 
 
-def beside(pixels: Bools, reach: int) -> Bools:
-    """Pixels and those around them.
+def dilated(pixels: Bools, reach: int) -> Bools:
+    """Dilate a mask of pixels.
 
     Parameters
     ----------

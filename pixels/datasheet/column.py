@@ -87,7 +87,7 @@ STRAY = 40e-15  # F at the holder's output
 PIXEL = "n_thick"  # role of its pixel's switches, which are no part of a column
 
 
-class Beside(NamedTuple):
+class Additions(NamedTuple):
     """Additions of a deck to the bench: lines, inputs, rails (V)."""
 
     lines: tuple[str, ...] = ()
@@ -95,7 +95,7 @@ class Beside(NamedTuple):
     rails: Mapping[str, float] = MappingProxyType({})
 
 
-NOTHING = Beside()
+NOTHING = Additions()
 
 
 @dataclass(frozen=True)
@@ -299,7 +299,7 @@ def opened(
     more: Sequence[str] = (),
     circuit: Circuit | None = None,
     settings: Settings = EXACT,
-    beside: Beside = NOTHING,
+    additions: Additions = NOTHING,
 ) -> Simulator:
     """An ngspice process of the bench. image: the first lane's reference is the middle. seed: of mismatch, but of the
     roles in ``alike``. more: nodes that are kept.
@@ -318,8 +318,8 @@ def opened(
     rails = {"start_a": start[0], "start": start[1], "dark": spec.dark, "reference": spec.dark - image * spec.swing / 4}
     rails |= {"vdd_bias": corner.supply, "vdd_own": corner.supply}
     rails |= {f"rest_{name}": volt for name, volt in at_rest(setup, sizes, corner).items()}
-    lines, rails = [*lines, *beside.lines, CURRENT], rails | dict(beside.rails)
-    return simulator(lines, (*DRIVEN, *beside.inputs), ("far_a", "far_b", "level", *more), corner, rails, settings)
+    lines, rails = [*lines, *additions.lines, CURRENT], rails | dict(additions.rails)
+    return simulator(lines, (*DRIVEN, *additions.inputs), ("far_a", "far_b", "level", *more), corner, rails, settings)
 
 
 def sample(
@@ -336,7 +336,7 @@ def sample(
 ) -> Wave:
     """A transient: a row is read whose wells have the charge of a and b V, and ``wait`` s later than else a turn.
 
-    cycles: of the turn. more, loads: of the inputs and nodes that are `Beside` it.
+    cycles: of the turn. more, loads: of the inputs and nodes of `Additions`.
     """
     high, t = corner.supply, spec.cycle
     begin, middle = REST * t, (REST + spec.settle) * t

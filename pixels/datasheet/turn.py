@@ -21,7 +21,7 @@ from talbot.pixels.circuits.column_sizes import ColumnSizes, ColumnSpec
 from talbot.pixels.circuits.lane import LaneSizes
 from talbot.pixels.circuits.netlist import Circuit, Instance
 from talbot.pixels.datasheet import amplifier as amplifiers
-from talbot.pixels.datasheet.column import GAP, Beside, bench, opened, sample, trimmed, turn_of
+from talbot.pixels.datasheet.column import GAP, Additions, bench, opened, sample, trimmed, turn_of
 from talbot.pixels.datasheet.deck import Setup, settling
 
 LIGHT = (0.2, 0.0), (0.0, 0.2), (0.9, 0.75)  # of a full well, of both diodes: differences within the converter's range
@@ -57,9 +57,9 @@ def measure(
     end, rest = begin + spec.cycle, begin + LATER * spec.cycle
     load = {"lane": amplifiers.load_of(setup, lane, corner)}
     inputs = tuple(name for name in amplifiers.INPUTS if not name.startswith("column_"))
-    beside = Beside(amplifiers.to_lane(corner), inputs, {"vref": of_amplifier.vref})
+    additions = Additions(amplifiers.to_lane(corner), inputs, {"vref": of_amplifier.vref})
     more, waves = ("out", "lane"), list[Wave]()
-    with opened(setup, spec, sizes[0], corner, start, more=more, circuit=made, beside=beside) as spice:
+    with opened(setup, spec, sizes[0], corner, start, more=more, circuit=made, additions=additions) as spice:
         for a, b in LIGHT:
             before = of_amplifier.vref - float(np.sign(a - b)) * amplifiers.REACH * 128 * lsb
             clocked = amplifiers.clocked(of_amplifier, corner, begin, UNITS, before)

@@ -15,8 +15,8 @@ from talbot.pixels.datasheet.amplifier import AmplifierResult
 from talbot.pixels.datasheet.amplifier import measure as measure_amplifier
 from talbot.pixels.datasheet.deck import Setup
 from talbot.pixels.datasheet.support import BiasResult, bias_measured
-from talbot.pixels.post_layout.beside import Pair
 from talbot.pixels.post_layout.extract import Nets, unit_farad
+from talbot.pixels.post_layout.pairs import Pair
 from talbot.pixels.post_layout.row import Row
 from talbot.platforms.analog import AnalogMasks
 

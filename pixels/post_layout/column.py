@@ -9,7 +9,7 @@ from talbot.pixels.datasheet import column
 from talbot.pixels.datasheet.column import ColumnResult
 from talbot.pixels.datasheet.deck import Setup
 from talbot.pixels.datasheet.turn import TurnResult
-from talbot.pixels.post_layout.beside import Pair
+from talbot.pixels.post_layout.pairs import Pair
 from talbot.pixels.post_layout.row import Row
 
 

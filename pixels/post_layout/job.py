@@ -40,10 +40,10 @@ from talbot.pixels.datasheet.turn import TurnResult
 from talbot.pixels.datasheet.turn import measure as measure_turn
 from talbot.pixels.post_layout import amplifier, column, row_driver, switch
 from talbot.pixels.post_layout.amplifier import Amplified
-from talbot.pixels.post_layout.beside import Pair, beside
 from talbot.pixels.post_layout.checks import differences, drc, lvs
 from talbot.pixels.post_layout.extract import Extracted, Nets, extract
 from talbot.pixels.post_layout.measure import Measured, measure
+from talbot.pixels.post_layout.pairs import Pair, pairs
 from talbot.pixels.post_layout.row import Row
 from talbot.pixels.post_layout.switch import Gaps
 from talbot.pixels.post_layout.write import drawn_blocks
@@ -201,13 +201,13 @@ def _array(nets: Nets, masks: AnalogMasks, sizes: LaneSizes, spec: LaneSpec) -> 
     """Yield the converter's levels from the capacitances of the drawn array: what couples to the common node counts."""
     names = [*(f"dac.b{k}" for k in range(BITS)), "dac.bt", "dac.bh"]
     units = np.array([*(1 << k for k in range(BITS)), 1, 0.5])
-    beside = np.array([nets.couplings.get((name, "top"), 0.0) for name in names])
-    drawn = inl_dnl(levels(units + beside / sizes.dac.unit))
+    coupled = np.array([nets.couplings.get((name, "top"), 0.0) for name in names])
+    drawn = inl_dnl(levels(units + coupled / sizes.dac.unit))
     for name, value, most in zip(("INL", "DNL"), drawn, (spec.inl, spec.dnl), strict=True):
         yield Row(f"DAC: {name} of all levels", "LSB", 0.0, value, "capacitances", most)
-    ground = nets.totals["top"] - beside.sum()
+    ground = nets.totals["top"] - coupled.sum()
     yield Row("DAC: common node to all else", "fF", 1e14 * sizes.dac.total, 1e15 * ground, "capacitances")
-    yield Row("DAC: bits to the common node beside it", "fF", 0.0, 1e15 * float(beside.sum()), "capacitances")
+    yield Row("DAC: bits to the common node next to it", "fF", 0.0, 1e15 * float(coupled.sum()), "capacitances")
 
 
 def _measured(
@@ -223,17 +223,17 @@ def _measured(
         return {corner: [cells[name][0] for name in names] for corner, cells in drawn.items()}
 
     driven, support = RowDriverSpec.of(), SupportSpec()
-    for lane in beside("lane", measure, Measured, (setup, sizes), circuits("comparator", "sar_lane"), workers):
+    for lane in pairs("lane", measure, Measured, (setup, sizes), circuits("comparator", "sar_lane"), workers):
         yield from _rows(setup.spec, lane)
-    for row in beside("row driver", measure_row, RowDriverResult, (setup, driven), circuits("row"), workers):
+    for row in pairs("row driver", measure_row, RowDriverResult, (setup, driven), circuits("row"), workers):
         yield from row_driver.rows(driven, row)
     for one in _columns(setup, circuits("column"), workers):
         yield from column.rows(column_of(setup)[0], one)
     (spec_c, sizes_c), (spec_a, sizes_a) = column_of(setup), amplifiers
     given = setup, (spec_c, spec_a), (sizes_c, sizes_a), sizes
-    for turn in beside("turn", measure_turn, TurnResult, given, circuits("column", "amplifier"), workers):
+    for turn in pairs("turn", measure_turn, TurnResult, given, circuits("column", "amplifier"), workers):
         yield from column.turn_rows(spec_c, turn)
-    for gaps in beside("switch drivers", switch.measure, Gaps, (setup, support), circuits("non_overlap"), workers):
+    for gaps in pairs("switch drivers", switch.measure, Gaps, (setup, support), circuits("non_overlap"), workers):
         yield from switch.rows(support, gaps)
     for both in _amplifiers(setup, amplifiers, sizes, circuits("amplifier", "bias"), workers):
         yield from amplifier.rows(amplifiers[0], both)
@@ -241,7 +241,7 @@ def _measured(
 
 def _columns(setup: Setup, drawn: Mapping[str, Sequence[Extracted]], workers: int) -> Iterator[Pair[ColumnResult]]:
     """Yield a column at every corner."""
-    return beside("column", column.measure, ColumnResult, (setup, *column_of(setup)), drawn, workers)
+    return pairs("column", column.measure, ColumnResult, (setup, *column_of(setup)), drawn, workers)
 
 
 def _amplifiers(
@@ -252,7 +252,7 @@ def _amplifiers(
     workers: int,
 ) -> Iterator[Pair[Amplified]]:
     """Amplifier and bias at every corner."""
-    return beside("amplifier", amplifier.measure, Amplified, (setup, *amplifiers, sizes), drawn, workers)
+    return pairs("amplifier", amplifier.measure, Amplified, (setup, *amplifiers, sizes), drawn, workers)
 
 
 def _rows(spec: LaneSpec, found: Pair[Measured]) -> Iterator[Row]:

@@ -35,7 +35,7 @@ class Pair(Generic[T]):
         return Row(name, unit, float(value(self.schematic)), float(value(self.layout)), self.corner, most, least)
 
 
-def beside(
+def pairs(
     what: str,
     measure: Callable[..., T],
     record: type[T],

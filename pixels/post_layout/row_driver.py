@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from talbot.pixels.circuits.row_driver import RowDriverSpec
 from talbot.pixels.datasheet.row_driver import RowDriverResult
-from talbot.pixels.post_layout.beside import Pair
+from talbot.pixels.post_layout.pairs import Pair
 from talbot.pixels.post_layout.row import Row
 
 

@@ -8,7 +8,7 @@ from talbot.pixels.circuits.netlist import Circuit
 from talbot.pixels.circuits.support import SupportSpec
 from talbot.pixels.datasheet.deck import Setup
 from talbot.pixels.datasheet.support import phases
-from talbot.pixels.post_layout.beside import Pair
+from talbot.pixels.post_layout.pairs import Pair
 from talbot.pixels.post_layout.row import Row
 
 

@@ -20,7 +20,7 @@ from talbot.pixels.optics.solve import Floats
 from talbot.pixels.response.errors import BAND_ALL, NODES_ALL, ORDERS_ALL, SAMPLES_ALL, STEP_LEAST, Kept
 from talbot.pixels.response.pictures import around, cross_section, responses
 from talbot.pixels.response.search import Found, Plan
-from talbot.pixels.response.types import CURVE_ORDERS, RAY_DEGREES, Measured, beside
+from talbot.pixels.response.types import CURVE_ORDERS, RAY_DEGREES, Measured, scalar_fit
 from talbot.platforms.materials import refractive_index
 
 NAMES = ("pixel.html", "summary.json", "response.npz", "cross_section.png", "response.png", "types.png", "tile.gds")
@@ -156,7 +156,7 @@ def _closed(one: Measured) -> tuple[str, ...]:
 def _finite(measured: dict[float, Measured]) -> Section:
     rows = []
     for beta, one in measured.items():
-        coarse, off = beside(one)
+        coarse, off = scalar_fit(one)
         leaving = crosstalk(one.design.geometry, np.deg2rad(CROSSING), one.design.wavelength_um)
         figures = (f"{one.fit.beta:.1f}: {coarse.beta:.1f}", f"{one.fit.m:.2f}: {coarse.m:.2f}", f"{off:.2f}")
         rows.append((f"{beta:g}", *figures, *(f"{100 * share:.0f} %" for share in leaving)))

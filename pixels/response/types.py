@@ -115,7 +115,7 @@ def stacked(kinds: Sequence[PixelType], plan: Plan, found: dict[float, Measured]
     return np.array(out)
 
 
-def beside(one: Measured) -> tuple[Fit, float]:
+def scalar_fit(one: Measured) -> tuple[Fit, float]:
     """Eq. 3.1 fitted to scalar waves through an amplitude pixel, and their difference from the rigorous curves.
 
     The difference is rms over the mean, both curves of one mean.

@@ -27,7 +27,7 @@ def done(tmp_path_factory):
     return folder, measured(folder, "--scene=tilted", "--rows=13", "--cols=50")
 
 
-def test_depth_stands_beside_what_costs_nothing(done):
+def test_depth_has_baselines(done):
     _, s = done
     assert s["chip"] and s["stream_mismatches"] == s["decoded_mismatches"] == 0
     assert s["ambiguity_m"] < s["range_m"]

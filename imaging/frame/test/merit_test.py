@@ -39,7 +39,7 @@ def test_a_frame_of_noise_is_said_to_be_no_better_than_none():
 @pytest.mark.parametrize("mode", ["edge", "image", "raw", "tof"])
 def test_every_figure_of_the_mode_is_in_the_table(mode):
     s = summarize_golden(golden_result(request(24, 36, mode=mode, phase=mode == "tof")))
-    rows = {what: (found, beside) for what, found, beside in table(s)}
+    rows = {what: (found, baseline) for what, found, baseline in table(s)}
     assert all(name in rows["2-D image, SSIM"][1] for end, name in IMAGES.items() if end != "_jpegxl")
     assert rows["2-D image, PSNR"][0] == f"{s['image_psnr_db']:.1f} dB"
     own = {

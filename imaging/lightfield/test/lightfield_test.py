@@ -32,7 +32,7 @@ def done(tmp_path_factory):
     return folder, json.loads((folder / "summary.json").read_text())
 
 
-def test_every_method_stands_beside_the_free_baselines(done):
+def test_every_method_has_baselines(done):
     _, s = done
     free = s["baselines"]["sum_image_psnr_db"]
     assert s["chip"] and s["stream_mismatches"] == s["decoded_mismatches"] == 0

@@ -21,7 +21,7 @@ def done(tmp_path_factory):
     return folder, json.loads((folder / "summary.json").read_text())
 
 
-def test_psi_of_a_stressed_sheet_stands_beside_one_angle_for_all(done):
+def test_psi_of_a_stressed_sheet_has_a_baseline(done):
     _, s = done
     assert s["chip"] and s["stream_mismatches"] == s["decoded_mismatches"] == 0
     assert s["psi_error_deg"] < 5 < s["baselines"]["psi_error_constant_deg"]

@@ -183,8 +183,8 @@ class Blocks:
         return windows.transpose(0, 3, 4, 1, 2).reshape(len(values), self.y.block * self.x.block, -1)
 
     @cached_property
-    def beside(self) -> Floats:
-        """Every pixel from the middle of its block's window, float32 (2, rows, cols): down and across, px."""
+    def from_middle(self) -> Floats:
+        """Offset of every pixel from the middle of its block's window, float32 (2, rows, cols): down and across, px."""
         offsets = np.indices((self.y.block, self.x.block), np.float32).reshape(2, -1)
         parts = [[], []]
         for group in self.groups:

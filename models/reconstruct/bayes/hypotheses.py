@@ -128,5 +128,5 @@ class Hypotheses:
     @property
     def _ahead(self) -> Floats:
         """Disparities, in steps, by which a pixel is before the middle of its window."""
-        ahead = np.tensordot(np.array(self.slant, np.float32), self.blocks.beside, 1)
+        ahead = np.tensordot(np.array(self.slant, np.float32), self.blocks.from_middle, 1)
         return np.asarray(ahead / np.float32(self.prior.fine_step))

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from talbot.models.reconstruct.bad_pixels import beside, dead_pixels, repaired
+from talbot.models.reconstruct.bad_pixels import dead_pixels, dilated, repaired
 
 SHAPE = 16, 20
 
@@ -21,4 +21,4 @@ def test_dead_columns_are_found_and_darkness_is_none():
 def test_what_is_beside():
     one = np.zeros(SHAPE, bool)
     one[8, 10] = True
-    assert beside(one, 2).sum() == 25 and beside(np.stack([one, ~one]), 1)[0].sum() == 9
+    assert dilated(one, 2).sum() == 25 and dilated(np.stack([one, ~one]), 1)[0].sum() == 9

@@ -17,7 +17,7 @@ SUMMARY = {
 
 
 @pytest.mark.parametrize("count, kind", [(4208, "none"), (0, "good")])
-def test_waived_violations_stand_beside_the_others(count, kind):
+def test_waived_violations_are_listed_separately(count, kind):
     s = SUMMARY | {"waivers": {"x.2": {"count": count, "reason": "oblique lines"}} if count else {}}
     tile = _tiles(s)[0]
     assert (tile.value, tile.kind) == ("0", kind)

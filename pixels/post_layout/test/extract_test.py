@@ -87,9 +87,9 @@ def test_what_couples_to_the_common_node_grows_with_the_bits():
     ports = ("top", *plan.buses())
     made = Cell(canvas.layout, canvas.cell, ports, (), tuple(plan.plates()), (), tuple(array.taps))
     circuit, found = extract(made, MASKS, TYPICAL)
-    beside = np.array([found.couplings[net, "top"] for net in (*(f"b{k}" for k in range(8)), "bt", "bh")])
+    coupled = np.array([found.couplings[net, "top"] for net in (*(f"b{k}" for k in range(8)), "bt", "bh")])
     weights = np.array([*(1 << k for k in range(8)), 1, 0.5])
-    assert max(inl_dnl(levels(weights + beside / SIZES.dac.unit))) < 0.15  # LSB
+    assert max(inl_dnl(levels(weights + coupled / SIZES.dac.unit))) < 0.15  # LSB
     units = sum(c.value for c in circuit.capacitors if c.name.startswith("p"))
     assert units == pytest.approx(256.5 * SIZES.dac.unit, rel=1e-3)
 
