@@ -7,6 +7,7 @@ reached, and every twin fails. A counterexample, an induction that is too weak a
 
 import sys
 from argparse import ArgumentParser, Namespace
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -128,7 +129,7 @@ def collect(proofs: Iterable[Proof], store: Path, workers: int = -1, every_size:
                 first.twins if first else by_kind[TwinResult],
                 needs,
                 by_kind[FreedomResult].get("freedom", FreedomResult()),
-                [name for name in listed if name not in conjuncts.get(first_of[proof.name], listed)],
+                more(listed, conjuncts.get(first_of[proof.name], listed)),
             )
         )
     return outcomes
@@ -138,6 +139,11 @@ def firsts(proofs: Iterable[Proof]) -> dict[str, str]:
     """Return proof -> the first proof of its wrapper, with which the assumptions are checked."""
     by_wrapper: dict[Path, str] = {}
     return {proof.name: by_wrapper.setdefault(proof.wrapper, proof.name) for proof in proofs}
+
+
+def more(names: Iterable[str], first: Iterable[str]) -> list[str]:
+    """Return the conjuncts ``names`` of a size that are not those of the first; several may have one text."""
+    return sorted((Counter(names) - Counter(first)).elements())
 
 
 def is_undecided(result: object) -> bool:

@@ -8,7 +8,8 @@ from talbot.models.parameters import ParameterError
 from talbot.verif.formal import command, design, manifest
 from talbot.verif.formal.engine import FormalError
 from talbot.verif.formal.freedom import FreedomResult, freedom
-from talbot.verif.formal.necessity import NecessityResult, necessity
+from talbot.verif.formal.necessity import NecessityResult, conjuncts, necessity
+from talbot.verif.formal.plan import pieces
 from talbot.verif.formal.proof import labels
 from talbot.verif.formal.prove import CoverResult
 
@@ -147,6 +148,55 @@ def test_an_input_that_is_not_free_is_found(tmp_path, changes, missing):
 def test_the_over_constraints_that_were_not_seen(tmp_path, name, find, added, part):
     found = problems(name, tmp_path, (find, f"{added}\n    {find}"), checks=[necessity], a_x="a reason")
     assert any(f".{part}" in line for line in found)
+
+
+def listed(name, wrapper):
+    """The conjuncts of the assumptions of proof ``name`` with another wrapper file."""
+    proof = next(proof for proof in manifest.every() if proof.name == name)
+    proof = dataclasses.replace(proof, wrapper=wrapper)
+    return proof, conjuncts(proof, design.exported(proof), design.wrapper(proof)).names
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "first, other, find, added",
+    [
+        ("phase_path", "phase_path_radix2", "a_constant: assume (", "(`LANES != 1 || noise_floor < 128) && "),
+        ("adc_bank_one_lane", "adc_bank_two_lanes", "a_config: assume (", "(`LANES != 2 || step__msg[3:0] != 9) && "),
+    ],
+)
+def test_an_over_constraint_at_another_size_is_found(tmp_path, first, other, find, added):
+    proof = next(proof for proof in manifest.every() if proof.name == first)
+    text, path = proof.wrapper.read_text(), tmp_path / "wrapper.sv"
+    path.write_text(text)
+    (_, before), (_, whole) = listed(first, path), listed(other, path)
+    assert command.more(whole, before) == []
+    assert text.count(find) == 1
+    path.write_text(text.replace(find, find + added))
+    (_, before), (proof, whole) = listed(first, path), listed(other, path)
+    odd = command.more(whole, before)
+    assert odd
+    outcome = command.Outcome(proof, {}, CoverResult([], [], 0.0), {}, only_here=odd)
+    assert f"{proof.name}.{odd[0]} = at this size alone: must be at the first" in outcome.problems[0]
+
+
+@pytest.mark.parametrize("name", ["balance_1x1", "balance_4x1"])
+def test_an_input_that_is_not_free_at_another_size_is_found(tmp_path, name):
+    """The first size, 1 x 6, allows all values of the narrowed input."""
+    wires = "input [2:0] k,", "  wire [9:0] balance;"
+    changes = [
+        ("input [9:0] row,", "input [9:0] any_row,"),
+        (wires[1], f"  wire [9:0] row = `TILE_COLS == 1 ? {{1'b0, any_row[8:0]}} : any_row;\n{wires[1]}"),
+    ]
+    found = problems(name, tmp_path, *changes, checks=[freedom])
+    assert any(": row=1023 = not reached" in line for line in found), found
+    assert problems("balance_1x6", tmp_path, *changes, checks=[freedom]) == []
+    assert any(piece.name == "freedom" for piece in pieces(sized(name), ["boolector"], False))
+
+
+def sized(name):
+    """The proof ``name``."""
+    return next(proof for proof in manifest.every() if proof.name == name)
 
 
 @pytest.mark.parametrize(
