@@ -138,7 +138,7 @@ locks: $(READY)
 	@PATH="$(CURDIR)/build/uv/bin:$$PATH" bash requirements/lock.sh
 
 .PHONY: verify
-verify: $(TESTS_READY) $(LAYOUT_READY)
+verify: $(TESTS_READY) $(LAYOUT_READY) $(RENDER_READY)
 	@[ "$$TALBOT_CHECK" ] || BEFORE="$(CHECK)" bash requirements/tools.sh --missing iverilog z3
 	@$(talbot) verify
 

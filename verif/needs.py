@@ -298,12 +298,17 @@ def skipped(reporter: Any) -> tuple[Counter[str], Counter[str]]:
     for report in reporter.stats.get("skipped", ()):
         reason = report.longrepr[2] if isinstance(report.longrepr, tuple) else str(report.longrepr)
         reason = reason.removeprefix("Skipped: ").splitlines()[0]
-        names = reason.removeprefix(SKIPPED).split(", ")
-        if reason.startswith(SKIPPED) and all(name in NEEDS for name in names):
+        if names := needs_in(reason):
             needed.update(names)
         else:
             others[reason] += 1
     return needed, others
+
+
+def needs_in(reason: str) -> list[str]:
+    """Return the needs in the reason of a skipped test; none where it has another reason."""
+    names = reason.removeprefix(SKIPPED).split(", ")
+    return names if reason.startswith(SKIPPED) and all(name in NEEDS for name in names) else []
 
 
 def gaps(reporter: Any) -> list[str]:

@@ -13,8 +13,8 @@ from pathlib import Path
 from time import perf_counter
 
 from talbot.base.command import failures
-from talbot.base.files import staged
-from talbot.verif.report import limits
+from talbot.base.files import marked, staged
+from talbot.verif.report import document, limits
 from talbot.verif.report.merge import summarize
 from talbot.verif.report.page import render
 from talbot.verif.report.steps import STEPS, Outcome, read_step, run_step
@@ -50,6 +50,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--read", action="store_true", help="run nothing: report on the kept results")
     parser.add_argument("--seed", type=int, default=SEED, help="of tests, benches and fuzz")
     parser.add_argument("--out", type=Path, default=OUT, help="folder of the results and the report")
+    parser.add_argument("--document", type=Path, help="Markdown file whose tables of steps and sizes to write")
 
 
 def run(options: Namespace) -> int:
@@ -57,7 +58,14 @@ def run(options: Namespace) -> int:
     start, out = perf_counter(), options.out
     held = limits.read()
     out.mkdir(parents=True, exist_ok=True)
+    if options.document:
+        for name in ("steps", "sizes"):
+            marked(options.document, name)
+    load = document.load()
     done = outcomes([] if options.read else options.steps or list(BY_NAME), out, options.seed)
+    runs = document.record(done, out, load)
+    if options.document:
+        document.put(options.document, done, runs)
     summary = summarize([outcome.by_block for outcome in done])
     problems = [o.problem for o in done if o.problem]
     fallen = limits.fallen(summary, held)

@@ -1,6 +1,6 @@
 """Every pytest test, one job per folder, counted by block and level: build/verify/suite.json.
 
-A skipped test is an open point.
+A skipped test is an open point, unless it needs what neither Debian nor PyPI offer for every machine (verif.needs).
 """
 
 import shlex
@@ -17,6 +17,7 @@ from talbot.base.records import from_json
 from talbot.base.sources import code
 from talbot.base.tools import located
 from talbot.models.parameters import ParameterError
+from talbot.verif.needs import NEEDS, needs_in
 from talbot.verif.results import OUT, SEED, BlockResults, Fault, Tests, write_step
 from talbot.verif.suite.blocks import blocks_of, level_of
 from talbot.verif.suite.pytest_folder import Case, FolderRun, folders, run_folder
@@ -66,10 +67,16 @@ def count(entry: BlockResults, folder: str, case: Case) -> None:
     simulator = {"RTL": "PyMTL3", "FL": "", "CL": ""}.get(level, level)
     if tests.levels and simulator and simulator not in entry.simulators:
         entry.simulators.append(simulator)
-    if case.outcome != PASSED:
+    if case.outcome == FAILED or case.outcome == SKIPPED and not is_left_out(case.message):
         entry.open_points.append(f"test {case.test} = {case.outcome}: {case.message[:200]}")
     if folder.startswith("verif/faults"):
         entry.faults.append(Fault(case.test.split("::")[-1], case.outcome))
+
+
+def is_left_out(reason: str) -> bool:
+    """Return whether a test was skipped for want of what `make` does not install."""
+    names = needs_in(reason)
+    return bool(names) and not any(NEEDS[name].offered for name in names)
 
 
 def last_seconds(store: Path) -> dict[str, float]:

@@ -10,7 +10,7 @@ import pytest
 from talbot.base.command import main
 from talbot.models.parameters import ParameterError
 from talbot.rtl.tops import TOPS
-from talbot.verif.report import command, limits, steps
+from talbot.verif.report import command, document, limits, steps
 from talbot.verif.report.merge import figures, summarize, totals
 from talbot.verif.report.page import render
 from talbot.verif.report.steps import Outcome, Step, run_step
@@ -212,3 +212,26 @@ def test_the_command_reads_what_steps_left(tmp_path, capsys):
     assert "step formal = no results: formal.json is missing\n" in errors
     assert json.loads((tmp_path / "summary.json").read_text())["EdgeAdc"]["tests"]["failed"] == 1
     assert (tmp_path / "report.html").exists()
+
+
+def test_the_page_has_the_steps_that_ran_and_every_size(tmp_path):
+    page = tmp_path / "page.md"
+    page.write_text("<!-- steps -->\n<!-- end of steps -->\n<!-- sizes -->\n<!-- end of sizes -->\n")
+    formal, suite, stuck = (next(s for s in steps.STEPS if s.name == name) for name in ("formal", "suite", "stuck_at"))
+    done = [
+        Outcome(formal, 12.3, "", {"EdgeAdc": BlockResults(proofs=[PROOF, replace(PROOF, result="timeout")])}),
+        Outcome(suite, 0.0, "", {"EdgeAdc": BlockResults(tests=Tests(5))}),
+        Outcome(stuck, 4.0, "", {"AspChip": BlockResults(stuck_at=StuckAt(9000, 500, 333), open_points=["x"])}),
+    ]
+    runs = document.record(done, tmp_path, 1.25)
+    assert set(runs) == {"formal", "stuck_at"} and runs["formal"].seconds == 12.3
+    document.put(page, [replace(outcome, seconds=0.0) for outcome in done], document.record([], tmp_path, 0.0))
+    lines = page.read_text().splitlines()
+    row = next(line for line in lines if line.startswith("| formal |"))
+    assert (
+        row.startswith("| formal | 1 of 2 properties proven, twin caught, 0 open points | 12 | 20") and "| 1.2 |" in row
+    )
+    assert "| suite | not run |  |  |  |  |" in lines
+    assert any("| stuck_at | 66.6 ± 4.0 % of stuck-at faults detected, 1 open points | 4 |" in line for line in lines)
+    assert "| AdcBank | lanes | 1, 2, 4, 8, 16, 32 | each |  |" in lines
+    assert main(command, ["--read", "--out", str(tmp_path), "--document", str(tmp_path / "runs.json")]) == 2

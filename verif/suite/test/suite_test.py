@@ -7,9 +7,10 @@ import pytest
 from talbot.base.command import main
 from talbot.base.paths import ROOT
 from talbot.rtl.tops import TOPS
+from talbot.verif.results import BlockResults
 from talbot.verif.suite import command
 from talbot.verif.suite.blocks import BLOCKS, FOLDERS, blocks_of, level_of
-from talbot.verif.suite.command import forget, jobs, options_of, summarize
+from talbot.verif.suite.command import count, forget, jobs, options_of, summarize
 from talbot.verif.suite.pytest_folder import Case, FolderRun, folders, run_folder
 
 FILE = """
@@ -113,6 +114,15 @@ def test_counts_by_block(repository):
     assert (tests.passed, tests.failed, tests.skipped) == (1, 1, 1) and tests.levels == {"RTL": 1}
     assert found.simulators == ["PyMTL3"] and len(found.open_points) == 2
     assert found.open_points[0].startswith("test a/x_test.py::test_bad = failed: ")
+
+
+@pytest.mark.parametrize(
+    "reason, points", [("no tool", 1), ("needs z3", 1), ("needs torch", 0), ("needs torch, z3", 1), ("needs x", 1)]
+)
+def test_a_test_without_what_make_installs_is_an_open_point(reason, points):
+    entry = BlockResults()
+    count(entry, "rtl/edge_adc/test", Case("a::b", "skipped", 0.0, reason))
+    assert (entry.tests.skipped, len(entry.open_points)) == (1, points)
 
 
 def test_failures_are_tried_again(tmp_path):

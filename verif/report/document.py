@@ -1,0 +1,94 @@
+"""The table of docs/results/verification.md: what each step found, in which time, of which commit."""
+
+import json
+import os
+import subprocess
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+
+from talbot.base.files import insert, write
+from talbot.base.paths import ROOT
+from talbot.base.records import from_json
+from talbot.verif.formal import manifest, sizes
+from talbot.verif.report.merge import summarize
+from talbot.verif.report.steps import Outcome
+from talbot.verif.results import BlockResults
+
+FILE = "runs.json"
+NOT_RUN = "not run"
+
+
+@dataclass(frozen=True)
+class Run:
+    """When a step ran. date: UTC. commit: '' outside git, with + where files differ. load: of the machine before."""
+
+    date: str
+    commit: str
+    seconds: float
+    load: float
+
+
+def commit() -> str:
+    """Return the short hash of the checkout, with + where files differ; '' outside git."""
+    found = subprocess.run(["git", "describe", "--always", "--dirty=+"], cwd=ROOT, capture_output=True, text=True)
+    return found.stdout.strip()
+
+
+def record(done: Sequence[Outcome], out: Path, load: float) -> dict[str, Run]:
+    """Add the steps that ran to ``out``/runs.json; returns all that are recorded there."""
+    path = out / FILE
+    runs = from_json(dict[str, Run], json.loads(path.read_text(encoding="utf-8"))) if path.exists() else {}
+    now = f"{datetime.now(UTC):%Y-%m-%d %H:%M}"
+    for outcome in done:
+        if outcome.seconds:
+            runs[outcome.step.name] = Run(now, commit(), round(outcome.seconds, 1), round(load, 1))
+    write(path, json.dumps({name: asdict(run) for name, run in runs.items()}, indent=1) + "\n")
+    return runs
+
+
+def found(by_block: Mapping[str, BlockResults]) -> str:
+    """Return the figures of one step's results in a line."""
+    entries = [*summarize([by_block]).values()]
+    proofs = [proof for entry in entries for proof in entry.proofs]
+    mutants = [entry.mutants for entry in entries if entry.mutants]
+    stuck = [entry.stuck_at for entry in entries if entry.stuck_at]
+    fuzz = [entry.fuzz for entry in entries if entry.fuzz]
+    tests = sum(entry.tests.passed for entry in entries)
+    lowest = [value for entry in entries for value in entry.coverage.values() if value is not None]
+    points = sum(len(entry.open_points) for entry in entries)
+    parts = [
+        f"{sum(proof.good for proof in proofs):,} of {len(proofs):,} properties proven, twin caught" if proofs else "",
+        f"{tests:,} tests passed" if tests else "",
+        f"lowest coverage {min(lowest):.1f} %" if lowest else "",
+        f"{sum(m.killed for m in mutants):,} of {sum(m.killable for m in mutants):,} mutants killed" if mutants else "",
+        *(f"{s.share:.1f} ± {s.margin:.1f} % of stuck-at faults detected" for s in stuck),
+        f"{sum(f.inputs for f in fuzz):,} inputs, {sum(f.failures for f in fuzz)} failures" if fuzz else "",
+        f"{points} open points",
+    ]
+    return ", ".join(part for part in parts if part)
+
+
+def table(done: Sequence[Outcome], runs: Mapping[str, Run]) -> str:
+    """Return the steps as a Markdown table."""
+    rows = ["| step | found | s | date (UTC) | commit | load before |", "|---|---|---:|---|---|---:|"]
+    for outcome in done:
+        name, run = outcome.step.name, runs.get(outcome.step.name)
+        if run and not outcome.problem:
+            cells = found(outcome.by_block), f"{run.seconds:,.0f}", run.date, run.commit, f"{run.load:.1f}"
+        else:
+            cells = outcome.problem if run else NOT_RUN, "", "", "", ""
+        rows.append(f"| {' | '.join((name, *cells))} |")
+    return "\n".join(rows)
+
+
+def put(document: Path, done: Sequence[Outcome], runs: Mapping[str, Run]) -> None:
+    """Write the tables of steps and of sizes into ``document``. Raises ParameterError where it lacks their marks."""
+    insert(document, "steps", table(done, runs))
+    insert(document, "sizes", sizes.table(manifest.every()))
+
+
+def load() -> float:
+    """Return the load of the machine in the last minute."""
+    return os.getloadavg()[0]
