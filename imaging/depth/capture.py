@@ -14,7 +14,7 @@ from talbot.imaging.frame.reading import about
 from talbot.imaging.frame.request import FrameRequest
 from talbot.imaging.frame.result import Exposed, GoldenResult
 from talbot.models.capture import Region, Views
-from talbot.models.parameters import ElectricalParameters, ParameterError
+from talbot.models.parameters import NO_DIVIDER, ElectricalParameters, ParameterError
 from talbot.models.plan import plan
 from talbot.models.scene.rendered import RENDERED
 
@@ -26,14 +26,14 @@ TAPS = 4
 class DepthFrames:
     """The same four exposures, read out six times.
 
-    sums: the taps' sums, in tof mode. phases: phase and amplitude by the chip's divider. pairs: both diodes, a raw
+    sums: the taps' sums, in tof mode. phases: phase and amplitude by the chip's divider, None of a chip without. pairs: both diodes, a raw
     frame for each tap, ahead of which the light's phase is set. coded: sums, and pairs, of four more exposures, in the
     light of a code. straight: sums without noise and converter of the light that comes straight from the surfaces,
     (4, rows, cols) in LSB, of a scene that has other light.
     """
 
     sums: GoldenResult
-    phases: GoldenResult
+    phases: GoldenResult | None
     pairs: tuple[GoldenResult, ...]
     coded: tuple[GoldenResult, ...] = ()
     straight: npt.NDArray[np.float64] | None = None
@@ -41,7 +41,7 @@ class DepthFrames:
     @property
     def all(self) -> tuple[GoldenResult, ...]:
         """Every frame."""
-        return (self.sums, self.phases, *self.pairs, *self.coded)
+        return (self.sums, *([self.phases] if self.phases else []), *self.pairs, *self.coded)
 
     def about(self) -> dict[str, Any]:
         """Return figures of the frames, differences of all together."""
@@ -86,11 +86,12 @@ def capture(
         if code is not None:
             chip = replace(request, sensor=replace(request.sensor, electrical=code))
             by_code = chip, expose(chip, scene, plan(scene, chip.sensor, chip.frame), views=views)
-    exposures = [(request, exposed), (replace(request, frame=replace(request.frame, phase=True)), exposed)]
-    exposures += _raw(request, exposed)
+    exposures = [(request, exposed), *_raw(request, exposed)]
     count = len(exposures)
     if by_code is not None:
         exposures += [by_code, *_raw(*by_code)]
+    if has_divider := request.sensor.chip.divider != NO_DIVIDER:
+        exposures.append((replace(request, frame=replace(request.frame, phase=True)), exposed))
     if golden:
         with clock.step("frames"):
             read = [read_golden(*frame) for frame in each(exposures, "frame")]
@@ -100,7 +101,8 @@ def capture(
         with clock.step("frames"):
             read = [read_out(*frame, program) for frame in each(exposures, "frame")]
     still = None if straight is None else np.moveaxis(straight, 2, 0)
-    return DepthFrames(read[0], read[1], tuple(read[2:count]), tuple(read[count:]), still)
+    phases = read.pop() if has_divider else None
+    return DepthFrames(read[0], phases, tuple(read[1:count]), tuple(read[count:]), still)
 
 
 def _raw(request: FrameRequest, exposed: Exposed) -> list[tuple[FrameRequest, Exposed]]:

@@ -125,17 +125,21 @@ def _phases(frames: DepthFrames, field: DepthField, ideal: DepthField, white: fl
     """Phase by every method in rad, NaN where the amplitude is too small for one.
 
     divider: the chip's own, of the sums. sums: atan2 of the same sums. field: of the depth field's centre view, divider
-    and float; from samples without noise and converter.
+    and float; from samples without noise and converter. Those of a divider are missing where the chip has none.
     """
     chip = frames.sums.request.sensor.chip
     centre = np.moveaxis(field.centre, 0, -1) * white
     codes = np.rint(np.clip(centre, 0, CODES)).astype(int)
-    by_divider, strength = phase_samples(codes, chip)
-    sent = np.asarray(frames.phases.decoded.samples, float)
-    out = {
-        "divider": (sent[..., 0] * PHASE_TURN, sent[..., 1]),
+    by_divider = {}
+    if frames.phases:
+        sent = np.asarray(frames.phases.decoded.samples, float)
+        turns, strength = phase_samples(codes, chip)
+        by_divider = {
+            "divider": (sent[..., 0] * PHASE_TURN, sent[..., 1]),
+            "field_divider": (turns * PHASE_TURN, strength),
+        }
+    out = by_divider | {
         "sums": demodulate(np.moveaxis(frames.sums.decoded.samples.astype(float), 2, 0)),
-        "field_divider": (by_divider * PHASE_TURN, strength),
         "field": demodulate(np.moveaxis(centre, -1, 0)),
         "field_float": demodulate(ideal.centre * white),
     }

@@ -91,7 +91,11 @@ def _headline(s: dict[str, Any]) -> list[Tile]:
             error, f"{TEXTS[lead]}: {share} of the range (one depth for all: {number(free['constant']['rms_m'])} m)"
         ),
         Tile(sure, f"of the pixels are sure; over all {whole}"),
-        Tile(number(methods[other]["rms_m"], 4, " m"), TEXTS[other] + ("" if lead == SINE else ", without the code")),
+        *(
+            [Tile(number(methods[other]["rms_m"], 4, " m"), TEXTS[other] + ("" if lead == SINE else ", without the code"))]
+            if other in methods
+            else []
+        ),
         agreement(s),
     ]
 
@@ -128,7 +132,7 @@ def _depths(depth: Depth) -> list[Picture]:
         *([known(SINE, "sine")] if depth.lead != SINE else []),
         _picture("wrapped", f"{TEXTS[SINE]}, modulo a turn", wrapped, (0, depth.summary["ambiguity_m"])),
         _picture("coarse", "depth by disparity alone", depth.coarse, ends),
-        known("divider", "divider"),
+        *([known("divider", "divider")] if "divider" in depth.depth else []),
     ]
 
 

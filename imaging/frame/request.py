@@ -62,6 +62,8 @@ class FrameRequest:
 
     def __post_init__(self) -> None:
         self.sensor.check_window(self.frame.window)
+        if self.frame.phase and self.sensor.chip.divider == parameters.NO_DIVIDER:
+            raise ParameterError("phase = True: must be False, the sensor has no phase path (chip.divider = none)")
         if self.calibration is not None:
             self.calibration.applied(self.sensor)  # fits
         parameters.check_real("noise", self.noise, 0, 100)

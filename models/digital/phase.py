@@ -5,7 +5,7 @@ import numpy.typing as npt
 
 from talbot.models.digital.cordic import cordic
 from talbot.models.digital.divider import QuadResult, quad_divide
-from talbot.models.parameters import ChipParameters
+from talbot.models.parameters import DIVIDERS, ChipParameters, check_choice
 
 
 def divide(
@@ -36,6 +36,7 @@ def divide(
     ParameterError
         For an argument out of range.
     """
+    check_choice("divider", variant, DIVIDERS)
     if variant == "cordic":
         return cordic(x, y, iterations, noise_floor)
     return quad_divide(x, y, n_frac, noise_floor)

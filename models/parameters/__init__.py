@@ -5,7 +5,7 @@ from talbot.models.parameters.camera import FOCUS_MAX, LIFE_SIZE, CameraParamete
 from talbot.models.parameters.checks import ParameterError, check_choice, check_int, check_real
 from talbot.models.parameters.chip import ASYNCHRONOUS, LANES, SPI_INPUTS, ChipParameters
 from talbot.models.parameters.circuit import DIODE, DRAWN, ColumnCurves, circuit_columns, circuit_converter
-from talbot.models.parameters.divider import DIVIDERS
+from talbot.models.parameters.divider import DIVIDERS, NO_DIVIDER
 from talbot.models.parameters.drawn import LineParameters, drawn_curves, drawn_electrical, drawn_lines
 from talbot.models.parameters.electrical import (
     ELEMENTARY_CHARGE,
@@ -37,6 +37,7 @@ __all__ = [
     "COLS_MAX",
     "DIODE",
     "DIVIDERS",
+    "NO_DIVIDER",
     "DRAWN",
     "ELEMENTARY_CHARGE",
     "EXPOSURE_MAX",

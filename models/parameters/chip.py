@@ -3,7 +3,14 @@
 from dataclasses import dataclass
 
 from talbot.models.parameters.checks import check_choice, check_int, check_real
-from talbot.models.parameters.divider import DIVIDERS, ITERATIONS_MAX, ITERATIONS_MIN, N_FRAC_MAX, N_FRAC_MIN
+from talbot.models.parameters.divider import (
+    DIVIDERS,
+    ITERATIONS_MAX,
+    ITERATIONS_MIN,
+    N_FRAC_MAX,
+    N_FRAC_MIN,
+    NO_DIVIDER,
+)
 
 LANES = (1, 2, 4, 8, 16, 32)
 SPI_INPUTS = ("sclk", "csn", "mosi")
@@ -19,7 +26,7 @@ class ChipParameters:
     lanes : int
         Converters side by side, a power of two in 1..32.
     divider : str
-        Variant of the quadrature divider on the readout path, one of DIVIDERS.
+        Variant of the quadrature divider on the readout path, one of DIVIDERS, or "none": no phase path.
     n_frac : int
         Fraction bits of the divider's ratio, 4..16.
     cordic_iterations : int
@@ -36,7 +43,7 @@ class ChipParameters:
 
     def __post_init__(self) -> None:
         check_choice("lanes", self.lanes, LANES)
-        check_choice("divider", self.divider, DIVIDERS)
+        check_choice("divider", self.divider, (*DIVIDERS, NO_DIVIDER))
         check_int("n_frac", self.n_frac, N_FRAC_MIN, N_FRAC_MAX)
         check_int("cordic_iterations", self.cordic_iterations, ITERATIONS_MIN, ITERATIONS_MAX)
         check_real("f_clk", self.f_clk, 1e3, 1e9)

@@ -8,6 +8,7 @@ from functools import cache
 import numpy as np
 
 DIVIDERS = ("radix2", "radix4", "pipelined", "cordic")
+NO_DIVIDER = "none"  # a chip without the phase path
 SAMPLE_MIN, SAMPLE_MAX = -256, 255  # differences of two 8-bit samples fit 9 bits
 N_FRAC_MIN, N_FRAC_MAX = 4, 16
 ITERATIONS_MIN, ITERATIONS_MAX = 4, 16  # of CORDIC

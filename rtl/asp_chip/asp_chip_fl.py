@@ -7,6 +7,7 @@ from pymtl3 import Component, Wire, connect, update, update_ff
 
 from talbot.models.parameters import (
     MODES,
+    NO_DIVIDER,
     AmpTiming,
     ArrayParameters,
     ChipParameters,
@@ -23,8 +24,11 @@ from talbot.rtl.asp_chip.pins import declare_pins
 from talbot.rtl.reg_file import RegFileFL, chip_status
 
 
-def frame_of(cfg: Any) -> FrameParameters:
-    """Return the frame of a ChipConfig, without the durations. Raises ParameterError if the frame is invalid."""
+def frame_of(cfg: Any, has_phase: bool = True) -> FrameParameters:
+    """Return the frame of a ChipConfig, without the durations. has_phase: whether the chip has a phase path.
+
+    Raises ParameterError if the frame is invalid.
+    """
     mode = MODES[int(cfg.mode)]
     return FrameParameters(
         Window(*(int(getattr(cfg, name)) for name in ("row0", "row1", "col0", "col1"))),
@@ -32,7 +36,7 @@ def frame_of(cfg: Any) -> FrameParameters:
         int(cfg.mask),
         int(cfg.threshold),
         int(cfg.decimation),
-        bool(cfg.phase) and mode == "tof",
+        has_phase and bool(cfg.phase) and mode == "tof",
         int(cfg.noise_floor),
         bool(cfg.overlap),
         bool(cfg.test_pattern),
@@ -76,7 +80,7 @@ class AspChipFL(Component):
             """Start the configured frame; returns (cfg_err, amp_err)."""
             cfg = s.regs.cfg
             try:
-                s.run = GoldenRun(s.sensor, frame_of(cfg), trims_of(cfg))
+                s.run = GoldenRun(s.sensor, frame_of(cfg, divider != NO_DIVIDER), trims_of(cfg))
                 timing = AmpTiming(*(int(getattr(cfg, name)) for name in (*TIMING, "exposure")))
                 s.run = replace(s.run, frame=replace(s.run.frame, timing=timing))
             except ParameterError as error:

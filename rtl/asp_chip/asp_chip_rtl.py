@@ -3,6 +3,7 @@
 from pymtl3 import Component, Wire, connect, update
 from pymtl3.stdlib.stream.queues import PipeQueue1EntryRTL
 
+from talbot.models.parameters import NO_DIVIDER
 from talbot.models.parameters.registers import register_map
 from talbot.rtl.adc_bank import AdcBank
 from talbot.rtl.amp_ctrl import AmpCtrl
@@ -30,11 +31,13 @@ TOF = 3
 class AspChip(Component):
     """The chip (README.md). rows, cols: pixels of the array. lanes: converters, a power of two.
     order: pixel type of each position in a tile of tile_rows x tile_cols, row by row.
-    divider, n_frac, iterations: variant of the phase path and its width (rtl/quad_divider).
+    divider, n_frac, iterations: variant of the phase path and its width (rtl/quad_divider). divider = "none": no phase
+    path, samples go to the encoder as they are and the register `phase` has no effect.
     """
 
     def construct(s, rows, cols, lanes, order, tile_rows=4, tile_cols=6, divider="radix4", n_frac=8, iterations=10):
         trims = register_map().trims[0]
+        has_phase = divider != NO_DIVIDER
 
         # Interface
         declare_pins(s, lanes)
@@ -47,7 +50,8 @@ class AspChip(Component):
             s.amp = AmpCtrl()
             s.seq = ReadoutSeq(rows, cols, lanes, order, tile_rows, tile_cols)
             s.bank = AdcBank(lanes)
-            s.phase = PhasePath(lanes, divider, n_frac, iterations)
+            if has_phase:
+                s.phase = PhasePath(lanes, divider, n_frac, iterations)
             s.scan = PipeQueue1EntryRTL(ScanMsg)  # ends the longest path: divider, phase, token
             s.encoder = RunLength(rows, cols, lanes, tile_rows, tile_cols)
             s.generator = Pattern(lanes)
@@ -116,10 +120,16 @@ class AspChip(Component):
         s.balancer.trims //= cfg.trims
         s.balancer.balance //= s.balance
 
-        s.phase.recv //= s.bank.scan
-        s.phase.on //= s.phase_on
-        s.phase.noise_floor //= cfg.noise_floor
-        s.phase.send //= s.scan.recv
+        if has_phase:
+            s.phase.recv //= s.bank.scan
+            s.phase.on //= s.phase_on
+            s.phase.noise_floor //= cfg.noise_floor
+            s.phase.send //= s.scan.recv
+            s.states.scan_rdy //= s.phase.recv.rdy
+        else:
+            s.bank.scan //= s.scan.recv
+            s.states.scan_rdy //= s.scan.recv.rdy
+            s.phase_on //= 0
         s.scan.send //= s.encoder.recv
 
         s.encoder.phase //= s.phase_on
@@ -152,7 +162,6 @@ class AspChip(Component):
         s.states.hold_free //= s.seq.hold_free
         s.states.bank_idle //= s.bank.idle
         s.states.scan_val //= s.bank.scan.val
-        s.states.scan_rdy //= s.phase.recv.rdy
         s.states.link_val //= s.link.send.val
         s.states.link_rdy //= s.link_rdy
         s.states.loop_val //= s.regs.loop.val
@@ -166,9 +175,11 @@ class AspChip(Component):
             place = past
 
         # Logic
-        @update
-        def up_phase():
-            s.phase_on @= s.regs.cfg.phase & (s.regs.cfg.mode == TOF)
+        if has_phase:
+
+            @update
+            def up_phase():
+                s.phase_on @= s.regs.cfg.phase & (s.regs.cfg.mode == TOF)
 
         @update
         def up_selected():

@@ -10,7 +10,7 @@ from functools import cache, cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
-from talbot.models.parameters.divider import DIVIDERS
+from talbot.models.parameters.divider import DIVIDERS, NO_DIVIDER
 
 if TYPE_CHECKING:
     from systemrdl.node import AddrmapNode, FieldNode, RegNode
@@ -280,7 +280,7 @@ def array_resets(
     rows, cols, lanes, tile_rows, tile_cols : int
         Pixels, converters, pixels of a tile.
     divider : str
-        One of DIVIDERS.
+        One of DIVIDERS, or NO_DIVIDER.
 
     Returns
     -------
@@ -295,5 +295,5 @@ def array_resets(
         "cols": cols,
         "tile_rows": tile_rows,
         "tile_cols": tile_cols,
-        "divider": DIVIDERS.index(divider),
+        "divider": (*DIVIDERS, NO_DIVIDER).index(divider),
     }

@@ -12,6 +12,7 @@ from talbot.models.digital.host import command, frame_writes, read_transfer
 from talbot.models.digital.pattern import PatternEnd
 from talbot.models.parameters import (
     MODES,
+    NO_DIVIDER,
     SHORT_TIMING,
     ArrayParameters,
     ChipParameters,
@@ -50,7 +51,7 @@ PHASE = pattern_frame(Window(1, 1, 0, 2), "tof", mask=0x000F0F, phase=True, nois
 class ChipTests:
     """One chip per class; the tests that are short enough for a simulation in Python."""
 
-    component, verilog, examples = None, False, 5
+    component, verilog, examples, divider = None, False, 5, SENSOR.chip.divider
 
     def bench(self, **kw):
         cls = type(self)
@@ -64,7 +65,7 @@ class ChipTests:
                     tuple(tile.order),
                     tile.rows,
                     tile.cols,
-                    chip.divider,
+                    self.divider,
                     chip.n_frac,
                     chip.cordic_iterations,
                 ),
@@ -72,6 +73,10 @@ class ChipTests:
                 "AspChip",
             )
         return ChipBench(cls.sim, LANES, **kw)
+
+    @property
+    def has_phase(self):
+        return self.divider != NO_DIVIDER
 
     def check(self, bench, frame, golden, trims=None):
         """Run one frame and check its bytes, its counters and its end."""
@@ -94,7 +99,7 @@ class ChipTests:
 
     def test_phase_and_loop_back(self):
         bench = self.bench()
-        self.check(bench, PHASE, golden_frame(None, SENSOR, PHASE, PATTERN))
+        self.check(bench, PHASE, golden_frame(None, SENSOR, replace(PHASE, phase=self.has_phase), PATTERN))
         bench.stream.clear()
         options, loop = CHIP["loop_enable"], CHIP["loop_back"].byte
         bench.write([(options.byte, 1 << options.shift)])
@@ -158,7 +163,7 @@ class FrameTests(ChipTests):
             )
             bench = self.bench(stall=stall, seed=mask)
             try:
-                golden = golden_frame(None, SENSOR, frame, PATTERN)
+                golden = golden_frame(None, SENSOR, replace(frame, phase=frame.phase and self.has_phase), PATTERN)
             except ParameterError:
                 bench.write(frame_writes(frame))
                 bench.start()
@@ -234,6 +239,10 @@ class TestFL(FrameTests):
     component = AspChipFL
 
 
+class TestFLWithoutPhasePath(ChipTests):
+    component, divider = AspChipFL, NO_DIVIDER
+
+
 class TestRTL(ChipTests):
     component = AspChip
 
@@ -284,6 +293,10 @@ class TestVerilog(FrameTests):
             streams.append(bytes(bench.stream))
             cycles.append(bench.status()["cycles"])
         assert streams[0] == streams[1] and cycles[0] < cycles[1]
+
+
+class TestVerilogWithoutPhasePath(FrameTests):
+    component, verilog, divider = AspChip, True, NO_DIVIDER
 
 
 class TestIcarus(TestVerilog):

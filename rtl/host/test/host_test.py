@@ -117,7 +117,7 @@ def running(host, bench, frame=SHORT):
 
 def test_identity(host):
     known = {
-        "id": 0x54, "version": 4, "stepping": 0, "lanes": LANES, "rows": ROWS, "cols": COLS, "tile_rows": 4,
+        "id": 0x54, "version": 5, "stepping": 0, "lanes": LANES, "rows": ROWS, "cols": COLS, "tile_rows": 4,
         "tile_cols": 6, "divider": 1,
     }  # fmt: skip
     assert host.identify() == {f.name: known[f.name] for f in CHIP.identity}
