@@ -13,7 +13,7 @@ from talbot.models.parameters import SensorParameters
 from talbot.rtl.harness.translate import translate_component
 from talbot.rtl.lint import lint
 from talbot.rtl.sensor_options import FIELDS, VARIED
-from talbot.rtl.tops import PARTS, TOPS, WRAPPERS, build_top
+from talbot.rtl.tops import PARTS, TOPS, WRAPPERS, build_top, tops_of
 
 WRAPPER = Path(__file__).parent / "tinytapeout"
 BUS = "tt_bytes"
@@ -89,7 +89,7 @@ def sensor_of(options: argparse.Namespace) -> SensorParameters:
 def run(options: argparse.Namespace) -> int:
     """Write the tops' Verilog and print the files."""
     sensor = sensor_of(options)
-    for name in options.top or TOPS:
+    for name in options.top or tops_of(sensor):
         path = options.out / f"{name}.sv"
         write(path, translate(name, sensor))
         if options.core:

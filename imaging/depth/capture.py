@@ -26,10 +26,10 @@ TAPS = 4
 class DepthFrames:
     """The same four exposures, read out six times.
 
-    sums: the taps' sums, in tof mode. phases: phase and amplitude by the chip's divider, None of a chip without. pairs: both diodes, a raw
-    frame for each tap, ahead of which the light's phase is set. coded: sums, and pairs, of four more exposures, in the
-    light of a code. straight: sums without noise and converter of the light that comes straight from the surfaces,
-    (4, rows, cols) in LSB, of a scene that has other light.
+    sums: the taps' sums, in tof mode. phases: phase and amplitude by the chip's divider, None of a chip without.
+    pairs: both diodes, a raw frame for each tap, ahead of which the light's phase is set. coded: sums, and pairs,
+    of four more exposures, in the light of a code. straight: sums without noise and converter of the light that
+    comes straight from the surfaces, (4, rows, cols) in LSB, of a scene that has other light.
     """
 
     sums: GoldenResult

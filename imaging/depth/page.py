@@ -92,7 +92,12 @@ def _headline(s: dict[str, Any]) -> list[Tile]:
         ),
         Tile(sure, f"of the pixels are sure; over all {whole}"),
         *(
-            [Tile(number(methods[other]["rms_m"], 4, " m"), TEXTS[other] + ("" if lead == SINE else ", without the code"))]
+            [
+                Tile(
+                    number(methods[other]["rms_m"], 4, " m"),
+                    TEXTS[other] + ("" if lead == SINE else ", without the code"),
+                )
+            ]
             if other in methods
             else []
         ),

@@ -73,7 +73,7 @@
 #define ASP_VERSION_ADDRESS 0x01u
 #define ASP_VERSION_SHIFT 0u
 #define ASP_VERSION_WIDTH 8u
-#define ASP_VERSION_DEFAULT 0x4u
+#define ASP_VERSION_DEFAULT 0x5u
 #define ASP_VERSION_MASK 0xffu
 
 /* start (wo): 1 starts a frame; refused while one runs, while `loop_enable` is set and together with `abort`. */
@@ -141,7 +141,7 @@
 #define ASP_OVERLAP_DEFAULT 0x1u
 #define ASP_OVERLAP_MASK 0x01u
 
-/* phase (rw): In tof mode, send (phase, amplitude) instead of the taps. */
+/* phase (rw): In tof mode, send (phase, amplitude) instead of the taps; no effect without a phase path. */
 #define ASP_PHASE_ADDRESS 0x04u
 #define ASP_PHASE_SHIFT 1u
 #define ASP_PHASE_WIDTH 1u
@@ -432,13 +432,13 @@ enum asp_encoder_state { ASP_ENCODER_STATE_IDLE = 0, ASP_ENCODER_STATE_HEADER = 
 #define ASP_TILE_COLS_MASK 0xffu
 
 /* divider (ro): Divider of the phase path. 0 radix2 (restoring), 1 radix4 (restoring, two bits a cycle), 2 */
-/* pipelined (one result a cycle), 3 cordic (CORDIC). */
+/* pipelined (one result a cycle), 3 cordic (CORDIC), 4 none (no phase path). */
 #define ASP_DIVIDER_ADDRESS 0x7cu
 #define ASP_DIVIDER_SHIFT 0u
-#define ASP_DIVIDER_WIDTH 2u
+#define ASP_DIVIDER_WIDTH 3u
 #define ASP_DIVIDER_DEFAULT 0x1u
-#define ASP_DIVIDER_MASK 0x03u
-enum asp_divider { ASP_DIVIDER_RADIX2 = 0, ASP_DIVIDER_RADIX4 = 1, ASP_DIVIDER_PIPELINED = 2, ASP_DIVIDER_CORDIC = 3 };
+#define ASP_DIVIDER_MASK 0x07u
+enum asp_divider { ASP_DIVIDER_RADIX2 = 0, ASP_DIVIDER_RADIX4 = 1, ASP_DIVIDER_PIPELINED = 2, ASP_DIVIDER_CORDIC = 3, ASP_DIVIDER_NONE = 4 };
 
 /* loop_back (wo): A byte for the link, when `loop_enable` is set. The address stays here, so that one transfer */
 /* may carry many. */

@@ -24,7 +24,7 @@ def measured(folder, *words):
 def done(tmp_path_factory):
     """Folder and summary of a tilted plane through the Verilog."""
     folder = tmp_path_factory.mktemp("depth")
-    return folder, measured(folder, "--scene=tilted", "--rows=13", "--cols=50")
+    return folder, measured(folder, "--scene=tilted", "--rows=13", "--cols=50", "--lanes=4")
 
 
 def test_depth_has_baselines(done):
@@ -51,6 +51,14 @@ def test_files(done):
         assert found["taps"].shape == (4, 5, 5, 13, 50) and np.isfinite(found["depth"]).all()
     text = (folder / "depth.html").read_text()
     assert f"{s['depth_rms_m']:.4f} m" in text and "Past the occluder" not in text
+
+
+def test_a_chip_without_phase_path_has_no_method_of_its_divider(tmp_path):
+    (tmp_path / "plain.toml").write_text('chip.divider = "none"\n', encoding="utf-8")
+    words = f"--sensor={tmp_path / 'plain.toml'}", "--scene=tilted", "--rows=13", "--cols=24", "--golden"
+    s = measured(tmp_path / "out", *words)
+    assert s["depth_method"] == "field" and not {"divider", "field_divider"} & set(s["methods"])
+    assert "the chip's divider" not in (tmp_path / "out" / "depth.html").read_text()
 
 
 @pytest.mark.slow

@@ -155,7 +155,7 @@ class TestGates:
     def test_stalls_and_resets(self, config, seed):
         check_random(Gates(quad_divider(*config), 1 << 12), config, seed)
 
-    @pytest.mark.parametrize("config", [default(config, False) for config in DEFAULTS if config not in QUICK])
+    @pytest.mark.parametrize("config", [default(config, True) for config in DEFAULTS if config not in QUICK])
     def test_every_vector_at_some_noise_floors(self, config):
         assert wrong_requests(Gates(quad_divider(*config), REQUESTS.size), config, SOME_FLOORS) == []
 
