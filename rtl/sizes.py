@@ -1,4 +1,7 @@
-"""The values with which a block can be built: each is proven, or tested for every size (verif.formal.sizes)."""
+"""The values with which a block can be built: each is proven, or tested for every size (verif.formal.sizes).
+
+The chip and its registers can also be built with NO_DIVIDER, which their tests have.
+"""
 
 from collections.abc import Sequence
 

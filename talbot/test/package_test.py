@@ -78,6 +78,7 @@ def built(tmp_path_factory):
     return source, next((source / "wheel").glob("*.whl"))
 
 
+@pytest.mark.slow
 def test_a_wheel_has_the_package_and_nothing_else(built):
     source, wheel = built
     names = Counter(zipfile.ZipFile(wheel).namelist())

@@ -15,7 +15,7 @@ from talbot.models.digital.host import (
     write_transfers,
 )
 from talbot.models.digital.registers import ADDRESS_MAX, RegisterBank
-from talbot.models.parameters import DIVIDERS, MODES, AmpTiming, FrameParameters, Window
+from talbot.models.parameters import DIVIDERS, MODES, NO_DIVIDER, AmpTiming, FrameParameters, Window
 from talbot.models.parameters.registers import array_resets, register_map
 from talbot.rtl.harness.reset import outputs_after_reset
 from talbot.rtl.harness.testbench import build
@@ -534,7 +534,7 @@ class TestIcarus(TestRTL):
     verilog = "icarus"
 
 
-@pytest.mark.parametrize("divider, array", list(zip(DIVIDERS, SIZES)))
+@pytest.mark.parametrize("divider, array", list(zip((*DIVIDERS, NO_DIVIDER), (*SIZES, (9, 14, 2, 2, 3)))))
 def test_identity_and_window_of_every_size(divider, array):
     bench = Bench(build(RegFile(*array, divider)))
     own = array_resets(*array, divider)

@@ -58,6 +58,7 @@ def test_any(number):
 """
 
 
+@pytest.mark.slow
 def test_a_seed_draws_the_same_again(repository, monkeypatch):
     """Where a CI runs the tests, too."""
     (repository / "conftest.py").write_text((ROOT / "conftest.py").read_text())
