@@ -1,4 +1,7 @@
-"""The trim at the pins is that of the pixel's type, in every row of the largest array."""
+"""The trim at the pins is that of the pixel's type, in every row of the largest array.
+
+Tiles of 4 x 6 in two orders, 1 x 6, 4 x 1 and 1 x 1 are proven by fast proofs, the others here by slow ones, too.
+"""
 
 import numpy as np
 import pytest
@@ -8,8 +11,8 @@ from talbot.models.parameters.array import ROWS_MAX
 from talbot.rtl.asp_chip.balance_rtl import Balance
 from talbot.rtl.harness.testbench import build
 
-TILES = {f"{rows}x{cols}": TileParameters.small(rows, cols) for rows, cols in ((4, 6), (3, 5), (2, 4), (3, 1), (1, 1))}
-for rows, cols in ((4, 6), (3, 6), (4, 5), (3, 2)):
+TILES = {f"{rows}x{cols}": TileParameters.small(rows, cols) for rows, cols in ((3, 5), (2, 4), (3, 1))}
+for rows, cols in ((3, 6), (4, 5), (3, 2)):
     any_order = np.random.default_rng(rows * cols).permutation(rows * cols).tolist()
     TILES[f"{rows}x{cols} shuffled"] = TileParameters(rows, cols, TileParameters().types[: rows * cols], any_order)
 
@@ -31,7 +34,3 @@ class TestRTL:
                 sim.k @= k
                 sim.sim_eval_combinational()
                 assert int(sim.balance) == trims[kind] & 0x3FF
-
-
-class TestIcarus(TestRTL):
-    verilog = "icarus"

@@ -52,18 +52,6 @@ class TestRTL:
                 held = pattern_value(row, group * self.lanes + np.arange(self.lanes), k, sub)
 
 
-class TestRTLOneLane(TestRTL):
-    lanes = 1
-
-
-class TestRTLTwoLanes(TestRTL):
-    lanes = 2
-
-
-class TestRTLManyLanes(TestRTL):
-    lanes = 32
-
-
 class TestVerilog(TestRTL):
     verilog = True
     lanes = 8
