@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from pymtl3 import Bits, Component, InPort
+from pymtl3 import Component, InPort, is_bitstruct_class
 
 from talbot.rtl.asp_chip.test.chip_bench import ChipBench
 from talbot.verif.formal import design, manifest, replay
@@ -102,7 +102,7 @@ def _inputs(chip: Component, block: Component) -> dict[str, str]:
         if signal.get_host_component() is block and signal.is_top_level_signal():
             path, kind = repr(signal).removeprefix("s."), signal._dsl.Type
             name = path.removeprefix(repr(block).removeprefix("s.") + ".").replace(".", "__")
-            pins[name] = path if issubclass(kind, Bits) else f"{path}.to_bits()"
+            pins[name] = f"{path}.to_bits()" if is_bitstruct_class(kind) else path
     return pins
 
 

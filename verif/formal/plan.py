@@ -1,6 +1,6 @@
 """The jobs of a proof, planned such that a change of one block keeps the results of the others."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
 from talbot.base.jobs import Job
@@ -35,7 +35,9 @@ def pieces(proof: Proof, engines: Iterable[str], assumptions: bool = True) -> It
         inputs = (*base, proof.depth, version("yosys"), version(engine))
         job = Job(f"{proof.name}.{engine}", prove, (proof, engine, texts, wrapper), inputs)
         yield Piece(ProofResult, engine, job)
-    checks = [(NecessityResult, necessity, proof.depth)] if assumptions else [(ConjunctResult, conjuncts, 0)]
+    checks: list[tuple[type[NecessityResult | ConjunctResult | FreedomResult], Callable[..., object], object]] = [
+        (NecessityResult, necessity, proof.depth) if assumptions else (ConjunctResult, conjuncts, 0)
+    ]
     if assumptions or proof.cover_depth <= COMBINATIONAL:
         checks.append((FreedomResult, freedom, str((proof.free_depth, proof.free_from, proof.never, proof.tied))))
     for kind, call, more in checks:
