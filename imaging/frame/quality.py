@@ -112,9 +112,9 @@ def image_figures(result: GoldenResult, size: int, codecs: Sequence[str], versio
     images |= {f"_{name}": coded(seen, name, size) for name in codecs}
     out: dict[str, float | None] = {}
     for name, shown in images.items():
-        seen_at_all = shown is not None and clear.any()
-        out[f"image_psnr{name}_db"] = psnr_without_mean_db(shown[clear], truth[clear]) if seen_at_all else None
-        out[f"image_ssim{name}"] = ssim(shown, truth, clear) if seen_at_all else None
+        shown = shown if clear.any() else None
+        out[f"image_psnr{name}_db"] = None if shown is None else psnr_without_mean_db(shown[clear], truth[clear])
+        out[f"image_ssim{name}"] = None if shown is None else ssim(shown, truth, clear)
     return out
 
 
@@ -132,9 +132,9 @@ def ssim(image: Values, truth: Values, clear: npt.NDArray[np.bool_] | None = Non
 
     clear = np.ones(truth.shape, bool) if clear is None else clear
     level = image - image[clear].mean() + truth[clear].mean()
-    _, similarity = structural_similarity(level, truth, data_range=1.0, win_size=SSIM_WINDOW, full=True)
+    found: Any = structural_similarity(level, truth, data_range=1.0, win_size=SSIM_WINDOW, full=True)
     inner = (slice(SSIM_WINDOW // 2, -(SSIM_WINDOW // 2)),) * 2  # whole windows
-    return float(similarity[inner][clear[inner]].mean()) if clear[inner].any() else None
+    return float(found[1][inner][clear[inner]].mean()) if clear[inner].any() else None
 
 
 def coded_sum(result: GoldenResult) -> Values:
@@ -161,7 +161,7 @@ def field_quality(result: GoldenResult) -> dict[str, float | str | None]:
     copied = np.broadcast_to(result.image[part[1:]], truth.shape)
     clear = ~result.exposed.full[part[1:]]
 
-    def _psnr(estimate: Values) -> float | None:
+    def _psnr(estimate: npt.NDArray[np.floating]) -> float | None:
         return psnr_db(estimate[..., clear], truth[..., clear]) if clear.any() else None
 
     out: dict[str, float | str | None] = {"light_field_method": result.light_field_method}

@@ -183,8 +183,8 @@ class _Probe:
         scene = self.scene
         if not callable(scene.render) or isinstance(scene.render, Pictured | Shifted) or scene.disparity is None:
             return None
-        middle = (np.asarray(values, float) for values in (scene.image, scene.disparity))
-        alone = Pictured(*middle, Sampling.of(self.sensor))
+        image, disparity = np.asarray(scene.image, float), np.asarray(scene.disparity, float)
+        alone = Pictured(image, disparity, Sampling.of(self.sensor))
         visible = Scene(scene.name, scene.views, None, scene.image, scene.disparity, render=alone)
         return _rms(self._differences(visible, views) - self.reference - error)
 
