@@ -4,6 +4,7 @@ direct      Sigma^-1 Phi' i [Jayasuriya2017, Sec. 3.3.2]
 linear      `bayes`: one filter for windows of like disparities; the default
 sparse      `sparse`
 mixture     `bayes`: each pixel by its own disparity
+layers      `layers`: surfaces with complete textures where they explain the samples, else mixture
 two_branch  `branches`; autoencoder and convolutions are its branches, each alone [Jayasuriya2017, Sec. 3.7]
 """
 
@@ -19,10 +20,12 @@ from talbot.models.capture import CaptureOperator
 from talbot.models.parameters import ParameterError, SensorParameters
 from talbot.models.reconstruct.bayes import FieldEstimator
 from talbot.models.reconstruct.branches import KINDS, Branches
+from talbot.models.reconstruct.layers import layered
 from talbot.models.reconstruct.light_field import light_field_estimate
 from talbot.models.reconstruct.sparse import Coding, Dictionary, SparseEstimator
 
 Values = npt.NDArray[np.floating]
+MOST_VIEWS = 9  # of `layers`, along the pupil's diameter: a frame of 384 x 384 pixels then has 1 GB
 DEFAULT = "linear"  # as fast as direct once its filters are there, and it has parallax
 
 
@@ -60,6 +63,12 @@ def _mixture(estimator: FieldEstimator, operator: CaptureOperator, pair: Values)
     return Found(*estimator.mixture(pair))
 
 
+def _layers(estimator: FieldEstimator, operator: CaptureOperator, pair: Values) -> Found:
+    estimate = estimator.mixture(pair)
+    field = layered(estimate, operator.sensor, estimator.pupil, estimator.prior.noise, pair)
+    return Found(*estimate._replace(light_field=field))
+
+
 def _branches(kind: str, estimator: FieldEstimator, operator: CaptureOperator, pair: Values) -> Found:
     return Found(Branches.shipped().estimate(pair, operator.sensor, estimator.prior.noise, kind))
 
@@ -86,11 +95,12 @@ METHODS: Mapping[str, Method] = {
     "sparse": _sparse,
     **{name: partial(_branches, kind) for name, kind in BRANCHES.items()},
     "mixture": _mixture,
+    "layers": _layers,
 }
 PREPARE: Mapping[str, Callable[[FieldEstimator, CaptureOperator], object]] = {
     "linear": lambda estimator, operator: estimator.prepare(),
     "sparse": _coder,
-    "mixture": lambda estimator, operator: estimator.prepare(mixture=True),
+    **dict.fromkeys(("mixture", "layers"), lambda estimator, operator: estimator.prepare(mixture=True)),
     **dict.fromkeys(BRANCHES, lambda estimator, operator: Branches.shipped()),
 }
 ANY_TYPES = "direct", "linear", "mixture"  # know what to do where some pixel types are not read
@@ -112,6 +122,7 @@ def applicable(operator: CaptureOperator) -> list[str]:
     views, _, *shape = operator.shape
     _, trained, _, *patch = Dictionary.shipped().atoms.shape
     fits = {"sparse": views == trained and min(np.subtract(shape, patch)) >= 0}
+    fits["layers"] = views <= MOST_VIEWS
     fits |= dict.fromkeys(BRANCHES, Branches.shipped().knows(operator.sensor))
     return [name for name in METHODS if fits.get(name, True)]
 

@@ -116,7 +116,7 @@ class Run:
 
         method: of a light field (imaging/lightfield/README.md), by the name that it has in `make lightfield` and in the
         summary of `make sim`: linear (the default), direct (the thesis's), sparse, autoencoder, convolutions,
-        two_branch, mixture. Of a decimated frame, and of more than 17 x 17 views, direct is the default.
+        two_branch, mixture, layers. Of a decimated frame, and of more than 17 x 17 views, direct is the default.
         disparity: (rows, cols), px of the array per view step, for an image from edges; by default the scene's own.
         Raises ParameterError.
         """

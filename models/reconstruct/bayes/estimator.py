@@ -84,9 +84,9 @@ class FieldEstimator:
         measured: npt.NDArray[np.bool_] | None = None,
     ) -> None:
         tile = sensor.tile
-        self.prior, self.views, self.shape = prior, views, sensor.shape
+        self.prior, self.views, self.shape, self.pupil = prior, views, sensor.shape, pupil or views
         y, x = (Axis.of(*ends, prior.margin) for ends in zip(sensor.shape, (tile.rows, tile.cols)))
-        weights = view_weights(tile, replace(sensor.optics, views=pupil or views))
+        weights = view_weights(tile, replace(sensor.optics, views=self.pupil))
         read = np.ones(tile.n_types, bool) if measured is None else np.asarray(measured, bool)
         if not read.any():
             raise ParameterError("measured = no pixel type: must be at least one")
