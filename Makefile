@@ -8,6 +8,7 @@ READY := $(VENV)/.ready
 VIDEO_READY := $(VENV)/.video-ready
 TESTS_READY := $(VENV)/.tests-ready
 RENDER_READY := $(VENV)/.render-ready
+EXPLORE_READY := $(VENV)/.explore-ready
 LAYOUT_READY := $(VENV)/.layout-ready
 LINT_READY := $(VENV)/.lint-ready
 # A user's own settings change nothing here (talbot/base/environment.py), PYTHONDONTWRITEBYTECODE of containers' images among
@@ -48,7 +49,7 @@ $(READY): requirements/run.lock pyproject.toml requirements/venv.sh
 
 # Before packages or tools are installed for them, a command's arguments are checked (talbot/base/check.py): the target's recipe
 # once more, with everything taken for ready
-HAVE := $(READY) $(VIDEO_READY) $(TESTS_READY) $(RENDER_READY) $(LAYOUT_READY) $(LINT_READY) have-tools
+HAVE := $(READY) $(VIDEO_READY) $(TESTS_READY) $(RENDER_READY) $(EXPLORE_READY) $(LAYOUT_READY) $(LINT_READY) have-tools
 CHECK = $(if $(filter-out $(PLAIN),$(GOALS)),MAKELEVEL=0 TALBOT_CHECK=1 $(MAKE) -s $(HAVE:%=-o %) $(filter-out $(PLAIN),$(GOALS)),true)
 
 $(VIDEO_READY): $(READY) requirements/video.lock
@@ -58,6 +59,10 @@ $(VIDEO_READY): $(READY) requirements/video.lock
 $(RENDER_READY): $(READY) requirements/render.lock
 	@$(CHECK)
 	@bash requirements/venv.sh '$(PYTHON)' '$(VENV)' '$@' requirements/render.lock
+
+$(EXPLORE_READY): $(READY) requirements/explore.lock
+	@$(CHECK)
+	@bash requirements/venv.sh '$(PYTHON)' '$(VENV)' '$@' requirements/explore.lock
 
 $(TESTS_READY): $(READY) requirements/test.lock
 	@$(CHECK)
@@ -112,6 +117,10 @@ sequence: $(READY) $(if $(VIDEO),$(VIDEO_READY))
 .PHONY: render
 render: $(RENDER_READY)
 	@$(talbot) render
+
+.PHONY: explore
+explore: $(EXPLORE_READY)
+	@$(talbot) explore
 
 .PHONY: test
 test: $(TESTS_READY)

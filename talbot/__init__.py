@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from talbot.api import pixel
     from talbot.api.decode import DecodedFrame, decode
+    from talbot.api.explore import Exploration, explore
     from talbot.api.image import Image
     from talbot.api.light_field import LightField
     from talbot.api.recognize import Recognition, recognize
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "DecodedFrame",
+    "Exploration",
     "Image",
     "LightField",
     "ParameterError",
@@ -35,6 +37,7 @@ __all__ = [
     "ToolError",
     "Tradeoff",
     "decode",
+    "explore",
     "pixel",
     "recognize",
     "scenes",
@@ -43,6 +46,7 @@ __all__ = [
 
 _MODULES = {
     "DecodedFrame": "talbot.api.decode",
+    "Exploration": "talbot.api.explore",
     "Image": "talbot.api.image",
     "LightField": "talbot.api.light_field",
     "ParameterError": "talbot.models.parameters",
@@ -53,6 +57,7 @@ _MODULES = {
     "ToolError": "talbot.base.tools",
     "Tradeoff": "talbot.api.sweep",
     "decode": "talbot.api.decode",
+    "explore": "talbot.api.explore",
     "pixel": "talbot.api.pixel",
     "recognize": "talbot.api.recognize",
     "scenes": "talbot.api.sensor",

@@ -36,6 +36,7 @@ GROUPS: dict[str, dict[str, Command]] = {
         "recognize": Command("digits or your pictures classified from the chip's bytes", "imaging.recognize.command"),
         "sequence": Command("a clip or a folder of pictures, frame after frame", "imaging.sequence.command"),
         "calibrate": Command("pixel types, offsets and lens estimated from bench frames", "imaging.calibrate.command"),
+        "explore": Command("which sensor for my task: the front of error and costs", "imaging.explore.command"),
         "tradeoff": Command("error against run time: tables and plots", "imaging.tradeoff.command"),
         "stability": Command("stiff and extreme cases of all subjects: bounds and measured figures", "verif.stability"),
         "decode": Command("the chip's byte stream to samples, as .npz", "imaging.decode"),

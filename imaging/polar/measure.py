@@ -56,9 +56,9 @@ def read_polarization(
     """Return the polarization of a raw frame of any part of the array. highlight: of a highlight's polarized light."""
     note("polarization")
     start = perf_counter()
-    polarized, sums, over = _estimate(result, result.decoded.samples.astype(float))
+    polarized, sums, over = estimated(result, result.decoded.samples.astype(float))
     seconds = perf_counter() - start
-    ideal, _, _ = _estimate(result, result.exposed.ideal)
+    ideal, _, _ = estimated(result, result.exposed.ideal)
     plain = demosaiced(sums, result.sensor.tile, result.sensor.optics.diattenuation)
     tags = specular_tags(polarized, highlight)
     shine = result.exposed.scene.specular
@@ -131,7 +131,7 @@ def prepared(result: GoldenResult, pairs: Values) -> tuple[Values, Values, Bools
     return sums, noise, result.decoded.read & ~over, over
 
 
-def _estimate(result: GoldenResult, pairs: Values) -> tuple[Polarization, Values, Bools]:
+def estimated(result: GoldenResult, pairs: Values) -> tuple[Polarization, Values, Bools]:
     """Polarization from diodes (rows, cols, 2) in LSB, the sums that it is from (1 = white), and the full pixels."""
     sums, noise, used, over = prepared(result, pairs)
     optics = result.sensor.optics

@@ -30,6 +30,8 @@ def reported(program: str, call: Callable[[], int]) -> int:
         if package in ("", "talbot"):
             return internal(program, error)
         brings = "make setup-layout, or pip install 'talbot[layout]', brings those of layouts"
+        if package in ("optuna", "plotly"):
+            brings = "make explore, or pip install 'talbot[explore]', brings it"
         print(f"{program}: error: package = {package}: not installed; {brings}", file=sys.stderr)
         return 2
     except Exception as error:

@@ -84,7 +84,7 @@ def test_importing_it_loads_nothing():
 
 
 def test_every_name_is_there_and_documented():
-    assert len(talbot.__all__) == 15 and dir(talbot) == sorted(talbot.__all__)
+    assert len(talbot.__all__) == 17 and dir(talbot) == sorted(talbot.__all__)
     for name in talbot.__all__:
         value = getattr(talbot, name)
         assert name == "scenes" or value.__doc__
@@ -244,6 +244,24 @@ def test_modes_show_what_they_can():
     assert 1 < np.nanmedian(depth) < 8 and run._repr_html_().startswith("<table>")
     with pytest.raises(talbot.ParameterError, match="what = 'edges': must be one of image, depth in tof mode"):
         run.reconstruct("edges")
+
+
+def test_a_search_is_a_table_and_sensors(tmp_path):
+    task = ROOT / "imaging" / "explore" / "test" / "own.py"
+    found = talbot.explore(task, out=tmp_path, trials=4, batch=4, objectives="error,energy_uj", seed=3)
+    rows = found.table if isinstance(found.table, list) else found.table.to_dict("records")
+    assert len(rows) == 5 and {"point", "front", "error", "energy_uj", "array.rows"} <= rows[0].keys()
+    assert found.front and {row["point"] for row in rows if row["front"]} == {*found.front}
+    values = next(row for row in rows if row["point"] == found.front[0])
+    sensor = found.sensor(found.front[0])
+    assert (sensor.parameters.array.rows, sensor.parameters.chip.lanes) == (values["array.rows"], values["chip.lanes"])
+    sensor.save(tmp_path / "mine.toml")
+    assert talbot.Sensor.load(tmp_path / "mine.toml") == sensor
+    assert found.front[0] in found._repr_html_() and "4 points" in repr(found)
+    with pytest.raises(talbot.ParameterError, match="point = 'best': must be one of thesis, 0000"):
+        found.sensor("best")
+    with pytest.raises(talbot.ParameterError, match="number = 'trails'"):
+        talbot.explore(task, out=tmp_path, trails=4)
 
 
 def test_a_tradeoff_is_a_table_and_a_plot():

@@ -17,7 +17,7 @@ from talbot.make import arguments, variables
 
 READY = [
     word
-    for name in ("ready", "video-ready", "tests-ready", "layout-ready", "lint-ready")
+    for name in ("ready", "video-ready", "tests-ready", "layout-ready", "lint-ready", "explore-ready")
     for word in ("-o", f".venv/.{name}")
 ]
 

@@ -1,0 +1,105 @@
+"""Evaluated points of searches, in one SQLite file that Optuna and optuna-dashboard open.
+
+SQLite: a transaction is whole or absent, after a kill and on a full disk, too. (A journal file's last line is not, and
+a server would have to run.) One process writes: workers return what they found. A search has studies: its digest
+with /small, /full and /thesis; each trial is one evaluated point, with figures and picture.
+"""
+
+import json
+import warnings
+from collections.abc import Mapping, Sequence
+from errno import ENOSPC
+from os import strerror
+from pathlib import Path
+from typing import Any
+
+import optuna
+from optuna.storages import RDBStorage
+from optuna.trial import TrialState, create_trial
+
+from talbot.base.check import work_begins
+from talbot.base.files import atomic
+from talbot.models.parameters import ParameterError
+
+Distributions = Mapping[str, optuna.distributions.BaseDistribution]
+RECORD = "record"
+
+
+class Store:
+    """The store at ``path``, made where there is none. Raises ParameterError for a file that is none."""
+
+    def __init__(self, path: Path, digest: str, directions: Sequence[str]) -> None:
+        work_begins()
+        optuna.logging.set_verbosity(optuna.logging.ERROR)
+        self.path, self.digest, self.directions = path, digest, list(directions)
+        if not path.exists():
+            with atomic(path) as part:
+                _storage(part).engine.dispose()
+        try:
+            self._storage = _storage(path)
+            self._studies = {name: self._study(name) for name in ("small", "full", "thesis")}
+        except Exception as error:
+            _raise_full(error, path)
+            raise ParameterError(
+                f"store = {str(path)!r}: must be a file of talbot explore ({type(error).__name__})"
+            ) from None
+
+    def _study(self, name: str) -> optuna.Study:
+        return optuna.create_study(
+            storage=self._storage, study_name=f"{self.digest}/{name}", directions=self.directions, load_if_exists=True
+        )
+
+    def records(self) -> dict[tuple[str, str], dict[str, Any]]:
+        """Records by fidelity and the JSON of the values."""
+        out = {}
+        for name, study in self._studies.items():
+            for trial in study.get_trials(deepcopy=False):
+                if RECORD in trial.user_attrs:
+                    out[name, key(trial.params)] = trial.user_attrs[RECORD]
+        return out
+
+    def add(
+        self,
+        fidelity: str,
+        values: Mapping[str, Any],
+        distributions: Distributions,
+        objectives: Sequence[float] | None,
+        record: Mapping[str, Any],
+    ) -> None:
+        """Keep a point. objectives: None of one that failed. Raises OSError where the disk is full."""
+        trial = create_trial(
+            state=TrialState.FAIL if objectives is None else TrialState.COMPLETE,
+            values=None if objectives is None else list(objectives),
+            params=dict(values),
+            distributions=dict(distributions),
+            user_attrs={RECORD: dict(record)},
+        )
+        try:
+            self._studies[fidelity].add_trial(trial)
+        except Exception as error:
+            _raise_full(error, self.path)
+            raise
+
+    def close(self) -> None:
+        """Let go of the file."""
+        self._storage.remove_session()
+        self._storage.engine.dispose()
+
+
+def key(values: Mapping[str, Any]) -> str:
+    """The JSON of values, whatever their order."""
+    return json.dumps(dict(values), sort_keys=True)
+
+
+def _storage(path: Path) -> RDBStorage:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of SQLAlchemy's and Optuna's next versions
+        return RDBStorage(f"sqlite:///{path.absolute()}", engine_kwargs={"connect_args": {"timeout": 60}})
+
+
+def _raise_full(error: BaseException | None, path: Path) -> None:
+    """Raise OSError where a full disk is the reason of ``error``: SQLite has its own words."""
+    while error:
+        if "disk is full" in str(error):
+            raise OSError(ENOSPC, strerror(ENOSPC), str(path)) from None
+        error = error.__cause__ or error.__context__

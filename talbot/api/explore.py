@@ -1,0 +1,98 @@
+"""Which sensor for a task: the search of `make explore`, its table and its sensors."""
+
+import importlib
+import importlib.util
+from argparse import Namespace
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from talbot.api.image import text
+from talbot.api.sensor import Sensor
+from talbot.imaging.explore.command import NUMBERS, explored, plan_of
+from talbot.imaging.explore.results import name_of, sensor_of_row, table
+from talbot.imaging.explore.search import Found
+from talbot.imaging.explore.tasks import figures_of, task_of
+from talbot.models.parameters import check_choice
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Exploration:
+    """A search that ended. summary: the figures, as in summary.json. folder: of the page and the sensor files.
+
+    found: all of it (`talbot.imaging.explore.search.Found`).
+    """
+
+    found: Found
+    summary: dict[str, Any]
+    folder: Path
+
+    @property
+    def table(self) -> Any:
+        """Every point with its values and figures: a pandas.DataFrame, or a list of dicts where pandas is missing."""
+        rows = table(self.found)
+        if importlib.util.find_spec("pandas") is None:
+            return rows
+        return importlib.import_module("pandas").DataFrame(rows)
+
+    @property
+    def front(self) -> list[str]:
+        """Names of the points on the front."""
+        return [name_of(row) for row in self.found.front]
+
+    def sensor(self, point: str) -> Sensor:
+        """The sensor of a point, by its name; 'thesis' is the thesis's. Raises ParameterError."""
+        thesis = [self.found.thesis] if self.found.thesis else []
+        rows = {name_of(row): row for row in [*thesis, *self.found.rows]}
+        check_choice("point", point, list(rows))
+        return Sensor.of(sensor_of_row(self.found, rows[point]))
+
+    def __repr__(self) -> str:
+        s = self.summary
+        return f"<Exploration of {s['task']}: {s['trials']} points, {len(s['front'])} on the front, in {self.folder}>"
+
+    def _repr_html_(self) -> str:
+        names = self.summary["objectives"]
+        rows = [[entry["point"], *(entry["figures"][name] for name in names)] for entry in self.summary["front"]]
+        lines = [("th", ["point", *names]), *(("td", row) for row in rows)]
+        body = "".join(f"<tr>{''.join(f'<{tag}>{text(v)}</{tag}>' for v in row)}</tr>" for tag, row in lines)
+        return f"<p>{text(self.summary['about'])}</p><table>{body}</table>"
+
+
+def explore(
+    task: str | Path = "edges",
+    *,
+    out: str | Path | None = None,
+    scenes: str = "",
+    budget: str = "",
+    objectives: str = "",
+    keys: str = "",
+    sampler: str = "tpe",
+    full: bool = False,
+    sensor: Sensor | None = None,
+    workers: int = 1,
+    **numbers: float,
+) -> Exploration:
+    """Search the sensors for a task, as `make explore` does; a search that ended early continues.
+
+        found = talbot.explore("edges", budget="energy_uj<20", trials=40, seed=1)
+        found.table                        # every point, with values and figures
+        found.sensor(found.front[0]).save("mine.toml")
+
+    task: edges, lightfield, polarization, depth, recognition, or a file .py (imaging/explore/README.md). out: folder,
+    build/explore/<task> without one. scenes, budget, objectives, keys, sampler, full, workers: as of the command.
+    sensor: of keys that do not vary. numbers: lux, trials, seed, batch, timeout, robust.
+
+    Raises ParameterError.
+    """
+    options = Namespace(keys=keys, objectives=objectives, budget=budget, sampler=sampler, full=full, workers=workers)
+    for name in numbers:
+        check_choice("number", name, [number.field for number in NUMBERS])
+    for number in NUMBERS:
+        setattr(options, number.field, str(numbers.get(number.field, number.default)))
+    values = {number.field: number.value(options) for number in NUMBERS}
+    chosen = task_of(str(task), scenes, values["lux"], sensor.parameters if sensor else None)
+    plan = plan_of(chosen, figures_of(chosen), values, options)
+    folder = Path(out) if out else Path("build") / "explore" / chosen.name
+    found, summary = explored(plan, folder, values["robust"])
+    return Exploration(found, summary, folder)
