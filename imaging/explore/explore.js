@@ -62,6 +62,7 @@
 
   plane(); parallel();
   if (points.length) show((points.find(p => p.front) || points[0]).point);
+  Plotly.Plots.resize(at("plane"));
   for (const event of ["plotly_hover", "plotly_click"]) at("plane").on(event, ({points:[chosen]}) => show(chosen.customdata));
   at("parallel").on("plotly_restyle", () => {
     const names = [...keys, ...figures];

@@ -18,7 +18,7 @@ from talbot.base.check import work_begins
 from talbot.models.parameters import ParameterError
 
 TRIES = 2
-IDLE = 300.0  # s that processes wait for calls
+IDLE = 300  # s that processes wait for calls
 TICK = 1.0  # s between two looks at the clock
 
 

@@ -114,7 +114,8 @@ class Found:
 
 def search(plan: Plan, path: Path, note: Callable[[str], None] = lambda text: None) -> Found:
     """Search, the evaluated points kept in the SQLite file ``path``. Raises ParameterError, OSError."""
-    task, directions = plan.task, ["maximize" if name in MORE else "minimize" for name in plan.objectives]
+    task = plan.task
+    directions: list[Any] = ["maximize" if name in MORE else "minimize" for name in plan.objectives]
     distributions = {name: distribution(values) for name, values in plan.space.items()}
     store = Store(path, plan.digest, directions)
     try:
@@ -146,17 +147,17 @@ class Judge:
         plan, task, study = self.plan, self.plan.task, study or fidelity.name
         todo = []
         for row in rows:
-            record = self.records.get((study, key(row.values)))
-            if record is None:
+            known = self.records.get((study, key(row.values)))
+            if known is None:
                 todo.append(row)
             else:
-                _take(row, fidelity, record)
+                _take(row, fidelity, known)
                 yield row
         points = [considered(task, row.values, ()) for row in todo]
         arguments = [(task, point, fidelity, plan.seed) for point in points]
         for number, result in self.pool.run(work, arguments):
             row = todo[number]
-            record = {"failed": result.reason} if isinstance(result, Failure) else result
+            record: Record = {"failed": result.reason} if isinstance(result, Failure) else result
             figures = record.get("figures")
             objectives = None if figures is None else [figures[name] for name in plan.objectives]
             distributions = {name: self.distributions[name] for name in row.values if name in self.distributions}
@@ -336,9 +337,9 @@ def oriented(figures: Sequence[Mapping[str, float]], objectives: Sequence[str]) 
 
 def undominated(points: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
     """Which points no other is as good as in every objective and better in one; of equal points all."""
-    as_good = (points[None] <= points[:, None]).all(2)
-    better = (points[None] < points[:, None]).any(2)
-    return ~(as_good & better).any(1)
+    as_good = np.all(points[None] <= points[:, None], axis=2)
+    better = np.any(points[None] < points[:, None], axis=2)
+    return ~np.any(as_good & better, axis=1)
 
 
 def importances(found: Found, objective: str) -> dict[str, float]:

@@ -28,7 +28,7 @@ RECORD = "record"
 class Store:
     """The store at ``path``, made where there is none. Raises ParameterError for a file that is none."""
 
-    def __init__(self, path: Path, digest: str, directions: Sequence[str]) -> None:
+    def __init__(self, path: Path, digest: str, directions: Sequence[Any]) -> None:
         work_begins()
         optuna.logging.set_verbosity(optuna.logging.ERROR)
         self.path, self.digest, self.directions = path, digest, list(directions)

@@ -37,6 +37,7 @@ from talbot.models.scene import Sampling, Scene, load
 Floats = npt.NDArray[np.floating]
 GRID = 192  # columns of the grid on which pictures of all sensors are compared
 FIGURES = "error", "energy_uj", "bytes", "area_mm2", "frames_per_s"  # of every task
+SIM = "threshold", "lux", "mode", "decimation"  # settings that `make sim` has under their names
 MORE = ("frames_per_s", "range_m")  # that are better the larger they are
 
 
@@ -211,7 +212,7 @@ def on_grid(values: Floats, shape: tuple[int, int]) -> Floats:
         return values
     flat = values.reshape(-1, *values.shape[-2:])
     size: Any = shape
-    out = [resize(plane, size, order=1, mode="edge", anti_aliasing=plane.shape > shape) for plane in flat]
+    out: list[Any] = [resize(plane, size, order=1, mode="edge", anti_aliasing=plane.shape > shape) for plane in flat]
     return np.stack(out).reshape(*values.shape[:-2], *shape)
 
 
@@ -284,7 +285,9 @@ class OwnTask:
 
     def words(self, point: Point) -> str:
         """The frame's settings, as far as `make sim` has them; the file says what else it does."""
-        return " ".join(["make sim", *(f"{name.upper()}={value}" for name, value in point.settings.items())])
+        return " ".join(
+            ["make sim", *(f"{name.upper()}={value}" for name, value in point.settings.items() if name in SIM)]
+        )
 
     def content(self) -> Sequence[object]:
         """Its text."""

@@ -113,7 +113,8 @@ class Edges(SceneTask):
     name = "edges"
     about = "RMS error of the image rebuilt from the edges, its mean left out; white is 1"
     mode = "edge"
-    thesis: ClassVar[Mapping[str, Any]] = SceneTask.thesis | {
+    thesis: ClassVar[Mapping[str, Any]] = {
+        **SceneTask.thesis,
         "optics.camera.f_number": 1.2,
         "electrical.difference_gain": 4.0,
         "threshold": 10,
@@ -246,7 +247,7 @@ class Depth(SceneTask):
         with afresh():
             frames = capture(middle(first, fidelity), golden=True)
         turn = SPEED_OF_LIGHT / (2 * point.sensor.electrical.f_mod)
-        if whole[0].frame.phase:
+        if whole[0].frame.phase and frames.phases:
             phase, strength = frames.phases.echo
             depth = np.where(strength < FAINT, np.nan, np.mod(phase / (2 * np.pi), 1) * turn)
             depth = np.where(np.isnan(depth), np.nanmedian(depth) if np.isfinite(depth).any() else turn / 2, depth)
@@ -390,8 +391,9 @@ def task_of(
         if len(names) != 1:
             raise ParameterError(f"scenes = {scenes!r}: must be one set of pictures, as DATA of make recognize")
         data.load(names[0])
-        return Recognition(names[0], sensor or STANDARD)
-    task = KINDS[text](names, lux, sensor or (depth_sensor() if text == "depth" else STANDARD))
+        recognition: Any = Recognition(names[0], sensor or STANDARD)  # constants of a class fit properties
+        return recognition
+    task: Any = KINDS[text](names, lux, sensor or (depth_sensor() if text == "depth" else STANDARD))
     for scene in names:
         named(scene)
     return task
