@@ -2,45 +2,18 @@
 
 import numpy as np
 import pytest
-import zstandard
 
-from talbot.imaging.frame.job import golden_result
-from talbot.imaging.frame.request import request
-from talbot.models.digital.scan import Scan
-from talbot.models.digital.stream import StreamHeader, encode_frame
-from talbot.models.parameters import FrameParameters, TileParameters, Window
-from talbot.models.parameters.stream_format import HEADER_BYTES, TRAILER_BYTES
+from talbot.imaging.frame.test.stream_sizes import (
+    SCENES,
+    at_threshold,
+    codes_of,
+    entropy_bytes,
+    planes_of,
+    stream_bytes,
+    zstd_bytes,
+)
 
-SCENES = "motorcycle", "astronaut", "camera", "chelsea", "coffee", "coins", "rocket", "text"
 THRESHOLDS = 0, 2, 4, 7, 10, 14, 20  # the first two are below the noise
-TILE = TileParameters()
-
-
-def frame_of(shape, threshold):
-    rows, cols = shape
-    window = Window(0, -(-rows // TILE.rows) - 1, 0, -(-cols // TILE.cols) - 1)
-    return FrameParameters(window, threshold=threshold)
-
-
-def stream_bytes(codes, threshold):
-    header = StreamHeader.from_frame(*codes.shape, 8, frame_of(codes.shape, threshold), TILE)
-    return len(encode_frame(header, codes[..., None], 0, 0, TILE))
-
-
-def entropy_bytes(codes):
-    """Bytes of an ideal coder of single samples."""
-    _, counts = np.unique(codes, return_counts=True)
-    return float(-(counts * np.log2(counts / codes.size)).sum() / 8)
-
-
-def zstd_bytes(codes):
-    """Bytes of zstd with the header and trailer that any stream needs, in raster order or in the stream's."""
-    rows, cols = codes.shape
-    scan = Scan(rows, cols, 8, frame_of(codes.shape, 0), TILE)
-    order = np.concatenate([row * cols + scan.row_samples(row)[0] for row in range(rows)])
-    orders = codes.ravel(), codes.ravel()[order]
-    sizes = (len(zstandard.ZstdCompressor(level=19).compress(some.astype(np.int8).tobytes())) for some in orders)
-    return HEADER_BYTES + TRAILER_BYTES + min(sizes)
 
 
 def check(codes, threshold, zstd_factor=1.0):
@@ -67,7 +40,13 @@ def test_noise_grows_by_less_than_a_sixteenth():
 @pytest.mark.slow
 @pytest.mark.parametrize("scene", SCENES)
 def test_scenes_are_near_their_entropy_and_smaller_than_by_zstd_above_the_noise(scene):
-    codes = golden_result(request(scene=scene, threshold=0)).decoded.samples[..., 0]
+    codes = codes_of(scene)
     for threshold in THRESHOLDS:
-        sent = np.where(np.abs(codes) < threshold, 0, codes).astype(np.int16)
-        check(sent, threshold, 1.0 if threshold >= 4 else 1.16)
+        check(at_threshold(codes, threshold), threshold, 1.0 if threshold >= 4 else 1.16)
+
+
+def test_the_planes_hold_every_code_of_a_type_together():
+    codes = np.arange(8 * 12).reshape(8, 12)
+    planes = planes_of(codes)
+    np.testing.assert_array_equal(planes[:, 14:16], codes[1::4, 1::6])
+    assert sorted(planes.ravel()) == list(range(96))
