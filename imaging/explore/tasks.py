@@ -326,7 +326,7 @@ class Recognition:
         return study.Setting(sensor=point.sensor, seed=seed, seeds=seeds, **point.settings)
 
     def evaluate(self, point: Point, fidelity: Fidelity, seed: int) -> Outcome:
-        """full: all pictures, three splits; small: some of them, one."""
+        """Of full: all pictures, three splits; of small: some of them, one."""
         whole = fidelity is FULL or fidelity.part == FULL.part
         pictures = data.load(self.data).part(None if whole else self.SOME)
         setting = self._setting(point, seed, 3 if whole else 1)
