@@ -17,7 +17,7 @@ SMALL = 2  # bits of a signal all values of which count
 class FreedomResult:
     """The cover points by their conditions, literals with a space between. outputs: literals of the block's outputs.
 
-    tied: inputs at a constant. status: one of UNDECIDED, or ''.
+    tied: inputs at a constant. status: one of UNDECIDED, or ''. pairs: whether pairs of signals count.
     """
 
     reached: list[str] = field(default_factory=list)
@@ -26,6 +26,7 @@ class FreedomResult:
     tied: list[str] = field(default_factory=list)
     status: str = ""
     wall_s: float = 0.0
+    pairs: bool = True
 
     def problems(self, never: Iterable[str], tied: Iterable[str]) -> list[str]:
         """Return what ``never`` (regular expressions) and ``tied`` (inputs) leave open, one line each."""
@@ -42,7 +43,8 @@ class FreedomResult:
             pattern
             for pattern in never
             if any(re.fullmatch(pattern, name) for name in self.reached)
-            or not any(re.fullmatch(pattern, name) for name in self.missing)
+            or self.pairs
+            and not any(re.fullmatch(pattern, name) for name in self.missing)
         ]
         return [
             *(f"{name} = not reached: must be, or be in never" for name in odd),
@@ -97,8 +99,8 @@ def signals(netlist: Netlist, modules: Iterable[str]) -> list[Signal]:
 class Points:
     """The cover points of a netlist. names: of those added so far, f0, f1 ... in the netlist."""
 
-    def __init__(self, netlist: Netlist, proof: Proof) -> None:
-        """Add the cover points of a proof to its netlist."""
+    def __init__(self, netlist: Netlist, proof: Proof, pairs: bool = True) -> None:
+        """Add the cover points of a proof to its netlist. pairs: also those of two signals."""
         self.netlist, self.never = netlist, proof.never
         self.names: list[str] = []
         inputs = signals(netlist, proof.modules)
@@ -116,7 +118,7 @@ class Points:
         for signal in inputs:
             for literal in (*small[signal.name], *(self._edges(signal) if len(signal.bits) > SMALL else ())):
                 self._cover(literal)
-        for first, second in combinations(inputs, 2):
+        for first, second in combinations(inputs, 2) if pairs else ():
             wide = sum(len(signal.bits) > SMALL for signal in (first, second))  # with the outputs only, as busy
             if first.output + second.output == 1 or not wide and not first.output:
                 for pair in ((a, b) for a in small[first.name] for b in small[second.name]):
@@ -156,8 +158,8 @@ class Points:
         self.names.append(PAIR.join(literal.text for literal in literals))
 
 
-def freedom(proof: Proof, texts: dict[str, str], wrapper: str) -> FreedomResult:
-    """Return the values of the inputs that are not reached within free_depth."""
+def freedom(proof: Proof, texts: dict[str, str], wrapper: str, pairs: bool = True) -> FreedomResult:
+    """Return the values of the inputs that are not reached within free_depth. pairs: of two inputs, too."""
     points: list[Points] = []
 
     def add(netlist: Netlist) -> None:
@@ -165,7 +167,7 @@ def freedom(proof: Proof, texts: dict[str, str], wrapper: str) -> FreedomResult:
             del netlist.cells[cell]
         if proof.free_from:
             netlist.begin(proof.free_from)
-        points.append(Points(netlist, proof))
+        points.append(Points(netlist, proof, pairs))
 
     with Workplace(texts, wrapper, proof.top, proof.assumed, edit=add) as place:
         answer = place.check(proof.engines[0], ["-c", "-t", str(proof.free_depth)], proof.timeout)
@@ -179,4 +181,5 @@ def freedom(proof: Proof, texts: dict[str, str], wrapper: str) -> FreedomResult:
         found.tied,
         answer.status if answer.status in UNDECIDED else "",
         round(answer.wall_s, 2),
+        pairs,
     )

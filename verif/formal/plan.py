@@ -1,6 +1,6 @@
 """The jobs of a proof, planned such that a change of one block keeps the results of the others."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from talbot.base.jobs import Job
@@ -10,8 +10,6 @@ from talbot.verif.formal.freedom import FreedomResult, freedom
 from talbot.verif.formal.necessity import ConjunctResult, NecessityResult, conjuncts, necessity
 from talbot.verif.formal.proof import Proof
 from talbot.verif.formal.prove import CoverResult, ProofResult, TwinResult, cover, prove, twin
-
-COMBINATIONAL = 4  # cover_depth up to which the inputs are checked at every size
 
 
 @dataclass(frozen=True)
@@ -26,8 +24,8 @@ class Piece:
 def pieces(proof: Proof, engines: Iterable[str], assumptions: bool = True) -> Iterator[Piece]:
     """Yield every piece of a proof by ``engines``. Raises ParameterError, FormalError.
 
-    assumptions: whether each must be needed and leave the inputs free, as at the first size of a wrapper. At the others
-    their conjuncts are listed, and the inputs of combinational blocks must be free.
+    assumptions: whether each must be needed and leave all pairs of inputs free, as at the first size of a wrapper. At
+    the others their conjuncts are listed, and each input must be free.
     """
     texts, wrapper = design.exported(proof), design.wrapper(proof)
     base = (*sorted(texts.values()), wrapper, proof.top, proof.method, proof.timeout, *proof.assumed)
@@ -35,14 +33,15 @@ def pieces(proof: Proof, engines: Iterable[str], assumptions: bool = True) -> It
         inputs = (*base, proof.depth, version("yosys"), version(engine))
         job = Job(f"{proof.name}.{engine}", prove, (proof, engine, texts, wrapper), inputs)
         yield Piece(ProofResult, engine, job)
-    checks: list[tuple[type[NecessityResult | ConjunctResult | FreedomResult], Callable[..., object], object]] = [
-        (NecessityResult, necessity, proof.depth) if assumptions else (ConjunctResult, conjuncts, 0)
-    ]
-    if assumptions or proof.cover_depth <= COMBINATIONAL:
-        checks.append((FreedomResult, freedom, str((proof.free_depth, proof.free_from, proof.never, proof.tied))))
-    for kind, call, more in checks:
-        job = Job(f"{proof.name}.{call.__name__}", call, (proof, texts, wrapper), (*base, more))
-        yield Piece(kind, call.__name__, job)
+    if assumptions:
+        job = Job(f"{proof.name}.necessity", necessity, (proof, texts, wrapper), (*base, proof.depth))
+        yield Piece(NecessityResult, "necessity", job)
+    else:
+        job = Job(f"{proof.name}.conjuncts", conjuncts, (proof, texts, wrapper), base)
+        yield Piece(ConjunctResult, "conjuncts", job)
+    listed = str((proof.free_depth, proof.free_from, proof.never, proof.tied, assumptions))
+    job = Job(f"{proof.name}.freedom", freedom, (proof, texts, wrapper, assumptions), (*base, listed))
+    yield Piece(FreedomResult, "freedom", job)
     if proof.size_of:
         return
     job = Job(f"{proof.name}.cover", cover, (proof, texts, wrapper), (*base, proof.cover_depth))

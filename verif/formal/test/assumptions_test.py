@@ -34,7 +34,7 @@ def problems(name, folder, *changes, checks=(necessity, freedom), label="", **li
     proof = dataclasses.replace(proof, wrapper=path, assumptions=proof.assumptions | listed)
     arguments = proof, design.exported(proof), design.wrapper(proof)
     needs = necessity(*arguments, label) if necessity in checks else NecessityResult()
-    free = freedom(*arguments) if freedom in checks else FreedomResult()
+    free = next((check(*arguments) for check in checks if check is not necessity), FreedomResult())
     return command.Outcome(proof, {}, CoverResult([], [], 0.0), {}, needs, free).problems
 
 
@@ -178,6 +178,28 @@ def test_an_over_constraint_at_another_size_is_found(tmp_path, first, other, fin
     assert odd
     outcome = command.Outcome(proof, {}, CoverResult([], [], 0.0), {}, only_here=odd)
     assert f"{proof.name}.{odd[0]} = at this size alone: must be at the first" in outcome.problems[0]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "name, find, narrowed",
+    [
+        ("phase_path_radix2", "wire recv__rdy, send__val;", "wire [7:0] noise_floor = `LANES == 1 ? 0 : any_floor;"),
+        ("adc_bank_two_lanes", "localparam FRAME", "wire [6:0] threshold = `LANES == 2 ? 0 : any_floor;"),
+    ],
+)
+def test_a_constant_input_at_another_size_is_found(tmp_path, name, find, narrowed):
+    wide = narrowed.split()[1]
+    signal = narrowed.split()[2]
+    changes = [(f"input {wide} {signal}", f"input {wide} any_floor"), (find, f"{narrowed}\n  {find}")]
+    found = problems(name, tmp_path, *changes, checks=[each_input])
+    assert any(f": tied = {signal}" in line or f": {signal}" in line for line in found), found
+    assert problems(name, tmp_path, checks=[each_input]) == []
+
+
+def each_input(*arguments):
+    """The check of the inputs at a size that is not the first."""
+    return freedom(*arguments, pairs=False)
 
 
 @pytest.mark.parametrize("name", ["balance_1x1", "balance_4x1"])
