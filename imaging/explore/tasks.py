@@ -99,7 +99,9 @@ class SceneTask:
         words = ["make sim", f"SCENE={self.scenes[0]}", f"MODE={self.mode}", f"LUX={self.lux:g}"]
         if self.mode == "edge":
             words.append(f"THRESHOLD={whole.frame.threshold}")
-        return " ".join([*words, f"EXPOSURE={whole.frame.timing.exposure}"])
+        auto = framed(point, 1, self.scenes[0], self.mode, **self.settings(point) | {"exposure": 1.0}).frame.timing
+        lead = whole.frame.timing.exposure
+        return " ".join(words if whole.frame.timing == auto else [*words, f"EXPOSURE={lead}"])
 
     def content(self) -> Sequence[object]:
         """The scenes, those in files by their content, and the light."""
