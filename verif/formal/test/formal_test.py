@@ -58,7 +58,12 @@ def test_pytest_collects_the_proofs_and_can_skip_each(request):
 def test_of_a_list_of_sizes_the_first_has_covers_and_twins():
     first, *others = (proof for proof in manifest.every() if proof.name.startswith("readout_seq_"))
     assert others and all(proof.size_of == first.name for proof in others)
-    assert [piece.name for piece in pieces(others[0], others[0].engines)] == ["boolector"]
+    assert [piece.name for piece in pieces(others[0], others[0].engines, False)] == [
+        "boolector",
+        "conjuncts",
+        "freedom",
+    ]
+    assert not {*first.twins, "cover"} & {piece.name for piece in pieces(others[0], others[0].engines)}
     fails = CoverResult([], ["c_frame"], 0.0), {"p_end": TwinResult(False, 0.0, "passed", 20)}
     proven = {"boolector": ProofResult("proven", [], 0.0, "")}
     of_first, of_other = (command.Outcome(proof, proven, *fails) for proof in (first, others[0]))
