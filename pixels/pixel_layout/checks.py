@@ -7,11 +7,10 @@ from talbot.base.gds import db, read_gds
 from talbot.base.paths import BUILD
 from talbot.base.sources import code
 from talbot.base.steps import StepError
+from talbot.platforms.decks import export_decks
 from talbot.platforms.layout import layout_platform
-from talbot.platforms.patience import imported
 from talbot.platforms.pixel import PixelProcess, pixel_process
-from talbot.signoff.geometry.decks import broken_rules, hole_rules, is_circuit, via_rules, with_taps
-from talbot.signoff.pdkmaster import export_decks
+from talbot.signoff.geometry.decks import broken_rules, hole_rules, is_circuit, via_rules
 
 STORE = BUILD / "pixel" / "decks"
 # Rules that pixels break on purpose: what they ask, and why they are waived
@@ -27,17 +26,12 @@ def common_decks(pdk: str) -> tuple[list[str], str]:
     tech = layout_platform(pdk)
 
     def make(folder: Path) -> None:
-        devices = imported(tech.package).prims_spiceparams
-        exported = export_decks(imported(f"{tech.package}.pdkmaster"), devices)
-        for name, text in exported.items():
+        for name, text in export_decks(tech).items():
             (folder / name).write_text(text, encoding="utf-8")
 
-    kept = cached(STORE / digest(code("talbot.signoff.pdkmaster"), pdk), make)
+    kept = cached(STORE / digest(code("talbot.platforms.decks"), pdk), make)
     masks = [tech.masks.read_text(encoding="utf-8")] if tech.masks else []
-    process = pixel_process(pdk)
-    rules, lvs = (
-        with_taps((kept / name).read_text(encoding="utf-8"), process.active, process.tap) for name in ("drc", "lvs")
-    )
+    rules, lvs = ((kept / name).read_text(encoding="utf-8") for name in ("drc", "lvs"))
     return [rules, *hole_rules(tech), *via_rules(tech), *masks], lvs
 
 

@@ -7,7 +7,7 @@ from talbot.base.gds import db
 from talbot.base.steps import StepError
 from talbot.pixels.pixel_layout.checks import common_decks
 from talbot.platforms.analog import analog_masks
-from talbot.signoff.geometry.decks import broken_rules, is_circuit, without_rules
+from talbot.signoff.geometry.decks import broken_rules, is_circuit
 from talbot.signoff.geometry.lvs_deck import hierarchical
 
 ALIGN, COMPARE = "\nalign\n", "\nok = compare\n"
@@ -18,7 +18,6 @@ def decks(pdk: str) -> tuple[str, str]:
     masks = analog_masks(pdk)
     rules, lvs = common_decks(pdk)
     text = "\n".join([*rules, masks.rules.read_text(encoding="utf-8"), masks.thick.read_text(encoding="utf-8"), ""])
-    text = without_rules(text, masks.contradicted)
     for line, other in masks.connections.items():
         if lvs.count(f"\n{line}\n") != 1:
             raise StepError(f"lvs: the deck has no single line {line!r}")

@@ -12,7 +12,6 @@ from joblib import Parallel, delayed
 
 from talbot.base.steps import StepError
 from talbot.base.tools import ToolError, finish
-from talbot.platforms.layers import GdsLayer
 from talbot.platforms.layout import LayoutPlatform
 
 # Rules of a deck: spaces of a layer, and of its wide shapes
@@ -51,14 +50,6 @@ def violations(report: Path) -> dict[str, int]:
         return dict(Counter((item.findtext("category") or "").strip("'") for item in items))
     except (ET.ParseError, FileNotFoundError) as error:
         raise ToolError(f"klayout: its report is not complete ({error})") from None
-
-
-def with_taps(deck: str, active: GdsLayer, tap: GdsLayer) -> str:
-    """A deck with taps on their own mask, too: PDKMaster knows diffusion and taps as one. Raises StepError."""
-    old, new = (f"input({layer}, {datatype})" for layer, datatype in (active, tap))
-    if deck.count(f" = {old}\n") != 1:
-        raise StepError(f"deck: must have one line with {old}, to which the taps are added")
-    return deck.replace(f" = {old}\n", f" = {old} + {new}\n")
 
 
 def broken_rules(decks: Mapping[Path, str], gds: Path, report: Path) -> dict[str, int]:
@@ -119,15 +110,6 @@ def is_circuit(deck: str, gds: Path, spice: str, report: Path) -> bool:
     return "LVS OK" in output
 
 
-def without_rules(deck: str, rules: Iterable[str]) -> str:
-    """The deck without rules that SkyWater's own transistors break. Raises StepError where one is not there once."""
-    for rule in rules:
-        deck, count = re.subn(rf"^\(\w+&\w+\)\.output\(\"{re.escape(rule)}\"\)\n", "", deck, flags=re.M)
-        if count != 1:
-            raise StepError(f"drc: the deck has the rule {rule} {count} times, once was expected")
-    return deck
-
-
 def deep_and_flat(deck: str, deep: Iterable[str] = (), flat: Iterable[str] = ()) -> tuple[str, str]:
     """The deck as two, without and with the spaces of drawn layers, those flat and between edges; lines for either.
 
@@ -136,7 +118,7 @@ def deep_and_flat(deck: str, deep: Iterable[str] = (), flat: Iterable[str] = ())
     of its edges: 43 s for local interconnect of 16,000 um2, between edges 0.2 s. Vias, which end in their cells, stay.
     Raises StepError when the deck has no such rules.
     """
-    drawn = dict(re.findall(r"^(\w+) = (input\(\d+, \d+\))$", deck, re.M))
+    drawn = dict(re.findall(r"^(\w+) = (input\(\d+, \d+\)(?: \+ input\(\d+, \d+\))*)$", deck, re.M))
     vias = _vias(deck)
     rules = [m for m in re.finditer(SPACES, deck, re.M) if m[1] not in vias and (m[1] or m[2]) in drawn]
     head, mode, body = deck.partition("\ndeep\n")

@@ -21,8 +21,8 @@ class AnalogMasks:
     fringe_side_um: of the square that LVS counts as a unit. fringe_um: fF for a um of it, typical. fringe_end: fF of
     its end. fringe_share: what such fingers have, of what rays give. deck_mim, deck_fringe: these capacitors in LVS.
     resistor: mask over the body of a resistor of n+ diffusion of ``sheet_ohm``, typical. deck_resistor: its device in
-    LVS. rules, thick (of thick oxide), lvs: what the decks of PDKMaster lack. contradicted: rules of its deck that are
-    left out. connections: lines of its deck of LVS and what replaces them.
+    LVS. rules, thick (of thick oxide), lvs: what the decks of PDKMaster lack. connections: lines of its
+    deck of LVS and what replaces them.
     """
 
     base: PixelProcess
@@ -46,7 +46,6 @@ class AnalogMasks:
     rules: Path
     thick: Path
     lvs: Path
-    contradicted: tuple[str, ...]
     connections: Mapping[str, str]
 
     def mim_farad(self, width_um: float, height_um: float) -> float:

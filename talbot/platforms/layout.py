@@ -40,9 +40,11 @@ class LayoutPlatform:
     edge. pin_pitch_um: tracks of the pins' two layers, 'horizontal' (west and east) and 'vertical'. label_datatype,
     pin_datatype: GDS datatypes of labels and of what the decks take for pins. outline: GDS layer of the die's.
     blockage_layer: of GDS, to drop. poly, active, contact: GDS layers, the last between the first two and the lowest
-    metal. fill: of all metals but the lowest. wires: by platforms.wires.CORNERS. corners: at which cells are timed,
-    that of synthesis first; () where there are no models of the devices. antenna_walls: whether antenna ratios are
-    those of side walls, else of area. masks: rules of KLayout beyond those of PDKMaster's deck. frames: outlines of
+    metal. tap: mask of taps; None where it is that of active. fill: of all metals but the lowest. wires: by
+    platforms.wires.CORNERS. corners: at which cells are timed, that of synthesis first; () where there are no models of
+    the devices. antenna_walls: whether antenna ratios are those of side walls, else of area. masks: rules of KLayout
+    beyond those of PDKMaster's deck. lvs: what
+    its deck of LVS lacks. contradicted: rules of its deck that SkyWater's own transistors break. frames: outlines of
     shuttles, by name.
     """
 
@@ -71,7 +73,10 @@ class LayoutPlatform:
     wires: Mapping[str, Wires]
     corners: tuple[str, ...] = ()
     rail: int = 0
+    tap: GdsLayer | None = None
     masks: Path | None = None
+    lvs: Path | None = None
+    contradicted: tuple[str, ...] = ()
     antenna_walls: bool = True
     frames: Mapping[str, Frame] = field(default_factory=dict)
 

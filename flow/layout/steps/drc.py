@@ -23,13 +23,9 @@ class Drc(Step[PdkParameters]):
     metrics = {"drc_violations": ""}
     tools = ("klayout",)
 
-    def exported(self, deck: str) -> str:
-        """What is checked of the exported deck."""
-        return deck
-
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         tech = layout_platform(self.parameters.pdk)
         masks = [tech.masks.read_text(encoding="utf-8")] if tech.masks else []
-        deck, flat = self.exported(inputs["deck"].read_text(encoding="utf-8")), (*hole_rules(tech), *masks)
+        deck, flat = inputs["deck"].read_text(encoding="utf-8"), (*hole_rules(tech), *masks)
         found = check_rules(deck, via_rules(tech), flat, inputs["gds"], outputs)
         return {"drc_violations": sum(count for rule, count in found.items() if not rule.startswith(WARNING))}

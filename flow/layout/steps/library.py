@@ -8,13 +8,14 @@ from talbot.base.steps import Files, Step
 from talbot.cells.standard import standard_cells
 from talbot.flow.layout.steps.parameters import PdkParameters
 from talbot.flow.layout.timing import liberty
+from talbot.platforms.decks import export_decks
 from talbot.platforms.extraction import device_models, extraction_platform
 from talbot.platforms.layout import layout_platform
 from talbot.platforms.patience import imported
 from talbot.platforms.place_and_route import place_and_route
 from talbot.signoff import pdkmaster
 from talbot.signoff.geometry import process_lef
-from talbot.signoff.netlist.netlist import SUPPLIES
+from talbot.signoff.netlist.netlist import DIODE, SUPPLIES
 
 UNUSED = ("fill", "tie", "decap", "diode", "nsnrlatch")  # by synthesis
 
@@ -49,7 +50,7 @@ class Library(Step[PdkParameters]):
         cells = [cell for cell in library.cells if cell.name != "Gallery"]
         rules = pdkmaster.routing_rules(tech, description.tech.primitives)
         outputs["rules"].write_text(json.dumps(rules, indent=1) + "\n", encoding="utf-8")
-        for name, deck in pdkmaster.export_decks(description, models).items():
+        for name, deck in export_decks(tech).items():
             outputs[name].write_text(deck, encoding="utf-8")
         standard.write_gds(outputs["gds"])
         outputs["spice"].write_text(pdkmaster.export_spice(cells, models), encoding="utf-8")
@@ -67,4 +68,6 @@ class Library(Step[PdkParameters]):
         chosen = {name: cell for name, cell in found.items() if not cell.storage or cell.storage.kind != "latch"}
         outputs["liberty"].write_text(liberty.liberty(chosen, ports, areas), encoding="utf-8")
         write_models(outputs["liberty"], outputs["verilog"])
+        with outputs["verilog"].open("a", encoding="utf-8") as file:
+            file.write(f"\nmodule {DIODE} (input i);\nendmodule\n")
         return {"cells": len(cells)}

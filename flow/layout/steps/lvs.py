@@ -28,7 +28,8 @@ class Lvs(Step[PdkParameters]):
     tools = ("klayout",)
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
-        deck = hierarchical(inputs["deck"].read_text(encoding="utf-8"), layout_platform(self.parameters.pdk).active)
+        tech = layout_platform(self.parameters.pdk)
+        deck = hierarchical(inputs["deck"].read_text(encoding="utf-8"), *filter(None, (tech.active, tech.tap)))
         outputs["deck"].write_text(
             with_ports(
                 deck, Netlist.read(inputs["netlist"]), supplies(json.loads(inputs["plan"].read_text(encoding="utf-8")))

@@ -19,6 +19,7 @@ from talbot.pixels.post_layout.checks import decks, differences, drc, lvs
 from talbot.pixels.post_layout.test.planted import changed, swapped
 from talbot.platforms.analog import analog_masks
 from talbot.platforms.sky130 import analog
+from talbot.platforms.sky130.layout import PLATFORM
 from talbot.platforms.sky130.models import wheel
 from talbot.signoff.black_box import extra_pins
 
@@ -76,7 +77,7 @@ def test_the_comparator_is_its_circuit_and_faults_are_found(cell, tmp_path):
 
 
 def test_the_rules_left_out_are_broken_by_skywaters_own_transistors():
-    assert all(f'output("{rule}")' not in decks("sky130")[0] for rule in MASKS.contradicted)
+    assert all(f'output("{rule}")' not in decks("sky130")[0] for rule in PLATFORM.contradicted)
     for kind, implant in (("nfet", MASKS.base.nplus), ("pfet", MASKS.base.pplus)):
         path = next(iter(sorted(wheel().glob(f"sky130_fd_pr/cells/rf_{kind}_01v8_lvt/*.gds"))))
         layout = read_gds(path)

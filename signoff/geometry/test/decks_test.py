@@ -133,12 +133,10 @@ def vias_in_metal(seed):
 @pytest.mark.needs("klayout")
 @pytest.mark.parametrize("seed", (1, 2))
 def test_doubts_change_no_verdict_on_an_enclosure(tmp_path, seed):
-    from talbot.platforms.patience import imported
-    from talbot.signoff.pdkmaster import export_decks
+    from talbot.platforms.decks import export_decks
 
     tech = layout_platform("sky130")
-    devices = imported(tech.package).prims_spiceparams
-    deck = export_decks(imported(f"{tech.package}.pdkmaster"), devices)["drc"]
+    deck = export_decks(tech)["drc"]
     write_gds(vias_in_metal(seed), tmp_path / "top.gds")
     decks = {"all": deck, "deep": deep_and_flat(deck)[0]}
     assert "doubtful" in decks["deep"]

@@ -6,8 +6,7 @@ SkyWater's (cap_vpp_11p5x11p7, 08p6x07p8, 04p4x04p6, m1m2_noshield: 74.6, 35.0, 
 rays of signoff/parasitics find in their layouts, of the wheel; of fingers of minimum width and space these find
 0.457 fF/um. Their mark is no mask of SkyWater's: its own mark of capacitors, (82, 64), has rules of 1.43 um and more.
 
-PDKMaster's deck forbids low-threshold implants over n+ and p+, where its own deck of LVS and SkyWater's layouts have
-these transistors' gates; and it takes a via on an upper plate for one to the lower plate, too.
+PDKMaster's deck takes a via on an upper plate for one to the lower plate, too.
 """
 
 from pathlib import Path
@@ -39,6 +38,5 @@ MASKS = AnalogMasks(
     rules=Path(__file__).with_name("analog.drc"),
     thick=Path(__file__).with_name("thick.drc"),
     lvs=Path(__file__).with_name("analog.lvs"),
-    contradicted=("(nsdm&lvtn) empty", "(psdm&lvtn) empty"),
     connections={"connect(m3, via3)": "via3_beside = via3 - capm\nconnect(m3, via3_beside)\nconnect(via3_beside, m4)"},
 )

@@ -28,12 +28,16 @@ PLATFORM = LayoutPlatform(
     blockage_layer=100,
     poly=layers.POLY.gds,
     active=layers.DIFF,
+    tap=layers.TAP,
     contact=layers.LICON.gds,
     # at most 60 % of a layer (rules *.pd.1d as efabless's mpw_precheck checks them); there is no least density:
     # SkyWater fills on its side. The squares keep every width, area and space of m1 to m4 (0.3 um, 0.24 um2)
     fill=Fill(sides_um=(2.0, 1.0, 0.5), space_um=0.4, clearance_um=0.6, density=0.3, density_most=0.6, window_um=700.0),
     wires=wires.WIRES,
     masks=Path(__file__).with_name("masks.drc"),
+    lvs=Path(__file__).with_name("thresholds.lvs"),
+    # implants of thresholds over n+ and p+, where PDKMaster's own deck of LVS has these transistors' gates
+    contradicted=("(nsdm&lvtn) empty", "(psdm&lvtn) empty", "(nsdm&hvtp) empty", "(psdm&hvtp) empty"),
     corners=("tt_025C_1v80", "ss_100C_1v60", "ff_n40C_1v95"),
     frames=FRAMES,
 )

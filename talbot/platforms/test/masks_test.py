@@ -11,7 +11,7 @@ from talbot.base.tools import finish
 from talbot.platforms.sky130.layout import PLATFORM
 
 NWELL, ACTIVE, POLY, LICON, NPC = (64, 20), (65, 20), (66, 20), (66, 44), (95, 20)
-NSDM, PSDM, HVTP, LVTN = (93, 44), (94, 20), (78, 44), (125, 44)
+TAP, NSDM, PSDM, HVTP, LVTN = (65, 44), (93, 44), (94, 20), (78, 44), (125, 44)
 
 # An n transistor with a gate contact below, a p transistor above it in its well, and a tap of each, in nm
 GOOD = [
@@ -22,14 +22,14 @@ GOOD = [
     (LICON, 415, -650, 585, -480),
     (NPC, 315, -750, 685, -380),
     (LICON, 100, 165, 270, 335),
-    (ACTIVE, 2000, 0, 2500, 500),  # p tap
+    (TAP, 2000, 0, 2500, 500),  # p tap
     (PSDM, 1870, -130, 2630, 630),
     (LICON, 2165, 165, 2335, 335),
     (NWELL, -500, 1500, 3000, 3500),
     (ACTIVE, 0, 2000, 1000, 2500),
     (PSDM, -125, 1875, 1125, 2625),
     (POLY, 425, 1870, 575, 2630),
-    (ACTIVE, 2000, 2000, 2500, 2500),  # n tap
+    (TAP, 2000, 2000, 2500, 2500),  # n tap
     (NSDM, 1870, 1870, 2630, 2630),
     (LICON, 2165, 2165, 2335, 2335),
 ]
@@ -62,7 +62,7 @@ PLANTED = {
     ],
     "nsd.8": [*GOOD, (NSDM, 2400, -400, 3200, 400)],
     "nsd.5": [*GOOD, (ACTIVE, 4000, 0, 4500, 500)],
-    "psd.5": [*GOOD, (ACTIVE, 2500, 0, 2520, 500)],
+    "psd.5": [*GOOD, (TAP, 2500, 0, 2520, 500)],
     "nsd.7": [*GOOD, (NSDM, 2629, -130, 3500, 630)],
     "psd.7": [*GOOD, (PSDM, 1129, -700, 1800, 700)],
     "nwell.1": [*GOOD, (NWELL, 6000, 0, 6830, 3000)],
@@ -72,6 +72,7 @@ PLANTED = {
     "difftap.9": [*without(NWELL), (NWELL, -500, 839, 3000, 3500)],
     "difftap.10": [*without(NWELL), (NWELL, -500, 1500, 2679, 3500)],
     "difftap.11": [*GOOD, (NWELL, 2629, 0, 3600, 3500)],
+    "tap": [*without(TAP), *((ACTIVE, *box) for layer, *box in GOOD if layer == TAP)],
     "lu.2": [*GOOD, (ACTIVE, 18000, 0, 18500, 500), (NSDM, 17875, -125, 18625, 625)],
     "hvtp.3": [*GOOD, (HVTP, 246, 1700, 900, 2800)],
     "hvtp.4": [*GOOD, (HVTP, 754, 1700, 1500, 2800)],

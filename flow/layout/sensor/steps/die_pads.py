@@ -11,7 +11,7 @@ from talbot.flow.layout.steps.parameters import PdkParameters
 from talbot.platforms.layout import layout_platform
 from talbot.platforms.pads import pad_process
 from talbot.platforms.pixel import pixel_process
-from talbot.signoff.geometry.decks import check_rules, hole_rules, run_deck, via_rules, with_taps
+from talbot.signoff.geometry.decks import check_rules, hole_rules, run_deck, via_rules
 from talbot.signoff.pdkmaster import export_spice
 
 
@@ -50,7 +50,7 @@ class DiePadsDrc(Step[PdkParameters]):
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         tech, process = layout_platform(self.parameters.pdk), pad_process(self.parameters.pdk)
         flat = *hole_rules(tech), process.masks.read_text(encoding="utf-8")
-        deck = with_taps(inputs["deck"].read_text(encoding="utf-8"), tech.active, process.tap)
+        deck = inputs["deck"].read_text(encoding="utf-8")
         found = check_rules(deck, via_rules(tech), flat, inputs["gds"], outputs)
         return {"pad_drc_violations": sum(found.values())}
 
@@ -60,23 +60,19 @@ class DiePadsLvs(Step[PdkParameters]):
 
     name = "die_pads_lvs"
     inputs = {"gds": "die_pads.gds", "spice": "die_pads.spice", "deck": "library.lvs"}
-    outputs = {"verdicts": "lvs.json", "deck": "taps.lvs", "reports": "reports"}
+    outputs = {"verdicts": "lvs.json", "reports": "reports"}
     metrics = {"pads_unmatched": ""}
     tools = ("klayout",)
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         process = pad_process(self.parameters.pdk)
         outputs["reports"].mkdir()
-        active = layout_platform(self.parameters.pdk).active
-        outputs["deck"].write_text(
-            with_taps(inputs["deck"].read_text(encoding="utf-8"), active, process.tap), encoding="utf-8"
-        )
         found = {}
         for cell in (*process.signals.values(), *process.supplies.values()):
             report = outputs["reports"] / f"{cell}.lvsdb"
             paths = {"SOURCE_FILE": inputs["gds"], "REPORT_FILE": report, "SPICE_FILE": inputs["spice"]}
             files = {name: path.resolve() for name, path in paths.items()}
-            _, output = run_deck(outputs["deck"], report, {}, CELL_NAME=cell, **files)
+            _, output = run_deck(inputs["deck"], report, {}, CELL_NAME=cell, **files)
             if ("LVS OK" in output) == ("LVS Failed" in output):
                 raise StepError(f"{self.name}: KLayout gave no verdict on {cell}: {output.strip().splitlines()[-1:]}")
             found[cell] = "LVS OK" in output
