@@ -22,7 +22,13 @@ from talbot.platforms.layout import layout_platform
 from talbot.platforms.wires import wire_corner
 from talbot.signoff.netlist.netlist import Netlist
 
-RESULTS = {"gds": "fill.gds", "v": "stream_out.verilog", "lef": "lef.lef", "spef": "extraction.typ", "sdc": "sdc"}
+RESULTS = {
+    "gds": "fill.gds",
+    "v": "stream_out.verilog_with_diodes",
+    "lef": "lef.lef",
+    "spef": "extraction.typ",
+    "sdc": "sdc",
+}
 RESULTS |= {"drc.lyrdb": "drc.report", "foundry.lyrdb": "foundry_drc.report", "magic_drc.txt": "magic_drc.report"}
 RESULTS |= {"lvsdb": "lvs.report"}
 BY_CORNER = {"sdf": "sta_{}.sdf", "sta.txt": "sta_{}.report", "lib": "block_liberty_{}.liberty"}

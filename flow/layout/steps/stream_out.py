@@ -26,8 +26,8 @@ class StreamOut(Step[StreamOutParameters]):
     """OpenROAD's DEF and the cells' GDS as one layout.
 
     plan: size, box of the rows (core), names of the supplies, in a frame its box. placement: the straps, (net, x in
-    um), and of each instance of the netlist [None, cell, x, y, orientation]. The diodes are in the SPICE alone: they
-    do nothing.
+    um), and of each instance of the netlist [None, cell, x, y, orientation]. The diodes are in the SPICE and in
+    verilog_with_diodes, which leaves the flow; simulation and timing read the netlist without: they do nothing.
     """
 
     name = "stream_out"
@@ -44,6 +44,7 @@ class StreamOut(Step[StreamOutParameters]):
         "gds": "layout.gds",
         "netlist": "netlist.json",
         "verilog": "final.v",
+        "verilog_with_diodes": "complete.v",
         "spice": "reference.spi",
         "placement": "placement.json",
         "plan": "plan.json",
@@ -71,8 +72,10 @@ class StreamOut(Step[StreamOutParameters]):
         write_gds(layout, outputs["gds"])
         netlist.write(outputs["netlist"])
         outputs["verilog"].write_text(netlist.verilog(), encoding="utf-8")
+        complete = with_diodes(netlist, routed.diodes(), {})
+        outputs["verilog_with_diodes"].write_text(complete.verilog(), encoding="utf-8")
         library = inputs["spice"].read_text(encoding="utf-8")
-        drawn = with_diodes(with_open_nets(netlist, library), routed.diodes(), {})
+        drawn = with_open_nets(complete, library)
         outputs["spice"].write_text(drawn.spice(library, supplies), encoding="utf-8")
         widths = {cell: area / tech.row_um for cell, area in areas.items()}
         straps = [(dict(zip(supplies, SUPPLIES, strict=True))[net], x) for net, x in routed.straps]

@@ -25,3 +25,4 @@ def test_diodes_take_the_place_of_fill():
         ("diode_w1", {"i": "a[1]"}),
     ]
     assert with_diodes(NETLIST, [], {}) == NETLIST
+    assert "  diode_w1 antenna_0 (.i(a[1]));" in made.verilog().splitlines()
