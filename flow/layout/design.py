@@ -16,8 +16,10 @@ from talbot.rtl.sensor_options import options_of
 class Clock:
     """The clock.
 
-    port: its name. uncertainty_ns: of an edge, for setup; hold_uncertainty_ns: for hold. derate: share by which cells
-    and wires of one chip are slower or faster than others of it (on-chip variation).
+    port: its name. uncertainty_ns: of an edge, for setup: the host's jitter from edge to edge. hold_uncertainty_ns: for
+    hold, which jitter does not touch: the most by which a block's Liberty may differ from its netlist (rules.json,
+    model_error_ns). derate: share by which cells and wires of one chip are slower or faster than others of it (on-chip
+    variation).
     """
 
     port: str = "clk"
@@ -35,10 +37,18 @@ class Clock:
 
 @dataclass(frozen=True)
 class IoConstraints:
-    """Delays outside as a share of the period, the slew at inputs, the load of an output."""
+    """What is outside of the ports.
+
+    input_delay, output_delay: the longest delays, as a share of the period. input_hold_ns: least time after the clock's
+    edge at its port before an input changes, at every corner. A host with the same clock guarantees it; a comparator
+    answers to outputs of the chip, which change later than that. output_hold_ns: least time after that edge for which
+    outputs must stay. input_slew_ns: slew at inputs. load_pf: load of an output.
+    """
 
     input_delay: float = 0.2
     output_delay: float = 0.2
+    input_hold_ns: float = field(default=1.0, metadata={"unit": "ns"})
+    output_hold_ns: float = field(default=0.0, metadata={"unit": "ns"})
     input_slew_ns: float = field(default=0.15, metadata={"unit": "ns"})
     load_pf: float = field(default=0.02, metadata={"unit": "pF"})
 

@@ -81,7 +81,7 @@ def summarize(design: Design, options: Options, runner: Runner, attempts: Sequen
         "fill_squares": metric("fill", "squares"),
         "equivalence": metric("equivalence", "equivalence"),
         "timing_rests_on": timing_basis(options),
-        **{name: by_corner(name) for name in ("wns_ns", "whs_ns")},
+        **{name: by_corner(name) for name in ("wns_ns", "whs_ns", "hold_by_wires_ns")},
         **{name: by_corner(name) for name in ("slew_violations", "capacitance_violations")},
         "f_max_mhz": min((by_corner("f_max_mhz") or {"": None}).values()),
         **{name: by_corner(name, "power") for name in ("power_uw", "energy_pj_cycle")},

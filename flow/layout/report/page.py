@@ -21,6 +21,7 @@ PARTS |= {"timing": "timing, addressing", "adcs": "converters; here: their logic
 BY_CORNER = (
     ("wns_ns", "setup slack, ns"),
     ("whs_ns", "hold slack, ns"),
+    ("hold_by_wires_ns", "hold slack by corner of the wires, ns"),
     ("setup_margin_ns", "least simulated setup margin, ns"),
     ("slews_over", "slews beyond the cells' tables"),
     ("worst_slew_ns", "the longest of these, ns"),

@@ -18,8 +18,10 @@ set_timing_derate -late {1 + clock.derate:g}
 foreach port [all_inputs] {{
   if {{[get_property $port full_name] ne "{clock.port}"}} {{ lappend data_inputs $port }}
 }}
-set_input_delay {io.input_delay * clock.period_ns:g} -clock {clock.port} $data_inputs
-set_output_delay {io.output_delay * clock.period_ns:g} -clock {clock.port} [all_outputs]
+set_input_delay -max {io.input_delay * clock.period_ns:g} -clock {clock.port} $data_inputs
+set_input_delay -min {io.input_hold_ns:g} -clock {clock.port} $data_inputs
+set_output_delay -max {io.output_delay * clock.period_ns:g} -clock {clock.port} [all_outputs]
+set_output_delay -min {-io.output_hold_ns:g} -clock {clock.port} [all_outputs]
 {untimed}set_input_transition {io.input_slew_ns:g} [all_inputs]
 set_load {io.load_pf:g} [all_outputs]
 """

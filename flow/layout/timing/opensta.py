@@ -41,7 +41,7 @@ proc link_design {top} {
 
 def worst_slack(report: str, kind: str) -> float:
     """Slack (ns) that a script printed as "WORST kind ns". Raises StepError without one."""
-    found = re.search(rf"WORST {kind} (\S+)", report)
+    found = re.search(rf"WORST {re.escape(kind)} (\S+)", report)
     if not found:
         raise StepError(f"OpenSTA: no slack of {kind}")
     return float(found[1])

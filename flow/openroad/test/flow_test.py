@@ -113,7 +113,12 @@ def test_sdc_says_what_the_design_says():
     text = sdc(design("quad_divider"), propagated=False)
     assert "create_clock -name clk -period 20 " in text and "set_propagated_clock" not in text
     assert "set_propagated_clock" in sdc(design("quad_divider"))
-    assert "set_input_delay 4 " in text and "set_load 0.02 " in text and "set_false_path" not in text
+    assert (
+        "set_input_delay -max 4 " in text
+        and "set_input_delay -min 1 " in text
+        and "set_load 0.02 " in text
+        and "set_false_path" not in text
+    )
 
 
 def test_asynchronous_pins_are_not_timed():

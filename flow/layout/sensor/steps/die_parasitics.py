@@ -75,7 +75,8 @@ class DieParasitics(Step[DieParasiticsParameters]):
             port = f"[get_ports {{{net}}}]"
             if found["driver"] == CORE:
                 yield f"set_load {found['load_pf']:.6f} {port}"
-                yield f"set_output_delay {p.output_ns + max(found['delay_ns'].values()):.6f} -clock {p.clock} {port}"
+                latest = p.output_ns + max(found["delay_ns"].values())
+                yield f"set_output_delay {latest:.6f} -max -clock {p.clock} {port}"
             elif net != p.clock and f"{CORE}.{net}" in found["delay_ns"]:  # a block's own pin may miss the chip
                 latest = p.input_ns + found["delay_ns"][f"{CORE}.{net}"]
                 yield f"set_input_delay {latest:.6f} -max -clock {p.clock} {port}"

@@ -115,7 +115,8 @@ def test_constraints_have_every_port_once(parasitics):
     loads = {name: float(load) for load, name in re.findall(r"set_load (\S+) \[get_ports \{(.*?)\}\]", sdc)}
     assert loads == {net: found["load_pf"] for net, found in nets.items() if found["driver"] == "core"}
     late = {
-        name: float(ns) for ns, name in re.findall(r"set_output_delay (\S+) -clock clk \[get_ports \{(.*?)\}\]", sdc)
+        name: float(ns)
+        for ns, name in re.findall(r"set_output_delay (\S+) -max -clock clk \[get_ports \{(.*?)\}\]", sdc)
     }
     early = {
         name: float(ns)
@@ -130,7 +131,7 @@ def test_constraints_have_every_port_once(parasitics):
 
 def test_slews_that_openSTA_tells_of():
     said = (
-        "WORST hold 1\nmax_transition\n\nPin  Limit Slew Slack\n---\nu1/q    1.50    2.96   -1.46 (VIOLATED)\n"
+        "WORST hold 1\nmax slew\n\nPin  Limit Slew Slack\n---\nu1/q    1.50    2.96   -1.46 (VIOLATED)\n"
         "row[1]_reg/q    1.50    1.54   -0.04 (VIOLATED)\n\n"
     )
     assert over(said) == [2.96, 1.54] and over("WORST setup 1\n") == []

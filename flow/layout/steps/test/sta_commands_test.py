@@ -12,12 +12,13 @@ from talbot.flow.layout.design import DESIGNS
 from talbot.flow.layout.steps import power, sta
 from talbot.flow.layout.timing import boundary
 from talbot.flow.layout.timing.constraints import sdc
+from talbot.platforms.wires import CORNERS
 from talbot.signoff.netlist.test import shift_register as small
 from talbot.signoff.parasitics.spef import spef
 
 pytestmark = pytest.mark.needs("openroad")
 SCRIPTS = {
-    "sta": sta.SCRIPT,
+    "sta": sta.SCRIPT + sta.OTHER,
     "power": power.SLEWS,
     "load": boundary.LOAD,
     "outputs": boundary.OUTPUTS,
@@ -59,7 +60,7 @@ def inputs(tmp_path):
         "liberty": tmp_path / "small.lib",
         "spef": tmp_path / "wires.spef",
         "sdc": tmp_path / "shift.sdc",
-    }
+    } | dict.fromkeys(CORNERS, tmp_path / "wires.spef")
 
 
 def timed(inputs, folder):
