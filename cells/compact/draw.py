@@ -16,6 +16,7 @@ PATCH = 0.33  # um: li around a contact, along one direction
 SHIFT = 0.08  # um: from a gate to its 'tap' contact (route)
 EPSILON = 1e-6
 VIA_PAD = (0.29, 0.23)  # um: met1 around mcon
+THRESHOLD = 0.18  # um: high-threshold implant around a p gate (hvtp.3)
 
 
 class Shape(NamedTuple):
@@ -232,6 +233,11 @@ def frame(drawing: Pen) -> None:
     drawing.box("psdm", "", -0.13, c.p[0] - 0.125, width + 0.13, c.p[1] + 0.125)
     drawing.box("nsdm", "", -0.13, c.height - c.implant, width + 0.13, c.height + c.implant)
     drawing.box("nwm", "vdd", -0.18, c.well, width + 0.18, c.height + 0.31)
+
+
+def threshold(canvas: Canvas, width: float) -> Shape:
+    """Return the implant of high-threshold p transistors, no wider than the cell: its neighbours may be plain."""
+    return Shape("hvtp", "", 0.0, round(canvas.p[0] - THRESHOLD, 3), width, round(canvas.p[1] + THRESHOLD, 3))
 
 
 def regions(shapes: Iterable[Shape]) -> "dict[str, db.Region]":

@@ -5,11 +5,12 @@ from typing import TYPE_CHECKING
 
 from talbot.base.jobs import Job, run
 from talbot.cells.compact.canvas import Canvas
-from talbot.cells.compact.catalogue import schematics
-from talbot.cells.compact.draw import Drawn
+from talbot.cells.compact.catalogue import HIGH, named, schematics
+from talbot.cells.compact.draw import Drawn, threshold
 from talbot.cells.compact.make import make, recipe
 from talbot.cells.compact.ties import diode, ties
 from talbot.cells.compact.transistors import Schematic
+from talbot.platforms.place_and_route import TWIN
 
 if TYPE_CHECKING:
     from pdkmaster.design.library import RoutingGaugeLibrary
@@ -27,7 +28,15 @@ def drawn(
     arguments = {name: (cells[name], canvas, recipe(name)) for name in order}
     jobs = [Job(name, make, inputs, inputs) for name, inputs in arguments.items()]
     drawings = dict(zip(order, run(jobs, store, "cells drawn", workers), strict=True))
-    return {name: (cells[name], drawings[name]) for name in cells} | ties(canvas) | diode(canvas)
+    plain = {name: (cells[name], drawings[name]) for name in cells}
+    return plain | dict(twin(*plain[name], canvas) for name in HIGH) | ties(canvas) | diode(canvas)
+
+
+def twin(schematic: Schematic, drawing: Drawn, canvas: Canvas) -> tuple[str, tuple[Schematic, Drawn]]:
+    """Return the twin of a cell with high-threshold p transistors, by its name: the same shapes, and one implant."""
+    shapes = [*drawing["shapes"], threshold(canvas, drawing["width"])]
+    name = f"{schematic.name}{TWIN}"
+    return name, (named(name), {**drawing, "shapes": shapes})
 
 
 def library(canvas: Canvas | None = None, store: Path = FOLDER / "drawn", workers: int = -1) -> "RoutingGaugeLibrary":
@@ -45,6 +54,6 @@ def schematic_spice(schematic: Schematic, canvas: Canvas) -> str:
     """The netlist of the transistors alone, sizes in um as SkyWater's models expect them."""
     lines = [f".subckt {schematic.name} {' '.join(schematic.ports)}"]
     for kind, switches, (low, high), bulk in (("n", schematic.n, canvas.n, "vss"), ("p", schematic.p, canvas.p, "vdd")):
-        model = f"sky130_fd_pr__{kind}fet_01v8 w={high - low:.4g} l={canvas.length:.4g}"
+        model = f"sky130_fd_pr__{schematic.models[kind]} w={high - low:.4g} l={canvas.length:.4g}"
         lines += [f"X{kind}{k} {s.a} {s.gate} {s.b} {bulk} {model}" for k, s in enumerate(switches)]
     return "\n".join([*lines, ".ends", ""])

@@ -38,7 +38,7 @@ class DrawnCell(pdk_cell.Cell):
         pins: dict[str, list[Any]] = {}
         s = self.schematic
         for kind, switches, (low, high), bulk in (("n", s.n, canvas.n, "vss"), ("p", s.p, canvas.p, "vdd")):
-            model, width = PRIMITIVES[f"{kind}fet_01v8"], round(high - low, 3)
+            model, width = PRIMITIVES[s.models[kind]], round(high - low, 3)
             for k, switch in enumerate(switches):
                 device = circuit.instantiate(model, name=f"{kind}{k}", w=width, l=canvas.length)
                 nets = {"sourcedrain1": switch.a, "gate": switch.gate, "sourcedrain2": switch.b, "bulk": bulk}

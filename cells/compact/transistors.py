@@ -26,6 +26,7 @@ class Schematic:
     functions: Liberty expression of the inputs by output (or inner net of a gate); a flip-flop has 'next_state' and
         'clear'.
     storage: '', 'ff' or 'gate' (a clock gate).
+    high: whether its p transistors have a high threshold: they leak a hundredth of plain ones, and are slower.
     """
 
     name: str
@@ -35,7 +36,13 @@ class Schematic:
     p: list[Switch] = field(default_factory=list)
     functions: dict[str, str] = field(default_factory=dict)
     storage: str = ""
+    high: bool = False
     _nodes: int = 0
+
+    @property
+    def models(self) -> dict[str, str]:
+        """SKY130's transistors by kind."""
+        return {"n": "nfet_01v8", "p": "pfet_01v8_hvt" if self.high else "pfet_01v8"}
 
     @property
     def ports(self) -> tuple[str, ...]:

@@ -99,6 +99,7 @@ def stages(design: Design, options: Options, floor: Floor) -> list[Step]:
         "power": StageParameters(*common, "power", frame=design.frame),
         "place": StageParameters(*common, "place", frame=design.frame, closed=design.closed),
         "cts": StageParameters(*common, "cts", clock=design.clock.port),
+        "loads": StageParameters(*common, "loads", clock=design.clock.port),
     }
     steps: list[Step] = [Stage(own.get(name, StageParameters(*common, name))) for name in STAGES]
     return [*steps, StreamOut(StreamOutParameters(options.pdk, design.frame))]

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 from talbot.models.parameters import check_real
 from talbot.platforms.frame import Frame
-from talbot.platforms.place_and_route import PlaceAndRoute
+from talbot.platforms.place_and_route import TWIN, PlaceAndRoute
 
 
 @dataclass(frozen=True)
@@ -59,6 +59,7 @@ def variables(
         "low": tech.low.split("/") if tech.low else (),
         "load_margin": round(100 * tech.load_margin),
         "setup_margin": tech.setup_margin_ns,
+        "twin": TWIN,
         "hold_margin": tech.hold_margin_ns,
         "unconnected": (*tech.fill, *filter(None, [tech.tap])),
     }

@@ -5,11 +5,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from talbot.base.liberty.read import areas, most_loads
+from talbot.base.liberty.read import areas, most_loads, text_of, without
 from talbot.base.steps import Files, Step
 from talbot.base.tools import run
 from talbot.flow.layout.timing.estimate import UNLOADED, setup_slack, unplaced
 from talbot.models.parameters import check_int, check_real
+from talbot.platforms.place_and_route import TWIN
 from talbot.signoff.netlist.buffering import buffer_fan_out, buffer_outputs
 from talbot.signoff.netlist.gating import GATES, ClockCells, ClockGate, drive_registers
 from talbot.signoff.netlist.netlist import Buffer, Netlist, is_register, register_names
@@ -100,6 +101,7 @@ class Synthesis(Step[SynthesisParameters]):
                 path.write_text(text, encoding="utf-8")
             made = {"registers": folder / "registers.json", "design": folder / "design.il"}
             gates = f"script {folder / GATES}" if gated else ""
+            inputs = {**inputs, **plain_cells(folder, inputs)}
             yosys(folder, READ.format(top=p.top, gates=gates, **inputs, **made))
             names = register_names(made["registers"], p.top)
             netlist, tried = self.best(folder, inputs, names, gated)
@@ -159,6 +161,14 @@ class TimedSynthesis(Synthesis):
                 return netlist, len(found) + 1
             found.append((slack, netlist))
         return max(found, key=lambda pair: pair[0])[1], len(found)
+
+
+def plain_cells(folder: Path, inputs: Files) -> dict[str, Path]:
+    """Liberty files for the mapper, without the twins, which place and route takes."""
+    chosen = {name: folder / f"{name}.lib" for name in ("liberty", "timing") if name in inputs}
+    for name, path in chosen.items():
+        path.write_text(without(text_of(inputs[name]), (f"*{TWIN}",)), encoding="utf-8")
+    return chosen
 
 
 def yosys(folder: Path, script: str) -> None:

@@ -13,6 +13,7 @@ from talbot.base.steps import Runner
 from talbot.cells.characterize.cell import characterize
 from talbot.cells.characterize.conditions import Conditions
 from talbot.cells.characterize.job import Source, cell_of
+from talbot.cells.compact.catalogue import HIGH
 from talbot.cells.corner import Corner
 from talbot.cells.liberty import build
 from talbot.flow.layout.steps.library import Library
@@ -21,6 +22,7 @@ from talbot.flow.layout.steps.timing import Timing, TimingParameters, conditions
 from talbot.flow.layout.tables import SHIPPED, key, shipped, write
 from talbot.platforms.extraction import device_models, extraction_platform
 from talbot.platforms.layout import layout_platform
+from talbot.platforms.place_and_route import TWIN
 
 needs_models = pytest.mark.needs("layout")
 needs_cells = pytest.mark.needs("layout")
@@ -51,6 +53,18 @@ def test_the_shipped_tables_are_as_written_and_of_one_library():
     assert {corner: digest(text) for corner, text in texts.items()} == INDEX["corners"]
     names = [{cell.name for cell in library(corner).all("cell")} for corner in CORNERS]
     assert names[0] == names[1] == names[2] and len(names[0]) > 40
+
+
+def test_a_twin_has_the_area_and_pins_of_its_cell_and_leaks_a_fortieth_at_most():
+    for corner in CORNERS:
+        cells = {cell.name: cell for cell in library(corner).all("cell")}
+        twins = {name for name in cells if name.endswith(TWIN)}
+        assert twins == {f"{name}{TWIN}" for name in HIGH}
+        for name in twins:
+            cell, twin = cells[name.removesuffix(TWIN)], cells[name]
+            assert cell.number("area") == twin.number("area")
+            assert {pin.name for pin in cell.all("pin")} == {pin.name for pin in twin.all("pin")}
+            assert twin.number("cell_leakage_power") < cell.number("cell_leakage_power") / 40
 
 
 def test_other_cells_have_no_tables():

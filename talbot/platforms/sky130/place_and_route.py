@@ -8,7 +8,7 @@ pitch, at which vias on neighbouring tracks keep their space. Resistance and cap
 
 from itertools import chain, zip_longest
 
-from talbot.platforms.place_and_route import PlaceAndRoute, Strap
+from talbot.platforms.place_and_route import TWIN, PlaceAndRoute, Strap
 from talbot.platforms.sky130.layout import PLATFORM as LAYOUT
 from talbot.platforms.sky130.openroad import PLATFORM as FOUNDRY
 
@@ -35,6 +35,7 @@ PLATFORM = PlaceAndRoute(
     via_rc={"mcon": 9.3e-3, "via": 4.5e-3, "via2": 3.41e-3, "via3": 3.41e-3},
     signal_rc=("met1", "met2"),
     clock_rc=("met2", "met3"),
+    dont_use=(f"*{TWIN}",),  # until `loads` takes them
     fill=tuple(reversed(LAYOUT.fill_cells)),
     gds={part.lef: part.gds for part in chain(*zip_longest(LAYOUT.metals, LAYOUT.vias)) if part},
     outline=LAYOUT.outline,
