@@ -40,6 +40,7 @@ def add_arguments(parser: ArgumentParser) -> None:
         number.add(parser)
     add("--sampler", default="tpe", help="tpe, nsga or random")
     add("--full", action="store_true", help="every point in full, none in a small scene first")
+    add("--no-thesis", action="store_true", help="without the thesis's sensor, which takes as long as many small ones")
     add("--sensor", type=Path, help=f"of keys that do not vary: {HELP}")
     add("--workers", type=worker_count, default=1, help="processes, -1: all cores; results do not depend on them")
     add("--document", type=Path, help="also put the front between the marks of this file, named as the task")
@@ -101,6 +102,7 @@ def plan_of(task: Any, figures: tuple[str, ...], numbers: dict[str, Any], option
         not options.full,
         options.workers,
         numbers["timeout"],
+        not options.no_thesis,
     )
 
 

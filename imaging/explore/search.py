@@ -6,6 +6,7 @@ workers. A run that continues asks the same again, and takes from the store what
 """
 
 import base64
+import contextlib
 import io
 import json
 import math
@@ -48,7 +49,7 @@ Record = dict[str, Any]
 class Plan:
     """What is searched. objectives: figures; limits: of figures; batch: points that are asked for together.
 
-    multi: a small scene first. seconds: that a trial may take.
+    multi: a small scene first. seconds: that a trial may take. thesis: its sensor as well, in full.
     """
 
     task: Task
@@ -62,6 +63,7 @@ class Plan:
     multi: bool = True
     workers: int = 1
     seconds: float = 1800.0
+    thesis: bool = True
 
     @property
     def digest(self) -> str:
@@ -184,7 +186,7 @@ def _take(row: Row, fidelity: Fidelity, record: Record) -> None:
 def _thesis(judge: Judge) -> Row | None:
     """The thesis's sensor in full; None for a task without one."""
     task = judge.plan.task
-    if not task.thesis:
+    if not task.thesis or not judge.plan.thesis:
         return None
     row = Row(-1, dict(task.thesis), "full")
     return next(judge.evaluate([row], FULL, "thesis"))
@@ -276,7 +278,7 @@ def work(task: Task, point: Point, fidelity: Fidelity, seed: int) -> Record:
     """A record: figures, picture and seconds, or why the sensor cannot be."""
     start, spent = perf_counter(), process_time()
     try:
-        with threadpool_limits(1):
+        with threadpool_limits(1), contextlib.redirect_stderr(io.StringIO()):  # its own lines of progress
             outcome = task.evaluate(point, fidelity, seed)
     except ParameterError as error:
         return {"refused": str(error)}

@@ -69,6 +69,7 @@ def explore(
     keys: str = "",
     sampler: str = "tpe",
     full: bool = False,
+    no_thesis: bool = False,
     sensor: Sensor | None = None,
     workers: int = 1,
     **numbers: float,
@@ -80,12 +81,14 @@ def explore(
         found.sensor(found.front[0]).save("mine.toml")
 
     task: edges, lightfield, polarization, depth, recognition, or a file .py (imaging/explore/README.md). out: folder,
-    build/explore/<task> without one. scenes, budget, objectives, keys, sampler, full, workers: as of the command.
+    build/explore/<task> without one. scenes, budget, objectives, keys, sampler, full, no_thesis,
+    workers: as of the command.
     sensor: of keys that do not vary. numbers: lux, trials, seed, batch, timeout, robust.
 
     Raises ParameterError.
     """
     options = Namespace(keys=keys, objectives=objectives, budget=budget, sampler=sampler, full=full, workers=workers)
+    options.no_thesis = no_thesis
     for name in numbers:
         check_choice("number", name, [number.field for number in NUMBERS])
     for number in NUMBERS:

@@ -207,7 +207,8 @@ def test_a_search_continues_with_the_same_points(whole, tmp_path, trouble):
 
 @pytest.mark.parametrize("sampler", ["nsga", "random"])
 def test_other_samplers(sampler, tmp_path):
-    found = search(plan(sampler=sampler, trials=8, multi=False), tmp_path / "s.sqlite")
+    found = search(plan(sampler=sampler, trials=8, multi=False, thesis=False), tmp_path / "s.sqlite")
+    assert found.thesis is None
     assert len(found.rows) == 8 and all(row.status == "full" for row in found.rows) and found.front
 
 
