@@ -5,7 +5,7 @@ from dataclasses import replace
 from itertools import islice
 
 from talbot.cells.compact.transistors import Function, Schematic, Switch
-from talbot.platforms.place_and_route import TWIN
+from talbot.platforms.twins import TWIN
 
 INPUTS = ("i0", "i1", "i2", "i3", "i4")
 # Cells that have a twin with high-threshold p transistors: those with most of a layout's leakage, but for the clock's

@@ -10,7 +10,7 @@ from talbot.cells.compact.draw import Drawn, threshold
 from talbot.cells.compact.make import make, recipe
 from talbot.cells.compact.ties import diode, ties
 from talbot.cells.compact.transistors import Schematic
-from talbot.platforms.place_and_route import TWIN
+from talbot.platforms.twins import TWIN
 
 if TYPE_CHECKING:
     from pdkmaster.design.library import RoutingGaugeLibrary

@@ -5,7 +5,8 @@ from dataclasses import dataclass, field
 
 from talbot.models.parameters import check_real
 from talbot.platforms.frame import Frame
-from talbot.platforms.place_and_route import TWIN, PlaceAndRoute
+from talbot.platforms.place_and_route import PlaceAndRoute
+from talbot.platforms.twins import TWIN
 
 
 @dataclass(frozen=True)

@@ -9,8 +9,6 @@ from talbot.platforms.processes import package
 
 PROCESSES = ("sky130",)  # with cells that are drawn for OpenROAD
 
-TWIN = "_hvt"  # ends the name of a cell's twin with high-threshold transistors: of its size, with its pins
-
 
 @dataclass(frozen=True)
 class Strap:

@@ -10,7 +10,7 @@ from talbot.base.steps import Files, Step
 from talbot.base.tools import run
 from talbot.flow.layout.timing.estimate import UNLOADED, setup_slack, unplaced
 from talbot.models.parameters import check_int, check_real
-from talbot.platforms.place_and_route import TWIN
+from talbot.platforms.twins import TWIN
 from talbot.signoff.netlist.buffering import buffer_fan_out, buffer_outputs
 from talbot.signoff.netlist.gating import GATES, ClockCells, ClockGate, drive_registers
 from talbot.signoff.netlist.netlist import Buffer, Netlist, is_register, register_names

@@ -22,7 +22,7 @@ from talbot.flow.layout.steps.timing import Timing, TimingParameters, conditions
 from talbot.flow.layout.tables import SHIPPED, key, shipped, write
 from talbot.platforms.extraction import device_models, extraction_platform
 from talbot.platforms.layout import layout_platform
-from talbot.platforms.place_and_route import TWIN
+from talbot.platforms.twins import TWIN
 
 needs_models = pytest.mark.needs("layout")
 needs_cells = pytest.mark.needs("layout")

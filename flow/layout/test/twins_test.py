@@ -8,7 +8,7 @@ from talbot.flow.layout.options import Options
 from talbot.flow.layout.steps.stage import design_tcl
 from talbot.flow.layout.steps.synthesis import plain_cells
 from talbot.flow.layout.variables import Floor
-from talbot.platforms.place_and_route import TWIN
+from talbot.platforms.twins import TWIN
 
 LIBERTY = """library(one) {
   cell(inv_x1) { area : 1; }

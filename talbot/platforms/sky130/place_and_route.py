@@ -8,9 +8,10 @@ pitch, at which vias on neighbouring tracks keep their space. Resistance and cap
 
 from itertools import chain, zip_longest
 
-from talbot.platforms.place_and_route import TWIN, PlaceAndRoute, Strap
+from talbot.platforms.place_and_route import PlaceAndRoute, Strap
 from talbot.platforms.sky130.layout import PLATFORM as LAYOUT
 from talbot.platforms.sky130.openroad import PLATFORM as FOUNDRY
+from talbot.platforms.twins import TWIN
 
 PLATFORM = PlaceAndRoute(
     new_buffers=False,  # registers without an enable are behind buffers that are as slow as clock gates
