@@ -216,7 +216,7 @@ def _batches(
             if record is None:
                 study.tell(trial, state=TrialState.FAIL)
                 continue
-            for limit in plan.limits:
+            for limit in told_limits(plan):
                 trial.set_constraint(str(limit), limit.excess(record["figures"]))
             study.tell(trial, [record["figures"][name] for name in plan.objectives])
         seconds += sum(part["cpu_s"] for row in rows for part in (row.small, row.full) if part)
@@ -247,9 +247,15 @@ def _ask(
 
 def _promising(found: Found, plan: Plan) -> list[Row]:
     """Rows that keep the limits in the small scene and that no other row so far beats there in every objective."""
-    rows = [row for row in found.rows if row.small and not broken(plan.limits, row.small["figures"])]
+    limits = told_limits(plan)
+    rows = [row for row in found.rows if row.small and not broken(limits, row.small["figures"])]
     best = undominated(oriented([row.small["figures"] for row in rows if row.small], plan.objectives))
     return [row for row, front in zip(rows, best, strict=True) if front]
+
+
+def told_limits(plan: Plan) -> list[Limit]:
+    """Limits of what is evaluated first: none of the error in a small scene, where it is another."""
+    return [limit for limit in plan.limits if not plan.multi or limit.name != "error"]
 
 
 def considered(task: Task, values: Mapping[str, Any], limits: Sequence[Limit]) -> Point | str:

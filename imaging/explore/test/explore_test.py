@@ -225,6 +225,16 @@ def test_a_budget_holds_on_the_front(tmp_path):
     assert found.front and all(row.full["figures"]["energy_uj"] <= 45 for row in found.front)
 
 
+def test_a_limit_of_the_error_counts_in_full_alone(tmp_path, whole):
+    """The small scene of this task has a larger error, by which no point would have kept the limit."""
+    least = min(row.full["figures"]["error"] for row in whole[0].front)
+    limits = budget.limits_of(f"error<{least + 0.01}", FIGURES)
+    found = search(plan(limits=limits), tmp_path / "s.sqlite")
+    assert found.front and all(
+        row.full["figures"]["error"] <= least + 0.01 < row.small["figures"]["error"] for row in found.front
+    )
+
+
 @pytest.mark.parametrize(
     "kind, said",
     [
