@@ -7,12 +7,12 @@ import importlib
 import os
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from concurrent.futures import ALL_COMPLETED, FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
 from dataclasses import dataclass
 from time import monotonic
 from typing import Any, NamedTuple, Self
 
-from joblib.externals.loky import get_reusable_executor
+from joblib.executor import get_memmapping_executor
 
 from talbot.base.check import work_begins
 from talbot.models.parameters import ParameterError
@@ -63,15 +63,20 @@ class Pool:
         running: dict[Future[Any], tuple[_Call, float]] = {}
         self._warm(call.__module__)
         while todo or running:
+            broken = False
             while todo and len(running) < self._places and not any(c.alone for c, _ in running.values()):
                 if todo[0].alone and running:
                     break
                 next_call = todo.popleft()
                 assert self._executor is not None
-                future = self._executor.submit(call, *arguments[next_call.number])
+                try:
+                    future = self._executor.submit(call, *arguments[next_call.number])
+                except BrokenExecutor:  # a process has died meanwhile: the calls that run say so
+                    todo.appendleft(next_call)
+                    broken = True
+                    break
                 running[future] = next_call, monotonic()
-            done, _ = wait(running, TICK, FIRST_COMPLETED)
-            broken = False
+            done, _ = wait(running, TICK, ALL_COMPLETED if broken else FIRST_COMPLETED)
             for future in done:
                 ended, _ = running.pop(future)
                 error = None if future.cancelled() else future.exception()
@@ -112,7 +117,7 @@ class Pool:
 
     def _start(self) -> Executor:
         if not self.scheduler:
-            return get_reusable_executor(max_workers=self.workers, timeout=IDLE)
+            return get_memmapping_executor(self.workers, timeout=IDLE)  # joblib's, which it uses again, too
         if self._client is None:
             try:
                 from distributed import Client
@@ -127,7 +132,11 @@ class Pool:
     def _warm(self, module: str) -> None:
         """Import ``module`` in the processes here, so that it is in the time of no call."""
         if self._client is None and self._executor is not None:
-            wait([self._executor.submit(_imported, module) for _ in range(self.workers)])
+            try:
+                wait([self._executor.submit(_imported, module) for _ in range(self.workers)])
+            except BrokenExecutor:  # a process that waited was killed
+                self._end()
+                self._executor = self._start()
 
     def _end(self) -> None:
         """End the processes here, what they run too; a cluster's go on, and what they return is not waited for."""

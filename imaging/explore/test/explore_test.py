@@ -2,6 +2,7 @@
 
 import contextlib
 import json
+import math
 import os
 import re
 import signal
@@ -352,8 +353,17 @@ def test_a_table_goes_into_a_document(tmp_path):
     assert "| point | error | energy_uj |" in document.read_text()
 
 
+def test_processes_that_were_killed_while_they_waited_are_replaced():
+    with Pool(1) as pool:
+        assert list(pool.run(math.sqrt, [(4,)])) == [(0, 2.0)]
+        for process in [*pool._executor._processes]:
+            os.kill(process, signal.SIGKILL)
+        assert list(pool.run(math.sqrt, [(9,)])) == [(0, 3.0)]
+
+
 def test_dask_runs_the_same_trials(whole, tmp_path, monkeypatch):
-    distributed = pytest.importorskip("distributed")
+    import distributed
+
     found, _ = whole
     with (
         distributed.LocalCluster(n_workers=1, threads_per_worker=1, processes=True, dashboard_address=None) as cluster,

@@ -40,7 +40,7 @@ CONFIGURATION = {
     "exposure": (0x50, 0, 10, 0),
 }
 ARRAY = 11, 13, 2, 4, 5, "cordic"  # rows, columns, lanes, tile, divider
-CONSTANTS = {0x00: 0x54, 0x01: 4, 0x75: 2, 0x76: 11, 0x78: 13, 0x7A: 4, 0x7B: 5, 0x7C: 3}
+CONSTANTS = {0x00: 0x54, 0x01: 5, 0x75: 2, 0x76: 11, 0x78: 13, 0x7A: 4, 0x7B: 5, 0x7C: 3}
 STATE = {  # field -> (lowest bit, bits) of the 32 at 0x70
     "amp_state": (0, 3),
     "seq_state": (4, 3),
