@@ -16,6 +16,7 @@ from typing import Any
 import optuna
 from optuna.storages import RDBStorage
 from optuna.trial import TrialState, create_trial
+from sqlalchemy.pool import NullPool
 
 from talbot.base.check import work_begins
 from talbot.base.files import atomic
@@ -34,11 +35,14 @@ class Store:
         self.path, self.digest, self.directions = path, digest, list(directions)
         if not path.exists():
             with atomic(path) as part:
-                _storage(part).engine.dispose()
+                _close(_storage(part))
+        storage = None
         try:
-            self._storage = _storage(path)
+            storage = self._storage = _storage(path)
             self._studies = {name: self._study(name) for name in ("small", "full", "thesis")}
         except Exception as error:
+            if storage:
+                _close(storage)
             _raise_full(error, path)
             raise ParameterError(
                 f"store = {str(path)!r}: must be a file of talbot explore ({type(error).__name__})"
@@ -82,8 +86,7 @@ class Store:
 
     def close(self) -> None:
         """Let go of the file."""
-        self._storage.remove_session()
-        self._storage.engine.dispose()
+        _close(self._storage)
 
 
 def key(values: Mapping[str, Any]) -> str:
@@ -94,7 +97,14 @@ def key(values: Mapping[str, Any]) -> str:
 def _storage(path: Path) -> RDBStorage:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of SQLAlchemy's and Optuna's next versions
-        return RDBStorage(f"sqlite:///{path.absolute()}", engine_kwargs={"connect_args": {"timeout": 60}})
+        # NullPool: a connection is closed after each use, also where opening the store fails
+        engine = {"connect_args": {"timeout": 60}, "poolclass": NullPool}
+        return RDBStorage(f"sqlite:///{path.absolute()}", engine_kwargs=engine)
+
+
+def _close(storage: RDBStorage) -> None:
+    storage.remove_session()
+    storage.engine.dispose()
 
 
 def _raise_full(error: BaseException | None, path: Path) -> None:

@@ -283,7 +283,9 @@ def test_a_full_disk_is_told_and_leaves_the_store_whole(tmp_path, monkeypatch):
     store.close()
     with contextlib.closing(sqlite3.connect(path)) as base:
         assert base.execute("PRAGMA integrity_check").fetchone() == ("ok",)
-    assert ("small", '{"k": 1}') in Store(path, "a", ["minimize"]).records()
+    store = Store(path, "a", ["minimize"])
+    assert ("small", '{"k": 1}') in store.records()
+    store.close()
 
 
 def test_a_store_that_is_none(tmp_path):
