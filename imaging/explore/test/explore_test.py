@@ -241,7 +241,7 @@ def test_a_limit_of_the_error_counts_in_full_alone(tmp_path, whole):
     [
         ("raise", "RuntimeError: trouble at"),
         ("die", "its process died"),
-        ("hang", "timeout: longer than 10 s"),
+        pytest.param("hang", "timeout: longer than 10 s", marks=pytest.mark.slow),
         ("refuse", "must be another"),
     ],
 )

@@ -71,6 +71,7 @@ def test_a_bug_is_shown_and_its_trace_replayed(name, find, new, label, plant, mo
     getattr(module, f"test_{name}")()  # without the bug
 
 
+@pytest.mark.slow
 def test_a_step_from_an_unreachable_state_is_shown_as_such(tmp_path, monkeypatch):
     queue = proof_named("byte_queue")
     text = queue.wrapper.read_text().replace("\\dut.count == inside && inside <= 2", "inside <= 3")
