@@ -10,7 +10,7 @@ from talbot.base.files import check_folder, insert, marked, staged
 from talbot.base.jobs import worker_count
 from talbot.base.paths import results_of
 from talbot.base.sensor import HELP
-from talbot.models.parameters import ParameterError, check_choice, read_sensor
+from talbot.models.parameters import ParameterError, SensorParameters, check_choice, read_sensor
 
 if TYPE_CHECKING:
     from talbot.imaging.explore.search import Found, Plan
@@ -66,12 +66,16 @@ def run(options: Namespace) -> int:
     return 0
 
 
-def asked(options: Namespace) -> "tuple[Path, Plan, int]":
-    """Folder, plan, and chips of the robustness, that the options name. Raises ParameterError."""
+def asked(options: Namespace, sensor: SensorParameters | None = None) -> "tuple[Path, Plan, int]":
+    """Return folder, plan, and chips of the robustness, that the options name.
+
+    sensor: of keys that do not vary, instead of the file of the options. Raises ParameterError.
+    """
     from talbot.imaging.explore.tasks import figures_of, task_of
 
     numbers = {number.field: number.value(options) for number in NUMBERS}
-    sensor = read_sensor(options.sensor) if options.sensor else None
+    if options.sensor:
+        sensor = read_sensor(options.sensor)
     task = task_of(options.task, options.scenes, numbers["lux"], sensor)
     folder = options.out or results_of("explore") / task.name
     return folder, plan_of(task, figures_of(task), numbers, options), numbers["robust"]

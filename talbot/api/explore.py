@@ -9,10 +9,9 @@ from typing import Any
 
 from talbot.api.image import text
 from talbot.api.sensor import Sensor
-from talbot.imaging.explore.command import NUMBERS, explored, plan_of
+from talbot.imaging.explore.command import NUMBERS, asked, explored
 from talbot.imaging.explore.results import name_of, sensor_of_row, table
 from talbot.imaging.explore.search import Found
-from talbot.imaging.explore.tasks import figures_of, task_of
 from talbot.models.parameters import check_choice
 
 
@@ -81,21 +80,18 @@ def explore(
         found.sensor(found.front[0]).save("mine.toml")
 
     task: edges, lightfield, polarization, depth, recognition, or a file .py (imaging/explore/README.md). out: folder,
-    build/explore/<task> without one. scenes, budget, objectives, keys, sampler, full, no_thesis,
-    workers: as of the command.
-    sensor: of keys that do not vary. numbers: lux, trials, seed, batch, timeout, robust.
+    build/explore/<task> without one. scenes, budget, objectives, keys, sampler, full, no_thesis, workers: as of the
+    command. sensor: of keys that do not vary. numbers: lux, trials, seed, batch, timeout, robust.
 
     Raises ParameterError.
     """
-    options = Namespace(keys=keys, objectives=objectives, budget=budget, sampler=sampler, full=full, workers=workers)
-    options.no_thesis = no_thesis
+    options = Namespace(task=str(task), scenes=scenes, budget=budget, objectives=objectives, keys=keys, sampler=sampler)
+    options.full, options.no_thesis, options.workers, options.sensor = full, no_thesis, workers, None
+    options.out = Path(out) if out else None
     for name in numbers:
         check_choice("number", name, [number.field for number in NUMBERS])
     for number in NUMBERS:
         setattr(options, number.field, str(numbers.get(number.field, number.default)))
-    values = {number.field: number.value(options) for number in NUMBERS}
-    chosen = task_of(str(task), scenes, values["lux"], sensor.parameters if sensor else None)
-    plan = plan_of(chosen, figures_of(chosen), values, options)
-    folder = Path(out) if out else Path("build") / "explore" / chosen.name
-    found, summary = explored(plan, folder, values["robust"])
+    folder, plan, robust = asked(options, sensor.parameters if sensor else None)
+    found, summary = explored(plan, folder, robust)
     return Exploration(found, summary, folder)
