@@ -54,18 +54,14 @@ def check_settling(sensor: SensorParameters) -> None:
 
 
 def row_cycles(request: FrameRequest) -> int:
-    """Cycles of a row: its slot, or as long as the converters take where every sample has the longest search."""
-    frame, sensor = request.frame, request.sensor
-    timing = frame.exposing
-    full = fitting(replace(frame, timing=timing), sensor)
-    return slot_cycles(replace(timing, t_int=full.t_int), False) if frame.mode != "tof" else _tof_cycles(request)
+    """Cycles of a row: its slot, or as long as the converters take where every sample has the longest search.
 
-
-def _tof_cycles(request: FrameRequest) -> int:
-    """A row of four taps: its sub-frames, or its conversions."""
+    In time of flight the slot has four integrations.
+    """
     timing = request.frame.exposing
-    one = fitting(replace(request.frame, timing=timing), request.sensor)  # all four samples of a pixel in one slot
-    return max(slot_cycles(timing, True), slot_cycles(replace(timing, t_int=one.t_int), False))
+    fitted = fitting(replace(request.frame, timing=timing), request.sensor)  # of tof: all four samples in one slot
+    converting = slot_cycles(replace(timing, t_int=fitted.t_int), False)
+    return max(slot_cycles(timing, True), converting) if request.frame.mode == "tof" else converting
 
 
 def frame_cycles(request: FrameRequest) -> int:

@@ -11,7 +11,7 @@ import io
 import json
 import math
 import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from time import perf_counter, process_time
@@ -114,7 +114,7 @@ class Found:
         return [row for row in self.rows if row.front]
 
 
-def search(plan: Plan, path: Path, note: Callable[[str], None] = lambda text: None) -> Found:
+def search(plan: Plan, path: Path) -> Found:
     """Search, the evaluated points kept in the SQLite file ``path``. Raises ParameterError, OSError."""
     task = plan.task
     directions: list[Any] = ["maximize" if name in MORE else "minimize" for name in plan.objectives]
@@ -162,12 +162,10 @@ class Judge:
             record: Record = {"failed": result.reason} if isinstance(result, Failure) else result
             figures = record.get("figures")
             objectives = None if figures is None else [figures[name] for name in plan.objectives]
-            distributions = {name: self.distributions[name] for name in row.values if name in self.distributions}
-            if study == fidelity.name:
-                self.store.add(study, row.values, distributions, objectives, record)
-            else:
-                fixed = {name: CategoricalDistribution([value]) for name, value in row.values.items()}
-                self.store.add(study, row.values, fixed, objectives, record)
+            distributions = self.distributions
+            if study != fidelity.name:  # a point outside the space
+                distributions = {name: CategoricalDistribution([value]) for name, value in row.values.items()}
+            self.store.add(study, row.values, distributions, objectives, record)
             self.records[study, key(row.values)] = record
             _take(row, fidelity, record)
             yield row
@@ -232,13 +230,13 @@ def _ask(
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", optuna.exceptions.ExperimentalWarning)
             trial = study.ask(dict(distributions))
-        point = considered(plan.task, trial.params, plan.limits)
-        if isinstance(point, str) or key(trial.params) in seen:
+        point, name = considered(plan.task, trial.params, plan.limits), key(trial.params)
+        if isinstance(point, str) or name in seen:
             study.tell(trial, state=TrialState.FAIL)
             reason = point.partition(" = ")[0] if isinstance(point, str) else "asked for before"
             found.refused[reason] = found.refused.get(reason, 0) + 1
             continue
-        seen.add(key(trial.params))
+        seen.add(name)
         out.append((trial, Row(len(found.rows) + len(out), dict(trial.params), "")))
         if len(out) == size:
             break
@@ -272,12 +270,7 @@ def considered(task: Task, values: Mapping[str, Any], limits: Sequence[Limit]) -
             known |= costs.least(requests)
     except ParameterError as error:
         return str(error)
-    return broken([limit for limit in limits if limit.most or limit.name in EXACT], _known(limits, known)) or point
-
-
-def _known(limits: Sequence[Limit], known: Mapping[str, float]) -> dict[str, float]:
-    """What is known; a figure that is not keeps its limit."""
-    return {limit.name: limit.value for limit in limits} | dict(known)
+    return broken([limit for limit in limits if limit.most or limit.name in EXACT], known) or point
 
 
 def work(task: Task, point: Point, fidelity: Fidelity, seed: int) -> Record:

@@ -329,7 +329,7 @@ class Recognition:
 
     def evaluate(self, point: Point, fidelity: Fidelity, seed: int) -> Outcome:
         """Of full: all pictures, three splits; of small: some of them, one."""
-        whole = fidelity is FULL or fidelity.part == FULL.part
+        whole = fidelity.part == FULL.part
         pictures = data.load(self.data).part(None if whole else self.SOME)
         setting = self._setting(point, seed, 3 if whole else 1)
         with afresh():
