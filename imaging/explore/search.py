@@ -10,7 +10,6 @@ import contextlib
 import io
 import json
 import math
-import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -227,9 +226,7 @@ def _ask(
     """The next ``size`` points that keep what is known before; fewer where the space has no more."""
     seen, out = {key(row.values) for row in found.rows}, []
     for _ in range(ASKED * size):
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", optuna.exceptions.ExperimentalWarning)
-            trial = study.ask(dict(distributions))
+        trial = study.ask(dict(distributions))
         point, name = considered(plan.task, trial.params, plan.limits), key(trial.params)
         if isinstance(point, str) or name in seen:
             study.tell(trial, state=TrialState.FAIL)
@@ -312,9 +309,7 @@ def sampler_of(plan: Plan, number: int) -> BaseSampler:
         return RandomSampler(seed)
     if plan.sampler == "nsga":
         return NSGAIISampler(population_size=plan.batch, seed=seed)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", optuna.exceptions.ExperimentalWarning)
-        return TPESampler(seed=seed, n_startup_trials=2 * plan.batch, multivariate=True)
+    return TPESampler(seed=seed, n_startup_trials=2 * plan.batch, multivariate=True)
 
 
 def distribution(values: list[Any] | tuple[Any, Any]) -> BaseDistribution:
@@ -358,11 +353,8 @@ def importances(found: Found, objective: str) -> dict[str, float]:
     values = [trial.value for trial in study.trials]
     if len(set(values)) < 2:
         return {}
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # keys with one value have no worth
-        return dict(
-            optuna.importance.get_param_importances(study, evaluator=optuna.importance.PedAnovaImportanceEvaluator())
-        )
+    evaluator = optuna.importance.PedAnovaImportanceEvaluator()
+    return dict(optuna.importance.get_param_importances(study, evaluator=evaluator))
 
 
 def dominated_share(points: npt.NDArray[np.float64], low: npt.ArrayLike, high: npt.ArrayLike) -> float:

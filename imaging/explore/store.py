@@ -6,7 +6,6 @@ with /small, /full and /thesis; each trial is one evaluated point, with figures 
 """
 
 import json
-import warnings
 from collections.abc import Mapping, Sequence
 from errno import ENOSPC
 from os import strerror
@@ -14,8 +13,11 @@ from pathlib import Path
 from typing import Any
 
 import optuna
+from alembic.util.exc import CommandError
+from optuna.exceptions import OptunaError
 from optuna.storages import RDBStorage
 from optuna.trial import TrialState, create_trial
+from sqlalchemy.exc import SQLAlchemyError
 from sqlalchemy.pool import NullPool
 
 from talbot.base.check import work_begins
@@ -40,7 +42,7 @@ class Store:
         try:
             storage = self._storage = _storage(path)
             self._studies = {name: self._study(name) for name in ("small", "full", "thesis")}
-        except Exception as error:
+        except (SQLAlchemyError, CommandError, RuntimeError) as error:  # no database, or of another version of Optuna
             if storage:
                 _close(storage)
             _raise_full(error, path)
@@ -80,7 +82,7 @@ class Store:
         )
         try:
             self._studies[fidelity].add_trial(trial)
-        except Exception as error:
+        except (SQLAlchemyError, OptunaError) as error:
             _raise_full(error, self.path)
             raise
 
@@ -95,11 +97,9 @@ def key(values: Mapping[str, Any]) -> str:
 
 
 def _storage(path: Path) -> RDBStorage:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of SQLAlchemy's and Optuna's next versions
-        # NullPool: a connection is closed after each use, also where opening the store fails
-        engine = {"connect_args": {"timeout": 60}, "poolclass": NullPool}
-        return RDBStorage(f"sqlite:///{path.absolute()}", engine_kwargs=engine)
+    # NullPool: a connection is closed after each use, also where opening the store fails
+    engine = {"connect_args": {"timeout": 60}, "poolclass": NullPool}
+    return RDBStorage(f"sqlite:///{path.absolute()}", engine_kwargs=engine)
 
 
 def _close(storage: RDBStorage) -> None:

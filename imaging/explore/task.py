@@ -299,6 +299,6 @@ def _module(path: str, text: str) -> dict[str, Any]:
     names: dict[str, Any] = {"__name__": "talbot_task", "__file__": path}
     try:
         exec(compile(text, path, "exec"), names)
-    except Exception as error:
+    except Exception as error:  # whatever a file of the user's raises
         raise ParameterError(f"task = {path!r}: {type(error).__name__}: {error}") from None
     return names

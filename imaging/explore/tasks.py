@@ -1,5 +1,6 @@
 """The tasks of this project: edges, light fields, polarization, depth, recognition; and those in files."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -47,7 +48,7 @@ EXPOSURE = (0.1, 1.0)  # part of the time that fills 80 % of a well
 
 
 @dataclass(frozen=True)
-class SceneTask:
+class SceneTask(ABC):
     """A task on pictures of scenes. scenes: names or files; figures are means over them. lux: of white."""
 
     scenes: tuple[str, ...]
@@ -78,13 +79,18 @@ class SceneTask:
         figures = {name: float(np.mean([o.figures[name] for o in outcomes])) for name in outcomes[0].figures}
         return Outcome(figures, outcomes[0].picture)
 
+    @property
+    @abstractmethod
+    def space(self) -> Space:
+        """Every key that the task varies."""
+
+    @abstractmethod
     def seen(self, point: Point, fidelity: Fidelity, seed: int, scene: str) -> Outcome:
         """Of one scene."""
-        raise NotImplementedError
 
+    @abstractmethod
     def free(self, frame_request: FrameRequest) -> float:
         """The error of what costs nothing for the scene of a request."""
-        raise NotImplementedError
 
     def free_error(self) -> float | None:
         """Mean over the scenes, of the base's field of view."""
