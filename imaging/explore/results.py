@@ -1,6 +1,5 @@
 """What a search leaves: a table of all points, the front as sensor files, the summary with where it comes from."""
 
-import subprocess
 import sys
 from collections.abc import Mapping, Sequence
 from importlib.metadata import version
@@ -10,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from talbot.base.cache import digest
-from talbot.base.paths import ROOT
 from talbot.base.table import write_csv
+from talbot.base.tools import commit
 from talbot.imaging.explore.search import Found, Row, considered, dominated_share, importances, oriented
 from talbot.imaging.explore.tasks import figures_of
 from talbot.models.parameters import ParameterError, SensorParameters, sensor_text
@@ -128,15 +127,10 @@ def convergence(found: Found) -> list[dict[str, float]]:
 
 def provenance(found: Found) -> dict[str, Any]:
     """Where results come from: commit or version, the search's digest, the scenes' content, packages."""
-    git = ["git", "-C", str(ROOT), "describe", "--always", "--dirty", "--abbrev=12"]
-    commit = ""
-    if (ROOT / ".git").exists():
-        done = subprocess.run(git, capture_output=True, text=True, check=False)
-        commit = done.stdout.strip()
     packages = {name: version(name) for name in PACKAGES}
     return {
         "talbot": version("talbot"),
-        "commit": commit,
+        "commit": commit(),
         "search": found.plan.digest,
         "task": digest(*found.plan.task.content()),
         "python": sys.version.split()[0],

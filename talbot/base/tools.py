@@ -21,6 +21,7 @@ from typing import IO, TypeVar
 
 from talbot.base.check import work_begins
 from talbot.base.environment import of_tools
+from talbot.base.paths import ROOT
 
 T = TypeVar("T")
 YOSYS = "yosys", "yosys-abc", "yosys-smtbmc"
@@ -234,3 +235,10 @@ def run(
         tail = "\n".join((result.stderr or result.stdout).strip().splitlines()[-15:])
         raise ToolError(f"{Path(str(command[0])).name} failed with status {result.returncode}:\n{tail}")
     return result.stdout
+
+
+def commit() -> str:
+    """Return the short hash of the checkout, with + where files differ; '' outside a checkout or without git."""
+    if not (ROOT / ".git").exists() or not located("git"):
+        return ""
+    return finish(["git", "describe", "--always", "--dirty=+"], cwd=ROOT).stdout.strip()

@@ -2,15 +2,14 @@
 
 import json
 import os
-import subprocess
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 
 from talbot.base.files import insert, write
-from talbot.base.paths import ROOT
 from talbot.base.records import from_json
+from talbot.base.tools import commit
 from talbot.verif.formal import manifest, sizes
 from talbot.verif.report.merge import summarize
 from talbot.verif.report.steps import Outcome
@@ -28,12 +27,6 @@ class Run:
     commit: str
     seconds: float
     load: float
-
-
-def commit() -> str:
-    """Return the short hash of the checkout, with + where files differ; '' outside git."""
-    found = subprocess.run(["git", "describe", "--always", "--dirty=+"], cwd=ROOT, capture_output=True, text=True)
-    return found.stdout.strip()
 
 
 def record(done: Sequence[Outcome], out: Path, load: float) -> dict[str, Run]:

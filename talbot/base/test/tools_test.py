@@ -97,3 +97,8 @@ def test_the_result_of_another_thread_or_its_error():
         pass
     with pytest.raises(ZeroDivisionError):
         result.result()
+
+
+def test_outside_a_checkout_there_is_no_commit(tmp_path, monkeypatch):
+    monkeypatch.setattr(tools, "ROOT", tmp_path)
+    assert tools.commit() == ""
