@@ -19,7 +19,7 @@ from scipy.ndimage import binary_erosion, distance_transform_edt, gaussian_filte
 from talbot.models.capture import CaptureOperator
 from talbot.models.parameters import SensorParameters
 from talbot.models.reconstruct.bayes import Estimate
-from talbot.models.reconstruct.warps import gather, gather_linear, scatter, scatter_linear
+from talbot.models.reconstruct.stack import Stack
 
 Floats = npt.NDArray[np.floating]
 Bools = npt.NDArray[np.bool_]
@@ -139,9 +139,8 @@ def surfaces_of(disparity: Floats, spread: Floats, margin: int) -> Surfaces:
         bend = gaussian_filter(np.pad(on * (disparity - flat[k]), margin), BEND) / (weight + 0.05)
         out.append((a + b * yy + c * xx + bend).astype(np.float32))
     inner = (slice(margin, -margin),) * 2
-    label = np.stack([np.abs(disparity - one[inner]) for one in out]).argmin(0)
-    nearest = np.asarray(distance_transform_edt(~sure, return_distances=False, return_indices=True))
-    return Surfaces(out, label[nearest[0], nearest[1]])
+    label = np.stack([np.abs(disparity - surface[inner]) for surface in out]).argmin(0)
+    return Surfaces(out, _filled(label, sure))
 
 
 def _planes(disparity: Floats, sure: Bools) -> list[Floats]:
@@ -175,132 +174,6 @@ def _planes(disparity: Floats, sure: Bools) -> list[Floats]:
         planes.append(best)
         left &= away(best) >= 2 * NEAR
     return planes
-
-
-class Stack:
-    """Surfaces as views see them.
-
-    Parameters
-    ----------
-    disparity : sequence of float32 (rows + 2 margin, cols + 2 margin)
-        Of the surfaces, the nearest first, px per view step.
-    steps : float64 (views,)
-        Places of the views down and across, in view steps.
-    margin : int
-        Px around the array.
-    """
-
-    def __init__(self, disparity: Sequence[Floats], steps: npt.NDArray[np.float64], margin: int) -> None:
-        self.count, self.whole = len(disparity), disparity[0].shape
-        self.shape = (len(steps), len(steps), *(size - 2 * margin for size in self.whole))
-        y, x = (place.astype(np.float32) + margin for place in np.indices(self.shape[2:]))
-        self.places = np.empty((self.count, 2, *self.shape), np.float32)
-        for k, surface in enumerate(disparity):
-            for v, u in np.ndindex(self.shape[:2]):
-                down, across, seen = y, x, np.empty_like(y)
-                for _ in range(4):  # of what a view shows at a pixel
-                    gather_linear(surface, down, across, seen)
-                    down = y + np.float32(steps[v]) * seen
-                    across = x + np.float32(steps[u]) * seen
-                self.places[k, :, v, u] = down, across
-
-    def warped(self, k: int, picture: Floats, linear: bool = False) -> Floats:
-        """Show a picture of a surface in every view.
-
-        Parameters
-        ----------
-        k : int
-            Number of the surface.
-        picture : float32 (rows + 2 margin, cols + 2 margin)
-            As the middle view shows it.
-        linear : bool
-            Interpolate linearly, not by cubic convolution.
-
-        Returns
-        -------
-        float32 (views, views, rows, cols)
-            l[v, u, y, x].
-        """
-        out = np.empty(self.shape, np.float32)
-        for v, u in np.ndindex(self.shape[:2]):
-            (gather_linear if linear else gather)(picture, *self.places[k, :, v, u], out[v, u])
-        return out
-
-    def back(self, k: int, field: Floats, linear: bool = False) -> Floats:
-        """Apply the transpose of `warped`.
-
-        Parameters
-        ----------
-        k : int
-            Number of the surface.
-        field : float32 (views, views, rows, cols)
-            A light field.
-        linear : bool
-            As of `warped`.
-
-        Returns
-        -------
-        float32 (rows + 2 margin, cols + 2 margin)
-            A picture of the surface.
-        """
-        out = np.zeros(self.whole, np.float32)
-        for v, u in np.ndindex(self.shape[:2]):
-            (scatter_linear if linear else scatter)(out, *self.places[k, :, v, u], field[v, u])
-        return out
-
-    def seen(self, masks: Sequence[Floats]) -> list[Floats]:
-        """Tell how much of every surface each view shows.
-
-        Parameters
-        ----------
-        masks : sequence of float32 (rows + 2 margin, cols + 2 margin)
-            Of all surfaces but the farthest, 0..1.
-
-        Returns
-        -------
-        list of float32 (views, views, rows, cols)
-            Of every surface; their sum is 1.
-        """
-        left, out = np.ones(self.shape, np.float32), []
-        for k, mask in enumerate(masks):
-            here = self.warped(k, mask, linear=True)
-            out.append(left * here)
-            left = left * (1 - here)
-        return [*out, left]
-
-    def field(self, textures: Floats, seen: Sequence[Floats]) -> Floats:
-        """Compose the light field.
-
-        Parameters
-        ----------
-        textures : float32 (surfaces, rows + 2 margin, cols + 2 margin)
-            Of every surface.
-        seen : sequence of float32 (views, views, rows, cols)
-            As of `seen`.
-
-        Returns
-        -------
-        float32 (views, views, rows, cols)
-            l[v, u, y, x].
-        """
-        return np.asarray(sum(part * self.warped(k, textures[k]) for k, part in enumerate(seen)), np.float32)
-
-    def textures(self, field: Floats, seen: Sequence[Floats]) -> Floats:
-        """Apply the transpose of `field`.
-
-        Parameters
-        ----------
-        field : float32 (views, views, rows, cols)
-            A light field.
-        seen : sequence of float32 (views, views, rows, cols)
-            As of `seen`.
-
-        Returns
-        -------
-        float32 (surfaces, rows + 2 margin, cols + 2 margin)
-            Pictures of the surfaces.
-        """
-        return np.stack([self.back(k, part * field) for k, part in enumerate(seen)])
 
 
 def fit_textures(
@@ -382,8 +255,8 @@ def fit_masks(
         for j in range(stack.count - 2, k, -1):
             behind = parts[j] * shown[j] + (1 - parts[j]) * behind
         change = left * (shown[k] - behind)
-        rest = samples - operator.forward(front + left * behind)
-        masks[k] = _mask(stack, operator, k, masks[k], change, rest, sigma, outline)
+        remainder = samples - operator.forward(front + left * behind)
+        masks[k] = _mask(stack, operator, k, masks[k], change, remainder, sigma, outline)
     return masks
 
 
@@ -393,27 +266,27 @@ def _mask(
     k: int,
     mask: Floats,
     change: Floats,
-    rest: Floats,
+    remainder: Floats,
     sigma: float,
     outline: Floats,
 ) -> Floats:
-    """Mask of surface ``k``. change: what it adds to the light field; rest: of the samples, without it."""
+    """Mask of surface ``k``. change: what it adds to the light field; remainder: of the samples, without it."""
 
     def back(values: Floats, factor: Floats) -> Floats:
         return stack.back(k, factor * operator.transpose(values), linear=True) / np.float32(sigma**2)
 
     whole, size = stack.warped(k, np.ones_like(mask), linear=True), np.abs(change)
     bound = back(operator.forward(size * whole), size) + 8 * outline / np.float32(SOFT) + np.float32(1e-3)
-    here, ahead, pace = mask, mask, 1.0
+    latest, ahead, pace = mask, mask, 1.0
     for _ in range(MASK_STEPS):
         steps = _gradient(ahead)
         weight = outline / np.sqrt(np.square(steps[0]) + np.square(steps[1]) + np.float32(SOFT**2))
-        slope = back(operator.forward(change * stack.warped(k, ahead, linear=True)) - rest, change)
+        slope = back(operator.forward(change * stack.warped(k, ahead, linear=True)) - remainder, change)
         slope = slope + _divergence(*(weight * step for step in steps))
         after = np.clip(ahead - slope / bound, 0, 1).astype(np.float32)
         faster = (1 + math.sqrt(1 + 4 * pace**2)) / 2
-        here, ahead, pace = after, after + np.float32((pace - 1) / faster) * (after - here), faster
-    return here
+        latest, ahead, pace = after, after + np.float32((pace - 1) / faster) * (after - latest), faster
+    return latest
 
 
 def _begin(surfaces: Surfaces, middle: Floats, margin: int) -> tuple[list[Floats], Floats]:

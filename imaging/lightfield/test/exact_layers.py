@@ -20,7 +20,8 @@ from talbot.models.capture import CaptureOperator, Region, Views
 from talbot.models.parameters import SensorParameters
 from talbot.models.plan import plan
 from talbot.models.reconstruct import psnr_db
-from talbot.models.reconstruct.layers import Stack, fit_textures, layered
+from talbot.models.reconstruct.layers import fit_textures, layered
+from talbot.models.reconstruct.stack import Stack
 from talbot.models.scene import Scene
 
 Floats = npt.NDArray[np.floating]

@@ -9,7 +9,8 @@ from talbot.models.capture import CaptureOperator
 from talbot.models.parameters import ArrayParameters, SensorParameters
 from talbot.models.reconstruct import psnr_db
 from talbot.models.reconstruct.bayes import FieldEstimator, FieldPrior
-from talbot.models.reconstruct.layers import Stack, layered, surfaces_of
+from talbot.models.reconstruct.layers import layered, surfaces_of
+from talbot.models.reconstruct.stack import Stack
 from talbot.models.reconstruct.warps import gather, gather_linear, scatter, scatter_linear
 
 ROWS, COLS, VIEWS, MARGIN = 48, 54, 5, 9
