@@ -13,7 +13,7 @@ from talbot.base.sensor import HELP
 from talbot.models.parameters import ParameterError, SensorParameters, check_choice, read_sensor
 
 if TYPE_CHECKING:
-    from talbot.imaging.explore.search import Found, Plan
+    from talbot.imaging.explore.search import Findings, Plan
 
 STORE = "trials.sqlite"
 NUMBERS = (
@@ -49,24 +49,24 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Search, write page, table, sensor files and summary.json, print the front."""
-    folder, plan, robust = asked(options)
+    folder, plan, robust = folder_and_plan(options)
     from talbot.imaging.explore import page  # Optuna: not before it is needed
 
     check_folder("out", folder, page.NAMES)
     mark = f"{plan.task.name} {','.join(plan.objectives)}"
     if options.document:
         marked(options.document, mark)
-    found, summary = explored(plan, folder, robust)
+    findings, summary = explored(plan, folder, robust)
     if options.document:
         from talbot.imaging.explore.results import lines
 
-        insert(options.document, mark, "\n".join(lines(found, plan.objectives)))
+        insert(options.document, mark, "\n".join(lines(findings, plan.objectives)))
     _print(summary)
     print(f"  look at {folder / 'explore.html'}")
     return 0
 
 
-def asked(options: Namespace, sensor: SensorParameters | None = None) -> "tuple[Path, Plan, int]":
+def folder_and_plan(options: Namespace, sensor: SensorParameters | None = None) -> "tuple[Path, Plan, int]":
     """Return folder, plan, and chips of the robustness, that the options name.
 
     sensor: of keys that do not vary, instead of the file of the options. Raises ParameterError.
@@ -110,22 +110,22 @@ def plan_of(task: Any, figures: tuple[str, ...], numbers: dict[str, Any], option
     )
 
 
-def explored(plan: "Plan", folder: Path, robust: int = 0) -> "tuple[Found, dict[str, Any]]":
+def explored(plan: "Plan", folder: Path, robust: int = 0) -> "tuple[Findings, dict[str, Any]]":
     """Search, and write the files of the results into ``folder``, all or none. Raises ParameterError, OSError."""
     from talbot.imaging.explore import page, results
     from talbot.imaging.explore.robust import robustness
     from talbot.imaging.explore.search import search
 
-    found = search(plan, folder / STORE)
-    summary = results.summarize(found, folder)
-    if robust and found.front:
-        least = min(found.front, key=lambda row: (row.full or {})["figures"]["error"])
+    findings = search(plan, folder / STORE)
+    summary = results.summarize(findings, folder)
+    if robust and findings.front:
+        least = min(findings.front, key=lambda row: (row.full or {})["figures"]["error"])
         summary["robustness"] = robustness(plan, least, robust)
     with staged(folder, page.NAMES) as part:
-        results.write(part, found, summary)
-        page.write(part, found, summary)
+        results.write(part, findings, summary)
+        page.write(part, findings, summary)
         (part / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n", encoding="utf-8")
-    return found, summary
+    return findings, summary
 
 
 def _print(s: dict[str, Any]) -> None:

@@ -14,7 +14,7 @@ from plotly.offline import get_plotlyjs
 from talbot.base.charts import curves, svg
 from talbot.base.page import Section, Tile, render
 from talbot.imaging.explore.results import command_of, name_of, sensor_of_row, short
-from talbot.imaging.explore.search import Found, Row
+from talbot.imaging.explore.search import Findings, Row
 from talbot.imaging.explore.task import MORE
 from talbot.imaging.explore.tasks import figures_of
 from talbot.models.parameters import sensor_text
@@ -24,19 +24,19 @@ MARK = "<script>PLOTLY</script>"
 AXIS_PX = 95  # of parallel coordinates
 
 
-def write(folder: Path, found: Found, summary: Mapping[str, Any]) -> None:
+def write(folder: Path, findings: Findings, summary: Mapping[str, Any]) -> None:
     """Write explore.html into ``folder``."""
-    front = found.front or [row for row in found.rows if row.full]
+    front = findings.front or [row for row in findings.rows if row.full]
     first = min(front, key=lambda row: (row.full or {})["figures"]["error"], default=None)
     text = render(
         Path(__file__).with_name("page.html"),
         f"{summary['task']}: sensors for a task",
         picture=_image(first) if first else None,
         about=f"{summary['about']}; {summary['trials']} points, seed {summary['seed']}, {summary['sampler']}",
-        tiles=_tiles(found, summary),
-        sections=_sections(found, summary),
-        parallel_width=AXIS_PX * (len(found.plan.space) + len(figures_of(found.plan.task))),
-        data=_data(found, summary),
+        tiles=_tiles(findings, summary),
+        sections=_sections(findings, summary),
+        parallel_width=AXIS_PX * (len(findings.plan.space) + len(figures_of(findings.plan.task))),
+        data=_data(findings, summary),
     )
     before, after = text.split(MARK)
     (folder / "explore.html").write_text(f"{before}<script>{get_plotlyjs()}</script>{after}", encoding="utf-8")
@@ -46,32 +46,31 @@ def _image(row: Row) -> Image.Image:
     return Image.open(io.BytesIO(base64.b64decode((row.full or {})["picture"])))
 
 
-def _data(found: Found, summary: Mapping[str, Any]) -> Markup:
+def _data(findings: Findings, summary: Mapping[str, Any]) -> Markup:
     """What the script shows, as JSON that may stand in HTML."""
-    thesis = [found.thesis] if found.thesis and found.thesis.full else []
     points = []
-    for row in [*thesis, *(row for row in found.rows if row.full)]:
+    for row in [*findings.thesis_in_full, *(row for row in findings.rows if row.full)]:
         record = row.full or {}
         shown = row.front or row.number < 0
         points.append(
             {
                 "point": name_of(row),
                 "front": row.front,
-                "values": {name: row.values.get(name) for name in found.plan.space},
+                "values": {name: row.values.get(name) for name in findings.plan.space},
                 "figures": record["figures"],
                 "picture": record["picture"],
-                "command": command_of(found, row, summary["folder"]),
-                "toml": sensor_text(sensor_of_row(found, row)) if shown else "",
+                "command": command_of(findings, row, summary["folder"]),
+                "toml": sensor_text(sensor_of_row(findings, row)) if shown else "",
             }
         )
-    objectives = list(found.plan.objectives)
-    names = [*objectives, *(name for name in figures_of(found.plan.task) if name not in objectives)]
-    data = {"points": points, "figures": names, "keys": list(found.plan.space), "more": list(MORE)}
+    objectives = list(findings.plan.objectives)
+    names = [*objectives, *(name for name in figures_of(findings.plan.task) if name not in objectives)]
+    data = {"points": points, "figures": names, "keys": list(findings.plan.space), "more": list(MORE)}
     data["start"] = [*objectives[1:2], *objectives[:1]] if len(objectives) > 1 else [names[1], names[0]]
     return Markup(json.dumps(data, allow_nan=False).replace("<", "\\u003c"))
 
 
-def _tiles(found: Found, s: Mapping[str, Any]) -> list[Tile]:
+def _tiles(findings: Findings, s: Mapping[str, Any]) -> list[Tile]:
     counts, refused = s["counts"], sum(s["refused_before"].values())
     tiles = [Tile(str(len(s["front"])), f"sensors on the front, of {counts['full']} in full", "good")]
     if s["front"]:
@@ -89,10 +88,10 @@ def _tiles(found: Found, s: Mapping[str, Any]) -> list[Tile]:
     return tiles
 
 
-def _sections(found: Found, s: Mapping[str, Any]) -> list[Section]:
-    names = figures_of(found.plan.task)
+def _sections(findings: Findings, s: Mapping[str, Any]) -> list[Section]:
+    names = figures_of(findings.plan.task)
     front = [*([s["thesis"]] if s["thesis"] else []), *s["front"]]
-    keys = list(found.plan.space)
+    keys = list(findings.plan.space)
     rows = [
         (entry["point"], *(short(entry["figures"][n]) for n in names), *(short(entry["values"].get(k)) for k in keys))
         for entry in front

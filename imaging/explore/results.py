@@ -11,7 +11,7 @@ import numpy as np
 from talbot.base.cache import digest
 from talbot.base.table import write_csv
 from talbot.base.tools import commit
-from talbot.imaging.explore.search import Found, Row, considered, dominated_share, importances, oriented
+from talbot.imaging.explore.search import Findings, Row, considered, dominated_share, importances, oriented
 from talbot.imaging.explore.tasks import figures_of
 from talbot.models.parameters import ParameterError, SensorParameters, sensor_text
 
@@ -24,35 +24,35 @@ def name_of(row: Row) -> str:
     return THESIS if row.number < 0 else f"{row.number:04}"
 
 
-def sensor_of_row(found: Found, row: Row) -> SensorParameters:
+def sensor_of_row(findings: Findings, row: Row) -> SensorParameters:
     """The sensor of a point. Raises ParameterError."""
-    return _point(found, row).sensor
+    return _point(findings, row).sensor
 
 
-def _point(found: Found, row: Row) -> Any:
-    point = considered(found.plan.task, row.values, ())
+def _point(findings: Findings, row: Row) -> Any:
+    point = considered(findings.plan.task, row.values, ())
     if isinstance(point, str):
         raise ParameterError(point)
     return point
 
 
-def command_of(found: Found, row: Row, folder: Path | str) -> str:
+def command_of(findings: Findings, row: Row, folder: Path | str) -> str:
     """The command that simulates a point whose sensor file is in ``folder``/points."""
-    words = found.plan.task.words(_point(found, row))
+    words = findings.plan.task.words(_point(findings, row))
     make, command, *rest = words.split()
     return " ".join([make, command, f"SENSOR={folder}/points/{name_of(row)}.toml", *rest])
 
 
-def table(found: Found) -> list[dict[str, Any]]:
+def table(findings: Findings) -> list[dict[str, Any]]:
     """A dict for each point: number, status, front, values, figures in full, and in the small scene (small_...).
 
     None where a figure was not computed.
     """
-    names, out = figures_of(found.plan.task), []
-    thesis = [found.thesis] if found.thesis else []
-    for row in [*thesis, *found.rows]:
+    names, out = figures_of(findings.plan.task), []
+    thesis = [findings.thesis] if findings.thesis else []
+    for row in [*thesis, *findings.rows]:
         entry: dict[str, Any] = {"point": name_of(row), "status": row.status, "front": row.front}
-        entry |= {name: row.values.get(name) for name in found.plan.space}
+        entry |= {name: row.values.get(name) for name in findings.plan.space}
         for prefix, record in (("", row.full), ("small_", row.small)):
             figures = record["figures"] if record else {}
             entry |= {prefix + name: figures.get(name) for name in names}
@@ -61,31 +61,31 @@ def table(found: Found) -> list[dict[str, Any]]:
     return out
 
 
-def write(folder: Path, found: Found, summary: Mapping[str, Any]) -> None:
+def write(folder: Path, findings: Findings, summary: Mapping[str, Any]) -> None:
     """Write trials.csv and points/*.toml, the front's and the thesis's, into ``folder``."""
-    write_csv(folder / "trials.csv", table(found))
+    write_csv(folder / "trials.csv", table(findings))
     (folder / "points").mkdir()
-    for row in [*found.front, *([found.thesis] if found.thesis and found.thesis.full else [])]:
-        text = f"# {command_of(found, row, summary['folder'])}\n\n{sensor_text(sensor_of_row(found, row))}"
+    for row in [*findings.front, *findings.thesis_in_full]:
+        text = f"# {command_of(findings, row, summary['folder'])}\n\n{sensor_text(sensor_of_row(findings, row))}"
         (folder / "points" / f"{name_of(row)}.toml").write_text(text, encoding="utf-8")
 
 
-def summarize(found: Found, folder: Path) -> dict[str, Any]:
+def summarize(findings: Findings, folder: Path) -> dict[str, Any]:
     """The figures of a search, for summary.json."""
-    plan, task = found.plan, found.plan.task
+    plan, task = findings.plan, findings.plan.task
     counts = {
-        status: sum(row.status == status for row in found.rows) for status in ("full", "small", "refused", "failed")
+        status: sum(row.status == status for row in findings.rows) for status in ("full", "small", "refused", "failed")
     }
-    seconds = [sum(r["seconds"] for r in (row.small, row.full) if r) for row in found.rows]
+    seconds = [sum(r["seconds"] for r in (row.small, row.full) if r) for row in findings.rows]
     return {
         "task": task.name,
         "about": task.about,
         "folder": str(folder),
-        "trials": len(found.rows),
-        "exhausted": found.exhausted,
+        "trials": len(findings.rows),
+        "exhausted": findings.exhausted,
         "counts": counts,
-        "refused_before": found.refused,
-        "failed": {row.number: row.reason for row in found.rows if row.status == "failed"},
+        "refused_before": findings.refused,
+        "failed": {row.number: row.reason for row in findings.rows if row.status == "failed"},
         "seed": plan.seed,
         "batch": plan.batch,
         "sampler": plan.sampler,
@@ -93,57 +93,62 @@ def summarize(found: Found, folder: Path) -> dict[str, Any]:
         "objectives": list(plan.objectives),
         "budget": [str(limit) for limit in plan.limits],
         "keys": {name: list(values) for name, values in plan.space.items()},
-        "front": [_entry(found, row, folder) for row in found.front],
-        "thesis": _entry(found, found.thesis, folder) if found.thesis and found.thesis.full else None,
+        "front": [_entry(findings, row, folder) for row in findings.front],
+        "thesis": next((_entry(findings, row, folder) for row in findings.thesis_in_full), None),
         "free_error": task.free_error(),
-        "importances": {name: importances(found, name) for name in plan.objectives},
-        "convergence": convergence(found),
+        "importances": {name: importances(findings, name) for name in plan.objectives},
+        "convergence": convergence(findings),
         "evaluation_s": sum(seconds),
-        "provenance": provenance(found),
+        "provenance": provenance(findings),
     }
 
 
-def _entry(found: Found, row: Row, folder: Path) -> dict[str, Any]:
+def _entry(findings: Findings, row: Row, folder: Path) -> dict[str, Any]:
     figures = (row.full or {})["figures"]
-    return {"point": name_of(row), "values": row.values, "figures": figures, "command": command_of(found, row, folder)}
+    return {
+        "point": name_of(row),
+        "values": row.values,
+        "figures": figures,
+        "command": command_of(findings, row, folder),
+    }
 
 
-def convergence(found: Found) -> list[dict[str, float]]:
+def convergence(findings: Findings) -> list[dict[str, float]]:
     """As each batch ended: trials, processor seconds, and the part of a box of objectives that full points dominate.
 
     The box is from the best to the worst of each objective in the points of the whole search.
     """
-    full = [row for row in found.rows if row.full]
+    full = [row for row in findings.rows if row.full]
     if not full:
         return []
-    points = oriented([row.full["figures"] for row in full if row.full], found.plan.objectives)
+    points = oriented([row.full["figures"] for row in full if row.full], findings.plan.objectives)
     low, high = points.min(0), points.max(0)
     numbers = np.array([row.number for row in full])
     return [
         {"trials": trials, "cpu_s": seconds, "share": dominated_share(points[numbers < trials], low, high)}
-        for trials, seconds in found.history
+        for trials, seconds in findings.history
     ]
 
 
-def provenance(found: Found) -> dict[str, Any]:
+def provenance(findings: Findings) -> dict[str, Any]:
     """Where results come from: commit or version, the search's digest, the scenes' content, packages."""
     packages = {name: version(name) for name in PACKAGES}
     return {
         "talbot": version("talbot"),
         "commit": commit(),
-        "search": found.plan.digest,
-        "task": digest(*found.plan.task.content()),
+        "search": findings.plan.digest,
+        "task": digest(*findings.plan.task.content()),
         "python": sys.version.split()[0],
         "packages": packages,
     }
 
 
-def lines(found: Found, objectives: Sequence[str]) -> list[str]:
+def lines(findings: Findings, objectives: Sequence[str]) -> list[str]:
     """The front as a table of Markdown."""
-    names = [name for name in found.plan.space if len({str(row.values[name]) for row in found.front}) > 1]
+    names = [name for name in findings.plan.space if len({str(row.values[name]) for row in findings.front}) > 1]
     head = ["point", *objectives, *names]
     out = [f"| {' | '.join(head)} |", f"|{'---|' * len(head)}"]
-    for row in [*([found.thesis] if found.thesis and found.thesis.full else []), *found.front]:
+    for row in [*findings.thesis_in_full, *findings.front]:
         figures = (row.full or {})["figures"]
         cells = [name_of(row), *(f"{figures[name]:.4g}" for name in objectives)]
         cells += [short(row.values.get(name)) for name in names]

@@ -94,7 +94,7 @@ class Row:
 
 
 @dataclass(eq=False)
-class Found:
+class Findings:
     """A search that ended. thesis: the base itself. refused: sensors that were refused before any simulation, by why.
 
     history: (trials, seconds of evaluation) as each batch ended.
@@ -108,12 +108,17 @@ class Found:
     exhausted: bool = False
 
     @property
+    def thesis_in_full(self) -> list[Row]:
+        """The thesis's sensor where it was evaluated, else none."""
+        return [self.thesis] if self.thesis and self.thesis.full else []
+
+    @property
     def front(self) -> list[Row]:
         """Points in full that keep the limits and that no other beats in every objective."""
         return [row for row in self.rows if row.front]
 
 
-def search(plan: Plan, path: Path) -> Found:
+def search(plan: Plan, path: Path) -> Findings:
     """Search, the evaluated points kept in the SQLite file ``path``. Raises ParameterError, OSError."""
     task = plan.task
     directions: list[Any] = ["maximize" if name in MORE else "minimize" for name in plan.objectives]
@@ -122,18 +127,18 @@ def search(plan: Plan, path: Path) -> Found:
     try:
         with Pool(plan.workers, plan.seconds) as pool:
             judge = Judge(plan, store, distributions, pool)
-            found = Found(plan, [], _thesis(judge))
+            findings = Findings(plan, [], _thesis(judge))
             study = optuna.create_study(directions=directions)
-            batches = _batches(plan, study, distributions, judge, found)
+            batches = _batches(plan, study, distributions, judge, findings)
             for _ in each(batches, task.name, lambda row: row.status, plan.trials):
                 pass
     finally:
         store.close()
-    chosen = [row for row in found.rows if row.full and not broken(plan.limits, row.full["figures"])]
+    chosen = [row for row in findings.rows if row.full and not broken(plan.limits, row.full["figures"])]
     best = undominated(oriented([row.full["figures"] for row in chosen if row.full], plan.objectives))
     for row, front in zip(chosen, best, strict=True):
         row.front = bool(front)
-    return found
+    return findings
 
 
 class Judge:
@@ -190,65 +195,65 @@ def _thesis(judge: Judge) -> Row | None:
 
 
 def _batches(
-    plan: Plan, study: optuna.Study, distributions: Mapping[str, BaseDistribution], judge: Judge, found: Found
+    plan: Plan, study: optuna.Study, distributions: Mapping[str, BaseDistribution], judge: Judge, findings: Findings
 ) -> Iterator[Row]:
-    """Each row as it ends; those of a batch are told to the study in its order."""
+    """Each row as it ends; the study gets those of a batch in its order."""
     seconds = 0.0
     for number in range(math.ceil(plan.trials / plan.batch)):
         study.sampler = sampler_of(plan, number)
         size = min(plan.batch, plan.trials - number * plan.batch)
-        asked = _ask(plan, study, distributions, size, found)
-        if not asked:
-            found.exhausted = True
+        trials = _ask(plan, study, distributions, size, findings)
+        if not trials:
+            findings.exhausted = True
             return
-        rows = [row for _, row in asked]
+        rows = [row for _, row in trials]
         first = SMALL if plan.multi else FULL
         ended = list(judge.evaluate(rows, first))
-        found.rows += rows
-        good = _promising(found, plan) if plan.multi else []
+        findings.rows += rows
+        good = _promising(findings, plan) if plan.multi else []
         yield from (row for row in ended if row not in good)
         yield from judge.evaluate([row for row in good if row in rows], FULL)
-        for trial, row in asked:
+        for trial, row in trials:
             record = row.small if plan.multi else row.full
             if record is None:
                 study.tell(trial, state=TrialState.FAIL)
                 continue
-            for limit in told_limits(plan):
+            for limit in early_limits(plan):
                 trial.set_constraint(str(limit), limit.excess(record["figures"]))
             study.tell(trial, [record["figures"][name] for name in plan.objectives])
         seconds += sum(part["cpu_s"] for row in rows for part in (row.small, row.full) if part)
-        found.history.append((len(found.rows), seconds))
+        findings.history.append((len(findings.rows), seconds))
 
 
 def _ask(
-    plan: Plan, study: optuna.Study, distributions: Mapping[str, BaseDistribution], size: int, found: Found
+    plan: Plan, study: optuna.Study, distributions: Mapping[str, BaseDistribution], size: int, findings: Findings
 ) -> list[tuple[Trial, Row]]:
     """The next ``size`` points that keep what is known before; fewer where the space has no more."""
-    seen, out = {key(row.values) for row in found.rows}, []
+    seen, out = {key(row.values) for row in findings.rows}, []
     for _ in range(ASKED * size):
         trial = study.ask(dict(distributions))
         point, name = considered(plan.task, trial.params, plan.limits), key(trial.params)
         if isinstance(point, str) or name in seen:
             study.tell(trial, state=TrialState.FAIL)
             reason = point.partition(" = ")[0] if isinstance(point, str) else "asked for before"
-            found.refused[reason] = found.refused.get(reason, 0) + 1
+            findings.refused[reason] = findings.refused.get(reason, 0) + 1
             continue
         seen.add(name)
-        out.append((trial, Row(len(found.rows) + len(out), dict(trial.params), "")))
+        out.append((trial, Row(len(findings.rows) + len(out), dict(trial.params), "")))
         if len(out) == size:
             break
     return out
 
 
-def _promising(found: Found, plan: Plan) -> list[Row]:
+def _promising(findings: Findings, plan: Plan) -> list[Row]:
     """Rows that keep the limits in the small scene and that no other row so far beats there in every objective."""
-    limits = told_limits(plan)
-    rows = [row for row in found.rows if row.small and not broken(limits, row.small["figures"])]
+    limits = early_limits(plan)
+    rows = [row for row in findings.rows if row.small and not broken(limits, row.small["figures"])]
     best = undominated(oriented([row.small["figures"] for row in rows if row.small], plan.objectives))
     return [row for row, front in zip(rows, best, strict=True) if front]
 
 
-def told_limits(plan: Plan) -> list[Limit]:
+def early_limits(plan: Plan) -> list[Limit]:
     """Limits of what is evaluated first: none of the error in a small scene, where it is another."""
     return [limit for limit in plan.limits if not plan.multi or limit.name != "error"]
 
@@ -338,14 +343,14 @@ def undominated(points: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
     return ~np.any(as_good & better, axis=1)
 
 
-def importances(found: Found, objective: str) -> dict[str, float]:
+def importances(findings: Findings, objective: str) -> dict[str, float]:
     """What each key is worth for an objective, of 1 together, by PED-ANOVA of the points in the small scene.
 
     Empty for fewer than two points that differ.
     """
-    plan, distributions = found.plan, {name: distribution(values) for name, values in found.plan.space.items()}
+    plan, distributions = findings.plan, {name: distribution(values) for name, values in findings.plan.space.items()}
     study = optuna.create_study(direction="maximize" if objective in MORE else "minimize")
-    for row in found.rows:
+    for row in findings.rows:
         record = row.small if plan.multi else row.full
         if record:
             value = record["figures"][objective]

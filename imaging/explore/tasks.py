@@ -175,9 +175,9 @@ class LightFields(SceneTask):
     def seen(self, point: Point, fidelity: Fidelity, seed: int, scene: str) -> Outcome:
         """One raw frame."""
         frame = golden(point, fidelity, seed, scene, self.mode, **self.settings(point))
-        found = estimate(frame.result, prior=prior_of(frame.result, disparities=DISPARITIES)).light_field
+        field = estimate(frame.result, prior=prior_of(frame.result, disparities=DISPARITIES)).light_field
         truth = np.asarray(frame.reference.full_light_field, float)
-        views = on_grid(found, truth.shape[-2:])
+        views = on_grid(field, truth.shape[-2:])
         use = cells(len(truth)).astype(bool)
         return frame.outcome(rms((views - truth)[use]), views[len(views) // 2, 0])
 
@@ -203,10 +203,12 @@ class Polarization(SceneTask):
     def seen(self, point: Point, fidelity: Fidelity, seed: int, scene: str) -> Outcome:
         """One raw frame; a pixel without confidence has no polarization."""
         frame = golden(point, fidelity, seed, scene, self.mode, **self.settings(point))
-        found = estimated(frame.result, frame.result.decoded.samples.astype(float))[0]
+        polarization = estimated(frame.result, frame.result.decoded.samples.astype(float))[0]
         s1, s2 = frame.reference.seen_polarization
-        degree = found.degree * (found.confidence > 0)
-        parts = on_grid(np.stack([degree * np.cos(2 * found.psi), degree * np.sin(2 * found.psi)]), np.shape(s1))
+        degree = polarization.degree * (polarization.confidence > 0)
+        parts = on_grid(
+            np.stack([degree * np.cos(2 * polarization.psi), degree * np.sin(2 * polarization.psi)]), np.shape(s1)
+        )
         error = np.hypot(parts[0] - s1, parts[1] - s2)
         return frame.outcome(rms(error), np.hypot(*parts))
 
@@ -339,15 +341,15 @@ class Recognition:
         pictures = data.load(self.data).part(None if whole else self.SOME)
         setting = self._setting(point, seed, 3 if whole else 1)
         with afresh():
-            found = study.evaluate(setting, pictures)
+            evaluation = study.evaluate(setting, pictures)
             frames = self.requests(point)
             mode, threshold = frames[0].frame.mode, setting.threshold
             shown = chip.read(self._display(point), pictures.radiance[:4], mode, threshold, 1.0, seed).codes
         known = costs.least(frames)
         figures = {
-            "error": 1 - float(np.mean(found["accuracies"])),
-            "energy_uj": found["energy_uj"][0],
-            "bytes": found["bytes"],
+            "error": 1 - float(np.mean(evaluation["accuracies"])),
+            "energy_uj": evaluation["energy_uj"][0],
+            "bytes": evaluation["bytes"],
             "frames_per_s": known["frames_per_s"],
         }
         return Outcome(figures, np.concatenate(shown, 1).astype(float))

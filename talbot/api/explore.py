@@ -9,9 +9,9 @@ from typing import Any
 
 from talbot.api.image import text
 from talbot.api.sensor import Sensor
-from talbot.imaging.explore.command import NUMBERS, asked, explored
+from talbot.imaging.explore.command import NUMBERS, explored, folder_and_plan
 from talbot.imaging.explore.results import name_of, sensor_of_row, table
-from talbot.imaging.explore.search import Found
+from talbot.imaging.explore.search import Findings
 from talbot.models.parameters import check_choice
 
 
@@ -19,17 +19,17 @@ from talbot.models.parameters import check_choice
 class Exploration:
     """A search that ended. summary: the figures, as in summary.json. folder: of the page and the sensor files.
 
-    found: all of it (`talbot.imaging.explore.search.Found`).
+    findings: all of it (`talbot.imaging.explore.search.Findings`).
     """
 
-    found: Found
+    findings: Findings
     summary: dict[str, Any]
     folder: Path
 
     @property
     def table(self) -> Any:
         """Every point with its values and figures: a pandas.DataFrame, or a list of dicts where pandas is missing."""
-        rows = table(self.found)
+        rows = table(self.findings)
         if importlib.util.find_spec("pandas") is None:
             return rows
         return importlib.import_module("pandas").DataFrame(rows)
@@ -37,14 +37,14 @@ class Exploration:
     @property
     def front(self) -> list[str]:
         """Names of the points on the front."""
-        return [name_of(row) for row in self.found.front]
+        return [name_of(row) for row in self.findings.front]
 
     def sensor(self, point: str) -> Sensor:
         """The sensor of a point, by its name; 'thesis' is the thesis's. Raises ParameterError."""
-        thesis = [self.found.thesis] if self.found.thesis else []
-        rows = {name_of(row): row for row in [*thesis, *self.found.rows]}
+        thesis = [self.findings.thesis] if self.findings.thesis else []
+        rows = {name_of(row): row for row in [*thesis, *self.findings.rows]}
         check_choice("point", point, list(rows))
-        return Sensor.of(sensor_of_row(self.found, rows[point]))
+        return Sensor.of(sensor_of_row(self.findings, rows[point]))
 
     def __repr__(self) -> str:
         s = self.summary
@@ -75,9 +75,9 @@ def explore(
 ) -> Exploration:
     """Search the sensors for a task, as `make explore` does; a search that ended early continues.
 
-        found = talbot.explore("edges", budget="energy_uj<20", trials=40, seed=1)
-        found.table                        # every point, with values and figures
-        found.sensor(found.front[0]).save("mine.toml")
+        exploration = talbot.explore("edges", budget="energy_uj<20", trials=40, seed=1)
+        exploration.table                        # every point, with values and figures
+        exploration.sensor(exploration.front[0]).save("mine.toml")
 
     task: edges, lightfield, polarization, depth, recognition, or a file .py (imaging/explore/README.md). out: folder,
     build/explore/<task> without one. scenes, budget, objectives, keys, sampler, full, no_thesis, workers: as of the
@@ -92,6 +92,6 @@ def explore(
         check_choice("number", name, [number.field for number in NUMBERS])
     for number in NUMBERS:
         setattr(options, number.field, str(numbers.get(number.field, number.default)))
-    folder, plan, robust = asked(options, sensor.parameters if sensor else None)
-    found, summary = explored(plan, folder, robust)
-    return Exploration(found, summary, folder)
+    folder, plan, robust = folder_and_plan(options, sensor.parameters if sensor else None)
+    findings, summary = explored(plan, folder, robust)
+    return Exploration(findings, summary, folder)

@@ -63,9 +63,9 @@ def plan(**more):
     return Plan(**{"task": task, "space": task.space, "objectives": OBJECTIVES, "trials": 12, "batch": 4} | more)
 
 
-def facts(found):
+def facts(findings):
     """What two runs must have in common."""
-    return [(row.number, row.values, row.status, row.front, row.best and row.best["figures"]) for row in found.rows]
+    return [(row.number, row.values, row.status, row.front, row.best and row.best["figures"]) for row in findings.rows]
 
 
 @pytest.fixture(scope="module")
@@ -129,8 +129,8 @@ def test_keys_that_are_refused(text, said):
 
 
 def test_keys():
-    found = narrowed(task_of(OWN).space, "threshold=4..20 chip.lanes=1,8 gain")
-    assert found == {"threshold": (4, 20), "chip.lanes": [1, 8], "gain": (0.5, 2.0)}
+    space = narrowed(task_of(OWN).space, "threshold=4..20 chip.lanes=1,8 gain")
+    assert space == {"threshold": (4, 20), "chip.lanes": [1, 8], "gain": (0.5, 2.0)}
     assert narrowed(task_of(OWN).space, "threshold=4,20")["threshold"] == [4, 20]
 
 
@@ -170,9 +170,9 @@ def test_a_file_that_is_no_task(text, said, tmp_path):
 
 
 def test_the_front(whole):
-    found, _ = whole
-    full = [row for row in found.rows if row.full]
-    assert len(found.rows) == 12 and found.front and all(row.full for row in found.front)
+    findings, _ = whole
+    full = [row for row in findings.rows if row.full]
+    assert len(findings.rows) == 12 and findings.front and all(row.full for row in findings.front)
     for row in full:
         beaten = [
             other
@@ -181,58 +181,58 @@ def test_the_front(whole):
             and any(other.full["figures"][name] < row.full["figures"][name] for name in OBJECTIVES)
         ]
         assert row.front == (not beaten)
-    small = [row for row in found.rows if row.status == "small"]
+    small = [row for row in findings.rows if row.status == "small"]
     assert small, "every point was evaluated in full"
     for row in small:  # what is not evaluated in full is beaten in the small scene
         assert any(
             all(other.small["figures"][name] <= row.small["figures"][name] for name in OBJECTIVES) for other in full
         )
-    assert found.thesis.full["figures"]["error"] == pytest.approx(7 / 40 + 4 / 48 + 0.01)
+    assert findings.thesis.full["figures"]["error"] == pytest.approx(7 / 40 + 4 / 48 + 0.01)
 
 
 def test_workers_do_not_change_results_and_seeds_do(whole, tmp_path):
-    found, _ = whole
-    assert facts(search(plan(workers=2), tmp_path / "two.sqlite")) == facts(found)
-    assert facts(search(plan(seed=2), tmp_path / "other.sqlite")) != facts(found)
+    findings, _ = whole
+    assert facts(search(plan(workers=2), tmp_path / "two.sqlite")) == facts(findings)
+    assert facts(search(plan(seed=2), tmp_path / "other.sqlite")) != facts(findings)
 
 
 def test_a_search_continues_with_the_same_points(whole, tmp_path, trouble):
-    found, folder = whole
+    findings, folder = whole
     path = tmp_path / "s.sqlite"
     search(plan(trials=6), path)
     first = len((trouble / "log").read_text().split())
-    assert facts(search(plan(), path)) == facts(search(plan(), path)) == facts(found)
+    assert facts(search(plan(), path)) == facts(search(plan(), path)) == facts(findings)
     every = len((trouble / "log").read_text().split())
-    assert 0 < first < every == 1 + sum(2 if row.full else 1 for row in found.rows)
+    assert 0 < first < every == 1 + sum(2 if row.full else 1 for row in findings.rows)
 
 
 @pytest.mark.parametrize("sampler", ["nsga", "random"])
 def test_other_samplers(sampler, tmp_path):
-    found = search(plan(sampler=sampler, trials=8, multi=False, thesis=False), tmp_path / "s.sqlite")
-    assert found.thesis is None
-    assert len(found.rows) == 8 and all(row.status == "full" for row in found.rows) and found.front
+    findings = search(plan(sampler=sampler, trials=8, multi=False, thesis=False), tmp_path / "s.sqlite")
+    assert findings.thesis is None
+    assert len(findings.rows) == 8 and all(row.status == "full" for row in findings.rows) and findings.front
 
 
 def test_a_budget_that_no_sensor_keeps_is_refused_before_any_evaluation(tmp_path, trouble):
     limits = budget.limits_of("area_mm2<1", FIGURES)
-    found = search(plan(limits=limits), tmp_path / "s.sqlite")
-    assert found.exhausted and not found.rows and found.refused["area_mm2"] > 100
+    findings = search(plan(limits=limits), tmp_path / "s.sqlite")
+    assert findings.exhausted and not findings.rows and findings.refused["area_mm2"] > 100
     assert len((trouble / "log").read_text().split()) == 1  # the thesis's
 
 
 def test_a_budget_holds_on_the_front(tmp_path):
     limits = budget.limits_of("energy_uj<45", FIGURES)
-    found = search(plan(limits=limits), tmp_path / "s.sqlite")
-    assert found.front and all(row.full["figures"]["energy_uj"] <= 45 for row in found.front)
+    findings = search(plan(limits=limits), tmp_path / "s.sqlite")
+    assert findings.front and all(row.full["figures"]["energy_uj"] <= 45 for row in findings.front)
 
 
 def test_a_limit_of_the_error_counts_in_full_alone(tmp_path, whole):
     """The small scene of this task has a larger error, by which no point would have kept the limit."""
     least = min(row.full["figures"]["error"] for row in whole[0].front)
     limits = budget.limits_of(f"error<{least + 0.01}", FIGURES)
-    found = search(plan(limits=limits), tmp_path / "s.sqlite")
-    assert found.front and all(
-        row.full["figures"]["error"] <= least + 0.01 < row.small["figures"]["error"] for row in found.front
+    findings = search(plan(limits=limits), tmp_path / "s.sqlite")
+    assert findings.front and all(
+        row.full["figures"]["error"] <= least + 0.01 < row.small["figures"]["error"] for row in findings.front
     )
 
 
@@ -246,11 +246,11 @@ def test_a_limit_of_the_error_counts_in_full_alone(tmp_path, whole):
     ],
 )
 def test_trouble_is_reported_and_no_other_trial_is_lost(kind, said, tmp_path, trouble, whole):
-    found, _ = whole
-    bad = found.rows[2].values["threshold"]
+    findings, _ = whole
+    bad = findings.rows[2].values["threshold"]
     (trouble / str(bad)).write_text(kind)
     again = search(plan(trials=4, seconds=10.0, workers=2), tmp_path / "s.sqlite")
-    assert [row.values for row in again.rows] == [row.values for row in found.rows[:4]]
+    assert [row.values for row in again.rows] == [row.values for row in findings.rows[:4]]
     for row in again.rows:
         if row.values["threshold"] == bad:
             assert row.status == ("refused" if kind == "refuse" else "failed") and said in row.reason
@@ -259,9 +259,9 @@ def test_trouble_is_reported_and_no_other_trial_is_lost(kind, said, tmp_path, tr
 
 
 def test_what_dies_once_is_tried_again(tmp_path, trouble, whole):
-    found, _ = whole
-    (trouble / str(found.rows[1].values["threshold"])).write_text("once die")
-    assert facts(search(plan(), tmp_path / "s.sqlite")) == facts(found)
+    findings, _ = whole
+    (trouble / str(findings.rows[1].values["threshold"])).write_text("once die")
+    assert facts(search(plan(), tmp_path / "s.sqlite")) == facts(findings)
 
 
 def test_a_full_disk_is_told_and_leaves_the_store_whole(tmp_path, monkeypatch):
@@ -295,7 +295,7 @@ def test_a_store_that_is_none(tmp_path):
 
 
 def test_a_kill_and_the_same_front(tmp_path, whole):
-    found, _ = whole
+    findings, _ = whole
     words = [sys.executable, "-m", "talbot", "explore", "--task", OWN, "--trials", "12", "--batch", "4"]
     words += ["--objectives", ",".join(OBJECTIVES), "--out", str(tmp_path / "out")]
     child = subprocess.Popen(words, stderr=subprocess.PIPE, text=True, start_new_session=True)
@@ -311,8 +311,8 @@ def test_a_kill_and_the_same_front(tmp_path, whole):
     assert names <= {"trials.sqlite", "trials.sqlite-journal"} or (tmp_path / "out" / "summary.json").exists()
     assert main(words[3:]) == 0
     rows = read_csv(tmp_path / "out" / "trials.csv")[1:]
-    assert [row["front"] for row in rows] == [str(row.front) for row in found.rows]
-    assert [row["gain"] for row in rows] == pytest.approx([row.values["gain"] for row in found.rows], rel=1e-5)
+    assert [row["front"] for row in rows] == [str(row.front) for row in findings.rows]
+    assert [row["gain"] for row in rows] == pytest.approx([row.values["gain"] for row in findings.rows], rel=1e-5)
 
 
 def _count(store):
@@ -366,13 +366,13 @@ def test_processes_that_were_killed_while_they_waited_are_replaced():
 def test_dask_runs_the_same_trials(whole, tmp_path, monkeypatch):
     import distributed
 
-    found, _ = whole
+    findings, _ = whole
     with (
         distributed.LocalCluster(n_workers=1, threads_per_worker=1, processes=True, dashboard_address=None) as cluster,
         monkeypatch.context() as patch,
     ):
         patch.setenv("SCHEDULER", cluster.scheduler_address)
-        assert facts(search(plan(), tmp_path / "s.sqlite")) == facts(found)
+        assert facts(search(plan(), tmp_path / "s.sqlite")) == facts(findings)
 
 
 def test_a_scheduler_that_is_none(monkeypatch):
@@ -392,8 +392,8 @@ def test_undominated_points_and_the_share_that_they_dominate():
 
 
 def test_importances_find_the_key_that_counts(tmp_path):
-    found = search(plan(trials=40, multi=False), tmp_path / "s.sqlite")
-    worth = importances(found, "bytes")
+    findings = search(plan(trials=40, multi=False), tmp_path / "s.sqlite")
+    worth = importances(findings, "bytes")
     assert max(worth, key=worth.get) in ("threshold", "array.rows") and sum(worth.values()) == pytest.approx(1)
 
 
