@@ -6,6 +6,7 @@ by Verilator: its assumptions are checked with their own text, and its propertie
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from operator import attrgetter
 from typing import Any
 
 from pymtl3 import Component, InPort, is_bitstruct_class
@@ -48,7 +49,7 @@ class Recorder:
         """Look up the inputs of every block of an elaborated chip."""
         for name, place in BLOCKS.items():
             self.cycles[name] = []
-            pins = _inputs(chip, _at(chip, place)) if place else FRONT
+            pins = _inputs(chip, attrgetter(place)(chip)) if place else FRONT
             self.read[name] = _reader(chip, pins)
 
     def sample(self) -> None:
@@ -89,10 +90,6 @@ class RecordingBench(ChipBench):
         """Record, after the checks of the bench."""
         super().watch()
         self.recorder.sample()
-
-
-def _at(chip: Component, place: str) -> Any:
-    return eval(f"chip.{place}", {"chip": chip})
 
 
 def _inputs(chip: Component, block: Component) -> dict[str, str]:

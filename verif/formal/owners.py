@@ -31,7 +31,7 @@ class Statement:
 def statements(text: str) -> dict[str, Statement]:
     """Return the labelled statements of a wrapper."""
     plain = re.sub(r"//.*|/\*[\s\S]*?\*/", "", text)
-    found: dict[str, Statement] = {}
+    labelled: dict[str, Statement] = {}
     blocks: list[list[str]] = []  # of each open begin, its conditions
     pending: list[str] = []  # conditions of the next statement or begin
     before: list[str] = []  # conditions of the statement or block that has ended, for an else
@@ -46,7 +46,7 @@ def statements(text: str) -> dict[str, Statement]:
         elif match["label"]:
             condition, at = _parenthesis(plain, match.end() - 1)
             guards = {part for block in [*blocks, pending] for text in block for part in _conjuncts(text)}
-            found[match["label"]] = Statement(match["kind"], tokens(condition), frozenset(guards))
+            labelled[match["label"]] = Statement(match["kind"], tokens(condition), frozenset(guards))
         elif word == "begin":
             blocks.append(pending)
             pending = []
@@ -56,7 +56,7 @@ def statements(text: str) -> dict[str, Statement]:
             before = blocks.pop() if blocks else []
         elif pending:
             before, pending = pending, []
-    return found
+    return labelled
 
 
 def _parenthesis(text: str, at: int) -> tuple[str, int]:
@@ -106,7 +106,7 @@ def problems(proofs: Iterable[Proof], lines: Iterable[str]) -> list[str]:
     """
     proofs, lines = list(proofs), list(lines)
     by_name = {proof.name: proof for proof in proofs}
-    found, used = [], set()
+    faults, used = [], set()
     for proof in proofs:
         if proof.size_of:
             continue
@@ -116,13 +116,13 @@ def problems(proofs: Iterable[Proof], lines: Iterable[str]) -> list[str]:
             if owner.contract:
                 used.add(owner.contract)
                 if owner.contract not in lines:
-                    found.append(f"{name} = contract {owner.contract}: must be a line of the contract in docs/chip.md")
+                    faults.append(f"{name} = contract {owner.contract}: must be a line of the contract in docs/chip.md")
             elif owner.proven:
-                found += [f"{name} = {text}" for text in _unproven(texts[label], owner, by_name)]
+                faults += [f"{name} = {text}" for text in _unproven(texts[label], owner, by_name)]
             elif not _is_definition(proof.text, texts[label]):
-                found.append(f"{name} = no owner: must be proven of a neighbour, or in the contract of docs/chip.md")
-    found += [f"contract {line} = no assumption: must be one of a proof" for line in lines if line not in used]
-    return sorted(set(found))
+                faults.append(f"{name} = no owner: must be proven of a neighbour, or in the contract of docs/chip.md")
+    faults += [f"contract {line} = no assumption: must be one of a proof" for line in lines if line not in used]
+    return sorted(set(faults))
 
 
 def _unproven(assumption: Statement, owner: Owner, by_name: Mapping[str, Proof]) -> list[str]:

@@ -133,21 +133,21 @@ def violations(
 
 
 def failures(name: str, cycles: Sequence[Mapping[str, int]], start: Mapping[str, int] | None = None) -> list[str]:
-    """Return 'label in cycle n' for each assertion that the design of today violates in a trace of proof ``name``.
+    """Return 'label in cycle n' for each assertion that the present design violates in a trace of proof ``name``.
 
     A trace counts up to the first violated assumption. One from a state, ``start``, counts where all assertions hold in
     all cycles but the last: another invariant shows that the state is unreachable.
     """
     (proof,) = (proof for proof in manifest.every() if proof.name == name)
     rows = violations(proof, design.exported(proof), design.wrapper(proof), cycles, start or {})
-    found = []
+    violated = []
     for number, row in enumerate(rows):
         if any(label.split(".")[-1] in proof.assumptions for label in row):
             break
-        found += [f"{label} in cycle {number}" for label in row]
+        violated += [f"{label} in cycle {number}" for label in row]
         if start and row and number < len(rows) - 1:
             return []
-    return found
+    return violated
 
 
 def shortest(proof: Proof, engine: str, texts: dict[str, str], wrapper: str) -> Trace | None:

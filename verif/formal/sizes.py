@@ -56,16 +56,16 @@ def parameters(block: str) -> tuple[str, ...]:
 def sizes(proofs: Iterable[Proof]) -> list[Size]:
     """Return every parameter of every block."""
     proofs = list(proofs)
-    found = []
+    every = []
     for block in TOPS:
-        own = [proof for proof in proofs if proof.block == block]
+        of_block = [proof for proof in proofs if proof.block == block]
         about = [proof for proof in proofs if proof.block == block or block in proof.modules]
         for name in parameters(block):
             values = {_value(proof.sensor_parameters, name) for proof in about}
             proven = tuple(value for value in BUILD[name] if value in values)
-            tests = [proof.tested[name] for proof in own if name in proof.tested]
-            found.append(Size(block, name, BUILD[name], proven, tests[0] if tests else ""))
-    return found
+            tests = [proof.tested[name] for proof in of_block if name in proof.tested]
+            every.append(Size(block, name, BUILD[name], proven, tests[0] if tests else ""))
+    return every
 
 
 def _value(sensor: SensorParameters, name: str) -> object:

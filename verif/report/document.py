@@ -41,7 +41,7 @@ def record(done: Sequence[Outcome], out: Path, load: float) -> dict[str, Run]:
     return runs
 
 
-def found(by_block: Mapping[str, BlockResults]) -> str:
+def figures(by_block: Mapping[str, BlockResults]) -> str:
     """Return the figures of one step's results in a line."""
     entries = [*summarize([by_block]).values()]
     proofs = [proof for entry in entries for proof in entry.proofs]
@@ -69,7 +69,7 @@ def table(done: Sequence[Outcome], runs: Mapping[str, Run]) -> str:
     for outcome in done:
         name, run = outcome.step.name, runs.get(outcome.step.name)
         if run and not outcome.problem:
-            cells = found(outcome.by_block), f"{run.seconds:,.0f}", run.date, run.commit, f"{run.load:.1f}"
+            cells = figures(outcome.by_block), f"{run.seconds:,.0f}", run.date, run.commit, f"{run.load:.1f}"
         else:
             cells = outcome.problem if run else NOT_RUN, "", "", "", ""
         rows.append(f"| {' | '.join((name, *cells))} |")

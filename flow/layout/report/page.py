@@ -92,15 +92,12 @@ def tiles(s: dict[str, Any], broken: Sequence[str]) -> list[Tile]:
             return Tile("not run", label, "bad" if bad else "none")
         return Tile(str(value), label, "bad" if bad else "good" if rule else "")
 
-    def most(name: str, label: str) -> Tile:
-        found = s.get(name) or {}
-        corner = max(found, key=lambda one: found[one], default=None)
-        return tile(f"{found[corner]:,.1f} uW", f"{label}, {corner}") if corner else tile(None, label)
-
-    def worst(name: str, label: str) -> Tile:
-        found = s.get(name) or {}
-        corner = min(found, key=lambda one: found[one], default=None)
-        return tile(f"{found[corner]:.3f} ns", f"{label}, {corner}", name) if corner else tile(None, label, name)
+    def worst(name: str, label: str, rule: str = "", unit: str = "ns", sign: int = 1) -> Tile:
+        by_corner = s.get(name) or {}
+        corner = min(by_corner, key=lambda corner: sign * by_corner[corner], default=None)
+        if corner is None:
+            return tile(None, label, rule)
+        return tile(f"{by_corner[corner]:,.{3 if unit == 'ns' else 1}f} {unit}", f"{label}, {corner}", rule)
 
     tests = s["gate_tests"] or {}
     return [
@@ -112,9 +109,9 @@ def tiles(s: dict[str, Any], broken: Sequence[str]) -> list[Tile]:
         tile({True: "match", False: "differ"}.get(s["lvs_match"]), "LVS", "lvs_match"),
         tile(s["equivalence"], "equivalence", "equivalence"),
         tile(tests.get("passed"), "netlist tests passed", "gate_tests"),
-        worst("wns_ns", "setup slack"),
-        worst("whs_ns", "hold slack"),
-        most("leakage_uw", "leakage"),
+        worst("wns_ns", "setup slack", "wns_ns"),
+        worst("whs_ns", "hold slack", "whs_ns"),
+        worst("leakage_uw", "leakage", unit="uW", sign=-1),
         tile(s["f_max_mhz"] and f"{s['f_max_mhz']:.1f} MHz", "highest clock"),
         tile(s["antenna_violations"], "antennas", "antenna_violations"),
     ]

@@ -56,20 +56,21 @@ class Sta(CornerStep[StaParameters]):
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         script = SCRIPT.format(top=self.parameters.top, sdf=outputs["sdf"], **inputs)
-        own = wire_corner(self.parameters.corner)
-        others = [wires for wires in CORNERS if wires != own]
+        matching = wire_corner(self.parameters.corner)
+        others = [wires for wires in CORNERS if wires != matching]
         script += "".join(OTHER.format(wires=wires, spef=inputs[wires]) for wires in others)
         report = opensta(outputs["report"].with_name("sta.log"), script)
         outputs["report"].write_text(report, encoding="utf-8")
         slacks = {
-            kind: {own: worst_slack(report, kind)} | {wires: worst_slack(report, f"{kind}.{wires}") for wires in others}
+            kind: {matching: worst_slack(report, kind)}
+            | {wires: worst_slack(report, f"{kind}.{wires}") for wires in others}
             for kind in ("setup", "hold")
         }
         setup, hold = (min(by_wires.values()) for by_wires in slacks.values())
         f_max = round(1000 / (self.parameters.period_ns - setup), 2)
         hold_by_wires = {wires: round(slack, 4) for wires, slack in slacks["hold"].items()}
-        found = {"wns_ns": round(setup, 4), "whs_ns": round(hold, 4), "hold_by_wires_ns": hold_by_wires}
-        return found | {"f_max_mhz": f_max} | beyond_limits(report)
+        figures = {"wns_ns": round(setup, 4), "whs_ns": round(hold, 4), "hold_by_wires_ns": hold_by_wires}
+        return figures | {"f_max_mhz": f_max} | beyond_limits(report)
 
 
 def beyond_limits(report: str) -> dict[str, int]:
