@@ -1,19 +1,19 @@
 "use strict";
 (() => {
-  const {points, figures, keys, more, start} = JSON.parse(document.getElementById("points").textContent);
+  const {points, figures, keys, more, start, first} = JSON.parse(document.getElementById("points").textContent);
   const at = id => document.getElementById(id), style = getComputedStyle(document.documentElement);
   const colour = name => style.getPropertyValue(name).trim();
   const number = value => typeof value === "number" ? String(+value.toPrecision(4)) : value === null ? "-" : String(value);
   const limits = {}, brushed = {};
-  const kept = p => Object.entries(limits).every(([name, limit]) => more.includes(name) ? p.figures[name] >= limit : p.figures[name] <= limit)
-    && Object.entries(brushed).every(([name, ranges]) => ranges.some(([low, high]) => place(p, name) >= low && place(p, name) <= high));
+  const within = p => Object.entries(limits).every(([name, limit]) => more.includes(name) ? p.figures[name] >= limit : p.figures[name] <= limit);
+  const kept = p => within(p) && Object.entries(brushed).every(([name, ranges]) => ranges.some(([low, high]) => place(p, name) >= low && place(p, name) <= high));
   // A value of a key that is a text is its place among the texts
   const texts = Object.fromEntries(keys.map(name => [name, points.some(p => typeof p.values[name] === "string") ? [...new Set(points.map(p => String(p.values[name])))].sort() : null]));
   const place = (p, name) => name in p.figures ? p.figures[name] : texts[name] ? texts[name].indexOf(String(p.values[name])) : p.values[name];
   const paper = () => ({paper_bgcolor:"rgba(0,0,0,0)", plot_bgcolor:"rgba(0,0,0,0)", font:{color:colour("--ink"), size:12}});
 
-  for (const [id, first] of [["across", start[0]], ["up", start[1]]]) {
-    for (const name of figures) at(id).add(new Option(name, name, false, name === first));
+  for (const [id, chosen] of [["across", start[0]], ["up", start[1]]]) {
+    for (const name of figures) at(id).add(new Option(name, name, false, name === chosen));
     at(id).addEventListener("change", plane);
   }
   for (const name of figures) {
@@ -41,7 +41,7 @@
       legend:{orientation:"h", y:1.08}}, {responsive:true, displayModeBar:false});
   }
   function parallel() {
-    const shown = points.filter(p => Object.entries(limits).every(([name, limit]) => more.includes(name) ? p.figures[name] >= limit : p.figures[name] <= limit));
+    const shown = points.filter(within);
     const dimensions = [...keys, ...figures].map(name => ({label:name.replace(/^.*\./, ""), values:shown.map(p => place(p, name)),
       constraintrange:brushed[name], ...(texts[name] ? {tickvals:texts[name].map((_, i) => i), ticktext:texts[name]} : {})}));
     const values = shown.map(p => p.figures[figures[0]]);
@@ -61,7 +61,7 @@
   }
 
   plane(); parallel();
-  if (points.length) show((points.find(p => p.front) || points[0]).point);
+  if (first) show(first);
   Plotly.Plots.resize(at("plane"));
   for (const event of ["plotly_hover", "plotly_click"]) at("plane").on(event, ({points:[chosen]}) => show(chosen.customdata));
   at("parallel").on("plotly_restyle", () => {

@@ -36,7 +36,7 @@ def write(folder: Path, findings: Findings, summary: Mapping[str, Any]) -> None:
         tiles=_tiles(findings, summary),
         sections=_sections(findings, summary),
         parallel_width=AXIS_PX * (len(findings.plan.space) + len(figures_of(findings.plan.task))),
-        data=_data(findings, summary),
+        data=_data(findings, summary, first),
     )
     before, after = text.split(MARK)
     (folder / "explore.html").write_text(f"{before}<script>{get_plotlyjs()}</script>{after}", encoding="utf-8")
@@ -46,8 +46,8 @@ def _image(row: Row) -> Image.Image:
     return Image.open(io.BytesIO(base64.b64decode((row.full or {})["picture"])))
 
 
-def _data(findings: Findings, summary: Mapping[str, Any]) -> Markup:
-    """What the script shows, as JSON that may stand in HTML."""
+def _data(findings: Findings, summary: Mapping[str, Any], first: Row | None) -> Markup:
+    """What the script shows, as JSON that may stand in HTML. first: the point that is chosen at the start."""
     points = []
     for row in [*findings.thesis_in_full, *(row for row in findings.rows if row.full)]:
         record = row.full or {}
@@ -66,6 +66,7 @@ def _data(findings: Findings, summary: Mapping[str, Any]) -> Markup:
     objectives = list(findings.plan.objectives)
     names = [*objectives, *(name for name in figures_of(findings.plan.task) if name not in objectives)]
     data = {"points": points, "figures": names, "keys": list(findings.plan.space), "more": list(MORE)}
+    data["first"] = name_of(first) if first else ""
     data["start"] = [*objectives[1:2], *objectives[:1]] if len(objectives) > 1 else [names[1], names[0]]
     return Markup(json.dumps(data, allow_nan=False).replace("<", "\\u003c"))
 
