@@ -51,7 +51,7 @@ if ! "$folder/bin/python" -m pip --version >/dev/null 2>&1; then
     echo "setup: making $folder with $(found "$python")"
     rm -rf "$folder" # half-made, or its Python is gone
     # pip of the wheel that ensurepip has, unpacked: ensurepip itself takes ten times as long. Debian splits ensurepip off Python;
-    # virtualenv brings a pip of its own.
+    # virtualenv brings its pip.
     wheel='import ensurepip, glob, os, sysconfig, zipfile
 folders = os.path.join(os.path.dirname(ensurepip.__file__), "_bundled"), sysconfig.get_config_var("WHEEL_PKG_DIR") or "-"
 wheels = [file for folder in folders for file in glob.glob(os.path.join(folder, "pip-*.whl"))]

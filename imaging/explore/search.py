@@ -1,8 +1,8 @@
 """The search: batches of points that Optuna asks for, in a small scene first, the promising ones in full.
 
-A batch is asked for, evaluated in any order by any number of workers, and told in its order, and the sampler of each
-batch is seeded by the seed and the batch's number: results depend on the seed, the batch and the trials, not on the
-workers. A run that continues asks the same again, and takes from the store what is in it.
+Any number of workers evaluates the points of a batch, in any order; the study gets them in the order of the batch. The
+sampler of a batch is seeded by the seed and the batch's number. Results thus depend on the seed, the batch and the
+trials, not on the workers. A run that continues asks the same again, and takes from the store what is in it.
 """
 
 import base64

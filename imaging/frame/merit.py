@@ -68,8 +68,8 @@ def table(s: Summary) -> list[tuple[str, str, str]]:
         views = f"{s['camera']['views']} views along the pupil, against 31"
         rows.append(("quadrature of the capture, RMS error", f"{s['quadrature_error_codes']:.2f} codes", views))
     if s["hidden_light_codes"] is not None:
-        beside = "0 where the middle view and its disparity are the whole scene"
-        rows.append(("light that the middle view does not see, RMS", f"{s['hidden_light_codes']:.2f} codes", beside))
+        baseline = "0 where the middle view and its disparity are the whole scene"
+        rows.append(("light that the middle view does not see, RMS", f"{s['hidden_light_codes']:.2f} codes", baseline))
     for what, key, shown in (("PSNR", "image_psnr{}_db", decibels), ("SSIM", "image_ssim{}", ratio)):
         rows.append((f"2-D image, {what}", shown(s[key.format("")]), _images(s, key, shown)))
     if s["light_field_psnr_db"] is not None:
