@@ -150,6 +150,13 @@ def coded_sum(result: GoldenResult) -> Values:
     )
 
 
+def clear_psnr_db(
+    estimate: npt.NDArray[np.floating], truth: npt.NDArray[np.floating], clear: npt.NDArray[np.bool_]
+) -> float | None:
+    """PSNR of the pixels ``clear`` (rows, cols) of all views; None of none."""
+    return psnr_db(estimate[..., clear], truth[..., clear]) if clear.any() else None
+
+
 def field_quality(result: GoldenResult) -> dict[str, float | str | None]:
     """Return method and PSNR of the light field in raw mode against the scene's, and of the copied sum image."""
     if result.request.frame.mode != "raw":
@@ -160,15 +167,14 @@ def field_quality(result: GoldenResult) -> dict[str, float | str | None]:
     field = result.estimate.light_field[part]
     copied = np.broadcast_to(result.image[part[1:]], truth.shape)
     clear = ~result.exposed.full[part[1:]]
-
-    def _psnr(estimate: npt.NDArray[np.floating]) -> float | None:
-        return psnr_db(estimate[..., clear], truth[..., clear]) if clear.any() else None
-
     out: dict[str, float | str | None] = {"light_field_method": result.light_field_method}
-    out |= {"light_field_psnr_db": _psnr(field), "light_field_psnr_copied_db": _psnr(copied)}
+    out |= {
+        "light_field_psnr_db": clear_psnr_db(field, truth, clear),
+        "light_field_psnr_copied_db": clear_psnr_db(copied, truth, clear),
+    }
     if result.request.calibration:
         true = replace(result, request=replace(result.request, calibration=None))
-        out["light_field_psnr_true_optics_db"] = _psnr(true.estimate.light_field[part])
+        out["light_field_psnr_true_optics_db"] = clear_psnr_db(true.estimate.light_field[part], truth, clear)
     return out
 
 

@@ -9,12 +9,12 @@ import numpy.typing as npt
 
 from talbot.base.progress import each
 from talbot.imaging.frame.light_field import SURE, estimator_of, pair_of, reached, sent_pair, unsure
+from talbot.imaging.frame.quality import clear_psnr_db
 from talbot.imaging.frame.reading import about, rms
 from talbot.imaging.frame.result import GoldenResult
 from talbot.imaging.lightfield.figures import figures
 from talbot.models.capture import CaptureOperator
 from talbot.models.parameters import ParameterError, check_choice
-from talbot.models.reconstruct import psnr_db
 from talbot.models.reconstruct.bayes import Estimate, FieldPrior
 from talbot.models.reconstruct.methods import METHODS, Found, applicable, check_method, measure
 from talbot.models.scene import Sampling
@@ -76,7 +76,7 @@ def read_back(
         estimates[name] = got._replace(light_field=got.light_field * corners)
         figured[name] = figures(got.light_field * corners, seen, free["sum_image_psnr_db"], clear) | seconds
         figured[name]["left_out"] = got.plain
-        figured[name]["psnr_db_float"] = _psnr(float_got.light_field * corners, seen, clear)
+        figured[name]["psnr_db_float"] = clear_psnr_db(float_got.light_field * corners, seen, clear)
     shown = next(name for name in BEST if name in estimates)
     summary = about(result) | {"methods": figured, "best": shown, "baselines": free}
     if result.request.calibration:
@@ -95,19 +95,14 @@ def _by_truth(
     true = replace(result, request=replace(result.request, calibration=None))
     estimator, operator, corners = estimator_of(true, prior), CaptureOperator(true.sensor), reached(true)
     estimates = {name: measure(name, estimator, operator, sent)[0].light_field for name in methods}
-    return {name: _psnr(field * corners, seen, true.counted) for name, field in estimates.items()}
+    return {name: clear_psnr_db(field * corners, seen, true.counted) for name, field in estimates.items()}
 
 
 def baselines(image: Values, truth: Values, clear: npt.NDArray[np.bool_]) -> dict[str, float | None]:
     """Return the baselines: the sum image in every view, and its mean. clear: pixels that count, (rows, cols)."""
     gray = np.full(truth.shape, image.mean(), np.float32)
     copied = np.broadcast_to(image, truth.shape)
-    return {"sum_image_psnr_db": _psnr(copied, truth, clear), "gray_psnr_db": _psnr(gray, truth, clear)}
-
-
-def _psnr(estimate: Values, truth: Values, clear: npt.NDArray[np.bool_]) -> float | None:
-    """Return the PSNR in dB of the pixels that are ``clear``, None where none is."""
-    return psnr_db(estimate[..., clear], truth[..., clear]) if clear.any() else None
+    return {"sum_image_psnr_db": clear_psnr_db(copied, truth, clear), "gray_psnr_db": clear_psnr_db(gray, truth, clear)}
 
 
 def depth_figures(result: GoldenResult, estimate: Estimate) -> dict[str, float | None]:
