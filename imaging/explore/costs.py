@@ -5,12 +5,10 @@ breaks a limit by these alone is refused at once.
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 from talbot.imaging.frame.figures import golden_events
 from talbot.imaging.frame.request import FrameRequest
 from talbot.imaging.frame.result import GoldenResult
-from talbot.models.digital.exposure import slot_cycles
 from talbot.models.digital.scan import Scan
 from talbot.models.parameters import (
     SAMPLES_PER_PIXEL,
@@ -21,7 +19,7 @@ from talbot.models.parameters import (
 )
 from talbot.models.parameters.energy import DECISIONS, WINDOW, DigitalEvents, Events
 from talbot.models.parameters.stream_format import HEADER_BYTES, TRAILER_BYTES
-from talbot.models.plan.exposure import fitting
+from talbot.models.plan.exposure import frame_cycles
 from talbot.pixels.blocks import AnalogSizes
 
 # docs/results: the chip as laid out with the cells Compact (layout.md), gates of blocks (blocks.md)
@@ -53,29 +51,12 @@ def check_settling(sensor: SensorParameters) -> None:
         raise ParameterError(f"chip.f_clk = {sensor.chip.f_clk:g}: must be at most {most}")
 
 
-def row_cycles(request: FrameRequest) -> int:
-    """Cycles of a row: its slot, or as long as the converters take where every sample has the longest search.
-
-    In time of flight the slot has four integrations.
-    """
-    timing = request.frame.exposing
-    fitted = fitting(replace(request.frame, timing=timing), request.sensor)  # of tof: all four samples in one slot
-    converting = slot_cycles(replace(timing, t_int=fitted.t_int), False)
-    return max(slot_cycles(timing, True), converting) if request.frame.mode == "tof" else converting
-
-
-def frame_cycles(request: FrameRequest) -> int:
-    """Cycles of a frame: a row's for each row that is read, and for each by which the reset pointer leads."""
-    scan = Scan(*request.sensor.shape, request.sensor.chip.lanes, request.frame, request.sensor.tile)
-    return (len(scan.row_list) + request.frame.exposing.exposure) * row_cycles(request)
-
-
 def least(requests: Sequence[FrameRequest]) -> dict[str, float]:
     """Of frames that one result takes: time, the least energy and the fewest bytes, whatever the scene is."""
     energy, seconds = 0.0, 0.0
     for request in requests:
         sensor, frame = request.sensor, request.frame
-        scan, cycles = Scan(*sensor.shape, sensor.chip.lanes, frame, sensor.tile), frame_cycles(request)
+        scan, cycles = Scan(*sensor.shape, sensor.chip.lanes, frame, sensor.tile), frame_cycles(frame, sensor)
         taps, read = 4 if frame.mode == "tof" else 1, int(scan.read.sum())
         rows, columns = len(scan.row_list), int(scan.read.any(0).sum())
         samples = read * SAMPLES_PER_PIXEL[frame.mode]
@@ -95,7 +76,7 @@ def measured(requests: Sequence[FrameRequest], results: Sequence[GoldenResult]) 
     """
     energy = size = seconds = 0.0
     for request, result in zip(requests, results, strict=True):
-        golden, cycles, whole = result.golden, frame_cycles(request), request.sensor.array
+        golden, cycles, whole = result.golden, frame_cycles(request.frame, request.sensor), request.sensor.array
         part = result.request.sensor.array
         times = whole.rows * whole.cols / (part.rows * part.cols)
         events = golden_events(golden, golden.stream, cycles, cycles)

@@ -60,3 +60,43 @@ def exposed_for(signal: float, frame: FrameParameters, sensor: SensorParameters)
         return replace(frame.timing, t_int=max(1, min(cycles, frame.timing.t_int)), exposure=0)
     rows = round((cycles - timing.t_int) / slot_cycles(timing))
     return replace(timing, exposure=min(rows, EXPOSURE_MAX))
+
+
+def row_cycles(frame: FrameParameters, sensor: SensorParameters) -> int:
+    """Cycles of a row: its slot, or as long as the converters take where every sample has the longest search.
+
+    Parameters
+    ----------
+    frame : FrameParameters
+        The frame; in time of flight a slot has four integrations.
+    sensor : SensorParameters
+        The sensor.
+
+    Returns
+    -------
+    int
+        Cycles from a row to the next.
+    """
+    timing = frame.exposing
+    fitted = fitting(replace(frame, timing=timing), sensor)  # of tof: all four samples in one slot
+    converting = slot_cycles(replace(timing, t_int=fitted.t_int), False)
+    return max(slot_cycles(timing, True), converting) if frame.mode == "tof" else converting
+
+
+def frame_cycles(frame: FrameParameters, sensor: SensorParameters) -> int:
+    """Cycles of a frame: a row's for each row that is read, and for each by which the reset pointer leads.
+
+    Parameters
+    ----------
+    frame : FrameParameters
+        The frame.
+    sensor : SensorParameters
+        The sensor.
+
+    Returns
+    -------
+    int
+        Without what a slow host takes.
+    """
+    scan = Scan(*sensor.shape, sensor.chip.lanes, frame, sensor.tile)
+    return (len(scan.row_list) + frame.exposing.exposure) * row_cycles(frame, sensor)

@@ -10,7 +10,6 @@ from talbot.base.sensor import Varied, add_sensor, labelled, sensor_asked
 from talbot.models.parameters import check_int
 from talbot.pixels.drawn import DRAWN_LINES
 
-# The converter's fields are limits of the datasheet
 VARIED = Varied(
     used=(
         "array.rows",
@@ -20,10 +19,6 @@ VARIED = Varied(
         "electrical.full_well",
         "electrical.swing",
         "electrical.difference_gain",
-        "converter.inl",
-        "converter.offset",
-        "converter.noise",
-        "converter.ktc",
     ),
     fixed=DRAWN_LINES,
 )
@@ -47,7 +42,7 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 
 def run(options: Namespace) -> int:
-    """Measure, write the datasheet and print it; 1 where a characteristic is outside its limits."""
+    """Measure, write the datasheet and print it; 1 where a characteristic is outside its limits (`Row.verdict`)."""
     from talbot.base.paths import RESULTS
     from talbot.pixels.datasheet.job import STEPS, corners_of, make
 
@@ -77,12 +72,19 @@ def _tables(pdk: str, file: Path) -> int:
 
 
 def _print(s: dict[str, Any], folder: Path) -> None:
+    from talbot.pixels.datasheet.datasheet import shown
+
     print(f"{s['pdk']}: {len(s['corners'])} corners, {s['draws']} draws, {s['transients']} transients")
     for row in s["rows"]:
-        values = " ".join("     -" if row[k] is None else f"{row[k]:6.3g}" for k in ("low", "typical", "high"))
+        values = " ".join("     -" if row[k] is None else f"{shown(row[k]):>6}" for k in ("low", "typical", "high"))
         bound = "" if row["most"] is None else f"<= {row['most']:.3g}"
         bound += "" if row["least"] is None else f">= {row['least']:.3g}"
-        verdict = "" if not bound else "pass" if row["passes"] else "FAIL"
         name = f"{row['circuit']}: {row['name']}"
-        print(f"  {name:40} {values} {row['unit']:6} {bound:10} {verdict:5} {row['worst']}")
+        print(f"  {name:40} {values} {row['unit']:6} {bound:10} {row['verdict']:5} {row['worst']}")
+    for row in (row for row in s["rows"] if row["verdict"] == "open"):
+        needed = f"; about {row['draws_needed']} would, if the RMS stayed" if row["draws_needed"] else ""
+        print(
+            f"  {row['circuit']}: {row['name']}: {row['draws']} draws bound it to {row['low']:.3g}..{row['high']:.3g} "
+            f"{row['unit']}, which has the limit of {row['most']:.3g} inside{needed}"
+        )
     print(f"  {s['retried']} transients with a retry; {s['wall_s']:.0f} s; look at {folder / 'datasheet.html'}")

@@ -11,6 +11,7 @@ from talbot.cells.spice.engine import Points
 from talbot.pixels.circuits.comparator import comparator
 from talbot.pixels.circuits.lane import LaneSizes
 from talbot.pixels.circuits.netlist import Circuit
+from talbot.pixels.datasheet.datasheet import RELATIVE
 from talbot.pixels.datasheet.deck import EDGE, Setup, clock, deck, simulator
 
 LOAD = 5e-15  # F at the decision
@@ -91,8 +92,8 @@ def offsets(setup: Setup, sizes: LaneSizes, corner: Corner, seed: int, circuit: 
 
 
 def interval(values: npt.ArrayLike) -> tuple[float, float, float]:
-    """Rms of offsets about their mean, and its 95 % interval: rms (1 -+ 1.96 / sqrt(2 (n - 1)))."""
+    """Rms of offsets about their mean, and its 95 % interval: rms (1 -+ RELATIVE / sqrt(2 (n - 1)))."""
     found = np.asarray(values, float)
     rms = float(found.std(ddof=1))
-    error = 1.96 / sqrt(2 * (found.size - 1))
+    error = RELATIVE / sqrt(2 * (found.size - 1))
     return rms, rms * (1 - error), rms * (1 + error)

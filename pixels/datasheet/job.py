@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from pathlib import Path
 from time import perf_counter
 from typing import Any, TypeVar
@@ -38,6 +38,7 @@ from talbot.pixels.datasheet import (
     turn,
 )
 from talbot.pixels.datasheet import noise as noises
+from talbot.pixels.datasheet import sensor as sensors
 from talbot.pixels.datasheet.amplifier import AmplifierResult
 from talbot.pixels.datasheet.column import ColumnResult
 from talbot.pixels.datasheet.comparator import BATCH, Decisions, interval
@@ -62,6 +63,7 @@ ALL = (
 CORNER_SETS = {"all": ALL, "quick": QUICK, "typical": (TYPICAL,)}
 ARRAYS = 1000  # drawn capacitor arrays
 PIXELS = 25  # draws of a pixel's switches
+BOUNDING = 200  # draws, from which on an interval that has the limit inside breaks it
 T = TypeVar("T")
 
 
@@ -83,7 +85,7 @@ def corners_of(text: str) -> tuple[str, ...]:
 
 def setup_of(pdk: str, sensor: SensorParameters = STANDARD) -> tuple[Setup, LaneSizes]:
     """Specification and sizes of the lane of a sensor in a process. Raises ParameterError."""
-    process, spec = process_of(pdk), LaneSpec.of(sensor, converter=sensor.converter)
+    process, spec = process_of(pdk), LaneSpec.of(sensor)
     sizes = lanes.size(spec, process)
     cell = next(one for one in process.unit_cells(spec.unit_mismatch) if one.kind == sizes.dac.kind)
     return Setup(pdk, spec, (cell.low, cell.high)), sizes
@@ -147,14 +149,19 @@ def make(
     counts += [*found.rows.values(), *found.columns.values(), *found.turns.values()]
     summary = {
         "pdk": pdk,
+        "sensor": sensors.figures(pdk, sensor),
         "corners": list(corners),
         "draws": len(found.offsets),
         "specification": asdict(setup.spec),
         "amplifier": asdict(spec_a),
         "column": asdict(column_spec),
         "sizes": asdict(sizes) | {"amplifier": asdict(sizes_a.ota)} | column_widths(setup, sensor),
-        "rows": [asdict(row) | {"passes": row.passes} for row in rows],
-        "failed": [f"{row.circuit}: {row.name}" for row in rows if not row.passes],
+        "rows": [asdict(row) | {"verdict": row.verdict, "draws_needed": row.draws_needed} for row in rows],
+        "failed": [
+            f"{row.circuit}: {row.name}"
+            for row in rows
+            if row.verdict == "FAIL" or row.verdict == "open" and draws >= BOUNDING
+        ],
         "transients": sum(one.runs for one in counts),
         "retried": sum(one.repeated for one in counts),
         "converter": converter(setup.spec, sizes, found, column_spec),
@@ -163,7 +170,7 @@ def make(
         "wall_s": perf_counter() - start,
     }
     with staged(out, page.NAMES) as folder:
-        page.write(folder, summary, rows, found)
+        page.write(folder, summary, rows, found, sensor)
         (folder / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n", encoding="utf-8")
     if table:
         write(table, json.dumps(summary["converter"], indent=1, allow_nan=False) + "\n")
@@ -296,6 +303,7 @@ def converter(spec: LaneSpec, sizes: LaneSizes, found: Found, column_spec: Colum
     rms, low, high = interval(found.offsets)
     rms_a, low_a, high_a = interval([one.offset for one in found.amplifier_draws])
     rms_c, low_c, high_c = interval(found.column_offsets)
+    rms_p, low_p, high_p = interval(found.pixel_offsets)
     of_diode = 2**0.5 * column_spec.swing / column_spec.lsb / DIODE  # of a difference, for each LSB of a diode
     shape = inl(found.lanes[TYPICAL].decided)
     bend, bend_sources, bend_error = amplifier_curve(found.amplifiers[TYPICAL].points)
@@ -312,7 +320,12 @@ def converter(spec: LaneSpec, sizes: LaneSizes, found: Found, column_spec: Colum
             "unit_mismatch": round(sizes.dac.unit_mismatch, 6),
             **bend,
         },
-        "columns": asdict(replace(found.column_fit.curves, spread=round(rms_c / of_diode, 4))),
+        "columns": asdict(found.column_fit.curves),
+        "diodes": {
+            "read_noise": round(found.column_noise[TYPICAL] / column_spec.full_well * DIODE, 4),
+            "column_fpn": round(rms_c / of_diode, 4),
+            "offset_fpn": round(rms_p / of_diode, 4),
+        },
         "sources": {
             "inl": f"peak of {len(lane.CODES)} levels, by the decisions in ngspice, off the line through the ends",
             "dnl": "steps come from unit_mismatch",
@@ -322,7 +335,9 @@ def converter(spec: LaneSpec, sizes: LaneSizes, found: Found, column_spec: Colum
             "unit_mismatch": f"{sizes.dac.source}",
             **bend_sources,
             **curves.SOURCES,
-            "spread": f"{len(found.column_offsets)} columns with the models' mismatch in ngspice",
+            "read_noise": "closed form of a column's stages",
+            "column_fpn": f"{len(found.column_offsets)} columns with the models' mismatch in ngspice",
+            "offset_fpn": f"{len(found.pixel_offsets)} pixels' switches with the models' mismatch in ngspice",
         },
         "errors": {
             "inl": round(shape[2], 4),
@@ -337,7 +352,8 @@ def converter(spec: LaneSpec, sizes: LaneSizes, found: Found, column_spec: Colum
             "droop": round(found.lanes[TYPICAL].droop, 4),
             "columns": found.column_fit.error,
             "sums": found.column_fit.sum_error,
-            "spread": round((high_c - low_c) / 2 / of_diode, 4),
+            "column_fpn": round((high_c - low_c) / 2 / of_diode, 4),
+            "offset_fpn": round((high_p - low_p) / 2 / of_diode, 4),
         },
     }
 

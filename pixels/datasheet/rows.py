@@ -21,7 +21,7 @@ from talbot.pixels.datasheet.support import SupportResult
 def datasheet(spec: LaneSpec, found: Found, draws: int, sensor: SensorParameters = STANDARD) -> list[Row]:
     """Return the rows, with limits from the specification."""
     half, share = 1e9 * spec.half_cycle, 1e12 * spec.decision_energy
-    rms, _, high = interval(found.offsets)
+    rms, low, high = interval(found.offsets)
 
     def corners(circuit: str, name: str, unit: str, values: dict[str, float], most: float | None) -> Row:
         return over_corners(circuit, name, unit, values.items(), TYPICAL, most=most)
@@ -32,7 +32,7 @@ def datasheet(spec: LaneSpec, found: Found, draws: int, sensor: SensorParameters
     decided = {name: max(abs(off) for _, off in one.decided) for name, one in results.items()}
     wrong = {name: float(not one.right) for name, one in decisions.items()}
     missed = {name: float(abs(one.code - round(VALUE))) for name, one in results.items()}
-    over = f"{draws} draws, max: 95 % interval"
+    over = f"{draws} draws: 95 % interval"
     arrays = f"{len(found.inl)} drawn arrays; max: 3 sigma in the middle 99.7 %"
     noise = found.noise
     return [
@@ -45,7 +45,7 @@ def datasheet(spec: LaneSpec, found: Found, draws: int, sensor: SensorParameters
             {n: 1e12 * d.energy for n, d in decisions.items()},
             share * spec.comparator_share,
         ),
-        Row("comparator", "offset, rms", "LSB", rms, None, high, most=spec.offset, over=over),
+        Row("comparator", "offset, rms", "LSB", rms, low, high, most=spec.offset, over=over, draws=draws),
         Row("comparator", "noise, rms", "LSB", noise.rms, None, noise.high, most=spec.noise, over="95 % interval"),
         corners("DAC", "settling to half an LSB", "ns", {n: 1e9 * r.settling for n, r in results.items()}, half),
         corners("DAC", "INL, schematic", "LSB", {n: s[2] for n, s in shapes.items()}, spec.inl),
@@ -85,15 +85,16 @@ def _amplifier(found: Found, spec: AmplifierSpec) -> list[Row]:
         values = {corner: scale * abs(getattr(one, field)) for corner, one in found.amplifiers.items()}
         return corners(name, unit, values, most)
 
-    over = f"{len(found.amplifier_draws)} draws, max: 95 % interval"
-    offset, _, offset_high = interval([one.offset for one in found.amplifier_draws])
-    gain, _, gain_high = interval([100 * one.gain for one in found.amplifier_draws])
+    count = len(found.amplifier_draws)
+    over = f"{count} draws: 95 % interval"
+    offset, *offset_ends = interval([one.offset for one in found.amplifier_draws])
+    gain, *gain_ends = interval([100 * one.gain for one in found.amplifier_draws])
     gains = {corner: 100 * abs(one.gain - 1) for corner, one in found.amplifiers.items()}
     return [
         corners("gain, off by", "%", gains, 100 * spec.gain),
         row("offset, systematic", "LSB", "offset", None),
-        Row("amplifier", "offset, rms", "LSB", offset, None, offset_high, most=spec.offset, over=over),
-        Row("amplifier", "gain, spread", "%", gain, None, gain_high, over=over),
+        Row("amplifier", "offset, rms", "LSB", offset, *offset_ends, most=spec.offset, over=over, draws=count),
+        Row("amplifier", "gain, spread", "%", gain, *gain_ends, over=over, draws=count),
         row("INL", "LSB", "inl", spec.inl),
         row("settling to half an LSB", "ns", "settling", 1e9 * spec.hold, 1e9),
         row("left after one cycle", "LSB", "left", spec.settling),
@@ -119,9 +120,8 @@ def _columns(found: Found, spec: ColumnSpec) -> list[Row]:
         return {corner: scale * getattr(one, field) for corner, one in found.columns.items()}
 
     slopes = {corner: 100 * max(abs(one.slope - 1), abs(one.mean - 1)) for corner, one in found.columns.items()}
-    rms, _, high = interval(found.column_offsets)
-    over, over_p = (f"{len(one)} draws, max: 95 % interval" for one in (found.column_offsets, found.pixel_offsets))
-    rms_p, _, high_p = interval(found.pixel_offsets)
+    names = "offset of a difference, rms", "offset by a pixel's switches, rms"
+    drawn = zip(names, (found.column_offsets, found.pixel_offsets), (spec.offset, None), strict=True)
     left, settled = ({n: getattr(one, f) for n, one in found.turns.items()} for f in ("left", "settling"))
     return [
         row("slope, off by", "%", slopes, 100 * spec.slope),
@@ -135,12 +135,16 @@ def _columns(found: Found, spec: ColumnSpec) -> list[Row]:
         row("turn, at the lane to half an LSB", "ns", {n: 1e9 * one for n, one in settled.items()}),
         row("droop until the last column's turn", "LSB", each("droop"), spec.droop),
         row("noise of a diode, closed form", "e", found.column_noise, spec.noise),
-        Row("column", "offset of a difference, rms", "LSB", rms, None, high, most=spec.offset, over=over),
-        Row("column", "offset by a pixel's switches, rms", "LSB", rms_p, None, high_p, over=over_p),
+        *(
+            Row("column", name, "LSB", *interval(of), most=most, over=f"{len(of)} draws: 95 % interval", draws=len(of))
+            for name, of, most in drawn
+        ),
         row("energy of a pixel", "pJ", each("energy", 1e12), 1e12 * spec.energy),
         row("current of a column at rest", "nA", each("idle", 1e9)),
-        row("level that is trimmed, first diode", "V", {name: one.start[0] for name, one in found.columns.items()}),
-        row("level that is trimmed, second diode", "V", {name: one.start[1] for name, one in found.columns.items()}),
+        *(
+            row(f"level that is trimmed, {d} diode", "mV", {n: 1e3 * one.start[k] for n, one in found.columns.items()})
+            for k, d in enumerate(("first", "second"))
+        ),
     ]
 
 

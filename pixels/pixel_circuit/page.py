@@ -1,5 +1,6 @@
 """The page of the pixel's circuit: corners, characteristic, photon transfer, EMVA table."""
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -58,7 +59,7 @@ def write(folder: Path, s: dict[str, Any]) -> None:
                 "In the manner of EMVA 1288",
                 "Simulated exposures of flat pictures through the sensor's models with the typical corner's figures, "
                 "before the converter; columns and amplifiers have no noise here; the circuit's bend is not in them.",
-                charts=[svg(_transfer(s))],
+                charts=[svg(transfer(s["emva"]))],
                 head=("", "", "unit"),
                 rows=_emva(s),
             ),
@@ -131,11 +132,12 @@ def _line(electrons: np.ndarray, volts: np.ndarray) -> np.ndarray:
     return np.polyval(np.polyfit(electrons[inside], volts[inside], 1), electrons)
 
 
-def _transfer(s: dict[str, Any]) -> Figure:
-    value, variance, _ = np.array(s["emva"]["photon_transfer"]).T
+def transfer(emva: Mapping[str, Any]) -> Figure:
+    """Return the photon-transfer curve of an `Emva` table."""
+    value, variance, _ = np.array(emva["photon_transfer"]).T
     figure = Figure(figsize=(4.6, 3), layout="constrained")
     axes = figure.subplots()
     axes.plot(value, variance, "o", markersize=3)
-    axes.plot(value, s["emva"]["gain"] * value, linewidth=0.9)
+    axes.plot(value, emva["gain"] * value, linewidth=0.9)
     axes.set(xlabel="mean above dark", ylabel="temporal variance above dark", ylim=(0, 1.2 * variance.max()))
     return figure

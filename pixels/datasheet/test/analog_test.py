@@ -128,6 +128,26 @@ def test_a_row_passes_only_inside_its_limits():
     assert not Row("lane", "noise", "LSB", float("nan"), None, None, most=1.0).passes
 
 
+def test_a_statistic_that_its_draws_do_not_bound_is_open():
+    def row(low, typical, high):
+        return Row("comparator", "offset, rms", "LSB", typical, low, high, most=0.5, draws=20)
+
+    assert row(0.3, 0.4, 0.49).verdict == "pass" and row(0.3, 0.4, 0.49).passes
+    assert row(0.3, 0.45, 0.6).verdict == row(0.4, 0.52, 0.64).verdict == "open"
+    assert row(0.51, 0.6, 0.7).verdict == "FAIL" and Row("lane", "gain", "LSB", 1.0, None, 2.0).verdict == ""
+    assert Row("lane", "INL", "LSB", 0.4, 0.3, 0.6, most=0.5).verdict == "FAIL"  # corners, no statistic
+    assert row(0.4, 0.52, 0.64).draws_needed is None
+    needed = row(0.3, 0.4, 0.5).draws_needed
+    scale = np.array(comparators.interval(np.random.default_rng(1).standard_normal(needed)))
+    assert scale[2] / scale[0] == pytest.approx(0.5 / 0.4, rel=0.01)
+
+
+def test_a_trimmed_level_is_shown_within_a_quarter_of_an_lsb():
+    """0.5 mV of 1.95 mV: to three digits of a volt it would be up to 2.6 LSB of every dark sample."""
+    row = over_corners("column", "level", "mV", [("tt", 1133.392), ("ff", 1126.7)], "tt")
+    assert [float(row.texts[k]) for k in (2, 3)] == pytest.approx([1126.7, 1133.392], abs=0.51)
+
+
 @pytest.mark.parametrize("text", ["tt", "", "tt_027C_2v50", "xx_027C_1v80", "ss_150C_1v80"])
 def test_corners_are_refused_by_name(text):
     with pytest.raises(ParameterError, match="corner"):
