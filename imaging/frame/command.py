@@ -29,6 +29,7 @@ from talbot.models.parameters import (
     ParameterError,
     SensorParameters,
     check_choice,
+    circuit_columns,
     drawn_electrical,
 )
 
@@ -38,14 +39,15 @@ if TYPE_CHECKING:
 
 NAME_MAX = 120  # characters of a folder's name
 # Options that a sensor file has, too, and their texts without one
-OF_SENSOR = {"rows": "384", "cols": "384", "lanes": "8", "converter": "typical"}
+OF_SENSOR = {"rows": "384", "cols": "384", "lanes": "8", "converter": "circuit"}
 VIEWS = "384, or of a light field's views"
 MEASURED = "afe = circuit has what ngspice measured of the drawn circuit"
 OF_CIRCUIT = Varied(
     ("array.rows", "array.cols", "tile", "optics"),
     {"converter": MEASURED}
-    | {f"electrical.{name}": MEASURED for name in ("full_well", "swing", "read_noise", "dark_current", "gain_fpn")}
-    | {"electrical.difference_gain": MEASURED, "chip.f_clk": MEASURED, "array.pitch": MEASURED},
+    | {f"electrical.{name}": MEASURED for name in ("full_well", "swing", "read_noise", "dark_current")}
+    | {f"electrical.{name}": MEASURED for name in ("gain_fpn", "offset_fpn", "column_fpn", "difference_gain")}
+    | {"chip.f_clk": MEASURED, "array.pitch": MEASURED},
 )
 NUMBERS = (
     Number("views", "of the capture along the pupil's diameter", 1, 31, "auto", "auto", "as many as it needs"),
@@ -116,11 +118,11 @@ def add_frame_arguments(
     add("--window", default="full", help="tiles to read, inclusive: row0:row1,col0:col1")
     add_numbers("decimation", "lux", "exposure", "lanes")
     add("--phase", action="store_true", help="tof mode: phase and amplitude from the chip's divider")
-    add("--converter", help="typical (INL, DNL, offset, noise), ideal, or circuit (default: typical)")
+    add("--converter", help="circuit (INL, offset, noise as ngspice has them), or ideal (default: circuit)")
     add(
         "--afe",
         default="ideal",
-        help="ideal: arithmetic, and --converter; circuit: converters and pixels as ngspice has them",
+        help="ideal: straight columns; circuit: columns' curves and full well as ngspice has them",
     )
     add_numbers("noise", "seed")
 
@@ -221,7 +223,7 @@ def request_of(a: Namespace, sensor: SensorParameters | None = None, sequence: b
     if a.afe == "circuit":
         if "converter" in typed:
             raise ParameterError(f"converter = {a.converter!r}: must be left out with afe = circuit, which has its own")
-        plain["converter"] = "circuit"
+        plain |= {"converter": "circuit", "columns": circuit_columns()}
         OF_CIRCUIT.check(sensor, replace(STANDARD, electrical=drawn_electrical(STANDARD.electrical)))
         sensor = replace(sensor, electrical=drawn_electrical(sensor.electrical))
     mask = text.pixel_types(a.types)

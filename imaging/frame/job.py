@@ -195,10 +195,7 @@ def flat_field(request: FrameRequest) -> Values:
 
 def _of_columns(request: FrameRequest, diodes: Values, mode: str) -> Values:
     """Return the column amplifiers' outputs for ``diodes`` (taps, rows, cols, 2)."""
-    columns = request.columns
-    if columns is None:
-        return diodes
-    return columns.samples(diodes, mode) + columns.offsets(diodes.shape[2], request.sensor.converter.seed)
+    return diodes if request.columns is None else request.columns.samples(diodes, mode)
 
 
 def _exposure(request: FrameRequest, noise: float, number: int = 0) -> Exposure:

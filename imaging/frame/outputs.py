@@ -19,7 +19,7 @@ from talbot.imaging.frame.quality import Values, decoding_error, depth_error, de
 from talbot.imaging.frame.report import Views, render
 from talbot.imaging.frame.result import FrameResult, GoldenResult
 from talbot.imaging.simulate.frame import WAVES
-from talbot.models.parameters import EnergyParameters, LightParameters, sensor_text, sources
+from talbot.models.parameters import STANDARD, EnergyParameters, LightParameters, sensor_text, sources
 from talbot.models.parameters.drawn import drawn_sources
 from talbot.models.parameters.sources import Sourced
 
@@ -221,14 +221,18 @@ def assumptions(result: FrameResult) -> list[Sourced]:
     """Every parameter of the camera, of noise, light and energy, named with its part, and where it comes from."""
     sensor = result.request.sensor
     columns = result.request.columns
-    source = "ngspice: models/parameters/circuit.json" if columns else "assumed"
+    source = "ngspice: models/parameters/circuit.json"
     optics, electrical = sensor.optics, sensor.electrical
     parts = {"camera": optics.camera, "optics": optics, "array": sensor.array, "electrical": electrical}
     parts |= {"room": result.request.room, "energy": EnergyParameters(), "light source": LightParameters()}
     drawn = drawn_sources(electrical)
     rows = [row._replace(name=f"{part} {row.name}") for part, group in parts.items() for row in sources(group)]
     rows = [row._replace(source=drawn.get(row.name.removeprefix("electrical "), row.source)) for row in rows]
-    rows += [row._replace(name=f"converter {row.name}", source=source) for row in sources(sensor.converter)]
+    circuit = sensor.converter == STANDARD.converter
+    rows += [
+        row._replace(name=f"converter {row.name}", source=source if circuit else row.source)
+        for row in sources(sensor.converter)
+    ]
     for name, value in vars(columns).items() if columns else ():
         text = ", ".join(f"{number:.6g}" for number in (value if isinstance(value, tuple) else (value,)))
         rows.append(Sourced(f"columns {name}", text, "", source))

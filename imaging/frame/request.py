@@ -15,7 +15,6 @@ from talbot.models.calibrate import Calibration
 from talbot.models.parameters import (
     ALL_TYPES,
     STANDARD,
-    TYPICAL_CONVERTER,
     AmpTiming,
     CameraParameters,
     FrameParameters,
@@ -27,11 +26,7 @@ from talbot.models.parameters import (
 from talbot.models.plan.exposure import exposed_for, fitting
 from talbot.models.scene import LightField, light_field_file, scenes
 
-CONVERTERS = {
-    "typical": TYPICAL_CONVERTER,
-    "ideal": parameters.ConverterParameters(),
-    "circuit": parameters.circuit_converter(),
-}
+CONVERTERS = {"circuit": parameters.circuit_converter(), "ideal": parameters.ConverterParameters()}
 Cut = Callable[[Window], Window]  # of the full window
 
 
@@ -45,6 +40,7 @@ class FrameRequest:
     room: the light of all modes but time of flight, whose light is its source's alone (`lit`).
     noise: 0..100, times the physical noise. seed: 0..2**32-1. waves: (first row, last row) or None.
     waves_format: one of WAVES. out: folder for the results, or None for build/sim/<scene>.
+    columns: curves of the column amplifiers, None for straight ones.
     """
 
     sensor: SensorParameters
@@ -59,6 +55,7 @@ class FrameRequest:
     waves_format: str = WAVES[0]
     out: Path | None = None
     calibration: Calibration | None = None
+    columns: parameters.ColumnCurves | None = None
 
     def __post_init__(self) -> None:
         self.sensor.check_window(self.frame.window)
@@ -81,11 +78,6 @@ class FrameRequest:
     def lit(self) -> SensorParameters:
         """The sensor with the photocurrent of white in the light of the frame."""
         return self.sensor if self.frame.mode == "tof" else self.room.lit(self.sensor)
-
-    @property
-    def columns(self) -> parameters.ColumnCurves | None:
-        """The column amplifiers with the circuit's converters, or None for ideal ones."""
-        return parameters.circuit_columns() if self.sensor.converter == CONVERTERS["circuit"] else None
 
     @property
     def of_frame(self) -> "FrameRequest":
@@ -119,7 +111,7 @@ def request(
 ) -> FrameRequest:
     """Return a FrameRequest for ``sensor``, with these fields replaced: rows, cols, lanes, camera, converter.
 
-    converter: typical or ideal. lux: illuminance of white. timing: phases that are not the default, fields of AmpTiming
+    converter: circuit or ideal. lux: illuminance of white. timing: phases that are not the default, fields of AmpTiming
     but exposure. exposure: rows by which the reset pointer leads, or None for as many as give the signal of
     RoomParameters. Where it leads, t_int is so long that no row waits for the converters; a t_int in timing stays as it
     is, and the pointer then leads by no row where exposure is None. In time of flight it never leads.

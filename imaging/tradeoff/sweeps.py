@@ -17,6 +17,7 @@ from talbot.imaging.tradeoff import (
     depth,
     divider,
     exposure,
+    fixed_pattern,
     lens,
     light,
     light_field,
@@ -55,6 +56,7 @@ class Sweep(Protocol):
 SWEEPS: dict[str, Sweep] = {
     "divider": divider,
     "threshold": threshold,
+    "fixed_pattern": fixed_pattern,
     "exposure": exposure,
     "light": light,
     "lens": lens,
@@ -97,6 +99,13 @@ def run_sweeps(
     with staged(out) as folder:
         (folder / "tradeoff.html").write_text(_page(out, done), encoding="utf-8")
     return tables
+
+
+def lines(rows: Sequence[dict[str, Any]]) -> str:
+    """Return ``rows`` as a table in Markdown, numbers to three digits."""
+    cells = [[f"{v:.3g}" if isinstance(v, float) else str(v) for v in row.values()] for row in rows]
+    heads = [[name.replace("_", " ") for name in rows[0]], ["---:"] * len(rows[0])]
+    return "".join(f"| {' | '.join(row)} |\n" for row in (*heads, *cells))
 
 
 def _page(out: Path, done: Sequence[str]) -> str:

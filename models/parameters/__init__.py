@@ -4,15 +4,17 @@ from talbot.models.parameters.array import COLS_MAX, ROWS_MAX, ArrayParameters
 from talbot.models.parameters.camera import FOCUS_MAX, LIFE_SIZE, CameraParameters
 from talbot.models.parameters.checks import ParameterError, check_choice, check_int, check_real
 from talbot.models.parameters.chip import ASYNCHRONOUS, LANES, SPI_INPUTS, ChipParameters
-from talbot.models.parameters.circuit import DIODE, DRAWN, ColumnCurves, circuit_columns, circuit_converter
+from talbot.models.parameters.circuit import (
+    DIODE,
+    DRAWN,
+    ColumnCurves,
+    circuit_columns,
+    circuit_converter,
+    circuit_electrical,
+)
 from talbot.models.parameters.divider import DIVIDERS, NO_DIVIDER
 from talbot.models.parameters.drawn import LineParameters, drawn_curves, drawn_electrical, drawn_lines
-from talbot.models.parameters.electrical import (
-    ELEMENTARY_CHARGE,
-    TYPICAL_CONVERTER,
-    ConverterParameters,
-    ElectricalParameters,
-)
+from talbot.models.parameters.electrical import ELEMENTARY_CHARGE, ConverterParameters, ElectricalParameters
 from talbot.models.parameters.energy import EnergyParameters, LightParameters
 from talbot.models.parameters.frame import (
     ALL_TYPES,
@@ -52,7 +54,6 @@ __all__ = [
     "SPI_INPUTS",
     "SHORT_TIMING",
     "STANDARD",
-    "TYPICAL_CONVERTER",
     "AmpTiming",
     "ArrayParameters",
     "CameraParameters",
@@ -75,6 +76,7 @@ __all__ = [
     "ColumnCurves",
     "circuit_columns",
     "circuit_converter",
+    "circuit_electrical",
     "drawn_curves",
     "drawn_electrical",
     "drawn_lines",

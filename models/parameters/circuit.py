@@ -1,8 +1,9 @@
 """Results of ngspice for converter lane and columns: circuit.json, written by `make analog TABLE=`."""
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
+from math import hypot
 from pathlib import Path
 from typing import Any
 
@@ -10,10 +11,9 @@ import numpy as np
 import numpy.typing as npt
 
 from talbot.models.parameters.checks import ParameterError, check_real
-from talbot.models.parameters.electrical import ConverterParameters
+from talbot.models.parameters.electrical import ConverterParameters, ElectricalParameters
 
 TABLE = Path(__file__).with_name("circuit.json")
-OFFSETS = 0xC01  # of the seed of columns' offsets
 DIODE = 127.5  # LSB of a diode whose well is full
 # Amplifiers and columns as drawn, written by `make analog-layout TABLE=`
 DRAWN = Path(__file__).with_name("circuit_drawn.json")
@@ -42,6 +42,32 @@ def circuit_converter(table: Path = TABLE) -> ConverterParameters:
     return ConverterParameters(**json.loads(table.read_text(encoding="utf-8"))["parameters"])
 
 
+def circuit_electrical(electrical: ElectricalParameters, table: Path = TABLE) -> ElectricalParameters:
+    """Return a sensor's electrical parameters with noise and mismatch of the column amplifiers.
+
+    Parameters
+    ----------
+    electrical : ElectricalParameters
+        With the read noise of a pixel alone.
+    table : path
+        JSON: "diodes" has RMS values in LSB of a diode: a column's noise, offsets of columns and of pixels.
+
+    Returns
+    -------
+    ElectricalParameters
+        Read noise, offsets of columns and of pixels in electrons.
+
+    Raises
+    ------
+    ParameterError
+        For a value out of range.
+    """
+    diodes = json.loads(table.read_text(encoding="utf-8"))["diodes"]
+    electrons = {name: electrical.lsb_electrons * rms for name, rms in diodes.items()}
+    electrons["read_noise"] = hypot(electrical.read_noise, electrons["read_noise"])
+    return replace(electrical, **{name: round(rms, 1) for name, rms in electrons.items()})
+
+
 @dataclass(frozen=True)
 class ColumnCurves:
     """Curves of the column amplifiers, common to all columns.
@@ -56,8 +82,6 @@ class ColumnCurves:
         What the diode's lane has where the other one is so full, -0.5..0.5.
     sum_a, sum_b, later_a, later_b : tuple of float
         What a diode that is so full has in the sum of both, in the first tap and in later ones; 0 first, at most 1.5.
-    spread : float
-        Rms over columns of what a diode's lane has without light, in LSB of a diode, 0..16.
     """
 
     fills: tuple[float, ...]
@@ -69,7 +93,6 @@ class ColumnCurves:
     sum_b: tuple[float, ...]
     later_a: tuple[float, ...]
     later_b: tuple[float, ...]
-    spread: float = 0.0
 
     def __post_init__(self) -> None:
         if not (len(self.fills) > 1 and self.fills[0] == 0 and (np.diff(self.fills) > 0).all()):
@@ -82,7 +105,6 @@ class ColumnCurves:
                 raise ParameterError(f"{name} = {values}: must be {len(self.fills)} numbers, the first 0")
             for value in values:
                 check_real(name, value, low, high)
-        check_real("spread", self.spread, 0, 16)
 
     def delivered(self, diodes: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
         """Return the values of both diodes at the lanes.
@@ -123,7 +145,7 @@ class ColumnCurves:
         return np.stack([PchipInterpolator(self.fills, curve)(diodes[..., d]) for d, curve in enumerate(curves)], -1)
 
     def samples(self, diodes: npt.NDArray[np.float64], mode: str) -> npt.NDArray[np.float64]:
-        """Return a front end's samples of charges, without `spread`: lanes of each diode, or parts of a sum.
+        """Return a front end's samples of charges: lanes of each diode, or parts of a sum.
 
         Parameters
         ----------
@@ -141,23 +163,6 @@ class ColumnCurves:
         if mode in ("edge", "raw"):
             return DIODE * self.delivered(fills)
         return DIODE * np.concatenate([self.summed(fills[:1]), self.summed(fills[1:], later=True)])
-
-    def offsets(self, cols: int, seed: int) -> npt.NDArray[np.float64]:
-        """Offsets of columns that are not alike: normal, the same in every frame.
-
-        Parameters
-        ----------
-        cols : int
-            How many.
-        seed : int
-            Of the chip, at least 0.
-
-        Returns
-        -------
-        ndarray
-            (cols, 2), of both diodes' lanes, in LSB of a diode.
-        """
-        return self.spread * np.random.default_rng((seed, OFFSETS)).standard_normal((cols, 2))
 
 
 @cache

@@ -12,6 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 from talbot.models.parameters.checks import check_real
+from talbot.models.parameters.circuit import TABLE as CIRCUIT
+from talbot.models.parameters.circuit import circuit_electrical
 from talbot.models.parameters.electrical import ElectricalParameters
 
 LINES = Path(__file__).with_name("pixel_lines.json")
@@ -66,7 +68,7 @@ def drawn_lines(table: Path = LINES) -> LineParameters:
 
 
 def drawn_electrical(electrical: ElectricalParameters, table: Path = PIXEL) -> ElectricalParameters:
-    """Return a sensor's electrical parameters with those of the drawn pixel's circuit.
+    """Return a sensor's electrical parameters with those of the drawn pixel's circuit and its column.
 
     Parameters
     ----------
@@ -78,14 +80,14 @@ def drawn_electrical(electrical: ElectricalParameters, table: Path = PIXEL) -> E
     Returns
     -------
     ElectricalParameters
-        Full well, swing, read noise, dark current and gain FPN are those that ngspice has.
+        Full well, swing, dark current, gain FPN, noise and offsets are those that ngspice has.
 
     Raises
     ------
     ParameterError
         For a value out of range.
     """
-    return replace(electrical, **json.loads(table.read_text(encoding="utf-8"))["parameters"])
+    return circuit_electrical(replace(electrical, **json.loads(table.read_text(encoding="utf-8"))["parameters"]))
 
 
 def drawn_sources(electrical: ElectricalParameters, table: Path = PIXEL) -> dict[str, str]:
@@ -103,11 +105,12 @@ def drawn_sources(electrical: ElectricalParameters, table: Path = PIXEL) -> dict
     dict of str to str
         Source by name; none for other pixels.
     """
-    return (
-        json.loads(table.read_text(encoding="utf-8"))["sources"]
-        if electrical == drawn_electrical(electrical, table)
-        else {}
-    )
+    if electrical != drawn_electrical(electrical, table):
+        return {}
+    pixel, column = (json.loads(file.read_text(encoding="utf-8")) for file in (table, CIRCUIT))
+    of_column = {name: f"{column['command']}: {column['sources'][name]}" for name in column["diodes"]}
+    both = f"{pixel['sources']['read_noise']}; {of_column['read_noise']}"
+    return pixel["sources"] | of_column | {"read_noise": both}
 
 
 @cache

@@ -26,7 +26,7 @@ class ElectricalParameters:
     difference_gain : float
         Programmable gain of the difference before conversion, 0.25..64.
     read_noise : float
-        RMS, 0..1e5 electrons per diode and read.
+        RMS, 0..1e5 electrons per diode and read: resets, pixel and column amplifier.
     dark_current : float
         0..1e-6 A per diode.
     gain_fpn : float
@@ -56,10 +56,12 @@ class ElectricalParameters:
     white_current: float = sourced(0.25e-9, "assumed, of modulated light: 80 % of a full well in 51.2 us", "A")
     full_well: float = sourced(1e5, "assumed", "electrons")
     difference_gain: float = sourced(4.0, "our choice: edges reach the converter's range")
-    read_noise: float = sourced(30.0, "assumed", "electrons")
+    read_noise: float = sourced(
+        180.7, "make pixel-circuit: 66.9 with both resets; make analog: 167.9 of a column", "electrons"
+    )
     dark_current: float = sourced(1e-15, "assumed", "A")
-    gain_fpn: float = sourced(0.002, "assumed")
-    offset_fpn: float = sourced(20.0, "assumed", "electrons")
+    gain_fpn: float = sourced(0.00456, "make pixel-circuit: mismatch of 100 diodes' transistors")
+    offset_fpn: float = sourced(262.1, "make analog: mismatch of 25 pixels' switches", "electrons")
     f_mod: float = sourced(20e6, "our choice", "Hz")
     code: int = sourced(0, "a sine", "chips")
     chip_rate: float = sourced(250e6, "our choice: a tap sees 0.6 m", "Hz")
@@ -67,7 +69,7 @@ class ElectricalParameters:
     contrast: float = sourced(1.0, "ideal")
     ambient_current: float = sourced(0.0, "none", "A")
     swing: float = sourced(1.0, "assumed", "V")
-    column_fpn: float = sourced(10.0, "assumed", "electrons")
+    column_fpn: float = sourced(357.5, "make analog: mismatch of 200 columns", "electrons")
     flicker_noise: float = sourced(10.0, "assumed", "electrons")
 
     def __post_init__(self) -> None:
@@ -157,7 +159,3 @@ class ConverterParameters:
         check_real("ktc", self.ktc, 0, 16)
         check_real("unit_mismatch", self.unit_mismatch, 0, 0.2)
         check_int("seed", self.seed, 0, 2**32 - 1)
-
-
-# Of `make sim`; the default above is an ideal converter.
-TYPICAL_CONVERTER = ConverterParameters(inl=0.5, dnl=0.1, offset=0.5, noise=0.25, ktc=0.15)

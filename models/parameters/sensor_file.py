@@ -16,11 +16,11 @@ from pathlib import Path
 from typing import Any
 
 from talbot.models.parameters.checks import ParameterError
-from talbot.models.parameters.electrical import TYPICAL_CONVERTER
+from talbot.models.parameters.circuit import circuit_converter
 from talbot.models.parameters.sensor import SensorParameters
 from talbot.models.parameters.tile import PixelType, TileParameters
 
-STANDARD = SensorParameters(converter=TYPICAL_CONVERTER)
+STANDARD = SensorParameters(converter=circuit_converter())
 BYTES_MAX = 1 << 20
 
 

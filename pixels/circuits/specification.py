@@ -3,14 +3,7 @@
 from dataclasses import dataclass
 from typing import Self
 
-from talbot.models.parameters import (
-    TYPICAL_CONVERTER,
-    ConverterParameters,
-    EnergyParameters,
-    ParameterError,
-    SensorParameters,
-    check_real,
-)
+from talbot.models.parameters import EnergyParameters, ParameterError, SensorParameters, check_real
 from talbot.models.parameters.energy import DECISIONS
 
 CODES = 256
@@ -88,20 +81,11 @@ class LaneSpec:
         check_real("comparator_share", self.comparator_share, 0.05, 0.95)
 
     @classmethod
-    def of(
-        cls,
-        sensor: SensorParameters | None = None,
-        energy: EnergyParameters | None = None,
-        converter: ConverterParameters = TYPICAL_CONVERTER,
-    ) -> Self:
-        """The lane of a sensor: its clock, Table 6.1's power, and the imperfections that frames are simulated with."""
+    def of(cls, sensor: SensorParameters | None = None, energy: EnergyParameters | None = None) -> Self:
+        """The lane of a sensor: its clock and Table 6.1's power."""
         sensor, energy = sensor or SensorParameters(), energy or EnergyParameters()
         return cls(
             f_clk=sensor.chip.f_clk,
-            offset=converter.offset,
-            noise=converter.noise,
-            ktc=converter.ktc,
-            inl=converter.inl,
             decision_energy=one_digit(energy.adcs / (energy.frame_rate * energy.pixels * DECISIONS)),
         )
 

@@ -85,7 +85,7 @@ class Sensor:
     tile: rows of PixelType, 1..4 of 1..6 each, [[a, b], [c, d]]; or TileParameters. A PixelType has beta, gamma_deg,
     alpha, optionally m, or response=f: a function of the incidence angles theta_x and theta_y, arrays (n,)
     in rad, that gives the response of both diodes, (2, n), 0 or more.
-    converter: 'typical', 'ideal', 'circuit' (as ngspice has it), or a dict of inl, dnl, offset, noise, ktc (LSB),
+    converter: 'circuit' (as ngspice has it), 'ideal', or a dict of inl, dnl, offset, noise, ktc (LSB),
     unit_mismatch (relative) and seed.
     pixel: 'ideal' (Eq. 3.1), 'sky130' or 'ihp-sg13g2': what the process's gratings do, as `make sim PIXEL=sky130`;
     types with a response keep it. Tables are computed once, in half a minute.
@@ -292,6 +292,6 @@ def _changed(
 Sensor.__signature__ = inspect.Signature(  # pyright: ignore[reportAttributeAccessIssue]
     [
         inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=value)
-        for name, value in (_values(STANDARD) | {"tile": None, "converter": "typical", "pixel": IDEAL}).items()
+        for name, value in (_values(STANDARD) | {"tile": None, "converter": "circuit", "pixel": IDEAL}).items()
     ]
 )

@@ -18,7 +18,7 @@ from talbot.base.paths import ROOT
 from talbot.commands import main
 from talbot.imaging.frame import light_field as frame_light_field
 from talbot.imaging.tradeoff.sweeps import SWEEPS
-from talbot.models.parameters import AmpTiming
+from talbot.models.parameters import AmpTiming, circuit_converter
 from talbot.models.reconstruct.methods import METHODS
 
 
@@ -188,8 +188,8 @@ def test_files_that_hold_no_run(tmp_path):
 def test_sensors():
     sensor = talbot.Sensor(rows=24, cols=36, m=0.5, converter={"noise": 1.5})
     assert repr(sensor).startswith("Sensor(rows=24, cols=36, m=0.5, converter=")
-    assert sensor.replace(m=0.7, converter="typical") == talbot.Sensor(rows=24, cols=36)
-    assert sensor.parameters.converter.noise == 1.5 and sensor.parameters.converter.inl == 0.5
+    assert sensor.replace(m=0.7, converter="circuit") == talbot.Sensor(rows=24, cols=36)
+    assert sensor.parameters.converter.noise == 1.5 and sensor.parameters.converter.inl == circuit_converter().inl
     assert "<svg" in sensor._repr_html_() and "m = 0.5\n" in sensor.text
     edge = sensor.golden("coins", window=(1, 3, 0, 4), types=[0, 9], timing={"t_int": 300}, noise=0)
     frame = edge.result.request.frame

@@ -7,11 +7,12 @@ from talbot.imaging.frame.arguments import named, pixel_types, window
 from talbot.imaging.frame.command import add_arguments, request_of, typed_of
 from talbot.models.parameters import (
     ALL_TYPES,
-    TYPICAL_CONVERTER,
+    ConverterParameters,
     ElectricalParameters,
     ParameterError,
     SensorParameters,
     Window,
+    circuit_columns,
     circuit_converter,
     drawn_electrical,
     sensor_text,
@@ -65,20 +66,21 @@ def parsed(*words):
 
 
 def test_the_circuits_converters_are_asked_for():
-    assert request_of(parsed()).sensor.converter == TYPICAL_CONVERTER
-    assert request_of(parsed("--afe", "ideal")).sensor.converter == TYPICAL_CONVERTER
-    found = request_of(parsed("--afe", "circuit")).sensor.converter
-    assert found == circuit_converter() and found.unit_mismatch > 0
-    electrical = request_of(parsed("--afe", "circuit")).sensor.electrical
+    found = request_of(parsed())
+    assert found.sensor.converter == circuit_converter() and found.sensor.converter.unit_mismatch > 0
+    assert found.columns is None
+    assert request_of(parsed("--converter", "ideal")).sensor.converter == ConverterParameters()
+    found = request_of(parsed("--afe", "circuit"))
+    assert found.columns == circuit_columns() and found.sensor.converter == circuit_converter()
+    electrical = found.sensor.electrical
     assert electrical == drawn_electrical(ElectricalParameters()) and electrical.full_well > 1.1e5
     assert typed_of(parsed("--afe", "circuit"), add_arguments)["afe"] == "circuit"
 
 
 def test_the_circuits_converters_replace_those_of_a_sensor_file(tmp_path):
     file = tmp_path / "sensor.toml"
-    file.write_text(sensor_text(SensorParameters(converter=circuit_converter())))
-    assert request_of(parsed("--sensor", str(file))).sensor.converter == circuit_converter()
-    file.write_text(sensor_text(SensorParameters(converter=TYPICAL_CONVERTER)))
+    file.write_text(sensor_text(SensorParameters()))
+    assert request_of(parsed("--sensor", str(file))).sensor.converter == ConverterParameters()
     assert request_of(parsed("--sensor", str(file), "--afe", "circuit")).sensor.converter == circuit_converter()
 
 

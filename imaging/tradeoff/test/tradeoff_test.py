@@ -6,8 +6,9 @@ import pytest
 from talbot.imaging.frame.job import golden_result
 from talbot.imaging.frame.light_field import pair_of, reached
 from talbot.imaging.frame.request import STANDARD, request
-from talbot.imaging.tradeoff import light_field, light_field_sensor, views
-from talbot.imaging.tradeoff.sweeps import SWEEPS, measured, run_sweeps
+from talbot.imaging.tradeoff import fixed_pattern, light_field, light_field_sensor, views
+from talbot.imaging.tradeoff.sweeps import SWEEPS, lines, measured, run_sweeps
+from talbot.models.afe import FrontEnd
 from talbot.models.parameters import ParameterError
 from talbot.models.pixel.weights import view_weights
 
@@ -154,3 +155,30 @@ def test_unknown_sweep_is_named(tmp_path):
     with pytest.raises(ParameterError, match="only = 'speed'"):
         run_sweeps(tmp_path / "out", ["speed"])
     assert not (tmp_path / "out").exists()
+
+
+def test_a_ratio_takes_a_columns_offset_away_at_one_light():
+    """An offset does at any; a ratio that is off is a ratio's to take."""
+    front_end = FrontEnd(4.0, (0,) * 24)
+    rng = np.random.default_rng(3)
+    offset, ratio = rng.normal(0, 0.5, 48), rng.normal(1, 0.02, 48)
+
+    def seen(light, ratio=1.0, offset=0.0):
+        out = np.full((40, 48, 2), light)
+        out[..., 0] = ratio * light + offset
+        return out
+
+    def left(at, **off):
+        samples = fixed_pattern.fitted(seen(at, **off)[None], seen(50.0, **off), front_end)
+        return {name: front_end.values(one, "edge").std() for name, one in samples.items()}
+
+    same, darker = left(50.0, offset=offset), left(5.0, offset=offset)
+    assert same["column"] < 0.2 and darker["column"] > 0.8 * darker["tile"] > 1
+    assert same["offset"] < 1e-9 and darker["offset"] < 1e-9
+    assert left(5.0, ratio=ratio)["column"] < 0.02 < left(5.0, ratio=ratio)["tile"]
+
+
+def test_a_sweep_goes_into_a_document():
+    assert (
+        lines([{"threshold": 1024, "sent_x": 0.12345}]) == "| threshold | sent x |\n| ---: | ---: |\n| 1024 | 0.123 |\n"
+    )

@@ -20,16 +20,17 @@ def test_every_value_has_a_source():
 
 def test_the_typical_pixel_is_among_the_corners():
     found, over = drawn_electrical(ElectricalParameters()), WRITTEN["over_corners"]
-    for value, name in ((found.full_well, "full_well"), (found.read_noise, "dark_noise")):
+    for value, name in ((found.full_well, "full_well"), (WRITTEN["parameters"]["read_noise"], "dark_noise")):
         assert over[name][0] <= value <= over[name][1]
     assert over["dark_current"][0] < found.dark_current < over["dark_current"][1]
 
 
 def test_what_is_not_the_pixels_stays():
     own = ElectricalParameters(white_current=1e-10, column_fpn=3.0)
-    found = drawn_electrical(own)
-    assert replace(found, **{name: getattr(own, name) for name in WRITTEN["parameters"]}) == own
-    assert drawn_sources(found) == WRITTEN["sources"] and drawn_sources(own) == {}
+    found, came = drawn_electrical(own), drawn_sources(drawn_electrical(own))
+    assert replace(found, **{name: getattr(own, name) for name in came}) == own and drawn_electrical(found) == found
+    assert drawn_sources(own) == {} and came.keys() == WRITTEN["sources"].keys() | {"column_fpn", "offset_fpn"}
+    assert came["full_well"] == WRITTEN["sources"]["full_well"] and "make analog" in came["read_noise"]
 
 
 def test_lines_of_a_pixel():
