@@ -238,7 +238,7 @@ def measured(
             f"{name}s drawn",
             workers,
         )
-        for name, count, pixel in (("column", draws, False), ("pixel", min(draws, PIXELS), True))
+        for name, count, pixel in (("column", draws, False), ("pixel", min(draws // 2, PIXELS), True))
     )
     curves_c = Job("column-curves", curves.fitted, given_f, (given_c, start))
     note("noise")
