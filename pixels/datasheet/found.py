@@ -10,6 +10,7 @@ from talbot.pixels.datasheet.lane import LaneResult
 from talbot.pixels.datasheet.noise import Noise
 from talbot.pixels.datasheet.row_driver import RowDriverResult
 from talbot.pixels.datasheet.spread import AmplifierNoise, Drawn
+from talbot.pixels.datasheet.supply import Ripple
 from talbot.pixels.datasheet.support import SupportResult
 from talbot.pixels.datasheet.turn import TurnResult
 
@@ -32,6 +33,7 @@ class Found:
     amplifier_ktc: dict[str, float]
     amplifier_draws: list[Drawn]
     amplifier_noise: AmplifierNoise
+    ripples: dict[str, Ripple]
     supports: dict[str, SupportResult]
     rows: dict[str, RowDriverResult]
     columns: dict[str, ColumnResult]

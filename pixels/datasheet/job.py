@@ -50,6 +50,7 @@ from talbot.pixels.datasheet.noise import Noise
 from talbot.pixels.datasheet.row_driver import RowDriverResult
 from talbot.pixels.datasheet.rows import datasheet
 from talbot.pixels.datasheet.spread import AmplifierNoise, Drawn
+from talbot.pixels.datasheet.supply import Ripple, ripple
 from talbot.pixels.datasheet.support import SupportResult
 from talbot.pixels.datasheet.turn import TurnResult
 
@@ -207,6 +208,7 @@ def measured(
     amplifiers = _everywhere(
         "amplifier", AmplifierResult, amplifier.measure, (setup, spec_a, sizes_a, sizes), places, workers
     )
+    ripples = _everywhere("supply", Ripple, ripple, (setup, spec_a, sizes_a, sizes), places, workers)
     supports = _everywhere("support", SupportResult, support.measure, (setup, SupportSpec()), places, workers)
     driven = setup, RowDriverSpec.of(sensor)
     rows = _everywhere("row driver", RowDriverResult, row_driver.measure, driven, places, workers)
@@ -271,6 +273,7 @@ def measured(
         {name: amplifier.ktc(setup, sizes_a, corner) for name, corner in places.items()},
         amplifier_draws,
         amplifier_noise,
+        ripples,
         supports,
         rows,
         columns,

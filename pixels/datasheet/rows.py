@@ -15,6 +15,7 @@ from talbot.pixels.datasheet.datasheet import Row, over_corners
 from talbot.pixels.datasheet.found import TYPICAL, Found
 from talbot.pixels.datasheet.lane import VALUE, inl
 from talbot.pixels.datasheet.row_driver import RowDriverResult
+from talbot.pixels.datasheet.supply import RIPPLE
 from talbot.pixels.datasheet.support import SupportResult
 
 
@@ -89,6 +90,7 @@ def _amplifier(found: Found, spec: AmplifierSpec) -> list[Row]:
     over = f"{count} draws: 95 % interval"
     offset, *offset_ends = interval([one.offset for one in found.amplifier_draws])
     gain, *gain_ends = interval([100 * one.gain for one in found.amplifier_draws])
+    rippled = {corner: RIPPLE / LaneSpec().lsb * max(one.gain) for corner, one in found.ripples.items()}
     gains = {corner: 100 * abs(one.gain - 1) for corner, one in found.amplifiers.items()}
     return [
         corners("gain, off by", "%", gains, 100 * spec.gain),
@@ -102,6 +104,7 @@ def _amplifier(found: Found, spec: AmplifierSpec) -> list[Row]:
         row("steps of the trim, off by", "steps", "trim", spec.trim),
         corners("kT/C, rms", "LSB", found.amplifier_ktc, spec.ktc),
         Row("amplifier", "noise, rms", "LSB", found.amplifier_noise.total, None, None, most=spec.noise, over=TYPICAL),
+        corners(f"by {1e3 * RIPPLE:g} mV on the supply, 10 kHz to 1 GHz", "LSB", rippled, spec.settling),
         row("energy of a sample, off between samples", "pJ", "energy", 1e12 * spec.energy, 1e12),
         row("energy of a sample, never off", "pJ", "always", None, 1e12),
         row("current while off", "uA", "off", None, 1e6),

@@ -17,6 +17,7 @@ from talbot.pixels.datasheet.deck import SETTINGS, Setup, deck, process_of
 
 BAND = "dec 5 1e5 1e10"  # Hz: what is slower, the reset takes away
 LOOP = 1e9  # ohm, without noise: an operating point for an input that floats in the signal's phase
+INNER = "xcell.xamplifier."
 FRAME = 1 / 3  # of REACH: differences that a drawn amplifier gets
 
 
@@ -74,33 +75,47 @@ def noise(
     setup: Setup, spec: AmplifierSpec, sizes: AmplifierSizes, lane: LaneSizes, corner: Corner, closed: float
 ) -> AmplifierNoise:
     """`.noise` of the reset, at the inputs' difference, and of the signal, at the lane. closed: LSB."""
-    inner, lsb = "xcell.xamplifier.", setup.spec.lsb
+    lsb = setup.spec.lsb
     inputs = (2 * UNITS + sizes.feedback) / sizes.feedback
-    inputs_apart = [f"Eapart apart 0 {inner}xm {inner}xp 1"]
+    inputs_apart = [f"Eapart apart 0 {INNER}xm {INNER}xp 1"]
     reset = _rms(setup, spec, sizes, corner, inputs_apart, corner.supply, "v(apart)") * inputs
-    array = [
-        f"Rlane out lane {LANE_OHM:g} noisy=0",
-        f"Clane lane 0 {load_of(setup, lane, corner):g}",
-        f"Rloop out {inner}xm {LOOP:g} noisy=0",
-        f"Rzero vref {inner}xp {LOOP:g} noisy=0",
-    ]
+    array = with_lane(setup, lane, corner, " noisy=0")
     return AmplifierNoise(reset / lsb, _rms(setup, spec, sizes, corner, array, 0.0, "v(lane)") / lsb, closed)
+
+
+def still(
+    setup: Setup, spec: AmplifierSpec, sizes: AmplifierSizes, corner: Corner, reset: float, driven: str
+) -> list[str]:
+    """Return the deck of an amplifier that rests with ``reset`` at a level, V; ``driven`` has an amplitude of 1 V."""
+    volts = {"vdd": corner.supply, "vss": 0.0, "vref": spec.vref, "on": corner.supply, "reset": reset}
+    volts |= dict.fromkeys(("column_a", "column_b"), spec.reset_level)
+    volts |= {f"g{k}": corner.supply * (k == TRIM_BITS - 1) for k in range(TRIM_BITS)}
+    return [
+        *SETTINGS.options,
+        *deck(biased(amplifier(sizes)), setup, corner),
+        f".temp {corner.temperature:g}",
+        *(f"V{name} {name} 0 dc {level:g}{' ac 1' * (name == driven)}" for name, level in volts.items()),
+        "Vbias vdd_bias vdd 0",
+    ]
+
+
+def with_lane(setup: Setup, lane: LaneSizes, corner: Corner, noisy: str = "") -> list[str]:
+    """Return a lane's array at the output, and loops that give floating inputs an operating point."""
+    return [
+        f"Rlane out lane {LANE_OHM:g}{noisy}",
+        f"Clane lane 0 {load_of(setup, lane, corner):g}",
+        f"Rloop out {INNER}xm {LOOP:g}{noisy}",
+        f"Rzero vref {INNER}xp {LOOP:g}{noisy}",
+    ]
 
 
 def _rms(
     setup: Setup, spec: AmplifierSpec, sizes: AmplifierSizes, corner: Corner, more: list[str], reset: float, what: str
 ) -> float:
     """Return the noise of ``what`` over BAND, V rms."""
-    volts = {"vdd": corner.supply, "vdd_bias": corner.supply, "vss": 0.0, "vref": spec.vref, "on": corner.supply}
-    volts |= {"reset": reset, "column_b": spec.reset_level}
-    volts |= {f"g{k}": corner.supply * (k == TRIM_BITS - 1) for k in range(TRIM_BITS)}
     lines = [
         "* noise of the amplifier",
-        *SETTINGS.options,
-        *deck(biased(amplifier(sizes)), setup, corner),
-        f".temp {corner.temperature:g}",
-        *(f"V{name} {name} 0 {level:g}" for name, level in volts.items()),
-        f"Vcolumn_a column_a 0 dc {spec.reset_level:g} ac 1",
+        *still(setup, spec, sizes, corner, reset, "column_a"),
         *more,
         ".control",
         f"noise {what} Vcolumn_a {BAND}",

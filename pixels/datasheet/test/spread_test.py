@@ -9,7 +9,7 @@ from talbot.base.jobs import Job, run
 from talbot.cells.corner import Corner
 from talbot.pixels.circuits.amplifier import UNITS, amplifier
 from talbot.pixels.datasheet import amplifier as measurements
-from talbot.pixels.datasheet import job, spread
+from talbot.pixels.datasheet import job, spread, supply
 from talbot.pixels.datasheet.tables import _table, text
 from talbot.platforms.sky130 import analog as process
 
@@ -44,6 +44,13 @@ def test_noise_of_the_reset_is_above_that_of_the_capacitors_alone():
     found = spread.noise(SETUP, SPEC, SIZES, LANE, CORNER, closed)
     assert closed < found.reset < 5 * closed and 0.01 < found.signal < found.reset
     assert found.total == pytest.approx(sqrt(found.reset**2 + found.signal**2))
+
+
+@ngspice
+def test_ripple_of_the_supply_is_least_where_the_loop_has_gain():
+    found = supply.ripple(SETUP, SPEC, SIZES, LANE, CORNER)
+    slow, fast = found.gain[0], found.gain[found.hertz.index(1e8)]
+    assert 1e-4 < slow < 0.3 * fast < 0.03 and (found.hertz[0], found.hertz[-1]) == (1e4, 1e9)
 
 
 def test_a_cubic_gives_its_own_points_back():
