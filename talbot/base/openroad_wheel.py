@@ -12,8 +12,10 @@ from importlib import import_module
 from importlib.metadata import distribution
 from pathlib import Path
 
-# The package holds Tcl's own library, which its Tcl does not find: init.tcl loads commands such as `clock`
+# The package holds Tcl's own library, which its Tcl does not find: init.tcl loads commands such as `clock`. Nor does
+# this Tcl ask for the locale, by which paths are UTF-8
 SCRIPT = """
+encoding system utf-8
 load {{}} Design
 set tcl_library {{{library}}}
 source $tcl_library/init.tcl
@@ -47,7 +49,8 @@ def main(arguments: list[str]) -> None:
         return 0
 
     tcl.Tcl_StaticPackage(None, b"Design", associate, None)
-    design.evalTclString(SCRIPT.format(library=library, threads=threads, script=arguments[-1]))
+    message = design.evalTclString(SCRIPT.format(library=library, threads=threads, script=arguments[-1]))
+    sys.exit(f"openroad: {message}")  # the script ends the process, where it comes that far
 
 
 if __name__ == "__main__":

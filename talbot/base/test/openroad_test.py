@@ -73,6 +73,24 @@ def test_a_command_that_fails_ends_it(line, status, said, tmp_path):
 
 
 @pytest.mark.needs("openroad")
+def test_a_path_with_a_space_and_an_umlaut(tmp_path):
+    (folder := tmp_path / "Prüf stand").mkdir()
+    (folder / "script.tcl").write_text("puts [file tail [info script]]\n")
+    done = finish(openroad.command(folder / "script.tcl"))
+    assert done.returncode == 0 and "script.tcl" in done.stdout, done.stdout + done.stderr
+
+
+@pytest.mark.needs("openroad")
+def test_a_script_that_does_not_come_to_its_end_fails(tmp_path, monkeypatch):
+    (launcher := tmp_path / "wheel.py").write_text(openroad.LAUNCHER.read_text().replace("/init.tcl", "/no.tcl"))
+    monkeypatch.setattr(openroad, "LAUNCHER", launcher)
+    if str(launcher) not in (words := openroad.command("a.tcl")):
+        pytest.skip("openroad is the program")
+    done = finish(words)
+    assert done.returncode == 1 and "no.tcl" in done.stderr, done.stdout + done.stderr
+
+
+@pytest.mark.needs("openroad")
 def test_its_version_is_of_digits():
     # Not that kept of another test's program
     assert (said := version.__wrapped__("openroad"))[0].isdigit(), said
