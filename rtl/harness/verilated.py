@@ -11,14 +11,23 @@ from pathlib import Path
 
 from talbot.base.cache import cached, digest
 from talbot.base.paths import BUILD
-from talbot.base.verilator import CXX, FAST, accepted, compile_program, runtime, verilate, verilator_version
+from talbot.base.verilator import (
+    CXX,
+    FAST,
+    accepted,
+    compile_program,
+    precompiled,
+    runtime,
+    verilate,
+    verilator_version,
+)
 from talbot.rtl.harness.icarus import instance
 from talbot.rtl.harness.ports import Port, split, total_width
 
 FOLDER, LIBRARY = BUILD / "verilated", "library.so"
 # Warnings are errors, but those that PyMTL's Verilog gives everywhere
 OPTIONS = *(word for word in FAST if word != "-Wno-lint"), "-Wno-UNOPTFLAT", "-Wno-UNSIGNED", "-Wno-WIDTH"
-COMPILED = "-O0", "-fPIC", "-shared"  # compiling takes longer than what the tests simulate
+COMPILED = "-O0", "-fPIC"  # compiling takes longer than what the tests simulate
 
 BENCH = """module VerilatedBench(input clk, input [{high_in}:0] in, output [{high_got}:0] got);
 {instance}endmodule
@@ -77,7 +86,8 @@ def _compile(library: Path, text: str) -> None:
         source.write_text(text, encoding="utf-8")
         files = verilate(Path(work), "VerilatedBench", [source], OPTIONS)
         wrapper.write_text(WRAPPER, encoding="utf-8")
-        compile_program(library, [*files, wrapper], [*COMPILED, *accepted("-fno-gnu-unique"), *runtime()])
+        options = *COMPILED, *accepted("-fno-gnu-unique")
+        compile_program(library, [*files, wrapper], [*precompiled(*options), *options, "-shared", *runtime()])
 
 
 def in_verilator(name: str, top: str, ports: Sequence[Port], text: str) -> Verilated:

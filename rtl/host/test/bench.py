@@ -14,7 +14,7 @@ class Bench:
     """sensor: of the chip; its comparators stay low. One a process: the library has one chip."""
 
     def __init__(self, sensor):
-        self.library = ctypes.CDLL(str(bare_program(Build.of(sensor), main=MAIN, options=("-shared", "-fPIC"))))
+        self.library = ctypes.CDLL(str(bare_program(Build.of(sensor), main=MAIN, options=("-O0", "-shared", "-fPIC"))))
         self.library.bench_now.restype = self.library.bench_pins.restype = ctypes.c_uint32
         self.reset()
 
