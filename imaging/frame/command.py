@@ -14,6 +14,7 @@ from talbot.base.cache import digest
 from talbot.base.paths import results_of
 from talbot.base.progress import Steps
 from talbot.base.sensor import Varied
+from talbot.base.tools import meanwhile
 from talbot.imaging.frame import arguments as text
 from talbot.imaging.frame.arguments import named
 from talbot.imaging.frame.sensor import add_pixel, asked_sensor
@@ -143,10 +144,11 @@ def run(options: Namespace) -> int:
     typed = typed_of(options, add_arguments)
     options.out = options.out or results_of("sim") / name_of(typed)
     frame_request = request_of(options)
-    from talbot.imaging.frame.job import STEPS, run  # Matplotlib and more: not before the arguments are right
+    from talbot.imaging.frame import ahead  # Matplotlib and more: not before the arguments are right
+    from talbot.imaging.frame.job import STEPS, run
 
     before = arguments_of(frame_request.folder)
-    with Steps(STEPS) as steps:
+    with meanwhile(ahead.compiled), Steps(STEPS) as steps:
         summary = run(frame_request, steps.note, typed)
     _print_figures(summary, frame_request.folder)
     tell_replaced(before, typed)

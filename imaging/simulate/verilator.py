@@ -69,15 +69,19 @@ def program_of(
             note("translating it with Verilator")
             model = verilate(work / "obj", top, [chip, *sources], [*VERILATOR_FLAGS, *options])
             note("compiling the simulator")
-            linked = [*objects.result(), *_tracing(build.waves)]
-            compile_program(work / "program", [*model, READ, main], [*CXX_FLAGS, *cxx, *linked])
+            unit = work / "obj" / "unit.o"
+            compile_program(unit, [*model, READ, main], [*CXX_FLAGS, *cxx, *_defined(build.waves), "-c"])
+            compile_program(work / "program", [], [unit, *cxx, *objects.result(), *_tracing(build.waves)])
 
     return cached(BUILD / "simulator" / key, make) / "program"
 
 
+def _defined(waves: str) -> list[str]:
+    """Options of g++ that compile what writes waves in a format, "" for none."""
+    words = "-DWAVES", f"-DWAVES_{waves.upper()}", "-DVM_TRACE=1", f"-DVM_TRACE_{waves.upper()}=1"
+    return [*words] if waves else []
+
+
 def _tracing(waves: str) -> list[object]:
-    """Options of g++ for a program that writes waves in a format, "" for none."""
-    if not waves:
-        return []
-    defined = "-DWAVES", f"-DWAVES_{waves.upper()}", "-DVM_TRACE=1", f"-DVM_TRACE_{waves.upper()}=1"
-    return [*defined, *runtime([f"verilated_{waves}_c"]), *(["-lz", "-llz4"] if waves == "fst" else [])]
+    """Options of g++ that link it."""
+    return [*runtime([f"verilated_{waves}_c"]), *(["-lz", "-llz4"] if waves == "fst" else [])] if waves else []
