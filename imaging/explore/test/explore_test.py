@@ -242,7 +242,7 @@ def test_a_limit_of_the_error_counts_in_full_alone(tmp_path, whole):
     "kind, said",
     [
         ("raise", "RuntimeError: trouble at"),
-        ("die", "its process died"),
+        pytest.param("die", "its process died", marks=pytest.mark.slow),
         pytest.param("hang", "timeout: longer than 10 s", marks=pytest.mark.slow),
         ("refuse", "must be another"),
     ],

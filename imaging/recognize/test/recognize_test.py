@@ -221,6 +221,7 @@ def test_broken_data_are_one_line(tmp_path):
         load(str(tmp_path / "few.npz")).part(20)
 
 
+@pytest.mark.slow
 def test_the_verilog_sends_the_golden_chips_bytes(digits):
     found = chip.verify(Display(STANDARD, (8, 8), 3, 12.0), digits.radiance[:1], "edge", 10, 1.0, 1)
     assert found["mismatches"] == 0 and found["bytes"] > 46

@@ -68,7 +68,7 @@ def _through_chosen(frame):
     return todo.read, exposed(pairs, SENSOR, Exposure(SENSOR.electrical, frame.exposing, SENSOR.chip.f_clk))
 
 
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=5, deadline=None)
 @given(st.data())
 def test_mask_window_and_decimation_change_no_sample(draw):
     rows, cols = (sorted(draw.draw(st.tuples(*2 * (st.integers(0, n - 1),)))) for n in (10, 11))

@@ -1,6 +1,7 @@
 """The integral over the pupil: against an independent one of 31 x 31 rays, behind three lenses, and off the axis."""
 
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import pytest
@@ -102,11 +103,11 @@ def independent(name, scene, sensor, f_number, focus):
     return 4.0 / (2e5 / 255) * (np.minimum(a, 1e5) - ratio[kinds] * np.minimum(b, 1e5))
 
 
-@pytest.mark.parametrize("lens", LENSES)
-@pytest.mark.parametrize(
-    "name",
-    ["motorcycle", "tilted", PICTURES[0], *(pytest.param(name, marks=pytest.mark.slow) for name in PICTURES[1:])],
-)
+FAST = [*(("motorcycle", lens) for lens in LENSES), ("tilted", "default"), (PICTURES[0], "default")]
+MORE = [case for case in product(("tilted", *PICTURES), LENSES) if case not in FAST]
+
+
+@pytest.mark.parametrize("name, lens", [*FAST, *(pytest.param(*case, marks=pytest.mark.slow) for case in MORE)])
 def test_differences_are_those_of_an_independent_camera(name, lens):
     f_number, focus = LENSES[lens]
     sensor = sensor_behind(f_number=f_number, focus=focus)

@@ -131,6 +131,7 @@ def test_the_segments_are_the_golden_waveform():
             assert np.repeat(pins, np.diff(at), axis=0).tolist() == [list(vars(p).values()) for p in golden]
 
 
+@pytest.mark.slow
 def test_every_bit_of_a_duration_and_every_number_of_resets(gates):
     """Durations to 65535, one long and the others 1: the pins change when they should."""
     one = dict.fromkeys(DURATIONS, 1)

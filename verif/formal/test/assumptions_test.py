@@ -202,7 +202,7 @@ def each_input(*arguments):
     return freedom(*arguments, pairs=False)
 
 
-@pytest.mark.parametrize("name", ["balance_1x1", "balance_4x1"])
+@pytest.mark.parametrize("name", ["balance_1x1", pytest.param("balance_4x1", marks=pytest.mark.slow)])
 def test_an_input_that_is_not_free_at_another_size_is_found(tmp_path, name):
     """The first size, 1 x 6, allows all values of the narrowed input."""
     wires = "input [2:0] k,", "  wire [9:0] balance;"
