@@ -117,6 +117,7 @@ install() {
 # A lock names all that its packages depend on. pip compiles 6,000 modules with one core. compileall compiles those that a frame
 # loads, with all cores; Python compiles the others when it imports them
 later='site-packages/((.*/)?(tests?|testcases)|pip|setuptools|networkx|fontTools|pygments|hypothesis|_pytest|sklearn'
+later+='|systemrdl|antlr4|markdown|joblib|packaging|py|scipy/(_lib/(cobyqa|pyprima)|odr|fftpack)'
 later+='|numba/cuda|numpy/(distutils|f2py)|scipy/(stats|optimize|signal|sparse|integrate|interpolate|spatial|io|cluster|constants)'
 later+='|matplotlib/backends|imageio/plugins|skimage/(feature|measure|morphology|transform|filters)|mpl_toolkits)/'
 install --require-hashes "${requirements[@]}"
