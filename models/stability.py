@@ -150,11 +150,14 @@ def _exposures() -> list[Case]:
     """Currents, noise and wells far beyond the working range."""
     pair = np.stack([np.full((8, 12), 0.5), np.full((8, 12), 0.4)])
     full = ElectricalParameters(read_noise=0, offset_fpn=0, column_fpn=0, flicker_noise=0)
+    usual, many = ElectricalParameters(), 5 * 100.0  # sigmas of 100 times the noise
+    still = np.sqrt(usual.read_noise**2 + usual.offset_fpn**2 + usual.column_fpn**2 + usual.flicker_noise**2)
+    far = float(np.ceil(many * still / usual.lsb_electrons))
     cases = (
         ("saturated scene", pair * 40, full, AmpTiming(), 0.0, 127.5, 127.5),
         ("saturated scene, 255 common-mode resets", pair * 40, full, AmpTiming(n_cm=255), 0.0, 0, 127.5),
         ("black scene, no noise", pair * 0, full, AmpTiming(), 0.0, 0, 0.001),
-        ("noise 100 times physical, dim scene", pair * 1e-3, ElectricalParameters(), AmpTiming(), 100.0, -60, 120),
+        ("noise 100 times physical, dim scene", pair * 1e-3, usual, AmpTiming(), 100.0, -far, far),
         ("denormal currents", pair * 1e-310, full, AmpTiming(), 1.0, 0, 0.1),
         ("currents of 1e30", pair * 1e30, full, AmpTiming(), 100.0, 0, 127.5),
         (
