@@ -38,8 +38,8 @@ class Tradeoff:
 def tradeoff(name: str, *, quick: bool = False) -> Tradeoff:
     """Measure one of the trade-offs of `make tradeoff`.
 
-    name: divider, threshold, exposure, light, lens, views, pupil, precision, noise, light_field, light_field_sensor,
-    depth or polarization. quick: fewer points of a smaller array. Raises ParameterError, ToolError.
+    name: divider, threshold, fixed_pattern, exposure, light, lens, views, pupil, precision, noise, light_field,
+    light_field_sensor, depth or polarization. quick: fewer points of a smaller array. Raises ParameterError, ToolError.
     """
     check_choice("name", name, list(SWEEPS))
     rows = measured(name, quick)

@@ -207,7 +207,7 @@ VIEWS = np.linspace(0, 1, 3 * 3 * 4 * 6).reshape(3, 3, 4, 6)
         (lambda: talbot.Sensor(rowz=3), r"rowz = 3: must be a parameter of a sensor; did you mean rows\?"),
         (lambda: talbot.Sensor(m=2), r"optics.m = 2: must be a number in \[0, 1\] \(Modulation depth"),
         (lambda: talbot.PixelType(beta=18, gamma_deg=0, alpha=7), r"alpha = 7: must be .* in .-6.2832, 6.2832. rad"),
-        (lambda: talbot.Sensor(converter="good"), "converter = 'good': must be one of typical, ideal"),
+        (lambda: talbot.Sensor(converter="good"), "converter = 'good': must be one of circuit, ideal"),
         (lambda: talbot.Sensor(tile=[[]]), "tile cols = 0: must be an integer in 1..6"),
         (lambda: talbot.Sensor().golden("coins", treshold=3), r"treshold = 3: must be .*; did you mean threshold\?"),
         (lambda: talbot.Sensor().golden("coins", timing={"t_i": 3}), "t_i must be one of its keys"),
@@ -283,7 +283,7 @@ def test_a_light_field_by_every_method(monkeypatch):
     found, disparity = run.reconstruct("disparity"), run.result.exposed.scene.disparity
     sure = ~np.isnan(found)
     constant = np.abs(disparity - disparity.mean())[sure].mean()
-    assert sure.mean() > 0.5 and np.abs(found - disparity)[sure].mean() < constant / 2
+    assert sure.mean() > 0.5 and np.abs(found - disparity)[sure].mean() < 0.6 * constant
     for what, method, said in (("light_field", "best", ", ".join(METHODS)), ("image", "linear", "left out")):
         with pytest.raises(talbot.ParameterError, match=f"method = '{method}': must be .*{said}"):
             run.reconstruct(what, method=method)
