@@ -39,7 +39,7 @@ class Solver:
         Relative residual at which the iteration ends, 0..1.
     """
 
-    smoothness: float = 1e-3
+    smoothness: float = 3e-3
     iterations: int = 20
     tolerance: float = 1e-3
 

@@ -430,7 +430,7 @@ def test_area_counts_lanes_and_divider():
 
 VALUES = {"array.rows": 96, "chip.lanes": 4, "tile.types": "12+24/2", "exposure": 0.5, "chip.f_clk": 10e6}
 POINTS = {
-    "edges": VALUES | {"threshold": 4, "optics.camera.f_number": 1.2, "electrical.difference_gain": 4.0},
+    "edges": VALUES | {"threshold": 10, "optics.camera.f_number": 1.2, "electrical.difference_gain": 4.0},
     "lightfield": VALUES,
     "polarization": {"array.rows": 96, "chip.lanes": 4, "tile.types": TILES[-1], "exposure": 0.5},
     "depth": {
