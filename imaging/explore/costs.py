@@ -60,7 +60,8 @@ def least(requests: Sequence[FrameRequest]) -> dict[str, float]:
         taps, read = 4 if frame.mode == "tof" else 1, int(scan.read.sum())
         rows, columns = len(scan.row_list), int(scan.read.any(0).sum())
         samples = read * SAMPLES_PER_PIXEL[frame.mode]
-        decisions = samples * (WINDOW if frame.mode == "edge" and frame.threshold else DECISIONS)
+        windowed = frame.mode == "ternary" or frame.mode == "edge" and frame.threshold
+        decisions = samples * (WINDOW if windowed else DECISIONS)
         digital = DigitalEvents(cycles, rows, samples, decisions)
         spent = cycles / sensor.chip.f_clk
         events = Events(rows * sensor.array.cols * taps, rows * columns * taps, spent, decisions, 0, digital)

@@ -14,7 +14,7 @@ from talbot.imaging.frame.result import FrameResult, GoldenResult
 from talbot.models.afe.trim import TRIM_MAX, TRIM_MIN
 from talbot.models.chip import GoldenFrame
 from talbot.models.digital.exposure import integration_cycles, slot_cycles
-from talbot.models.parameters import ELEMENTARY_CHARGE, EnergyParameters, LightParameters
+from talbot.models.parameters import ELEMENTARY_CHARGE, SIGNED, EnergyParameters, LightParameters
 from talbot.models.parameters.energy import DECISIONS, EYE_LIMIT, WINDOW, DigitalEvents, Events
 from talbot.models.parameters.stream_format import HEADER_BYTES, MARK, TRAILER_BYTES
 
@@ -67,12 +67,13 @@ def energy_of(result: FrameResult) -> dict[str, float]:
     out["total"], out["total_high"] = (1e6 * total for total in energy.total(events))
     if (source := light_of(result)) is not None:
         out["light"] = 1e6 * source["power_w"] * source["lit_s"]
-    if request.frame.mode != "edge":
+    if request.frame.mode not in SIGNED:
         return out
     plain = image_mode(events, result.golden.samples)
     out["image_mode"], out["image_mode_high"] = (1e6 * total for total in energy.total(plain))
     out["saved_by_edge"] = 1e6 * (_by_sample(plain) - _by_sample(events))
-    out["edge_pays_below"] = edge_pays_below(events, result.golden.made)
+    if request.frame.mode == "edge":
+        out["edge_pays_below"] = edge_pays_below(events, result.golden.made)
     return out
 
 

@@ -3,6 +3,8 @@
 from collections.abc import Callable
 from typing import Any
 
+from talbot.models.parameters import SIGNED
+
 IMAGES = {"_gray": "flat gray", "_sum": "sum image", "_jpeg": "JPEG", "_avif": "AVIF", "_jpegxl": "JPEG XL"}
 Summary = dict[str, Any]
 
@@ -54,7 +56,7 @@ def light_field(s: Summary) -> str:
 def table(s: Summary) -> list[tuple[str, str, str]]:
     """Return name, figure and baseline of each figure of the mode, in the report's order."""
     rows = [("SNR of the samples", decibels(s["snr_db"]), nothing_sent(s))]
-    if s["mode"] == "edge":
+    if s["mode"] in SIGNED:
         share = percent(s["edge_share"])
         rows += [
             ("edges among the samples sent (precision)", percent(s["edge_precision"]), f"of all samples: {share}"),

@@ -17,9 +17,9 @@ from talbot.imaging.frame.figures import depth_line
 from talbot.imaging.frame.merit import against, decibels, light_field
 from talbot.imaging.frame.quality import Values, decoding_error, depth_error, depth_map, image_error, part_read
 from talbot.imaging.frame.report import Views, render
-from talbot.imaging.frame.result import FrameResult, GoldenResult
+from talbot.imaging.frame.result import FrameResult, GoldenResult, in_codes
 from talbot.imaging.simulate.frame import WAVES
-from talbot.models.parameters import STANDARD, EnergyParameters, LightParameters, sensor_text, sources
+from talbot.models.parameters import SIGNED, STANDARD, EnergyParameters, LightParameters, sensor_text, sources
 from talbot.models.parameters.drawn import drawn_sources
 from talbot.models.parameters.sources import Sourced
 
@@ -80,9 +80,9 @@ def shown(result: GoldenResult, summary: dict[str, Any]) -> list[Picture]:
     """Return the single pictures of the mode."""
     frame, golden, decoded, scene = result.request.frame, result.golden, result.decoded, result.exposed.scene
     out = [_gray("scene", "the scene, centre view", scene.image, 0.0, pictures.brightest(scene.image))]
-    samples = decoded.samples.astype(float)
+    samples = in_codes(decoded.samples, frame).astype(float)
     converted = "which pixels were converted (yellow), unread (light)"
-    if frame.mode == "edge":
+    if frame.mode in SIGNED:
         scale, rebuilt = max(float(np.abs(samples).max()), 1.0), result.rebuilt
         caption = "decoded differences, pixel by pixel (blue negative, red positive)"
         out.append(_signed("differences", caption, samples[..., 0], scale, "codes"))
@@ -98,6 +98,8 @@ def shown(result: GoldenResult, summary: dict[str, Any]) -> list[Picture]:
     else:
         caption = f"2-D image, the sum of each pair: {against(summary)}"
         out.append(_gray("image", caption, *_within(result, result.image, 0.0, pictures.brightest(result.image))))
+    if frame.mode == "ternary":  # which converts nothing
+        return out
     decisions = pictures.decisions(golden.read, np.any(golden.converted, axis=2))
     return [*out, Picture("conversions", "", converted, decisions)]
 
@@ -106,7 +108,7 @@ def error_maps(result: GoldenResult, summary: dict[str, Any]) -> list[Picture]:
     """Errors of the single pictures; title: the name of the picture that it is of."""
     frame, decoded, golden = result.request.frame, result.decoded, result.golden
     out = []
-    if frame.mode == "edge":
+    if frame.mode in SIGNED:
         error = np.full(golden.read.shape, np.nan)
         error[result.counted] = decoding_error(decoded.samples, result.exposed.ideal, result.counted, frame)[:, 0]
         caption = "error of the decoded differences: less those without noise, window and rounding; "
@@ -159,7 +161,7 @@ def _within(result: GoldenResult, image: Values, low: float, high: float) -> tup
 def _sheets(result: GoldenResult) -> list[Picture]:
     """Return the contact sheets of the mode."""
     sensor, frame = result.request.sensor, result.request.frame
-    if frame.mode not in ("edge", "raw"):
+    if frame.mode not in (*SIGNED, "raw"):
         return []
     edges = result.edges
     caption = "one a pixel type, every sample of the tile grid: beta and gamma of the grating, "

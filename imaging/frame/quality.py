@@ -13,10 +13,10 @@ from PIL import __version__ as VERSION
 
 from talbot.base.kept import kept
 from talbot.imaging.frame.codecs import CODECS, absent, coded
-from talbot.imaging.frame.result import GoldenResult
+from talbot.imaging.frame.result import GoldenResult, in_codes
 from talbot.models.capture import cells
 from talbot.models.chip import golden_frame
-from talbot.models.parameters import FrameParameters
+from talbot.models.parameters import SIGNED, FrameParameters
 from talbot.models.pixel import depth_of
 from talbot.models.reconstruct import psnr_db, psnr_without_mean_db, sum_image
 
@@ -43,7 +43,7 @@ def decoding_error(samples: Codes, ideal: Values, read: npt.NDArray[np.bool_], f
 
     The error of a phase is the short way round, and 0 where the chip marks it as not valid (amplitude 0).
     """
-    error = samples[read] - ideal_samples(ideal, frame)[read]
+    error = in_codes(samples[read], frame) - ideal_samples(ideal, frame)[read]
     if frame.phase:
         error[:, 0] = np.mod(error[:, 0] + TURN / 2, TURN) - TURN / 2
         error[samples[read][:, 1] == 0] = 0
@@ -68,7 +68,7 @@ def sent_quality(result: GoldenResult) -> dict[str, float | None]:
         phases = {"phase_rms_turns": turns, "phase_valid": float(valid.mean()) if valid.size else None}
         ideal, error = ideal[:, 1:], error[:, 1:]
     # Edges are about zero; of other samples a receiver could know the mean without any byte.
-    nothing = np.zeros(1) if frame.mode == "edge" else ideal.mean(0) if ideal.size else np.zeros(1)
+    nothing = np.zeros(1) if frame.mode in SIGNED else ideal.mean(0) if ideal.size else np.zeros(1)
     signal = ideal - nothing
     figures = {"snr_db": snr(error, signal), "snr_nothing_sent_db": snr(nothing - ideal, signal)}
     return {**figures, **_edges(samples[read], result.exposed.ideal[read], frame), **phases}
@@ -76,7 +76,7 @@ def sent_quality(result: GoldenResult) -> dict[str, float | None]:
 
 def _edges(sent: Codes, ideal: Values, frame: FrameParameters) -> dict[str, float | None]:
     names = ("edge_precision", "edge_recall", "edge_share", "edge_energy_kept")
-    if frame.mode != "edge":
+    if frame.mode not in SIGNED:
         return dict.fromkeys(names)
     detected, true = sent != 0, np.abs(np.rint(ideal)) >= max(frame.threshold, 1)
     both, energy = int((detected & true).sum()), float(np.sum(ideal**2))

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -15,7 +15,7 @@ from talbot.models.afe import FrontEnd
 from talbot.models.capture import Views
 from talbot.models.chip import GoldenFrame
 from talbot.models.digital.stream.frame import DecodedFrame
-from talbot.models.parameters import SensorParameters
+from talbot.models.parameters import SIGNED, FrameParameters, SensorParameters
 from talbot.models.pixel.time_of_flight import quadrature
 from talbot.models.plan import Plan
 from talbot.models.reconstruct import edge_images, rebuild, sum_image
@@ -46,6 +46,14 @@ class Exposed:
     clean: npt.NDArray[np.float64]
     ideal: npt.NDArray[np.float64]
     full: npt.NDArray[np.bool_]
+
+
+SIGN = 1.7  # thresholds that a sign counts as: the mean of codes above 5 to 20 on usual scenes is 1.4 to 2.3
+
+
+def in_codes(samples: npt.NDArray[Any], frame: FrameParameters) -> npt.NDArray[Any]:
+    """Return decoded samples in codes: in ternary mode a sign is an estimate of one, `SIGN` thresholds."""
+    return samples * (SIGN * max(frame.threshold, 1)) if frame.mode == "ternary" else samples
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,23 +90,24 @@ class GoldenResult:
     @cached_property
     def rebuilt(self) -> Rebuilt:
         """The 2-D image rebuilt from the decoded edges and the scene's disparity."""
-        exposed, edges = self.exposed, self.decoded.samples[..., 0]
+        exposed, edges = self.exposed, in_codes(self.decoded.samples, self.request.frame)[..., 0]
         trim, timing = exposed.front_end.trim, self.request.frame.exposing
         read = self.decoded.read & ~exposed.full
         return kept("rebuilt", rebuild, edges, read, exposed.scene, self.sensor, trim, timing)
 
     @property
     def edges(self) -> npt.NDArray[np.float64]:
-        """One image of decoded differences a pixel type, in codes, (types, tile rows, tile cols); edge and raw mode."""
-        samples = self.decoded.samples.astype(float)
-        difference = samples[..., 0] if self.request.frame.mode == "edge" else samples[..., 0] - samples[..., 1]
+        """One image of decoded differences a pixel type, in codes, (types, tile rows, tile cols); not of sums."""
+        frame = self.request.frame
+        samples = in_codes(self.decoded.samples, frame).astype(float)
+        difference = samples[..., 0] if frame.mode in SIGNED else samples[..., 0] - samples[..., 1]
         return edge_images(difference, self.request.sensor.tile)
 
     @cached_property
     def image(self) -> npt.NDArray[np.float64]:
         """The 2-D image of the mode, relative radiance: rebuilt from edges, or from sums, or the taps' amplitude."""
         frame, sensor, samples = self.request.frame, self.request.lit, self.decoded.samples.astype(float)
-        if frame.mode == "edge":
+        if frame.mode in SIGNED:
             return self.rebuilt.image
         if frame.mode == "tof":
             # Amplitude is half the difference of two taps that see a wave of half the light, times the contrast.

@@ -8,6 +8,7 @@ import numpy as np
 from talbot.imaging.frame.figures import energy_of, exposure_of, mismatches
 from talbot.imaging.frame.quality import decoding_error, ideal_samples, snr
 from talbot.imaging.frame.result import FrameResult
+from talbot.models.parameters import SIGNED
 
 
 def of_frame(result: FrameResult) -> dict[str, Any]:
@@ -15,7 +16,7 @@ def of_frame(result: FrameResult) -> dict[str, Any]:
     golden, chip, frame, ideal = result.golden, result.chip, result.request.frame, result.exposed.ideal
     error = decoding_error(result.decoded.samples, ideal, result.counted, frame)
     signal = ideal_samples(ideal, frame)[result.counted]
-    signal = signal if frame.mode == "edge" else signal - signal.mean(0)
+    signal = signal if frame.mode in SIGNED else signal - signal.mean(0)
     energy = energy_of(result)
     return {
         "frame_number": frame.frame_number,

@@ -22,13 +22,19 @@ from talbot.imaging.frame.job import Clock
 from talbot.imaging.frame.merit import decibels
 from talbot.imaging.frame.report import agreement
 from talbot.imaging.frame.request import FrameRequest
-from talbot.imaging.frame.result import FrameResult
+from talbot.imaging.frame.result import FrameResult, in_codes
 from talbot.imaging.sequence.figures import of_all, of_frame
 from talbot.imaging.sequence.job import results
-from talbot.models.parameters import sensor_text
+from talbot.models.parameters import SIGNED, sensor_text
 from talbot.models.scene import Clip
 
-ANIMATIONS = {"edge": "edges.webp", "raw": "edges.webp", "image": "image.webp", "tof": "image.webp"}
+ANIMATIONS = {
+    "edge": "edges.webp",
+    "ternary": "edges.webp",
+    "raw": "edges.webp",
+    "image": "image.webp",
+    "tof": "image.webp",
+}
 NAMES = ("stream.bin", "sensor.toml", "scene.png", "report.html", "summary.json", *ANIMATIONS.values())
 SCALE = 64.0  # codes of full colour: the same in all frames
 WIDTH = 384  # px of the animation at least
@@ -75,8 +81,8 @@ def run(
 def picture(result: FrameResult, figures: Mapping[str, Any], number: str) -> Image.Image:
     """Return a frame of the animation: what the chip sent, and its figures below."""
     samples, mode = result.decoded.samples, result.request.frame.mode
-    if mode == "edge":
-        image = pictures.signed_codes(samples[..., 0], SCALE)
+    if mode in SIGNED:
+        image = pictures.signed_codes(in_codes(samples, result.request.frame)[..., 0], SCALE)
     elif mode == "raw":
         image = pictures.signed_codes(samples[..., 0] - samples[..., 1], SCALE)
     else:

@@ -8,7 +8,7 @@ import numpy.typing as npt
 from talbot.models.afe.converter import Converter
 from talbot.models.afe.trim import trim_gain
 from talbot.models.digital.sar import Conversion, convert
-from talbot.models.parameters import MODES, ParameterError, TileParameters, check_choice, check_int, check_real
+from talbot.models.parameters import MODES, SIGNED, ParameterError, TileParameters, check_choice, check_int, check_real
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,7 +57,7 @@ class FrontEnd:
         samples : float64 (taps, rows, cols, 2)
             Diodes a and b of every pixel, a + b = 255 when both wells are full.
         mode : str
-            edge: gain * (a - b * g); image: a + b; raw: 2 a and 2 b; tof: a + b of each tap.
+            edge and ternary: gain * (a - b * g); image: a + b; raw: 2 a and 2 b; tof: a + b of each tap.
 
         Returns
         -------
@@ -78,7 +78,7 @@ class FrontEnd:
         if not np.isfinite(samples).all():
             raise ParameterError("samples = nan or infinity: must be finite")
         a, b = samples[0, ..., 0], samples[0, ..., 1]
-        if mode == "edge":
+        if mode in SIGNED:
             g = trim_gain(self.trim)[self.tile.type_map(*a.shape)]
             return (self.gain * (a - b * g))[None]
         if mode == "image":
@@ -100,7 +100,7 @@ class FrontEnd:
         mode : str
             One of MODES.
         threshold : int
-            0..127 codes; edge mode only.
+            0..127 codes; edge and ternary mode.
 
         Returns
         -------
@@ -113,8 +113,9 @@ class FrontEnd:
             As in `values`, and for a threshold out of range.
         """
         v = self.values(samples, mode)
+        unsigned = mode not in SIGNED
         if self.converter is not None:
-            v = self.converter.amplified(v, mode != "edge")
+            v = self.converter.amplified(v, unsigned)
         lane = np.arange(v.shape[2]) // self.tile.cols % self.lanes
         index = np.arange(v.size).reshape(v.shape)
-        return convert(v, mode != "edge", threshold, self.converter, lane, index)
+        return convert(v, unsigned, threshold, self.converter, lane, index, mode == "ternary")

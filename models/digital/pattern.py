@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from talbot.models.digital.sar import BIPOLAR, Conversion, convert
-from talbot.models.parameters import SAMPLES_PER_PIXEL, TileParameters
+from talbot.models.parameters import SAMPLES_PER_PIXEL, SIGNED, TileParameters
 
 
 def pattern_value(
@@ -26,7 +26,7 @@ def pattern_value(
     Returns
     -------
     int64
-        0..255 (offset binary in edge mode), of the broadcast shape.
+        0..255 (offset binary in edge and ternary mode), of the broadcast shape.
     """
     y, t, x, s = (np.asarray(place, np.int64) for place in (row, tile, k, sub))
     ramp = (3 * y + 5 * t + 40 * x + 37 * s) & 0xFF
@@ -65,7 +65,7 @@ class PatternEnd:
         """
         sub, row, col = np.ogrid[: SAMPLES_PER_PIXEL[mode], : self.rows, : self.cols]
         value = pattern_value(row, col // self.tile.cols, col % self.tile.cols, sub).astype(np.float64)
-        return value - BIPOLAR if mode == "edge" else value
+        return value - BIPOLAR if mode in SIGNED else value
 
     def convert(self, samples: npt.ArrayLike, mode: str, threshold: int = 0) -> Conversion:
         """Convert a whole frame.
@@ -84,4 +84,4 @@ class PatternEnd:
         Conversion
             Of arrays (subs, rows, cols).
         """
-        return convert(self.values(mode), mode != "edge", threshold)
+        return convert(self.values(mode), mode not in SIGNED, threshold, ternary=mode == "ternary")

@@ -23,7 +23,7 @@ class Conversion(NamedTuple):
     codes : int16
         -128..127 or 0..255.
     converted : bool
-        False where the window comparison alone gives the zero.
+        False where the window comparison alone gives the code.
     decisions : uint8
         Comparator decisions of each sample.
     """
@@ -40,19 +40,34 @@ class _Lanes(Protocol):
         self, v: npt.NDArray[np.float64], unsigned: bool, window: int, lane: npt.ArrayLike, index: npt.ArrayLike
     ) -> tuple[npt.NDArray[np.int16], npt.NDArray[np.bool_]]: ...
 
+    def held(self, v: npt.ArrayLike, lane: npt.ArrayLike, index: npt.ArrayLike) -> npt.NDArray[np.float64]: ...
 
-def decisions(unsigned: bool, threshold: int) -> Generator[int, bool, tuple[int, bool]]:
+    def compare(
+        self,
+        held: npt.NDArray[np.float64],
+        dac: npt.ArrayLike,
+        unsigned: bool,
+        lane: npt.ArrayLike,
+        index: npt.ArrayLike,
+        decision: int,
+    ) -> npt.NDArray[np.bool_]: ...
+
+
+def decisions(unsigned: bool, threshold: int, ternary: bool = False) -> Generator[int, bool, tuple[int, bool]]:
     """Yield the DAC codes of a conversion; expects the comparator's decision on each.
 
     Edge mode (not unsigned) with a threshold T first compares v >= level(T) and v >= level(1 - T). Then follow 8
-    decisions, MSB first. A code that is inside the window after these is set to zero.
+    decisions, MSB first. A code that is inside the window after these is set to zero. Ternary mode makes the first two
+    alone, whatever the threshold.
 
     Parameters
     ----------
     unsigned : bool
         Codes 0..255 without a window, else -128..127 with it.
     threshold : int
-        T, 0..127; 0 converts every sample.
+        T, 0..127; 0 converts every sample of edge mode.
+    ternary : bool
+        Codes -1, 0 and 1; not with ``unsigned``.
 
     Yields
     ------
@@ -64,12 +79,14 @@ def decisions(unsigned: bool, threshold: int) -> Generator[int, bool, tuple[int,
     code : int
         -128..127 or 0..255.
     converted : bool
-        False where the window comparison alone gives the zero.
+        False where the window comparison alone gives the code.
     """
     window = 0 if unsigned else threshold
-    if window:
+    if window or ternary:
         above = yield BIPOLAR + window
         not_below = yield BIPOLAR + 1 - window
+        if ternary:
+            return (1 if above else 0 if not_below else -1), False
         if not_below and not above:
             return 0, False
     dac = 0
@@ -87,6 +104,7 @@ def convert(
     converter: _Lanes | None = None,
     lane: npt.ArrayLike = 0,
     index: npt.ArrayLike = 0,
+    ternary: bool = False,
 ) -> Conversion:
     """Convert held values.
 
@@ -97,13 +115,15 @@ def convert(
     unsigned : bool
         Codes 0..255 without a window, else -128..127 with it.
     threshold : int
-        0..127; samples of a smaller magnitude become exact zeros; 0 converts every sample.
+        0..127; samples of a smaller magnitude become exact zeros; 0 converts every sample of edge mode.
     converter : models.afe.Converter, optional
         Imperfect lanes; None is ideal ones.
     lane : array of int
         Lane of each sample, 0..lanes-1, broadcastable to ``v``.
     index : array of int
         Number of each sample, for its noise, broadcastable to ``v``.
+    ternary : bool
+        Codes -1, 0 and 1 by the window comparison alone; not with ``unsigned``.
 
     Returns
     -------
@@ -120,6 +140,9 @@ def convert(
     if not np.isfinite(v).all():
         raise ParameterError("v = nan or infinity: must be finite")
     window = 0 if unsigned else threshold
+    if ternary:
+        codes = _signs(v, window, converter, lane, index)
+        return Conversion(codes, np.zeros(v.shape, bool), np.full(v.shape, 2, np.uint8))
     if converter is None:
         codes, converted = _ideal(v, unsigned, window)
     else:
@@ -128,6 +151,19 @@ def convert(
     first = 2 if window else 0
     taken = np.where(converted, first + BITS, first).astype(np.uint8)
     return Conversion(codes.reshape(v.shape), converted.reshape(v.shape), taken.reshape(v.shape))
+
+
+def _signs(
+    v: npt.NDArray[np.float64], window: int, converter: _Lanes | None, lane: npt.ArrayLike, index: npt.ArrayLike
+) -> npt.NDArray[np.int16]:
+    """-1, 0 or 1: the first two decisions on each value."""
+    if converter is None:
+        above, not_below = v >= window - 0.5, v >= 0.5 - window
+    else:
+        held = converter.held(v, lane, index)
+        above = converter.compare(held, BIPOLAR + window, False, lane, index, 0)
+        not_below = converter.compare(held, BIPOLAR + 1 - window, False, lane, index, 1)
+    return np.where(above, 1, np.where(not_below, 0, -1)).astype(np.int16)
 
 
 def _ideal(

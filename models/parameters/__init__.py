@@ -22,9 +22,11 @@ from talbot.models.parameters.frame import (
     MODES,
     SAMPLES_PER_PIXEL,
     SHORT_TIMING,
+    SIGNED,
     AmpTiming,
     FrameParameters,
     Window,
+    mode_of,
 )
 from talbot.models.parameters.optics import OpticsParameters
 from talbot.models.parameters.room import RoomParameters
@@ -53,6 +55,7 @@ __all__ = [
     "SAMPLES_PER_PIXEL",
     "SPI_INPUTS",
     "SHORT_TIMING",
+    "SIGNED",
     "STANDARD",
     "AmpTiming",
     "ArrayParameters",
@@ -80,6 +83,7 @@ __all__ = [
     "drawn_curves",
     "drawn_electrical",
     "drawn_lines",
+    "mode_of",
     "read_sensor",
     "sensor_of",
     "sensor_text",

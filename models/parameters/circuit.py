@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from talbot.models.parameters.checks import ParameterError, check_real
 from talbot.models.parameters.electrical import ConverterParameters, ElectricalParameters
+from talbot.models.parameters.frame import SIGNED
 
 TABLE = Path(__file__).with_name("circuit.json")
 DIODE = 127.5  # LSB of a diode whose well is full
@@ -152,7 +153,7 @@ class ColumnCurves:
         diodes : ndarray
             (taps, rows, cols, 2) in LSB, DIODE where a well is full.
         mode : str
-            edge and raw: of each diode; image and tof: of sums.
+            edge, ternary and raw: of each diode; image and tof: of sums.
 
         Returns
         -------
@@ -160,7 +161,7 @@ class ColumnCurves:
             (taps, rows, cols, 2) in LSB.
         """
         fills = diodes / DIODE
-        if mode in ("edge", "raw"):
+        if mode in (*SIGNED, "raw"):
             return DIODE * self.delivered(fills)
         return DIODE * np.concatenate([self.summed(fills[:1]), self.summed(fills[1:], later=True)])
 

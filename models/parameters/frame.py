@@ -4,10 +4,27 @@ from dataclasses import dataclass, fields, replace
 
 from talbot.models.parameters.checks import ParameterError, check_choice, check_int
 
-MODES = ("edge", "image", "raw", "tof")  # in the order of the register's code
-SAMPLES_PER_PIXEL = {"edge": 1, "image": 1, "raw": 2, "tof": 4}
+MODES = ("edge", "image", "raw", "tof", "ternary")  # in the order of the register's code
+SIGNED = ("edge", "ternary")  # of the difference: code 0 at mid-scale, with a zero window
+SAMPLES_PER_PIXEL = {"edge": 1, "image": 1, "raw": 2, "tof": 4, "ternary": 1}
 ALL_TYPES = (1 << 24) - 1
 EXPOSURE_MAX = 1023  # rows
+
+
+def mode_of(code: int) -> str:
+    """Mode that the register's code selects.
+
+    Parameters
+    ----------
+    code : int
+        0..7. The chip decodes bit 2 in edge mode alone: 5 to 7 are as 1 to 3.
+
+    Returns
+    -------
+    str
+        One of MODES.
+    """
+    return MODES[code if code < len(MODES) else code & 3]
 
 
 @dataclass(frozen=True)
@@ -75,11 +92,12 @@ class FrameParameters:
     window : Window
         Tiles to read.
     mode : str
-        'edge' (difference), 'image' (sum), 'raw' (both diodes) or 'tof' (four taps).
+        'edge' (difference), 'image' (sum), 'raw' (both diodes), 'tof' (four taps) or 'ternary' (sign of the
+        difference, or 0).
     mask : int
         Bit t set = pixel type t is read, 1..2**24-1.
     threshold : int
-        0..127 codes; edge mode only; 0 converts every sample.
+        0..127 codes; edge and ternary mode; 0 converts every sample of edge mode.
     decimation : int
         Log2 of the tile step, 0..3 (every 1, 2, 4 or 8 tiles, from the window's corner).
     phase : bool

@@ -2,7 +2,7 @@
 
 from pymtl3 import Component, update, update_ff
 
-from talbot.rtl.adc_bank.ports import declare_ports
+from talbot.rtl.adc_bank.ports import TERNARY, declare_ports
 from talbot.rtl.edge_adc.edge_adc_cl import LaneCycles
 from talbot.rtl.messages import FRAME, SAMPLE, ScanMsg
 
@@ -23,6 +23,7 @@ class AdcBankCL(Component):
                     bool(s.hold & s.en[number]),
                     bool(s.unsigned_),
                     int(s.threshold),
+                    bool(s.mode == TERNARY),
                     bool(s.comparator[number]),
                     number == taken_lane,
                 )
@@ -81,7 +82,7 @@ class AdcBankCL(Component):
 
         @update
         def range_of_dac():
-            s.unsigned_ @= s.mode != 0
+            s.unsigned_ @= s.mode[0:2] != 0
 
     def line_trace(s):
         return f"{s.step} {'h' if s.hold else ' '} {len(s.leaving)} {s.scan}"

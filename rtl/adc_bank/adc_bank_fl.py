@@ -5,7 +5,7 @@ from collections import deque
 from pymtl3 import Component, update_ff
 
 from talbot.models.digital.sar import decisions
-from talbot.rtl.adc_bank.ports import declare_ports
+from talbot.rtl.adc_bank.ports import TERNARY, declare_ports
 from talbot.rtl.messages import FRAME, SAMPLE, ScanMsg
 
 
@@ -22,7 +22,8 @@ class AdcBankFL(Component):
 
         def convert():
             if s.hold:
-                s.runs = {lane: decisions(bool(s.unsigned_), int(s.threshold)) for lane in range(lanes) if s.en[lane]}
+                how = bool(s.unsigned_), int(s.threshold), s.mode == TERNARY
+                s.runs = {lane: decisions(*how) for lane in range(lanes) if s.en[lane]}
                 s.codes[:] = [next(s.runs[lane]) if lane in s.runs else code for lane, code in enumerate(s.codes)]
                 return
             for lane, run in list(s.runs.items()):
@@ -70,7 +71,7 @@ class AdcBankFL(Component):
             s.hold <<= starts
             s.step.rdy <<= not (starts or s.runs)
             s.idle <<= not (starts or s.runs)
-            s.unsigned_ <<= s.mode != 0
+            s.unsigned_ <<= s.mode[0:2] != 0
             s.dac <<= sum(code << 8 * lane for lane, code in enumerate(s.codes))
             s.scan.val <<= bool(s.queue)
             if s.queue:

@@ -6,7 +6,7 @@ sent while the next step converts.
 
 from pymtl3 import Bits1, Bits2, Bits8, Bits10, Component, InPort, OutPort, Wire, concat, mk_bits, update, update_ff
 
-from talbot.rtl.adc_bank.ports import declare_ports
+from talbot.rtl.adc_bank.ports import TERNARY, declare_ports
 from talbot.rtl.edge_adc import EdgeAdc
 from talbot.rtl.messages import FRAME, SAMPLE
 from talbot.rtl.sizes import check_size
@@ -51,6 +51,7 @@ class AdcBank(Component):
         s.mark_row = Wire(Bits10)
         s.remaining = Wire(Lanes)  # lanes of the draining step whose results are not sent
 
+        s.ternary = Wire()
         s.go = Wire(Lanes)
         s.free = Wire(Lanes)
         s.busy = Wire(Lanes)
@@ -71,6 +72,7 @@ class AdcBank(Component):
             lane.go //= s.go[i]
             lane.unsigned_ //= s.unsigned_
             lane.threshold //= s.threshold
+            lane.ternary //= s.ternary
             lane.comparator //= s.comparator[i]
             lane.dac //= s.dac[8 * i : 8 * i + 8]
             lane.free //= s.free[i]
@@ -88,7 +90,8 @@ class AdcBank(Component):
         # Logic: accept a step
         @update
         def status():
-            s.unsigned_ @= s.mode != 0
+            s.unsigned_ @= s.mode[0:2] != 0
+            s.ternary @= s.mode == TERNARY
             s.idle @= ~s.hold & (s.busy == 0)
             s.step.rdy @= ~s.hold & ~s.at_pins & (s.free == ~Lanes(0))
             s.go @= s.en if s.hold else Lanes(0)

@@ -6,7 +6,6 @@ from typing import Any
 from pymtl3 import Component, Wire, connect, update, update_ff
 
 from talbot.models.parameters import (
-    MODES,
     NO_DIVIDER,
     AmpTiming,
     ArrayParameters,
@@ -16,6 +15,7 @@ from talbot.models.parameters import (
     SensorParameters,
     TileParameters,
     Window,
+    mode_of,
 )
 from talbot.models.parameters.registers import register_map
 from talbot.rtl.amp_ctrl.ports import TIMING
@@ -29,7 +29,7 @@ def frame_of(cfg: Any, has_phase: bool = True) -> FrameParameters:
 
     Raises ParameterError if the frame is invalid.
     """
-    mode = MODES[int(cfg.mode)]
+    mode = mode_of(int(cfg.mode))
     return FrameParameters(
         Window(*(int(getattr(cfg, name)) for name in ("row0", "row1", "col0", "col1"))),
         mode,
@@ -63,7 +63,7 @@ class AspChipFL(Component):
         s.regs = RegFileFL(rows, cols, lanes, tile_rows, tile_cols, divider)
         for name in ("sclk", "csn", "mosi", "miso"):
             connect(getattr(s, name), getattr(s.regs, name))
-        s.mode //= s.regs.cfg.mode
+        s.mode //= s.regs.cfg.mode[0:2]
 
         types = TileParameters().types[: tile_rows * tile_cols]
         s.sensor = SensorParameters(

@@ -24,7 +24,8 @@ from talbot.rtl.run_length import RunLength
 
 PHASES = ("pixel_reset", "shutter", "ref_ctl", "integrate", "expose", "cm_reset", "read", "sample", "tap")
 ADDRESS = ("row", "group", "k", "sub", "en")
-WINDOW = ("mode", "mask", "row0", "row1", "col0", "col1", "decimation")
+WINDOW = ("mask", "row0", "row1", "col0", "col1", "decimation")
+HEADER = ("mode", "threshold", "frame_number", "resync", "exposure", "n_cm", "t_int", "calibration")
 TOF = 3
 
 
@@ -88,6 +89,7 @@ class AspChip(Component):
         s.seq.amp_done //= s.amp.done
         s.seq.amp_err //= s.amp.cfg_err
         s.seq.bank_idle //= s.bank.idle
+        s.seq.mode //= cfg.mode[0:2]
         for name in WINDOW:
             connect(getattr(s.seq, name), getattr(cfg, name))
 
@@ -107,7 +109,7 @@ class AspChip(Component):
         s.bank.comparator //= s.generator.comparator
         for name in (*ADDRESS, "dac", "unsigned_"):
             connect(getattr(s, name), getattr(s.bank, name))
-        s.mode //= cfg.mode
+        s.mode //= cfg.mode[0:2]
 
         s.generator.on //= cfg.test_pattern
         s.generator.row //= s.bank.row[0:8]
@@ -135,7 +137,17 @@ class AspChip(Component):
         s.encoder.phase //= s.phase_on
         s.encoder.made //= s.bank.made
         s.encoder.left_out //= s.bank.left_out
-        for name in (*WINDOW, "threshold", "frame_number", "resync", "exposure", "n_cm", "t_int", "calibration"):
+        for name in (
+            *WINDOW,
+            "mode",
+            "threshold",
+            "frame_number",
+            "resync",
+            "exposure",
+            "n_cm",
+            "t_int",
+            "calibration",
+        ):
             connect(getattr(s.encoder, name), getattr(cfg, name))
 
         s.link.loop_enable //= cfg.loop_enable
@@ -179,7 +191,7 @@ class AspChip(Component):
 
             @update
             def up_phase():
-                s.phase_on @= s.regs.cfg.phase & (s.regs.cfg.mode == TOF)
+                s.phase_on @= s.regs.cfg.phase & (s.regs.cfg.mode[0:2] == TOF)
 
         @update
         def up_selected():

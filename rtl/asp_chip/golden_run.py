@@ -11,7 +11,7 @@ from talbot.models.digital.phase import phase_samples
 from talbot.models.digital.sar import decisions
 from talbot.models.digital.scan import Scan, Step
 from talbot.models.digital.stream import StreamHeader, encode_frame
-from talbot.models.parameters import FrameParameters, SensorParameters
+from talbot.models.parameters import SIGNED, FrameParameters, SensorParameters
 
 
 def idle_pins() -> dict[str, int]:
@@ -79,12 +79,13 @@ class GoldenRun:
         tiles = {
             lane: self.scan.lanes * step.group + lane for lane in range(self.scan.lanes) if step.enable >> lane & 1
         }
-        searches = {lane: decisions(frame.mode != "edge", frame.threshold) for lane in tiles}
+        how = frame.mode not in SIGNED, frame.threshold, frame.mode == "ternary"
+        searches = {lane: decisions(*how) for lane in tiles}
         trial = {lane: next(search) for lane, search in searches.items()}
         kind = tile.order[tile.cols * (step.row % tile.rows) + step.k]
         self.pins.update(
             hold=1,
-            unsigned_=int(frame.mode != "edge"),
+            unsigned_=int(how[0]),
             row=step.row,
             group=step.group,
             k=step.k,

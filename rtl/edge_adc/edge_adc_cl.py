@@ -19,7 +19,7 @@ class LaneCycles:
         self.result = None
         self.dac = 0
 
-    def tick(self, go: bool, unsigned: bool, threshold: int, comparator: bool, taken: bool) -> None:
+    def tick(self, go: bool, unsigned: bool, threshold: int, ternary: bool, comparator: bool, taken: bool) -> None:
         """End a cycle with these inputs, in which ``result`` was ``taken`` or not."""
         startable = not self.busy or (self.left == 1 and self.result is None)
         if taken:
@@ -33,8 +33,8 @@ class LaneCycles:
         if self.waiting is not None and self.result is None:
             self.result, self.waiting = self.waiting, None
         if go and startable:
-            self.run = decisions(unsigned, threshold)
-            self.left = BITS + (2 if threshold and not unsigned else 0)
+            self.run = decisions(unsigned, threshold, ternary)
+            self.left = BITS + (2 if ternary or threshold and not unsigned else 0)
             self.dac = next(self.run)
 
     @property
@@ -63,7 +63,12 @@ class EdgeAdcCL(Component):
                 s.converted <<= 0
             else:
                 s.lane.tick(
-                    bool(s.go), bool(s.unsigned_), int(s.threshold), bool(s.comparator), bool(s.out.val & s.out.rdy)
+                    bool(s.go),
+                    bool(s.unsigned_),
+                    int(s.threshold),
+                    bool(s.ternary),
+                    bool(s.comparator),
+                    bool(s.out.val & s.out.rdy),
                 )
             s.dac <<= s.lane.dac
             s.busy <<= s.lane.busy

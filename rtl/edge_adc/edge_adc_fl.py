@@ -32,7 +32,7 @@ class EdgeAdcFL(Component):
                     s.run = None
                     s.results.append(end.value)
             elif s.go:
-                s.run = decisions(bool(s.unsigned_), int(s.threshold))
+                s.run = decisions(bool(s.unsigned_), int(s.threshold), bool(s.ternary))
                 s.dac <<= next(s.run)
             s.busy <<= s.run is not None
             s.free <<= s.run is None

@@ -8,6 +8,7 @@ from talbot.rtl.edge_adc.ports import declare_ports
 
 # ABOVE and BELOW: first and second decision of the window; OUTSIDE: the second, after the first found "above".
 # WAIT, WAIT_ZERO: a result waits until the previous one is taken; the code of WAIT is in `trial`.
+# In ternary mode BELOW and OUTSIDE end the conversion.
 IDLE, ABOVE, BELOW, OUTSIDE, SEARCH, WAIT, WAIT_ZERO = range(7)
 MIDDLE = 0x80  # code 0 in offset binary, and the first trial of the search
 
@@ -53,8 +54,15 @@ class EdgeAdc(Component):
             s.result @= 0
             s.magnitude @= 0
             if s.state >= BELOW:
-                s.found @= (s.state >= WAIT) | ((s.state == BELOW) & s.comparator)
-                if (s.state == SEARCH) | (s.state == WAIT):
+                s.found @= (s.state >= WAIT) | ((s.state == BELOW) & s.comparator) | s.ternary
+                if s.ternary:
+                    s.kept @= s.trial
+                    if s.state == OUTSIDE:
+                        s.kept @= MIDDLE + 1
+                    elif s.state == BELOW:
+                        s.kept @= MIDDLE if s.comparator else MIDDLE - 1
+                    s.result @= s.kept ^ MIDDLE
+                elif (s.state == SEARCH) | (s.state == WAIT):
                     s.found @= (s.state == WAIT) | s.trial[0]
                     s.kept @= s.trial
                     if (s.state == SEARCH) & ~s.comparator:
@@ -84,8 +92,8 @@ class EdgeAdc(Component):
                                 s.state <<= IDLE
                                 s.full <<= 1
                                 s.code <<= s.result
-                                s.search_made <<= (s.state == SEARCH) | (s.state == WAIT)
-                            elif s.state == SEARCH:
+                                s.search_made <<= ((s.state == SEARCH) | (s.state == WAIT)) & ~s.ternary
+                            elif (s.state == SEARCH) | s.ternary:
                                 s.trial <<= s.kept
                                 s.state <<= WAIT
                             elif s.state == BELOW:
@@ -102,7 +110,7 @@ class EdgeAdc(Component):
                         if (s.state == IDLE) | ((s.state == SEARCH) & s.trial[0] & ~s.full):
                             s.trial <<= MIDDLE
                             s.state <<= SEARCH
-                            if ~s.unsigned_ & (s.threshold != 0):
+                            if s.ternary | (~s.unsigned_ & (s.threshold != 0)):
                                 s.trial <<= zext(s.threshold, 8) | MIDDLE  # level(T)
                                 s.state <<= ABOVE
 

@@ -9,6 +9,7 @@ def declare_ports(s) -> None:
     s.go = InPort()
     s.unsigned_ = InPort()
     s.threshold = InPort(Bits7)
+    s.ternary = InPort()
     s.comparator = InPort()
     s.dac = OutPort(Bits8)
     s.free = OutPort()

@@ -73,7 +73,7 @@
 #define ASP_VERSION_ADDRESS 0x01u
 #define ASP_VERSION_SHIFT 0u
 #define ASP_VERSION_WIDTH 8u
-#define ASP_VERSION_DEFAULT 0x5u
+#define ASP_VERSION_DEFAULT 0x6u
 #define ASP_VERSION_MASK 0xffu
 
 /* start (wo): 1 starts a frame; refused while one runs, while `loop_enable` is set and together with `abort`. */
@@ -170,14 +170,15 @@
 #define ASP_RESYNC_DEFAULT 0x2u
 #define ASP_RESYNC_MASK 0x30u
 
-/* mode (rw): What a frame converts and sends: 0 edge (difference of the diodes), 1 image (their sum), 2 raw */
-/* (both diodes), 3 tof (four taps). */
+/* mode (rw): What a frame converts and sends (5 to 7 are as 1 to 3): 0 edge (difference of the diodes), 1 image */
+/* (their sum), 2 raw (both diodes), 3 tof (four taps), 4 ternary (sign of the difference, or 0 under the */
+/* threshold: no conversion). */
 #define ASP_MODE_ADDRESS 0x05u
 #define ASP_MODE_SHIFT 0u
-#define ASP_MODE_WIDTH 2u
+#define ASP_MODE_WIDTH 3u
 #define ASP_MODE_DEFAULT 0x0u
-#define ASP_MODE_MASK 0x03u
-enum asp_mode { ASP_MODE_EDGE = 0, ASP_MODE_IMAGE = 1, ASP_MODE_RAW = 2, ASP_MODE_TOF = 3 };
+#define ASP_MODE_MASK 0x07u
+enum asp_mode { ASP_MODE_EDGE = 0, ASP_MODE_IMAGE = 1, ASP_MODE_RAW = 2, ASP_MODE_TOF = 3, ASP_MODE_TERNARY = 4 };
 
 /* decimation (rw): log2 of the tile step, from the window's corner. */
 #define ASP_DECIMATION_ADDRESS 0x05u
@@ -186,7 +187,8 @@ enum asp_mode { ASP_MODE_EDGE = 0, ASP_MODE_IMAGE = 1, ASP_MODE_RAW = 2, ASP_MOD
 #define ASP_DECIMATION_DEFAULT 0x0u
 #define ASP_DECIMATION_MASK 0x30u
 
-/* threshold (rw): Edge mode: codes under it in magnitude are exact zeros; 0 converts everything. */
+/* threshold (rw): Edge and ternary mode: codes under it in magnitude are exact zeros; 0 converts everything of */
+/* edge mode. */
 #define ASP_THRESHOLD_ADDRESS 0x06u
 #define ASP_THRESHOLD_SHIFT 0u
 #define ASP_THRESHOLD_WIDTH 7u

@@ -3,7 +3,7 @@
 from pymtl3 import Bits1, Bits5, Bits8, Bits32, Component, InPort, OutPort, Wire, concat, update, zext
 
 from talbot.models.parameters.stream_format import MAGIC, VERSION
-from talbot.rtl.run_length.ports import declare_header_ports
+from talbot.rtl.run_length.ports import TERNARY, declare_header_ports
 
 
 class HeaderBytes(Component):
@@ -41,7 +41,7 @@ class HeaderBytes(Component):
             elif s.index == 4:
                 s.octet @= VERSION
             elif s.index == 5:
-                s.octet @= concat(s.resync, s.decimation, Bits1(0), s.phase, s.mode)
+                s.octet @= concat(s.resync, s.decimation, s.mode == TERNARY, s.phase, s.mode[0:2])
             elif s.index == 6:
                 s.octet @= concat(Bits1(0), s.threshold)
             elif s.index == 7:

@@ -11,7 +11,8 @@ def declare_packer_ports(s) -> None:
     s.push = InPort()  # the sample is taken; only while `ready`
     s.flush = InPort()  # the segment ends: fill up its last byte; only while `ready`
     s.ready = OutPort()
-    s.coded = InPort()  # edge mode; else a sample is a byte
+    s.coded = InPort()  # edge or ternary mode; else a sample is a byte
+    s.signs = InPort()  # ternary mode: codes -1, 0 and 1
     s.threshold = InPort(Bits7)
     s.code = InPort(Bits8)
     s.val = OutPort()  # a byte is complete
@@ -44,6 +45,7 @@ class PayloadPacker(Component):
         s.coder.restart //= s.restart
         s.coder.push //= s.push
         s.coder.coded //= s.coded
+        s.coder.signs //= s.signs
         s.coder.threshold //= s.threshold
         s.coder.code //= s.code
         s.octet //= s.gathered[26:34]

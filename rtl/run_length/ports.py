@@ -1,12 +1,15 @@
 """RunLength's ports, the same at every level (README.md)."""
 
-from pymtl3 import Bits2, Bits7, Bits8, Bits10, Bits16, Bits24, Bits32, InPort, OutPort
+from pymtl3 import Bits2, Bits3, Bits7, Bits8, Bits10, Bits16, Bits24, Bits32, InPort, OutPort
 from pymtl3.stdlib.stream.ifcs import RecvIfcRTL, SendIfcRTL
 
+from talbot.models.parameters import MODES
 from talbot.rtl.messages import ScanMsg
 
+TERNARY = MODES.index("ternary")
+
 HEADER_PORTS = {
-    "mode": Bits2,
+    "mode": Bits3,
     "phase": None,
     "row0": Bits8,
     "row1": Bits8,

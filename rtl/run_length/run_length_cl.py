@@ -4,7 +4,7 @@ from collections import deque
 
 from pymtl3 import Component, update_ff
 
-from talbot.models.digital.stream.payload import base_of, code_sample, start
+from talbot.models.digital.stream.payload import code_sample, start
 from talbot.models.digital.stream.trailer import row_mark, trailer
 from talbot.rtl.messages import END, FRAME, ROW, SAMPLE
 from talbot.rtl.run_length.control_rtl import DRAIN, HEADER, IDLE, MARK, ROWS, TRAILER
@@ -87,13 +87,13 @@ class RunLengthCL(Component):
     def push(s, data):
         if s.header.edge:
             code = data - (data & 0x80) * 2
-            bits, length, *s.coder = code_sample(code, base_of(s.header.threshold), *s.coder)
+            bits, length, *s.coder = code_sample(code, s.header.coder[1], *s.coder)
         else:
             bits, length = data & 0xFF, 8
         s.bits += f"{bits:0{length}b}" if length else ""
 
     def start_segment(s, row):
-        s.state, s.row, s.coder, s.payload = ROWS, row, start(base_of(s.header.threshold)), []
+        s.state, s.row, s.coder, s.payload = ROWS, row, start(s.header.coder[1]), []
 
     def end_segment(s):
         if s.bits or s.coder[2]:

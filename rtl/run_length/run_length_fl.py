@@ -6,7 +6,7 @@ from pymtl3 import Component, update_ff
 
 from talbot.models.digital.stream import StreamHeader, encode_marked, whole_bytes
 from talbot.models.digital.stream.trailer import trailer
-from talbot.models.parameters import MODES, Window
+from talbot.models.parameters import Window, mode_of
 from talbot.rtl.messages import END, FRAME, ROW, SAMPLE
 from talbot.rtl.run_length.ports import declare_ports
 
@@ -21,7 +21,7 @@ def header_of(s, rows: int, cols: int, lanes: int, tile_rows: int, tile_cols: in
         tile_rows,
         tile_cols,
         window,
-        MODES[int(s.mode)],
+        mode_of(int(s.mode)),
         bool(s.phase),
         int(s.decimation),
         int(s.mask),
@@ -71,7 +71,7 @@ class RunLengthFL(Component):
             s.codes.append(data - (data & 0x80) * 2 if s.header.edge else data)
         if kind not in (ROW, END):
             return b""
-        coder = s.header.edge, s.header.threshold
+        coder = s.header.coder
         if kind == ROW and s.row is not None and whole_bytes(s.codes, *coder) < s.header.segment:
             return b""
         sent = b"" if s.row is None else encode_marked(s.row, s.codes, *coder)

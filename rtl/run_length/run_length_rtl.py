@@ -7,7 +7,7 @@ from talbot.rtl.run_length.control_rtl import COUNTS, HEADER, HEADER_FIELDS, MAR
 from talbot.rtl.run_length.crc_rtl import Crc16, Crc32
 from talbot.rtl.run_length.header_rtl import HeaderBytes
 from talbot.rtl.run_length.packer_rtl import PayloadPacker
-from talbot.rtl.run_length.ports import HEADER_PORTS, declare_ports
+from talbot.rtl.run_length.ports import HEADER_PORTS, TERNARY, declare_ports
 from talbot.rtl.sizes import check_size
 
 MARK_PLACE = COUNTS // 2  # upper bits of the index of the trailer's mark
@@ -53,7 +53,8 @@ class RunLength(Component):
         s.packer.restart //= s.control.restart
         s.packer.push //= s.control.push
         s.packer.flush //= s.control.flush
-        s.packer.coded //= lambda: s.mode == 0
+        s.packer.coded //= lambda: s.mode[0:2] == 0
+        s.packer.signs //= lambda: s.mode == TERNARY
         s.packer.threshold //= s.threshold
         s.packer.code //= s.recv.msg.data[0:8]
         s.packer.rdy //= s.queue.ready

@@ -31,6 +31,7 @@ class TokenCoder(Component):
         s.restart = InPort()  # a segment starts
         s.push = InPort()  # the sample is taken
         s.coded = InPort()
+        s.signs = InPort()  # codes are -1, 0 and 1; constant in a segment
         s.threshold = InPort(Bits7)
         s.code = InPort(Bits8)
         s.bits = OutPort(Bits27)  # right-aligned
@@ -71,14 +72,17 @@ class TokenCoder(Component):
         @update
         def classify():
             s.open @= s.run != 0
-            s.dense @= s.threshold[2:7] == 0
+            s.dense @= (s.threshold[2:7] == 0) & ~s.signs
             s.power @= Bits13(1) << zext(s.q, 13)
             s.full @= (zext(s.run, 12) + 1) == s.span
-            s.literal @= ~s.coded | (~s.open & (s.credit[2:8] < concat(Bits2(1), s.q)))
+            s.literal @= ~s.coded | (~s.signs & ~s.open & (s.credit[2:8] < concat(Bits2(1), s.q)))
             s.distance @= ((zext(~s.code, 9) + 1) if s.code[7] else zext(s.code, 9)) - zext(s.threshold, 9)
             if s.threshold == 0:
                 s.distance @= s.distance - 1
             s.zero @= s.distance[8]
+            if s.signs:
+                s.distance @= 0
+                s.zero @= ~s.code[0]
 
         @update
         def code_value():
@@ -91,8 +95,10 @@ class TokenCoder(Component):
                     s.top @= Bits3(i)
             s.near @= s.top <= zext(s.r, 3)
             s.width @= zext(s.r, 4) + 2 if s.near else concat(s.top, Bits1(1)) - zext(s.r, 4)
+            if s.signs:
+                s.width @= 1
             s.token @= zext(s.span | zext(s.run, 12), 27) << zext(s.width, 27)
-            s.ahead @= (Bits8(2) << zext(s.r, 8)) if s.near else Bits8(0)
+            s.ahead @= (Bits8(2) << zext(s.r, 8)) if s.near & ~s.signs else Bits8(0)
 
         @update
         def choose():

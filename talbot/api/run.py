@@ -16,12 +16,16 @@ from talbot.imaging.frame import outputs, pictures
 from talbot.imaging.frame.figures import summarize, summarize_golden
 from talbot.imaging.frame.light_field import SURE, estimate
 from talbot.imaging.frame.result import FrameResult, GoldenResult
-from talbot.models.parameters import ParameterError
+from talbot.models.parameters import SIGNED, ParameterError
 from talbot.models.pixel import depth_of as depth_of_phase
 from talbot.models.scene import RADIANCE_MAX
 
-WHAT = {"edge": ("image", "edges"), "image": ("image",), "raw": ("image", "edges", "light_field", "disparity")} | {
-    "tof": ("image", "depth")
+WHAT = {
+    "edge": ("image", "edges"),
+    "image": ("image",),
+    "raw": ("image", "edges", "light_field", "disparity"),
+    "tof": ("image", "depth"),
+    "ternary": ("image", "edges"),
 }
 SHOWN = ("scene", "mode", "rows", "cols", "stream_bytes", "raw_bytes", "conversions_made", "conversions_left_out") + (
     *("snr_db", "image_psnr_db", "light_field_psnr_db", "cycles", "frame_s_at_clock", "stream_mismatches"),
@@ -107,8 +111,8 @@ class Run:
     ) -> Image | LightField:
         """Return what the samples show.
 
-        image: 2-D, relative radiance, Image (rows, cols); in edge mode rebuilt from the differences, of mean 0.
-        edges (edge and raw mode): one image of differences a pixel type, in codes, Image (types, tile rows, tile cols).
+        image: 2-D, relative radiance, Image (rows, cols); rebuilt from differences (edge, ternary) of mean 0.
+        edges (edge, ternary, raw): an image of differences a pixel type, in codes, Image (types, tile rows, tile cols).
         light_field (raw mode): LightField of linear radiance in as many views as the scene has; below 0 where noise and
         error take it there. It is without the scene's disparity: its `disparity()` is what its views show.
         disparity (raw mode): px of the array per view step, Image (rows, cols), NaN where the mixture is not sure.
@@ -123,7 +127,7 @@ class Run:
         result, mode = self.result, self.result.request.frame.mode
         if what not in WHAT[mode]:
             raise ParameterError(f"what = {what!r}: must be one of {', '.join(WHAT[mode])} in {mode} mode")
-        if disparity is not None and (mode, what) != ("edge", "image"):
+        if disparity is not None and (what != "image" or mode not in SIGNED):
             raise ParameterError("disparity = an array: must be left out, it is of an image from edges")
         if method is not None and what != "light_field":
             raise ParameterError(f"method = {method!r}: must be left out, it is of a light field")

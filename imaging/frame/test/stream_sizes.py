@@ -1,8 +1,9 @@
 """Bytes of edge frames as the chip sends them and by other coders: the tables of docs/results/stream.md.
 
-python -m talbot.imaging.frame.test.stream_sizes prints them (needs the extra `codecs`).
+python -m talbot.imaging.frame.test.stream_sizes prints them (needs the extra `codecs`), with `ternary` those of decision 2.
 """
 
+import sys
 import zlib
 from collections.abc import Callable
 
@@ -13,7 +14,7 @@ import zstandard
 from talbot.imaging.frame.job import golden_result
 from talbot.imaging.frame.request import request
 from talbot.models.digital.scan import Scan
-from talbot.models.digital.stream import StreamHeader, encode_frame
+from talbot.models.digital.stream import StreamHeader, encode_frame, encode_payload
 from talbot.models.parameters import FrameParameters, TileParameters, Window
 from talbot.models.parameters.stream_format import HEADER_BYTES, TRAILER_BYTES
 
@@ -121,5 +122,20 @@ def tables(sizes: dict[str, dict[int, Sizes]]) -> list[str]:
     return lines
 
 
+def ternary_line(threshold: int) -> str:
+    """Line of the sums of SCENES in ternary mode: signs of a bit, codes of 1, codes of the threshold, five a byte."""
+    sizes = []
+    for scene in SCENES:
+        signs = np.sign(at_threshold(codes_of(scene), threshold))
+        layout = StreamHeader.from_frame(*signs.shape, 8, frame_of(signs.shape, threshold), TILE).layout(TILE)
+        row = signs.ravel()[layout.order]
+        coded = [encode_payload(row * size, True, base) for size, base in ((1, 0), (1, 1), (threshold, threshold))]
+        sizes.append([*map(len, coded), -(-row.size // 5)])
+    return f"| {threshold} | {' | '.join(f'{total:,}' for total in np.sum(sizes, 0))} |"
+
+
 if __name__ == "__main__":
+    if "ternary" in sys.argv:
+        print("\n".join(ternary_line(threshold) for threshold in (4, 10, 20)))
+        sys.exit()
     print("\n".join(tables({scene: sizes_of(scene) for scene in (*SCENES, *OTHERS)})))

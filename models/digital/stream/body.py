@@ -4,7 +4,7 @@ import numpy as np
 import numpy.typing as npt
 
 from talbot.models.digital.stream.frame import DecodedFrame
-from talbot.models.digital.stream.payload import base_of, decode_rows, one_byte_changes
+from talbot.models.digital.stream.payload import decode_rows, one_byte_changes
 from talbot.models.digital.stream.trailer import Trailer, frame_crc, read_trailer
 from talbot.models.parameters.stream_format import CRC, HEADER_BYTES, TRAILER_BYTES
 
@@ -29,7 +29,7 @@ class Body:
         samples = int(layout.counts.sum())
         self.view, self.frame, self.sent = view, frame, sent
         pixels = np.empty(samples, np.int32), np.empty(samples, np.int16)
-        self.coder = header.edge, base_of(header.threshold), header.segment, *pixels
+        self.coder = *header.coder, header.segment, *pixels
         self.rows = frame.samples.reshape(header.rows, -1)
         self.first = (frame.start if start is None else start) + HEADER_BYTES
         self.total = layout.rows.size

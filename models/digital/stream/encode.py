@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from talbot.models.digital.stream.header import StreamHeader
-from talbot.models.digital.stream.payload import base_of, encode_rows, encode_segment, row_bytes_max
+from talbot.models.digital.stream.payload import encode_rows, encode_segment, row_bytes_max
 from talbot.models.digital.stream.trailer import row_mark, trailer
 from talbot.models.parameters import ParameterError, TileParameters
 
@@ -21,8 +21,8 @@ def encode_frame(
     header : StreamHeader
         The frame's header.
     samples : array of int (rows, cols, header.subs)
-        -128..127 in edge mode, where a code below the threshold is sent as zero; else 0..255. Only pixels that the
-        frame reads are used.
+        -128..127 in edge mode, where a code below the threshold is sent as zero; -1..1 in ternary mode; else 0..255.
+        Only pixels that the frame reads are used.
     made, left_out : int
         Conversions, 0..2**32-1.
     tile : TileParameters
@@ -44,19 +44,19 @@ def encode_frame(
         raise ParameterError(f"samples = {samples.dtype} array {samples.shape}: must be integers, shape {shape}")
     layout = header.layout(tile)
     codes = samples.reshape(-1)[layout.order]
-    low, high = (-128, 127) if header.edge else (0, 255)
+    low, high = (-1, 1) if header.mode == "ternary" else (-128, 127) if header.edge else (0, 255)
     if codes.min() < low or codes.max() > high:
         raise ParameterError(f"samples = {codes.min()}..{codes.max()}: must be in {low}..{high} in {header.mode} mode")
     counts = layout.counts
     size = sum(row_bytes_max(n, header.edge) + 2 for n in counts.tolist())
     out = np.empty(size, np.uint8)
-    coder = header.edge, base_of(header.threshold), header.segment
+    coder = *header.coder, header.segment
     end = encode_rows(codes.astype(np.int16), layout.rows, counts, *coder, out)
     sent, body = header.to_bytes(), out[:end].tobytes()
     return sent + body + trailer(sent, body, made, left_out)
 
 
-def encode_payload(codes: npt.ArrayLike, edge: bool, threshold: int) -> bytes:
+def encode_payload(codes: npt.ArrayLike, edge: bool, base: int) -> bytes:
     """Payload of one segment, without its mark.
 
     Parameters
@@ -65,18 +65,18 @@ def encode_payload(codes: npt.ArrayLike, edge: bool, threshold: int) -> bytes:
         Samples of its rows in the order of the stream.
     edge : bool
         Run-length coded signed codes; else plain bytes.
-    threshold : int
-        0..127.
+    base : int
+        See `payload.base_of`.
 
     Returns
     -------
     bytes
         At most row_bytes_max(n, edge).
     """
-    return _encode(codes, edge, threshold)[0]
+    return _encode(codes, edge, base)[0]
 
 
-def whole_bytes(codes: npt.ArrayLike, edge: bool, threshold: int) -> int:
+def whole_bytes(codes: npt.ArrayLike, edge: bool, base: int) -> int:
     """Bytes of a segment that are complete before it is closed: their number decides whether it is.
 
     Parameters
@@ -85,25 +85,25 @@ def whole_bytes(codes: npt.ArrayLike, edge: bool, threshold: int) -> int:
         Samples of its rows so far.
     edge : bool
         Run-length coded signed codes; else plain bytes.
-    threshold : int
-        0..127.
+    base : int
+        See `payload.base_of`.
 
     Returns
     -------
     int
         0 or more.
     """
-    return _encode(codes, edge, threshold)[1]
+    return _encode(codes, edge, base)[1]
 
 
-def _encode(codes: npt.ArrayLike, edge: bool, threshold: int) -> tuple[bytes, int]:
+def _encode(codes: npt.ArrayLike, edge: bool, base: int) -> tuple[bytes, int]:
     codes = np.asarray(codes, np.int16)
     out = np.empty(row_bytes_max(codes.size, edge) + 1, np.uint8)
-    end, whole = encode_segment(codes, edge, base_of(threshold), out)
+    end, whole = encode_segment(codes, edge, base, out)
     return out[:end].tobytes(), whole
 
 
-def encode_marked(row: int, codes: npt.ArrayLike, edge: bool, threshold: int) -> bytes:
+def encode_marked(row: int, codes: npt.ArrayLike, edge: bool, base: int) -> bytes:
     """Payload and mark of one segment.
 
     Parameters
@@ -114,15 +114,15 @@ def encode_marked(row: int, codes: npt.ArrayLike, edge: bool, threshold: int) ->
         Samples of its rows in the order of the stream.
     edge : bool
         Run-length coded signed codes; else plain bytes.
-    threshold : int
-        0..127.
+    base : int
+        See `payload.base_of`.
 
     Returns
     -------
     bytes
         As in the stream.
     """
-    payload = encode_payload(codes, edge, threshold)
+    payload = encode_payload(codes, edge, base)
     return payload + row_mark(payload, row)
 
 
@@ -148,5 +148,5 @@ def segments(header: StreamHeader, rows: Iterable[tuple[int, Sequence[int]]]) ->
             out.append((row, [], 0))
         first, gathered, many = out[-1]
         out[-1] = first, [*gathered, *codes], many + 1
-        full = whole_bytes(out[-1][1], header.edge, header.threshold) >= header.segment
+        full = whole_bytes(out[-1][1], *header.coder) >= header.segment
     return out

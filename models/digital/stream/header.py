@@ -10,12 +10,14 @@ import numpy.typing as npt
 
 from talbot.models.digital.scan import Scan
 from talbot.models.digital.stream.crc import one_byte_errors
+from talbot.models.digital.stream.payload import base_of
 from talbot.models.parameters import (
     COLS_MAX,
     LANES,
     MODES,
     ROWS_MAX,
     SAMPLES_PER_PIXEL,
+    SIGNED,
     AmpTiming,
     FrameParameters,
     ParameterError,
@@ -23,6 +25,7 @@ from talbot.models.parameters import (
     Window,
     check_choice,
     check_int,
+    mode_of,
 )
 from talbot.models.parameters.stream_format import (
     CRC,
@@ -149,7 +152,12 @@ class StreamHeader:
     @property
     def edge(self) -> bool:
         """True when the rows are run-length coded signed codes; else they are plain bytes 0..255."""
-        return self.mode == "edge"
+        return self.mode in SIGNED
+
+    @property
+    def coder(self) -> tuple[bool, int]:
+        """`edge`, and the smallest magnitude of a coded value: see `payload.base_of`."""
+        return self.edge, base_of(self.mode, self.threshold)
 
     @property
     def segment(self) -> int:
@@ -164,7 +172,8 @@ class StreamHeader:
     def to_bytes(self) -> bytes:
         """Encoded header with its CRC-32: HEADER_BYTES bytes."""
         w = self.window
-        flags = self.resync << 6 | self.decimation << 4 | self.phase << 2 | MODES.index(self.mode)
+        mode = MODES.index(self.mode)
+        flags = self.resync << 6 | self.decimation << 4 | mode >> 2 << 3 | self.phase << 2 | mode & 3
         fields = HEADER_FIELDS.pack(
             MAGIC,
             VERSION,
@@ -334,8 +343,8 @@ def read_header(data: bytes) -> ReceivedHeader:
         raise StreamError(f"starts with {magic!r}: a frame starts with {MAGIC!r}")
     if version != VERSION:
         raise StreamError(f"version {version}: this decoder reads version {VERSION}")
-    if flags & 0x08:
-        raise StreamError(f"flags = {flags:#04x}: the reserved bit is set")
+    if flags & 0x08 and flags & 3:
+        raise StreamError(f"flags = {flags:#04x}: the bit of ternary mode is set with another mode")
     try:
         header = StreamHeader(
             rows,
@@ -344,7 +353,7 @@ def read_header(data: bytes) -> ReceivedHeader:
             tile >> 4,
             tile & 15,
             Window(row0, row1, col0, col1),
-            MODES[flags & 3],
+            mode_of(flags >> 1 & 4 | flags & 3),
             bool(flags & 4),
             flags >> 4 & 3,
             int.from_bytes(mask, "big"),

@@ -32,24 +32,26 @@ Codes = npt.NDArray[np.int16]
 Places = npt.NDArray[np.int64]
 
 
-def base_of(threshold: int) -> int:
+def base_of(mode: str, threshold: int) -> int:
     """Smallest magnitude of a coded value: a sample below it is a zero.
 
     Parameters
     ----------
+    mode : str
+        One of MODES.
     threshold : int
         0..127.
 
     Returns
     -------
     int
-        1..127.
+        1..127; 0 in ternary mode, which codes the sign alone.
     """
-    return max(threshold, 1)
+    return 0 if mode == "ternary" else max(threshold, 1)
 
 
 def row_bytes_max(count: int, edge: bool) -> int:
-    """Largest payload of a segment: 8.25 bits a sample and 4 bytes in edge mode.
+    """Largest payload of a segment: 8.25 bits a sample and 4 bytes where coded.
 
     Parameters
     ----------
@@ -116,20 +118,20 @@ def start(base: int) -> tuple[int, int, int, int]:
     tuple of int
         k, r2, run, credit: see docs/stream.md, Payload.
     """
-    return 8 if base < DENSE else 16, 2, 0, 128
+    return 8 if 0 < base < DENSE else 16, 2, 0, 128
 
 
 @njit(cache=True)
 def _stepped(k: int, zeros: bool, base: int) -> int:
     """State k after a token of zeros alone, or of a value."""
     if zeros:
-        return k if k >= K_MAX else k + (1 if base < DENSE else 4)
-    return max(k - 1, 0) if base < DENSE else max(k - 8, 4)
+        return k if k >= K_MAX else k + (1 if 0 < base < DENSE else 4)
+    return max(k - 1, 0) if 0 < base < DENSE else max(k - 8, 4)
 
 
 @njit(cache=True)
 def code_sample(code: int, base: int, k: int, r2: int, run: int, credit: int) -> tuple[int, int, int, int, int, int]:
-    """Encode one sample of edge mode.
+    """Encode one sample of edge or ternary mode.
 
     A run that is still open at the end of a segment is closed by one more 0 bit.
 
@@ -150,14 +152,16 @@ def code_sample(code: int, base: int, k: int, r2: int, run: int, credit: int) ->
         State after it.
     """
     q, magnitude = k >> 2, abs(code)
-    zero = magnitude < base
-    if run == 0 and credit >> 2 < q + 16:
+    zero = magnitude < max(base, 1)
+    if base and run == 0 and credit >> 2 < q + 16:
         return 0 if zero else code & 0xFF, 8, k, r2, 0, min(credit + 1, CREDIT_MAX)
     if zero and q:
         run += 1
         if run < 1 << q >> 1:
             return 0, 0, k, r2, run, credit
         return 0, 1, _stepped(k, True, base), r2, 0, min(credit + 29, CREDIT_MAX)
+    if base == 0:
+        return (1 << q >> 1 | run) << 1 | (code > 0), q + 1, _stepped(k, False, base), r2, 0, credit
     value = 0 if zero else 2 * (magnitude - base) + (code > 0) + (q == 0)
     order, prefix = (r2 >> 1) + 1, 0
     while value >> (order + prefix):
@@ -304,7 +308,7 @@ def decode_segment(
     segment : int
         Bytes of payload after which a row is the last.
     where : int32 (samples of the frame or more,)
-        Receives the index in the segment of each non-zero sample of edge mode, ascending.
+        Receives the index in the segment of each non-zero coded sample, ascending.
     value : int16 (as many,)
         Receives these samples.
 
@@ -315,7 +319,7 @@ def decode_segment(
     rows : int
         Rows of the segment.
     found : int
-        Non-zero samples of edge mode.
+        Non-zero coded samples.
     work : int
         Tokens, or rows of plain bytes, that were decoded.
     """
@@ -353,7 +357,7 @@ def decode_segment(
             held += 8
             here += 1
         q = k >> 2
-        if credit >> 2 < q + 16:
+        if base and credit >> 2 < q + 16:
             code = int64(hold >> np.uint64(56))
             code -= (code & 0x80) << 1
             length = 8
@@ -363,6 +367,13 @@ def decode_segment(
             i = min(i + (1 << q >> 1), top) - 1
             k = _stepped(k, True, base)
             credit = min(credit + 29, CREDIT_MAX)
+        elif base == 0:
+            token = int64(hold >> np.uint64(63 - q))
+            i += token >> 1 & ((1 << q >> 1) - 1)
+            if i >= top:
+                return -1, 0, 0, work
+            code, length = 2 * (token & 1) - 1, q + 1
+            k = _stepped(k, False, base)
         else:
             left = TOKEN_MAX - q
             token = int64(hold >> np.uint64(64 - TOKEN_MAX))

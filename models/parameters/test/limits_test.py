@@ -7,6 +7,7 @@ from talbot.models.parameters import (
     LANES,
     MODES,
     SAMPLES_PER_PIXEL,
+    SIGNED,
     AmpTiming,
     ArrayParameters,
     ChipParameters,
@@ -15,6 +16,7 @@ from talbot.models.parameters import (
     PixelType,
     TileParameters,
     Window,
+    mode_of,
 )
 from talbot.models.parameters.array import COLS_MAX, ROWS_MAX
 from talbot.models.parameters.divider import (
@@ -100,8 +102,10 @@ def test_defaults():
 
 
 def test_names_in_the_order_of_their_codes():
-    assert MODES == ("edge", "image", "raw", "tof")
-    assert SAMPLES_PER_PIXEL == {"edge": 1, "image": 1, "raw": 2, "tof": 4}
+    assert MODES == ("edge", "image", "raw", "tof", "ternary")
+    assert SAMPLES_PER_PIXEL == {"edge": 1, "image": 1, "raw": 2, "tof": 4, "ternary": 1}
+    assert SIGNED == ("edge", "ternary")
+    assert [mode_of(code) for code in range(8)] == [*MODES, "image", "raw", "tof"]
     assert DIVIDERS == ("radix2", "radix4", "pipelined", "cordic")
     assert LANES == (1, 2, 4, 8, 16, 32)
 

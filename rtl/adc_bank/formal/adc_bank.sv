@@ -4,7 +4,7 @@
 // nothing is assumed of the others.
 
 module AdcBankProof (
-  input clk, input reset, input [`LANES + 24:0] step__msg, input step__val, input scan__rdy, input [1:0] mode,
+  input clk, input reset, input [`LANES + 24:0] step__msg, input step__val, input scan__rdy, input [2:0] mode,
   input [6:0] threshold, input [`LANES - 1:0] comparator
 );
   localparam FRAME = 0, SAMPLE = 2, END = 3;
@@ -25,6 +25,8 @@ module AdcBankProof (
   (* hierconn *) wire [`LANES - 1:0] \dut.busy ;
   (* hierconn *) wire [`LANES - 1:0] \dut.free ;
   (* hierconn *) wire [9:0] \dut.result ;
+  (* hierconn *) wire \dut.ternary ;
+  wire ternary = \dut.ternary ;
   `LANE_REGISTERS
   wire at_pins = \dut.at_pins , mark = \dut.mark , convertible = &\dut.free ;
   wire [1:0] pins_kind = \dut.pins_kind ;
@@ -39,8 +41,8 @@ module AdcBankProof (
   wire [7:0] lane_dac = dac >> 8 * at, expected_dac;
   wire [8:0] result, elder;
   wire [1:0] ready;
-  Lane lane (.clk(clk), .reset(reset), .go(go), .unsigned_(mode != 0), .threshold(threshold),
-             .comparator(|(comparator & tracked)), .rdy(|(\dut.taken & tracked)), .running(running), .busy(busy),
+  Lane lane (.clk(clk), .reset(reset), .go(go), .unsigned_(mode[1:0] != 0), .threshold(threshold),
+             .ternary(mode == 4), .comparator(|(comparator & tracked)), .rdy(|(\dut.taken & tracked)), .running(running), .busy(busy),
              .free(free), .startable(startable), .dac(expected_dac), .found(found), .result(result), .ready(ready),
              .elder(elder), .its_state(states >> 3 * at), .its_trial(lane_dac), .its_full(fulls >> at),
              .its_code(codes >> 8 * at), .its_converted(converted >> at), .holds(holds));
@@ -58,17 +60,18 @@ module AdcBankProof (
   wire enters = take && !(samples && step__msg[`LANES - 1:0] == 0);
   wire leaves = sent && (!is_sample || last);
 
-  reg first = 1, was_reset, was_val, was_rdy, was_sample, was_inside, was_blocked, was_unsigned;
+  reg first = 1, was_reset, was_val, was_rdy, was_sample, was_inside, was_blocked, was_unsigned, was_ternary;
   reg [11:0] was_msg;
   reg [`LANES + 22:0] was_pins;
-  reg [1:0] was_mode, quiet;
+  reg [2:0] was_mode;
+  reg [1:0] quiet;
   reg [6:0] was_threshold;
   reg [31:0] conversions, zeros;
   always @(posedge clk) begin
     first <= 0; was_reset <= reset; was_val <= scan__val; was_rdy <= scan__rdy; was_msg <= scan__msg;
     was_sample <= take && samples && !reset; was_blocked <= !reset && (take || at_pins && leaving && !leaves);
     was_pins <= reset ? 0 : take ? step__msg[`LANES + 22:0] : {row, group, k, sub, en};
-    was_mode <= mode; was_unsigned <= unsigned_; was_threshold <= threshold; was_inside <= inside != 0 || take;
+    was_mode <= mode; was_ternary <= ternary; was_unsigned <= unsigned_; was_threshold <= threshold; was_inside <= inside != 0 || take;
     quiet <= reset || busy || hold || scan__val || inside == 0 || is_sample && !mine ? 0 : quiet + !(&quiet);
     if (reset) begin
       inside <= 0; conversions <= 0; zeros <= 0;
@@ -98,10 +101,10 @@ module AdcBankProof (
       p_reset: assert (!was_reset || {scan__val, hold, en, row, group, k, sub, made, left_out} == 0
                                      && dac == 0 && step__rdy && idle);
       // A lane's configuration is constant while it converts
-      p_config: assert (!busy || unsigned_ == was_unsigned && threshold == was_threshold);
+      p_config: assert (!busy || unsigned_ == was_unsigned && threshold == was_threshold && ternary == was_ternary);
       // The step at the pins
       p_hold: assert (hold == was_sample);
-      p_pins: assert ({row, group, k, sub, en} == was_pins && unsigned_ == (mode != 0));
+      p_pins: assert ({row, group, k, sub, en} == was_pins && unsigned_ == (mode[1:0] != 0));
       p_start: assert (!go || startable);
       p_dac: assert (!running || lane_dac == expected_dac);
       p_idle: assert (idle == !(hold || lanes_busy != 0) && busy == |(lanes_busy & tracked));
@@ -134,6 +137,7 @@ module AdcBankProof (
     c_mine: cover (inside == 2 && sent && mine && enabled && `LANES - 1 == at);
     c_all: cover (scan__val && &front_lanes && !was_rdy);
     c_converted: cover (found && result[8] && `LANES - 1 == at);
+    c_sign: cover (sent && mine && scan__msg[7:0] == 8'hFF && ternary);
     c_left_out: cover (sent && front_kind == END && left_out == 2);
   end
 endmodule

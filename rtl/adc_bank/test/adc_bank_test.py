@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from pymtl3 import Bits2, Bits7, Component, InPort, OutPort, connect
+from pymtl3 import Bits3, Bits7, Component, InPort, OutPort, connect
 from pymtl3.stdlib.stream.ifcs import RecvIfcRTL, SendIfcRTL
 
 from talbot.models.afe import Converter, FrontEnd
@@ -45,7 +45,7 @@ class Harness(Component):
     def construct(s, dut, lanes, rough):
         s.step = RecvIfcRTL(step_msg(lanes))
         s.scan = SendIfcRTL(ScanMsg)
-        s.mode, s.threshold = InPort(Bits2), InPort(Bits7)
+        s.mode, s.threshold = InPort(Bits3), InPort(Bits7)
         s.hold, s.idle = OutPort(), OutPort()
 
         s.dut = dut
@@ -55,7 +55,7 @@ class Harness(Component):
         connect(s.dut.scan, s.scan)
         for name in ("mode", "threshold", "hold", "idle"):
             connect(getattr(s, name), getattr(s.dut, name))
-        connect(s.mode, s.afe.mode)
+        connect(s.mode[0:2], s.afe.mode)
         for name in ("row", "group", "k", "sub", "en", "dac", "hold", "unsigned_", "comparator"):
             connect(getattr(s.dut, name), getattr(s.afe, name))
 
@@ -186,6 +186,7 @@ class TestAdcBankFL:
     @given(step_lists(), st.integers(0, 127), patterns)
     def test_any_steps_and_any_timing(self, steps, threshold, pattern):
         self.check(steps, "edge", threshold, pattern)
+        self.check(steps, "ternary", threshold, pattern)
 
     @SETTINGS
     @given(step_lists(), patterns)
@@ -251,10 +252,16 @@ class TestAdcBankCL(TestAdcBankFL):
 
     @pytest.mark.parametrize(
         "row, mode, threshold, interval",
-        [(1, "edge", 10, [8, 8]), (0, "edge", 1, [10, 10]), (0, "edge", 0, [10, 8]), (0, "image", 0, [10, 8])],
+        [
+            (1, "edge", 10, [8, 8]),
+            (0, "ternary", 10, [8, 8]),
+            (0, "edge", 1, [10, 10]),
+            (0, "edge", 0, [10, 8]),
+            (0, "image", 0, [10, 8]),
+        ],
     )
     def test_cycles_a_step(self, row, mode, threshold, interval):
-        """Zeros take the eight cycles of sending the results; samples that convert, their ten decisions.
+        """Zeros and signs take the eight cycles of sending the results; samples that convert, their ten decisions.
 
         Without a window a step has eight decisions, and every other one waits for the last lane's result to leave.
         """

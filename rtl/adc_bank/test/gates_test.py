@@ -26,7 +26,7 @@ class ManyBanks:
 
     def look(self, mode, threshold):
         """Compute what depends on registers and the configuration."""
-        self.lanes.look(mode != 0, threshold)
+        self.lanes.look(mode & 3 != 0, threshold, mode == 4)
         self.rdy = ~self.hold & ~self.waits & self.lanes.free.all(0)
         self.idle = ~self.hold & ~self.lanes.busy.any(0)
         self.turn = self.remaining & -self.remaining
@@ -76,12 +76,12 @@ class Pair:
             number = number << width | step[name]
         message = np.concatenate([packed(step["en"], self.count), packed(number, sum(FIELDS.values()))])
         gates["step.msg"], gates["step.val"], gates["scan.rdy"] = message, packed(val), packed(rdy)
-        gates["mode"], gates["threshold"], gates["reset"] = packed(mode, 2), packed(threshold, 7), packed(reset)
+        gates["mode"], gates["threshold"], gates["reset"] = packed(mode, 3), packed(threshold, 7), packed(reset)
         gates["comparator"] = np.concatenate([packed(answer) for answer in comparator])
         gates.tick()
         outputs = {"step.rdy": banks.rdy, "scan.val": banks.val, "idle": banks.idle, "hold": banks.hold}
         outputs |= {name: banks.pins[name] for name in ("row", "group", "k", "sub", "en")}
-        outputs |= {"unsigned_": mode != 0, "made": banks.made, "left_out": banks.left_out}
+        outputs |= {"unsigned_": mode & 3 != 0, "made": banks.made, "left_out": banks.left_out}
         for name, value in outputs.items():
             got = gates[name]
             assert (got == packed(value, len(got))).all(), name
@@ -107,7 +107,7 @@ def test_any_steps_any_stalls_and_any_resets(lanes, copies, cycles):
         banks, chance = pair.banks, random.random((5, copies), np.float32)
         banks.look(mode, threshold)
         empty = banks.idle & ~banks.waits & ~banks.mark & (banks.remaining == 0) & (chance[4] < 0.5)
-        mode = np.where(empty, random.choice((0, 0, 0, 1, 2, 3), copies), mode)
+        mode = np.where(empty, random.choice((0, 0, 0, 4, 4, 1, 2, 3, 5, 7), copies), mode)
         threshold = np.where(empty, random.integers(0, 128, copies), threshold)
         new = {name: random.integers(0, 1 << width, copies) for name, width in (FIELDS | {"en": lanes}).items()}
         new["kind"] = random.choice((FRAME, ROW, END, *[SAMPLE] * 12), copies)

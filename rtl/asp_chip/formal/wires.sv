@@ -19,7 +19,7 @@ module AspChipWires (
   (* hierconn *) wire \dut.encoder.reset , \dut.generator.reset , \dut.frame_status.reset , \dut.resets.reset ;
 
   // RegFile's bits: in the order of the register map, trims in the lowest bits
-  localparam TRIMS = 384, CONFIGURATION = TRIMS + 219;
+  localparam TRIMS = 384, CONFIGURATION = TRIMS + 220;
   (* hierconn *) wire [CONFIGURATION - 1:0] \dut.regs.cfg ;
   (* hierconn *) wire [63:0] \dut.regs.cycles , \dut.regs.conversions_made , \dut.regs.conversions_left_out ;
   (* hierconn *) wire [63:0] \dut.seq.cycles ;
@@ -27,7 +27,8 @@ module AspChipWires (
   (* hierconn *) wire \dut.regs.start , \dut.regs.sclk , \dut.regs.csn , \dut.regs.mosi , \dut.regs.miso ;
 
   (* hierconn *) wire \dut.seq.overlap , \dut.seq.start , \dut.generator.on ;
-  (* hierconn *) wire [1:0] \dut.seq.mode , \dut.seq.decimation , \dut.bank.mode , \dut.encoder.mode , \dut.encoder.decimation ;
+  (* hierconn *) wire [1:0] \dut.seq.mode , \dut.seq.decimation , \dut.encoder.decimation ;
+  (* hierconn *) wire [2:0] \dut.bank.mode , \dut.encoder.mode ;
   (* hierconn *) wire [6:0] \dut.bank.threshold , \dut.encoder.threshold ;
   (* hierconn *) wire [7:0] \dut.phase.noise_floor , \dut.amp.n_cm ;
   (* hierconn *) wire [23:0] \dut.seq.mask , \dut.encoder.mask ;
@@ -79,7 +80,7 @@ module AspChipWires (
 
   always @* begin
     p_configuration: assert (cfg == {
-        \dut.seq.overlap , phase, \dut.generator.on , loop_enable, \dut.encoder.resync , \dut.seq.mode , \dut.seq.decimation ,
+        \dut.seq.overlap , phase, \dut.generator.on , loop_enable, \dut.encoder.resync , \dut.bank.mode , \dut.seq.decimation ,
         \dut.bank.threshold , \dut.phase.noise_floor , \dut.seq.mask , \dut.seq.row0 , \dut.seq.row1 , \dut.seq.col0 ,
         \dut.seq.col1 , \dut.encoder.frame_number , \dut.amp.n_cm , \dut.encoder.calibration , \dut.amp.t_reset ,
         \dut.amp.t_int , \dut.amp.t_cm , \dut.amp.t_settle , \dut.amp.t_read , \dut.amp.t_guard , \dut.seq.exposure ,
@@ -87,10 +88,10 @@ module AspChipWires (
     p_header: assert ({\dut.encoder.mode , \dut.encoder.decimation , \dut.encoder.threshold , \dut.encoder.mask ,
                        \dut.encoder.row0 , \dut.encoder.row1 , \dut.encoder.col0 , \dut.encoder.col1 ,
                        \dut.encoder.exposure , \dut.encoder.n_cm , \dut.encoder.t_int } ==
-                      {\dut.seq.mode , \dut.seq.decimation , \dut.bank.threshold , \dut.seq.mask ,
+                      {\dut.bank.mode , \dut.seq.decimation , \dut.bank.threshold , \dut.seq.mask ,
                        \dut.seq.row0 , \dut.seq.row1 , \dut.seq.col0 , \dut.seq.col1 ,
                        \dut.seq.exposure , \dut.amp.n_cm , \dut.amp.t_int });
-    p_mode: assert (\dut.bank.mode == \dut.seq.mode && mode == \dut.seq.mode
+    p_mode: assert (\dut.bank.mode [1:0] == \dut.seq.mode && mode == \dut.seq.mode
                     && \dut.phase.on == (phase && mode == 3) && \dut.encoder.phase == \dut.phase.on );
     p_counts: assert (\dut.regs.cycles == \dut.seq.cycles
                       && \dut.regs.conversions_made == {32'd0, \dut.bank.made }

@@ -6,7 +6,8 @@
 // agree with the reference, in every state that an induction starts from.
 
 module Lane (
-  input clk, input reset, input go, input unsigned_, input [6:0] threshold, input comparator, input rdy,
+  input clk, input reset, input go, input unsigned_, input [6:0] threshold, input ternary, input comparator,
+  input rdy,
   output reg running, output busy, output free, output startable, output window, output reg [3:0] number,
   output reg [7:0] bits, output [7:0] dac, output found, output [8:0] result, output reg [1:0] ready,
   output reg [8:0] elder,
@@ -14,9 +15,10 @@ module Lane (
 );
   localparam IDLE = 0, ABOVE = 1, BELOW = 2, OUTSIDE = 3, SEARCH = 4, WAIT = 5, WAIT_ZERO = 6;
 
-  // Decision `number` is number + 1 cycles after go: v >= level(T) and v >= level(1 - T), then a bit each, MSB first
+  // Decision `number` is number + 1 cycles after go: v >= level(T) and v >= level(1 - T), then a bit each, MSB first;
+  // the first two alone in ternary mode
   reg above;
-  assign window = !unsigned_ && threshold != 0;
+  assign window = ternary || !unsigned_ && threshold != 0;
   wire [3:0] first = window ? 2 : 0;
   wire search = number >= first;
   wire [3:0] digit = number - first;
@@ -34,8 +36,9 @@ module Lane (
   wire [7:0] answers = comparator ? dac : bits;
   wire last = running && search && digit == 7;
   wire zero = running && window && number == 1 && comparator && !above;
-  assign found = last || zero;
-  assign result = zero ? 9'd0 : coded(answers);
+  wire sign = running && ternary && number == 1;
+  assign found = last || zero || sign;
+  assign result = sign ? (above ? 9'd1 : comparator ? 9'd0 : 9'h0FF) : zero ? 9'd0 : coded(answers);
 
   // One result is at `out`; one more conversion runs and waits for it
   reg [8:0] younger;
@@ -57,10 +60,11 @@ module Lane (
     bits <= go && startable ? 0 : search ? answers : bits;
   end
 
-  wire [2:0] state = ready == 2 ? (younger[8] ? WAIT : WAIT_ZERO) : !running ? IDLE
+  wire [2:0] state = ready == 2 ? (younger[8] || ternary ? WAIT : WAIT_ZERO) : !running ? IDLE
                      : search ? SEARCH : number == 0 ? ABOVE : above ? OUTSIDE : BELOW;
   assign holds = its_state == state && its_full == (ready != 0) && (ready == 0 || elder == {its_converted, its_code})
                  && ready != 3 && !(running && ready == 2)
-                 && (state != WAIT || younger == coded(its_trial)) && (state != WAIT_ZERO || younger == 0)
+                 && (!running || !ternary || number < 2) && (state != WAIT || !ternary || its_trial - 8'h7F < 3)
+                 && (state != WAIT || younger == (ternary ? {1'b0, its_trial ^ 8'h80} : coded(its_trial))) && (state != WAIT_ZERO || younger == 0)
                  && (!running || its_trial == dac && (search ? digit <= 7 && !(bits & 8'hFF >> digit) : bits == 0));
 endmodule

@@ -32,10 +32,11 @@ def simulator(cls, verilog):
 class Bench:
     """Drives one lane. Each conversion: cycle of `go`, first cycle of its result at the port, DAC codes."""
 
-    def __init__(self, sim, values, unsigned, threshold, converter=IDEAL):
+    def __init__(self, sim, values, unsigned, threshold, converter=IDEAL, ternary=False):
         self.sim, self.converter, self.unsigned = sim, converter, unsigned
         sim.unsigned_ @= unsigned
         sim.threshold @= threshold
+        sim.ternary @= ternary
         sim.go @= 0
         sim.out.rdy @= 0
         sim.reset @= 1
@@ -82,8 +83,8 @@ class Bench:
         sim.comparator @= int(answer)
 
 
-def expected(values, unsigned, threshold, converter=None):
-    got = convert(np.array(values), unsigned, threshold, converter, 0, np.arange(len(values)))
+def expected(values, unsigned, threshold, converter=None, ternary=False):
+    got = convert(np.array(values), unsigned, threshold, converter, 0, np.arange(len(values)), ternary)
     return [(int(c) & 0xFF, bool(k)) for c, k in zip(got.codes, got.converted)]
 
 
@@ -113,6 +114,23 @@ class TestEdgeAdcFL:
         bench = self.bench(values, unsigned, threshold, ROUGH).run(pattern)
         assert bench.results == expected(values, unsigned, threshold, ROUGH)
 
+    @SETTINGS
+    @given(
+        st.integers(0, 127),
+        st.lists(st.one_of(st.floats(-140, 140), st.floats(-9, 9)), min_size=1, max_size=20),
+        patterns,
+    )
+    def test_ternary(self, threshold, values, pattern):
+        bench = self.bench(values, False, threshold, ROUGH, True).run(pattern)
+        assert bench.results == expected(values, False, threshold, ROUGH, True)
+
+    def test_ternary_levels(self):
+        values = [-10.5, -10.49, -9.51, -9.5, 0, 9.49, 9.5, 300]
+        bench = self.bench(values, False, 10, IDEAL, True).run()
+        assert bench.results == [(code & 0xFF, False) for code in (-1, -1, -1, 0, 0, 0, 1, 1)]
+        assert {tuple(dacs[:2]) for dacs in bench.dacs} == {(138, 119)}
+        assert [code for code, _ in self.bench([-0.6, -0.5, 0], False, 0, IDEAL, True).run().results] == [255, 1, 1]
+
     def test_extreme_thresholds(self):
         values = [-200, -128.4, -127.5, -126.9, -1, -0.5, -0.51, 0, 0.49, 0.5, 126.4, 126.5, 127, 500]
         for threshold in (0, 1, 2, 126, 127):
@@ -136,13 +154,14 @@ class TestEdgeAdcCL(TestEdgeAdcFL):
 
     def test_latency(self):
         """From go to the result at the port, and from go to go without stalls."""
-        for values, unsigned, threshold, latency, interval in (
-            ([0.0] * 6, False, 10, 3, 4),
-            ([99.0] * 6, False, 10, 11, 10),
-            ([99.0] * 6, False, 0, 9, 8),
-            ([99.0] * 6, True, 10, 9, 8),
+        for values, unsigned, threshold, ternary, latency, interval in (
+            ([0.0] * 6, False, 10, False, 3, 4),
+            ([99.0] * 6, False, 10, False, 11, 10),
+            ([99.0] * 6, False, 0, False, 9, 8),
+            ([99.0] * 6, True, 10, False, 9, 8),
+            ([99.0, 0.0, -99.0] * 2, False, 10, True, 3, 4),
         ):
-            bench = self.bench(values, unsigned, threshold).run()
+            bench = self.bench(values, unsigned, threshold, IDEAL, ternary).run()
             assert [r - g for g, r in zip(bench.go_at, bench.result_at)] == [latency] * 6
             assert set(np.diff(bench.go_at)) == {interval}
 
@@ -153,11 +172,17 @@ class TestEdgeAdcCL(TestEdgeAdcFL):
         assert bench.taken_at[0] == 40
 
     @SETTINGS
-    @given(st.lists(st.sampled_from([0.0, 5.0, 60.0, -90.0]), min_size=1, max_size=15), st.booleans(), patterns)
-    def test_same_cycles_as_the_cycle_level(self, values, unsigned, pattern):
+    @given(
+        st.lists(st.sampled_from([0.0, 5.0, 60.0, -90.0]), min_size=1, max_size=15),
+        st.sampled_from([(False, False), (True, False), (False, True)]),
+        patterns,
+    )
+    def test_same_cycles_as_the_cycle_level(self, values, how, pattern):
+        unsigned, ternary = how
+
         def trace(bench):
             bench.run(pattern)
-            taken = convert(np.array(values), unsigned, 10).decisions  # the DAC stays after them
+            taken = convert(np.array(values), unsigned, 10, ternary=ternary).decisions  # the DAC stays after them
             return (
                 bench.go_at,
                 bench.result_at,
@@ -166,8 +191,8 @@ class TestEdgeAdcCL(TestEdgeAdcFL):
                 [dac[:n] for dac, n in zip(bench.dacs, taken)],
             )
 
-        reference = Bench(simulator(EdgeAdcCL, False), values, unsigned, 10)
-        assert trace(self.bench(values, unsigned, 10)) == trace(reference)
+        reference = Bench(simulator(EdgeAdcCL, False), values, unsigned, 10, IDEAL, ternary)
+        assert trace(self.bench(values, unsigned, 10, IDEAL, ternary)) == trace(reference)
 
     def test_go_while_it_is_not_free_changes_nothing(self):
         sim = simulator(self.cls, self.verilog)

@@ -11,10 +11,10 @@ class ManyLanes:
         self.number, self.bits, self.ready = (np.zeros(shape, np.int16) for _ in range(3))
         self.elder, self.younger = np.zeros(shape, np.int16), np.zeros(shape, np.int16)  # converted << 8 | code
 
-    def look(self, unsigned, threshold):
+    def look(self, unsigned, threshold, ternary):
         """Compute the outputs that depend on registers and the configuration: dac (while running), busy, free."""
-        self.unsigned, self.threshold = unsigned, threshold
-        self.first = np.where(~unsigned & (threshold != 0), 2, 0)
+        self.unsigned, self.threshold, self.ternary = unsigned, threshold, ternary
+        self.first = np.where(ternary | ~unsigned & (threshold != 0), 2, 0)
         self.digit = self.number - self.first
         self.search = self.digit >= 0
         trial = self.bits | 0x80 >> np.clip(self.digit, 0, 7)
@@ -25,11 +25,13 @@ class ManyLanes:
     def tick(self, go, comparator, rdy, reset):
         """End the cycle that `look` computed."""
         last = self.running & (self.digit == 7)
-        zero = self.running & (self.first > 0) & (self.number == 1) & comparator & ~self.above
+        second = self.running & (self.first > 0) & (self.number == 1)
+        zero = second & (comparator & ~self.above | self.ternary)
         answers = np.where(comparator, self.dac, self.bits)
         code = answers - np.where(self.unsigned, 0, 128)
         inside = ~self.unsigned & (np.abs(code) < self.threshold)
-        result = np.where(zero, 0, 0x100 | np.where(inside, 0, code & 0xFF))
+        sign = np.where(self.above, 1, np.where(comparator, 0, 0xFF))
+        result = np.where(zero, np.where(self.ternary, sign, 0), 0x100 | np.where(inside, 0, code & 0xFF))
         starts = go & (~self.busy | last & (self.ready == 0))
         taken = (self.ready > 0) & rdy
         self.elder = np.where((self.ready == 0) | taken, np.where(self.ready == 2, self.younger, result), self.elder)

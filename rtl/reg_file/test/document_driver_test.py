@@ -18,7 +18,7 @@ CONFIGURATION = {
     "test_pattern": (0x04, 2, 1, 0),
     "loop_enable": (0x04, 3, 1, 0),
     "resync": (0x04, 4, 2, 2),
-    "mode": (0x05, 0, 2, 0),
+    "mode": (0x05, 0, 3, 0),
     "decimation": (0x05, 4, 2, 0),
     "threshold": (0x06, 0, 7, 10),
     "noise_floor": (0x07, 0, 8, 0),
@@ -40,7 +40,7 @@ CONFIGURATION = {
     "exposure": (0x50, 0, 10, 0),
 }
 ARRAY = 11, 13, 2, 4, 5, "cordic"  # rows, columns, lanes, tile, divider
-CONSTANTS = {0x00: 0x54, 0x01: 5, 0x75: 2, 0x76: 11, 0x78: 13, 0x7A: 4, 0x7B: 5, 0x7C: 3}
+CONSTANTS = {0x00: 0x54, 0x01: 6, 0x75: 2, 0x76: 11, 0x78: 13, 0x7A: 4, 0x7B: 5, 0x7C: 3}
 STATE = {  # field -> (lowest bit, bits) of the 32 at 0x70
     "amp_state": (0, 3),
     "seq_state": (4, 3),

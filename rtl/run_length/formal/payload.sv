@@ -3,7 +3,8 @@
 // the tokens mean. Together: a segment's bytes, decoded, are its samples.
 
 module PayloadProof (
-  input clk, input reset, input restart, input push, input flush, input coded, input [6:0] threshold, input [7:0] code,
+  input clk, input reset, input restart, input push, input flush, input coded, input signs,
+  input [6:0] threshold, input [7:0] code,
   input rdy, input watch, input [4:0] which
 );
   wire ready, val;

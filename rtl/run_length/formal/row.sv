@@ -22,7 +22,7 @@ module RowProof (input clk);
                           : turn == `SAMPLES + 2 ? {2'd3, 10'd0} : {2'd2, 2'd0, codes[8 * number +: 8]};
   RunLength dut (.clk(clk), .reset(reset), .recv__val(recv__val), .recv__rdy(recv__rdy), .recv__msg(recv__msg),
                  .send__val(send__val), .send__rdy(1'b1), .send__msg(send__msg), .frame_sync(frame_sync),
-                 .threshold(threshold), .mode(2'd0), .phase(1'b0), .row0(8'd0), .row1(8'd0), .col0(8'd0), .col1(8'd0),
+                 .threshold(threshold), .mode(3'd0), .phase(1'b0), .row0(8'd0), .row1(8'd0), .col0(8'd0), .col1(8'd0),
                  .decimation(2'd0), .mask(24'd1), .frame_number(16'd0), .resync(2'd0), .exposure(10'd0), .n_cm(8'd0),
                  .t_int(16'd0), .calibration(8'd0), .made(32'd0), .left_out(32'd0));
 
@@ -54,7 +54,7 @@ module RowProof (input clk);
   wire [4:0] length;
   wire [5:0] k_next;
   wire [2:0] r2_next;
-  TokenDecoder decoder (.window(rest[8 * TAKEN - 1 -: 27]), .k(k), .r2(r2), .credit(credit), .threshold(threshold),
+  TokenDecoder decoder (.window(rest[8 * TAKEN - 1 -: 27]), .k(k), .r2(r2), .credit(credit), .threshold(threshold), .signs(1'b0),
                         .literal(literal), .zeros_only(zeros_only), .zeros(zeros), .value(value), .length(length),
                         .k_next(k_next), .r2_next(r2_next), .credit_next(credit_next), .valid(valid));
   wire decodes = have < `SAMPLES && came >= HEADER + 4 && 8 * (came - HEADER) >= at + 27;

@@ -4,7 +4,7 @@
 
 module StreamProof (
   input clk, input reset, input [11:0] recv__msg, input recv__val, input send__rdy,
-  input [1:0] mode, input phase, input [7:0] row0, input [7:0] row1, input [7:0] col0, input [7:0] col1,
+  input [2:0] mode, input phase, input [7:0] row0, input [7:0] row1, input [7:0] col0, input [7:0] col1,
   input [1:0] decimation, input [23:0] mask, input [6:0] threshold, input [15:0] frame_number,
   input [1:0] resync, input [9:0] exposure, input [7:0] n_cm, input [15:0] t_int, input [7:0] calibration,
   input [31:0] made, input [31:0] left_out
@@ -27,6 +27,7 @@ module StreamProof (
   (* hierconn *) wire \dut.packer.ready ;
   (* hierconn *) wire \dut.packer.val ;
   (* hierconn *) wire \dut.packer.coded ;
+  (* hierconn *) wire \dut.packer.signs ;
   (* hierconn *) wire [7:0] \dut.packer.octet ;
   (* hierconn *) wire [7:0] \dut.packer.code ;
   (* hierconn *) wire [6:0] \dut.packer.threshold ;
@@ -75,7 +76,7 @@ module StreamProof (
   wire taken = recv__val && recv__rdy;
   wire [1:0] kind = recv__msg[11:10];
   wire in_rows = taken && part == ROWS;
-  wire [223:0] header = {"TLBT", 8'd3, resync, decimation, 1'b0, phase, mode, 1'b0, threshold, CHIP, row0, row1, col0,
+  wire [223:0] header = {"TLBT", 8'd3, resync, decimation, mode == 3'd4, phase, mode[1:0], 1'b0, threshold, CHIP, row0, row1, col0,
                          col1, mask, frame_number, 6'b0, exposure, n_cm, t_int, calibration};
   wire [31:0] long_value = ~long_crc;
   wire [255:0] header_bytes = {header, long_value};
@@ -144,7 +145,7 @@ module StreamProof (
       p_restart: assert (restart == (in_rows && !open && (kind == ROW || kind == END)
               || put && !payload && part == MARK && n == 1));
       p_code: assert (\dut.packer.code == recv__msg[7:0] && \dut.packer.threshold == threshold
-                      && \dut.packer.coded == (mode == 0));
+                      && \dut.packer.coded == (mode[1:0] == 0) && \dut.packer.signs == (mode == 4));
       p_sync_low: assert (!frame_sync || part != IDLE);
       p_time: assert (quiet < 4);
     end

@@ -18,7 +18,7 @@ PORTS |= dict(n_cm=5, t_int=0x0607, calibration=8, decimation=1)
 
 
 def header(flags):
-    """The 28 bytes before the CRC-32; flags: resync, decimation, 0, phase, mode."""
+    """The 28 bytes before the CRC-32; flags: resync, decimation, ternary, phase, mode."""
     return (
         b"TLBT"
         + bytes([3, flags, 10, 4, 0x46])  # version, flags, threshold, lanes, tile
@@ -57,6 +57,9 @@ def scan(rows):
 #   k = 8; q = 2; the last zero: only zeros up to the segment's end                  0
 # 1011 0101 1010 000, and a zero bit of padding.
 EDGE = dict(mode=0, phase=0, resync=2), 0x90, [(5, [0, 0, 0, 12, -10]), (6, [0, 0])], [(5, bytes([0xB5, 0xA0]))]
+# The same places of ternary mode: each value is its sign in a bit, and the order falls by 2, to 1 at least:
+#   1 011 1, then 1 0 0, 0 and 0; six zero bits of padding.
+TERNARY = dict(mode=4, phase=0, resync=2), 0x98, [(5, [0, 0, 0, 1, -1]), (6, [0, 0])], [(5, bytes([0xBC, 0x00]))]
 # Threshold 10; the credit of literals never ends here. Raw: plain bytes, a mark after 64 of them: rows of 32.
 RAW_ROWS = [(row, list(range(row, row + 32))) for row in (1, 2, 3)]
 RAW = (
@@ -70,7 +73,7 @@ TOF = dict(mode=3, phase=1, resync=3), 0xD7, [(9, [7]), (10, [255, 0])], [(9, b"
 
 
 @pytest.mark.parametrize("verilog", [False, True], ids=["FL", "Verilog"])
-@pytest.mark.parametrize("kind", [EDGE, RAW, IMAGE, TOF], ids=["edge", "raw", "image", "tof"])
+@pytest.mark.parametrize("kind", [EDGE, TERNARY, RAW, IMAGE, TOF], ids=["edge", "ternary", "raw", "image", "tof"])
 def test_the_bytes_of_a_frame(verilog, kind):
     ports, flags, rows, segments = kind
     sim = build(RunLength(*CHIP), True, "RunLength") if verilog else build(RunLengthFL(*CHIP))

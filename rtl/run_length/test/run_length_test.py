@@ -60,7 +60,7 @@ def scan_of(rows):
 def stream_of(header, rows, made, left_out):
     """Return the golden bytes of such a frame."""
     first = header.to_bytes()
-    coder = header.edge, header.threshold
+    coder = header.coder
     body = b"".join(encode_marked(row, codes, *coder) for row, codes, _ in segments(header, rows))
     return first + body + trailer(first, body, made, left_out)
 
@@ -334,6 +334,15 @@ class TestRunLengthFL:
             header, rows = header_of(threshold=threshold), [(3, codes), (4, codes[::-1])]
             assert self.bench(header).run(scan_of(rows)) == stream_of(header, rows, 0, 0)
 
+    def test_signs(self):
+        """Runs of every length and neighbours of both signs, whatever the threshold; the order rises to its end."""
+        pick, codes = random.Random(9), []
+        for size in range(11):
+            codes += [0] * pick.randrange(1 << size) + [pick.choice((-1, 1)) for _ in range(pick.randint(1, 4))]
+        for threshold in (0, 3, 10, 127):
+            header, rows = header_of("ternary", threshold=threshold), [(3, codes), (4, codes[::-1]), (5, [0] * 99)]
+            assert self.bench(header).run(scan_of(rows)) == stream_of(header, rows, 0, 0)
+
     def test_frames_back_to_back(self):
         """Each frame is complete after frames of any mode, messages out of place, or a reset in a frame."""
         pick, bench = random.Random(2), self.bench(header_of())
@@ -393,7 +402,7 @@ class TestRunLengthCL(TestRunLengthFL):
 
     def test_a_sample_a_cycle_and_a_byte_a_cycle(self):
         """Besides header, samples and trailer, a row takes its message, its last byte or two and its mark."""
-        for mode, share in (("edge", 0), ("edge", 0.2), ("edge", 1), ("raw", 1)):
+        for mode, share in (("edge", 0), ("edge", 0.2), ("edge", 1), ("ternary", 0.2), ("raw", 1)):
             header = header_of(mode)
             messages = messages_of(header, samples_of(header, 1, share, 10))
             bench = self.bench(header)
@@ -424,6 +433,8 @@ class TestRunLength(TestRunLengthCL):
                 ones = (1 << port.nbits) - 1
                 value = (0, ones)[turn] if turn < 2 else pick.randint(0, ones)
                 port @= value
+                if name == "mode":  # its third bit is one of its own, and of ternary mode alone
+                    value, ones = value & 3 | (value == 4) << 3, 0b1011
                 expected = expected & ~(ones << low) | value << low
             got = bench.run([ScanMsg(FRAME, 0), ScanMsg(END, 0)], rest=1)
             assert got[:FIELD_BYTES] == expected.to_bytes(FIELD_BYTES, "big")

@@ -34,6 +34,7 @@ POINTS: Points = {
     "mode_image": lambda p: (p.hold == 1) & (p.mode == 1),
     "mode_raw": lambda p: (p.hold == 1) & (p.mode == 2) & (p.sub == 1),
     "mode_tof": lambda p: (p.hold == 1) & (p.mode == 3) & (p.sub == 3),
+    "mode_ternary": lambda p: (p.hold == 1) & (p.mode == 4),
     "converts_while_results_leave": lambda p: _sent(p) & (p.scan__kind == SAMPLE) & (p.idle == 0),
     "result_waits": lambda p: (p.scan__val == 1) & (p.scan__rdy == 0) & (p.scan__kind == SAMPLE),
     "mark_waits": lambda p: (p.scan__val == 1) & (p.scan__rdy == 0) & (p.scan__kind != SAMPLE),

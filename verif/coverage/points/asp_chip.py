@@ -60,6 +60,7 @@ def _frame_after_a_frame(p: Recorded) -> Mask:
 
 POINTS: Points = {
     "edge_frame": lambda p: _frame_ends(p) & (p.mode == 0),
+    "ternary_frame": lambda p: _configuration(p, "mode") & (p.mode == 0),
     "image_frame": lambda p: _frame_ends(p) & (p.mode == 1),
     "raw_frame": lambda p: _frame_ends(p) & (p.mode == 2),
     "tof_frame": lambda p: _frame_ends(p) & (p.mode == 3),

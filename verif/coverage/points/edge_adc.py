@@ -24,7 +24,7 @@ POINTS: Points = {
     # The next value is sampled while the last bit is decided.
     "go_in_the_last_decision": lambda p: (p.go == 1) & (p.busy == 1) & (p.was(p.free) == 1) & (p.reset == 0),
     "go_that_is_ignored": lambda p: (p.go == 1) & (p.busy == 1) & (p.was(p.free) == 0) & (p.reset == 0),
-    "zero_by_the_window": lambda p: _taken(p) & (p.converted == 0) & (p.unsigned_ == 0),
+    "zero_by_the_window": lambda p: _taken(p) & (p.converted == 0) & (p.unsigned_ == 0) & (p.ternary == 0),
     # A code that the search put inside the window, or on zero.
     "zero_by_the_search": lambda p: (
         _taken(p) & (p.converted == 1) & (p.out__msg == 0) & (p.unsigned_ == 0) & (p.threshold > 0)
@@ -40,6 +40,12 @@ POINTS: Points = {
     "highest_unsigned": lambda p: _taken(p) & (p.unsigned_ == 1) & (p.out__msg == 0xFF),
     "threshold_zero": lambda p: _taken(p) & (p.unsigned_ == 0) & (p.threshold == 0),
     "threshold_highest": lambda p: _taken(p) & (p.unsigned_ == 0) & (p.threshold == 127),
+    **{
+        f"ternary_{name}": lambda p, code=code: _taken(p) & (p.ternary == 1) & (p.out__msg == code)
+        for name, code in (("below", 0xFF), ("zero", 0), ("above", 1))
+    },
+    "ternary_threshold_zero": lambda p: _taken(p) & (p.ternary == 1) & (p.threshold == 0),
+    "ternary_result_waits": lambda p: _second_result_waits(p) & (p.ternary == 1),
     "result_waits": _result_waits,
     "conversion_after_a_waiting_result": lambda p: _result_waits(p) & (p.busy == 1),
     "second_result_waits": _second_result_waits,

@@ -51,6 +51,8 @@ POINTS: Points = {
     "mode_image": lambda p: _sample(p) & (p.mode == 1),
     "mode_raw": lambda p: _sample(p) & (p.mode == 2),
     "mode_tof": lambda p: _sample(p) & (p.mode == 3) & (p.phase == 0),
+    "mode_ternary": lambda p: _sample(p) & (p.mode == 4) & (p.recv__data & 0xFF == 0),
+    "signs": lambda p: _sample(p) & (p.mode == 4) & (p.recv__data & 0x80 != p.was(p.recv__data) & 0x80),
     "phases": lambda p: _sample(p) & (p.mode == 3) & (p.phase == 1),
     "most_negative_code": lambda p: _sample(p) & (p.mode == 0) & (p.recv__data & 0xFF == 0x80),
     "most_positive_code": lambda p: _sample(p) & (p.mode == 0) & (p.recv__data & 0xFF == 0x7F),

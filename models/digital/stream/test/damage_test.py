@@ -17,6 +17,7 @@ from talbot.models.parameters.stream_format import FIELD_BYTES, HEADER_BYTES, TR
 FRAMES = {
     "edge": header_of(12, 30, threshold=4, resync=0),
     "segments": header_of(40, 30, threshold=4, resync=1),
+    "ternary": header_of(40, 30, mode="ternary", resync=1),
     "rough": header_of(9, 20, threshold=0, resync=0),
     "raw": header_of(7, 13, mode="raw", resync=0),
     "long raw": header_of(20, 13, mode="raw", resync=1),
@@ -45,7 +46,7 @@ def starts_of(header, samples):
     for row, codes, many in segments(
         header, ((row, lines[row, layout.places_of(i)]) for i, row in enumerate(layout.rows))
     ):
-        at.append(at[-1] + len(encode_marked(int(row), codes, header.edge, header.threshold)))
+        at.append(at[-1] + len(encode_marked(int(row), codes, *header.coder)))
         first = layout.rows.tolist().index(row)
         rows.append(layout.rows[first : first + many].tolist())
     return at, rows

@@ -30,9 +30,8 @@ FIELDS = (
 )
 
 
-def token_lines(codes, threshold):
+def token_lines(codes, base):
     """A line for each token of a row: the state before it, its meaning, its bits."""
-    base = base_of(threshold)
     state, lines = start(base), []
     for code in codes:
         k, r2, run, credit = state
@@ -41,7 +40,7 @@ def token_lines(codes, threshold):
             continue
         text = f"{bits:0{length}b}"
         q = k // 4
-        if run == 0 and credit // 4 < q + 16:
+        if base and run == 0 and credit // 4 < q + 16:
             said = f"literal {code}"
         elif q == 0:
             said = f"{code}"
@@ -59,14 +58,15 @@ def _token(k, r2, credit, said, text):
     return f"  k={k:<2} r2={r2} credit={credit:<4} {said:22} {text}"
 
 
-def row_example(row, codes, threshold):
-    """A row of edge mode, token by token, and its bytes."""
-    sent = encode_marked(row, codes, True, threshold)
+def row_example(row, codes, threshold, mode="edge"):
+    """A row of edge or ternary mode, token by token, and its bytes."""
+    base = base_of(mode, threshold)
+    sent = encode_marked(row, codes, True, base)
     return [
-        f"a segment from row {row} on, threshold {threshold}, {len(codes)} samples:",
+        f"a segment of {mode} mode from row {row} on, threshold {threshold}, {len(codes)} samples:",
         "  " + " ".join(map(str, codes)),
         "tokens:",
-        *token_lines(codes, threshold),
+        *token_lines(codes, base),
         f"payload: {sent[:-2].hex(' ')}",
         f"mark:    {sent[-2:].hex(' ')}",
     ]
@@ -83,7 +83,7 @@ def frame_example(header, samples, made, left_out):
     layout = header.layout()
     for i, row in enumerate(layout.rows.tolist()):
         codes = samples.reshape(header.rows, -1)[row, layout.places_of(i)]
-        size = len(encode_marked(row, codes, header.edge, header.threshold))
+        size = len(encode_marked(row, codes, *header.coder))
         payload, mark = data[at : at + size - 2], data[at + size - 2 : at + size]
         lines.append(f"{f'row {row}':14}{payload.hex(' ')}   mark {mark.hex(' ')}")
         at += size
@@ -109,6 +109,11 @@ def noise():
     return row_example(0, [-128, 127, -128, 127, -128, 0], 0)
 
 
+def signs():
+    """Return a segment of ternary mode: a run, neighbours of both signs, zeros at its end."""
+    return row_example(2, [0] * 9 + [1, -1, -1, 1, 0, 0, 1, 0, 0, 0], 10, "ternary")
+
+
 def small_frame():
     """A raw frame of 2 x 6 pixels, type 3 masked."""
     frame = FrameParameters(
@@ -119,7 +124,7 @@ def small_frame():
 
 
 DOCUMENTED = edges  # in docs/stream.md
-FURTHER = faint, noise
+FURTHER = faint, noise, signs
 
 if __name__ == "__main__":
     print("\n\n".join("\n".join(example()) for example in (DOCUMENTED, small_frame, *FURTHER)))

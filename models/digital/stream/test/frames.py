@@ -25,14 +25,14 @@ def ports_of(header):
 def samples_of(header, seed, share=0.2, scale=20):
     """Codes as the converters give them: int64 (rows, cols, subs); zero where nothing is read.
 
-    share: part of them that is not zero in edge mode. scale: of their magnitudes.
+    share: part of them that is not zero where they are signed. scale: of their magnitudes.
     """
     rng = np.random.default_rng(seed)
     shape = header.rows, header.cols, header.subs
     if header.edge:
         codes = np.clip(np.rint(rng.laplace(0, scale, shape)), -128, 127).astype(int)
         codes[rng.random(shape) >= share] = 0
-        codes[abs(codes) < header.threshold] = 0
+        codes = np.sign(codes) if header.mode == "ternary" else np.where(abs(codes) < header.threshold, 0, codes)
     else:
         codes = rng.integers(0, 256, shape)
     layout, out = header.layout(), np.zeros(shape, int)
