@@ -13,15 +13,11 @@ from talbot.imaging.frame.request import FrameRequest, request
 from talbot.models.afe import FrontEnd
 from talbot.models.chip import GoldenFrame, golden_frame
 from talbot.models.digital.exposure import slot_cycles
-from talbot.models.digital.stream import StreamHeader, encode_frame
 from talbot.models.parameters import EnergyParameters, SensorParameters
-from talbot.models.parameters.energy import WINDOW
-from talbot.models.recognition.gradient import ternary
 from talbot.models.recognition.optics import Display, phase_types
 
 STREAMS = 100  # frames whose bytes and energy are measured
 CHUNK = 250  # pictures that are kept together
-MODES = "edge", "ternary", "image"
 
 
 @dataclass(frozen=True)
@@ -51,7 +47,7 @@ def frame_request(display: Display, mode: str, threshold: int, noise: float, see
     if mode == "image":
         return request(sensor=sized(display), mode=mode, noise=noise, seed=seed)
     mask = sum(1 << int(kind) for kind in phase_types(display.sensor))
-    return request(sensor=sized(display), mode="edge", threshold=threshold, mask=mask, noise=noise, seed=seed)
+    return request(sensor=sized(display), mode=mode, threshold=threshold, mask=mask, noise=noise, seed=seed)
 
 
 def read(
@@ -64,7 +60,7 @@ def read(
     setup = frame_request(display, mode, threshold, noise, seed)
     front_end = kept("recognize_trims", trimmed, setup)
     parts = [
-        kept("recognize", _frames, setup, front_end, mode, display, pictures[i : i + CHUNK], i)
+        kept("recognize", _frames, setup, front_end, display, pictures[i : i + CHUNK], i)
         for i in range(0, len(pictures), CHUNK)
     ]
     codes = np.concatenate([part[0] for part in parts])
@@ -85,42 +81,22 @@ def samples_of(
 
 
 def _frames(
-    setup: FrameRequest, front_end: FrontEnd, mode: str, display: Display, pictures: npt.NDArray[np.float32], first: int
+    setup: FrameRequest, front_end: FrontEnd, display: Display, pictures: npt.NDArray[np.float32], first: int
 ) -> tuple[npt.NDArray[np.int16], npt.NDArray[np.float64]]:
     """Codes, and of the first frames (bytes, energies)."""
     codes, figures = [], []
     for i, (samples, converters) in enumerate(samples_of(setup, front_end, display, pictures, first)):
         golden = golden_frame(samples, setup.sensor, setup.frame, converters)
-        sent = golden.sent[..., 0]
-        if mode == "ternary":
-            sent = ternary(sent, max(setup.frame.threshold, 1)).astype(np.int16)
-        codes.append(sent)
+        codes.append(golden.sent[..., 0])
         if first + i < STREAMS:
-            stream, decisions = golden.stream, golden.decisions
-            if mode == "ternary":
-                stream, decisions = ternary_stream(golden), WINDOW * golden.samples
-            figures.append((len(stream), *_energy(golden, stream, decisions)))
+            figures.append((len(golden.stream), *_energy(golden)))
     return np.stack(codes), np.array(figures).reshape(-1, 5)
 
 
-def ternary_stream(golden: GoldenFrame) -> bytes:
-    """Return an edge frame as a ternary mode sends it: each code that is not 0 is the threshold with its sign.
-
-    These are the shortest values of the stream as it is (docs/stream.md), so any decoder of version 3 reads them.
-    """
-    array, chip, tile = golden.sensor.array, golden.sensor.chip, golden.sensor.tile
-    threshold = max(golden.frame.threshold, 1)
-    header = StreamHeader.from_frame(array.rows, array.cols, chip.lanes, golden.frame, tile)
-    codes = ternary(golden.sent, threshold).astype(np.int16) * threshold
-    return encode_frame(header, codes, 0, golden.samples, tile)
-
-
-def _energy(golden: GoldenFrame, stream: bytes, decisions: int) -> tuple[float, float, float, float]:
+def _energy(golden: GoldenFrame) -> tuple[float, float, float, float]:
     """Energy of a frame in J, lower and higher reading, then with every sample converted and sent as a byte."""
     cycles = frame_cycles(golden)
-    events = golden_events(golden, stream, cycles, cycles)
-    digital = events.digital._replace(decisions=decisions, bytes=len(stream))
-    events = events._replace(decisions=decisions, digital=digital)
+    events = golden_events(golden, golden.stream, cycles, cycles)
     parameters = EnergyParameters()
     return *parameters.total(events), *parameters.total(image_mode(events, golden.samples))
 

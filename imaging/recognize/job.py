@@ -1,5 +1,6 @@
 """One run of `talbot recognize`: settings of its table and curves, evaluated, and the summary."""
 
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -12,7 +13,7 @@ from talbot.base.files import atomic
 from talbot.base.progress import each
 from talbot.imaging.recognize import chip, study, wake
 from talbot.imaging.recognize.data import Pictures, load
-from talbot.imaging.recognize.study import CURVES, FREE, FRONTS, Point, Setting
+from talbot.imaging.recognize.study import CURVES, FREE, FRONTS, WHOLE, Point, Setting
 from talbot.models.parameters import ParameterError, check_choice
 from talbot.models.recognition.optics import Display, phase_types
 
@@ -67,6 +68,10 @@ def measure(task: Study, folder: Path) -> Recognition:
     start, base, data = perf_counter(), task.base, task.data
     lead = task.fronts[0]
     chosen = {front: replace(base, front=front) for front in task.fronts}
+    if "asp" in chosen:  # one sensor in its modes
+        limits = (max(base.threshold // 2, 1), min(2 * base.threshold, 127))
+        chosen |= {f"asp_{limit}": replace(base, front="asp", threshold=limit) for limit in limits}
+        chosen[WHOLE] = replace(base, front=WHOLE)
     rows = study.run(chosen, data, folder, "front", task.workers)
     free = {"image": replace(base, front="image")} if "image" not in task.fronts else {}
     free |= {name: replace(base, front=name, bytes=rows[lead]["bytes"]) for name in FREE}
@@ -81,7 +86,7 @@ def measure(task: Study, folder: Path) -> Recognition:
     if WAKE in task.curves:
         for contrast in each(wake.CONTRASTS, "wake-up"):
             alarms[contrast] = wake.detect(base.sensor, contrast, base.seed)
-    sample = _sample(task, lead) if task.verilog else None
+    sample = _sample(task) if task.verilog else None
     summary = _summary(task, rows, sample) | {
         "curves": {
             name: {
@@ -124,15 +129,16 @@ def _curves(task: Study, folder: Path) -> dict[str, dict[str, list[tuple[Point, 
     return out
 
 
-def _sample(task: Study, lead: str) -> dict[str, int]:
-    """Compare the bytes of the Verilog with the golden chip's, for the frame of the front ``lead``."""
-    base, shape = task.base, task.data.images.shape[1:]
-    optics = replace(base, front=lead).by_optics
-    display = (
-        study.out_of_focus(base.sensor, shape, base.scale, base.blur) if optics else study.in_focus(base.sensor, shape)
-    )
-    mode, radiance = "edge" if optics else "image", task.data.radiance[:SAMPLE]
-    return chip.verify(display, radiance, mode, base.threshold, base.noise, base.seed)
+def _sample(task: Study) -> dict[str, int]:
+    """Compare the bytes of the Verilog with the golden chip's, for frames of the first front and of those by optics."""
+    base, shape, sums = task.base, task.data.images.shape[1:], Counter[str]()
+    settings = [replace(base, front=front) for front in task.fronts]
+    for setting in (s for s in settings if s.by_optics or s is settings[0]):
+        optics = study.out_of_focus(base.sensor, shape, base.scale, base.blur)
+        display = optics if setting.by_optics else study.in_focus(base.sensor, shape)
+        radiance = task.data.radiance[:SAMPLE]
+        sums.update(chip.verify(display, radiance, setting.mode, base.threshold, base.noise, base.seed))
+    return dict(sums)
 
 
 def _summary(task: Study, rows: Mapping[str, dict[str, Any]], sample: dict[str, int] | None) -> dict[str, Any]:

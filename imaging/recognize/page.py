@@ -19,7 +19,8 @@ from talbot.imaging.recognize.job import Recognition
 
 NAMES = ("recognize.html", "summary.json", "features.npz")
 TEXTS = {
-    "asp": "ASP codes, {types} types of alpha 0",
+    "asp": "ASP codes, {types} types of alpha 0, threshold {threshold}",
+    "whole": "image mode of the same array, in focus",
     "ternary": "ASP ternary: sign, or 0 below the threshold",
     "gradient": "binary gradient (Eq. A.1), as published",
     "image": "plain image of the picture's size, in focus",
@@ -56,7 +57,8 @@ def rows(s: dict[str, Any]) -> list[tuple[str, ...]]:
 
 
 def _text(name: str, s: dict[str, Any]) -> str:
-    return TEXTS[name].format(types=s["types"])
+    front, _, threshold = name.partition("_") if name not in TEXTS else (name, "", "")
+    return TEXTS[front].format(types=s["types"], threshold=threshold or s["threshold"])
 
 
 def _cells(row: dict[str, Any]) -> tuple[str, ...]:

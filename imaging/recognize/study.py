@@ -34,6 +34,7 @@ from talbot.models.recognition.statistics import Spread, first_layer_flops
 
 FRONTS = "asp", "ternary", "gradient", "image"
 FREE = "same_bytes", "random", "chance"  # what costs nothing
+WHOLE = "whole"
 CLASSIFIERS = "kernel", "lenet", "shipped"
 WEIGHTS = Path(recognition.__file__).with_name("digits_lenet.npz")  # docs/results/recognition.md: how it was trained
 FILTERS, KERNEL = 12, 5  # of a first layer that is computed
@@ -47,8 +48,9 @@ SIX = (2, 3)  # tile of six random types
 class Setting:
     """A front and a classifier with their parameters.
 
-    front: asp, ternary, gradient, image; same_bytes (an image of at most ``bytes``), random or learned (filters on the
-    image). scale: sensor px along a picture px. blur: of a point, in picture px, positive behind the focal plane.
+    front: asp, ternary, gradient, image; whole (an image by the array of asp); same_bytes (an image of at most
+    ``bytes``), random or learned (filters on the image). scale: sensor px along a picture px. blur: of a point, in
+    picture px, positive behind the focal plane.
     threshold: codes. bits: of a code that are kept; levels: bits of the gradient. snr_db, snr_train_db: of white noise
     in the pictures that are tested and trained on, None for none. noise: times the physical noise. ideal: neither noise
     nor converters. draw: of random pixel types, 0 for the sensor's. seeds: splits and draws, from ``seed`` on.
@@ -74,7 +76,7 @@ class Setting:
     epochs: int = 20
 
     def __post_init__(self) -> None:
-        check_choice("front", self.front, (*FRONTS, *FREE, "learned"))
+        check_choice("front", self.front, (*FRONTS, *FREE, WHOLE, "learned"))
         check_choice("classifier", self.classifier, CLASSIFIERS)
         check_int("seed", self.seed, 0, 1 << 31)
         check_int("seeds", self.seeds, 1, 100)
@@ -90,6 +92,11 @@ class Setting:
     def by_optics(self) -> bool:
         """Whether the optics is the first layer."""
         return self.front in ("asp", "ternary")
+
+    @property
+    def mode(self) -> str:
+        """Mode of the sensor's frames."""
+        return "ternary" if self.front == "ternary" else "edge" if self.by_optics else "image"
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,8 +134,12 @@ def see(setting: Setting, radiance: npt.NDArray[np.float32]) -> Seen:
         radiance = reduced(radiance, image_size(setting, shape))
     height, width = radiance.shape[1:]
     display = in_focus(setting.sensor, (height, width))
+    if setting.front == WHOLE:
+        display = out_of_focus(setting.sensor, (height, width), setting.scale, 0.0)
     reading = chip.read(display, radiance, "image", 0, setting.noise, setting.seed)
-    codes = reading.codes[..., None].astype(np.float32)
+    margin, scale = display.margin, display.scale
+    cells = reading.codes.reshape(-1, height + 2 * margin, scale, width + 2 * margin, scale)
+    codes = cells.mean((2, 4), dtype=np.float32)[:, margin : margin + height, margin : margin + width, None]
     if setting.front == "gradient":
         active = gradient.levels(reading.codes, setting.levels, GRADIENT * WHITE)
         share = float((active > 0).mean())
@@ -149,7 +160,7 @@ def _edges(setting: Setting, radiance: npt.NDArray[np.float32]) -> Seen:
         pair = display.currents(radiance)
         samples = len(types) / sensor.tile.n_types * np.prod(display.size)
         return Seen(display.channels(pair[:, 0] - pair[:, 1], types), float(samples), (0.0, 0.0))
-    mode = "ternary" if setting.front == "ternary" else "edge"
+    mode = setting.mode
     reading = chip.read(display, radiance, mode, setting.threshold, setting.noise, setting.seed)
     codes = reading.codes
     if mode == "edge" and setting.bits < 8:

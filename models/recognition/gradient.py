@@ -156,23 +156,3 @@ def packed_bytes(pixels: int, bits: int) -> int:
         Without a header.
     """
     return -(-pixels * bits // 8)
-
-
-def ternary(codes: npt.ArrayLike, threshold: int) -> npt.NDArray[np.int8]:
-    """Sign of a difference whose magnitude reaches a threshold: what the window comparison of the converter decides.
-
-    Parameters
-    ----------
-    codes : array of int
-        Codes of edge mode, -128..127.
-    threshold : int
-        1..127.
-
-    Returns
-    -------
-    int8
-        -1, 0 or 1.
-    """
-    check_int("threshold", threshold, 1, 127)
-    codes = np.asarray(codes)
-    return (np.sign(codes) * (np.abs(codes.astype(np.int16)) >= threshold)).astype(np.int8)

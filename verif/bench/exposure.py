@@ -52,6 +52,7 @@ def frame_of(window: Window = SENSOR.full_window, mode: str = "edge", **fields: 
 FRAMES = {
     "edge": frame_of(threshold=9, frame_number=7),
     "every sample": frame_of(threshold=0, overlap=False),
+    "ternary": frame_of(mode="ternary", threshold=6),
     "image, some types": frame_of(mode="image", mask=0x8040A1),
     "raw, a window": frame_of(Window(1, 2, 1, 2), "raw"),
     "tof, decimated": frame_of(mode="tof", mask=0x000003, decimation=1),

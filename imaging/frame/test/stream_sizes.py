@@ -1,6 +1,6 @@
 """Bytes of edge frames as the chip sends them and by other coders: the tables of docs/results/stream.md.
 
-python -m talbot.imaging.frame.test.stream_sizes prints them (needs the extra `codecs`), with `ternary` those of decision 2.
+python -m talbot.imaging.frame.test.stream_sizes prints them (needs the extra `codecs`); `ternary`: of decision 2.
 """
 
 import sys

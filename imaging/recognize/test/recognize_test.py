@@ -16,7 +16,6 @@ from talbot.imaging.recognize.job import Study, as_trained
 from talbot.imaging.recognize.study import Setting, evaluate, noisy, reduced, see
 from talbot.imaging.recognize.wake import watch
 from talbot.models.afe import FrontEnd
-from talbot.models.digital.stream import decode_stream
 from talbot.models.parameters import STANDARD, ParameterError
 from talbot.models.recognition.optics import Display
 
@@ -64,7 +63,7 @@ def test_a_second_run_takes_the_kept_parts(tmp_path, monkeypatch):
     assert again["rows"] == first["rows"]
 
 
-def test_codes_are_the_golden_chips_and_ternary_streams_decode_to_their_signs(digits):
+def test_codes_are_the_golden_chips_and_its_ternary_mode_sends_their_signs(digits):
     display = Display(STANDARD, (8, 8), 3, 12.0)
     pictures = digits.radiance[:2]
     got = chip.read(display, pictures, "edge", 8, 1.0, 1)
@@ -73,12 +72,9 @@ def test_codes_are_the_golden_chips_and_ternary_streams_decode_to_their_signs(di
     for i, (samples, converters) in enumerate(chip.samples_of(asked, front_end, display, pictures)):
         golden = chip.golden_frame(samples, asked.sensor, asked.frame, converters)
         assert np.array_equal(golden.sent[..., 0], got.codes[i]) and isinstance(converters, FrontEnd)
-        decoded = decode_stream(chip.ternary_stream(golden), STANDARD.tile)[0].samples[..., 0]
-        assert np.array_equal(np.sign(decoded), np.sign(golden.sent[..., 0]))
-        assert set(np.unique(np.abs(decoded))) <= {0, 8}
-        assert len(chip.ternary_stream(golden)) < len(golden.stream)
     ternary = chip.read(display, pictures, "ternary", 8, 1.0, 1)
-    assert np.array_equal(ternary.codes, np.sign(got.codes)) and ternary.bytes < got.bytes
+    assert (ternary.codes != np.sign(got.codes)).mean() < 0.002  # an edge's search may contradict its window
+    assert ternary.share > 0 and ternary.bytes < 0.7 * got.bytes
     assert ternary.energy[0] < got.energy[0] < got.image_energy[0]
 
 
@@ -223,9 +219,11 @@ def test_broken_data_are_one_line(tmp_path):
 
 @pytest.mark.slow
 def test_the_verilog_sends_the_golden_chips_bytes(digits):
-    found = chip.verify(Display(STANDARD, (8, 8), 3, 12.0), digits.radiance[:1], "edge", 10, 1.0, 1)
-    assert found["mismatches"] == 0 and found["bytes"] > 46
-    assert found["cycles"] == pytest.approx(found["cycles_model"], rel=1e-3)
+    display = Display(STANDARD, (8, 8), 3, 12.0)
+    edge, signs = (chip.verify(display, digits.radiance[:1], mode, 10, 1.0, 1) for mode in ("edge", "ternary"))
+    assert edge["mismatches"] == signs["mismatches"] == 0 and 46 < signs["bytes"] < edge["bytes"]
+    for verified in (edge, signs):
+        assert verified["cycles"] == pytest.approx(verified["cycles_model"], rel=1e-3)
 
 
 def test_shipped_weights_are_compared_on_the_pictures_of_their_split_alone():

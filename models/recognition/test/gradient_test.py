@@ -1,4 +1,4 @@
-"""Binary gradients against Eq. A.1 to A.3 by loops, and the ternary code."""
+"""Binary gradients against Eq. A.1 to A.3 by loops."""
 
 import numpy as np
 import pytest
@@ -56,14 +56,3 @@ def test_power_is_equation_a3_with_the_ratios_of_the_thesis():
     assert (
         eight / one > 80 and four / one == pytest.approx(6, abs=0.1) and four / eight == pytest.approx(0.07, abs=0.01)
     )
-
-
-def test_ternary_is_the_window_of_the_converter():
-    codes = np.array([-128, -10, -9, 0, 9, 10, 127], np.int16)
-    assert gradient.ternary(codes, 10).tolist() == [-1, -1, 0, 0, 0, 1, 1]
-
-
-@pytest.mark.parametrize("call", (lambda: gradient.levels(PICTURE, 9, 1), lambda: gradient.power(1, 4, 2)))
-def test_out_of_range_is_refused(call):
-    with pytest.raises(ParameterError):
-        call()

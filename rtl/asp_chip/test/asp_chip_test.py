@@ -40,6 +40,7 @@ def pattern_frame(window=FULL, mode="edge", exposure=0, **fields):
 FRAMES = {
     "edge": pattern_frame(frame_number=7),
     "every sample": pattern_frame(threshold=0, overlap=False),
+    "ternary": pattern_frame(mode="ternary", threshold=6),
     "image, some types": pattern_frame(mode="image", mask=0x8040A1),
     "a lead of the reset pointer": pattern_frame(exposure=3, overlap=False),
     "raw, a window": pattern_frame(Window(1, 1, 1, 2), "raw"),

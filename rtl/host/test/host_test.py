@@ -38,6 +38,7 @@ def pattern(window=FULL, mode="edge", **fields):
 FRAMES = {
     "edge": pattern(frame_number=0xABCD),
     "every sample": pattern(threshold=0, overlap=False),
+    "ternary": pattern(mode="ternary", threshold=6),
     "image, some types": pattern(mode="image", mask=0x8040A1),
     "raw, a window": pattern(Window(1, 2, 1, 2), "raw"),
     "tof": pattern(mode="tof", mask=0x030201),
