@@ -8,7 +8,7 @@ from talbot.rtl.edge_adc.ports import declare_ports
 
 # ABOVE and BELOW: first and second decision of the window; OUTSIDE: the second, after the first found "above".
 # WAIT, WAIT_ZERO: a result waits until the previous one is taken; the code of WAIT is in `trial`.
-# In ternary mode BELOW and OUTSIDE end the conversion.
+# In ternary mode BELOW and OUTSIDE end the conversion; a 1 waits in OUTSIDE, a 0 in WAIT_ZERO, a -1 in WAIT.
 IDLE, ABOVE, BELOW, OUTSIDE, SEARCH, WAIT, WAIT_ZERO = range(7)
 MIDDLE = 0x80  # code 0 in offset binary, and the first trial of the search
 
@@ -56,12 +56,10 @@ class EdgeAdc(Component):
             if s.state >= BELOW:
                 s.found @= (s.state >= WAIT) | ((s.state == BELOW) & s.comparator) | s.ternary
                 if s.ternary:
-                    s.kept @= s.trial
                     if s.state == OUTSIDE:
-                        s.kept @= MIDDLE + 1
-                    elif s.state == BELOW:
-                        s.kept @= MIDDLE if s.comparator else MIDDLE - 1
-                    s.result @= s.kept ^ MIDDLE
+                        s.result @= 1
+                    elif (s.state == WAIT) | ((s.state == BELOW) & ~s.comparator):
+                        s.result @= 0xFF
                 elif (s.state == SEARCH) | (s.state == WAIT):
                     s.found @= (s.state == WAIT) | s.trial[0]
                     s.kept @= s.trial
@@ -93,11 +91,11 @@ class EdgeAdc(Component):
                                 s.full <<= 1
                                 s.code <<= s.result
                                 s.search_made <<= ((s.state == SEARCH) | (s.state == WAIT)) & ~s.ternary
-                            elif (s.state == SEARCH) | s.ternary:
+                            elif s.state == SEARCH:
                                 s.trial <<= s.kept
                                 s.state <<= WAIT
                             elif s.state == BELOW:
-                                s.state <<= WAIT_ZERO
+                                s.state <<= WAIT_ZERO if s.comparator else WAIT
                         elif s.state == SEARCH:
                             s.trial <<= s.kept | ((s.trial & (~s.trial + 1)) >> 1)
                         elif s.state == ABOVE:

@@ -17,7 +17,13 @@ from talbot.imaging.sequence.outputs import ANIMATIONS, SCALE
 
 SIDE = 192
 FRAMES, STEP, FRAME_S = 16, 6, 0.1  # of the animation: px a frame, s
-MODES = {"edge": "Edge mode", "image": "Image mode", "raw": "Raw mode", "tof": "Time of flight", "ternary": "Ternary mode"}
+MODES = {
+    "edge": "Edge mode",
+    "image": "Image mode",
+    "raw": "Raw mode",
+    "tof": "Time of flight",
+    "ternary": "Ternary mode",
+}
 HEAD = """# Gallery
 
 Every mode on the scene `motorcycle`, {side} x {side} pixels, made with this page by the golden model, whose bytes are

@@ -6,7 +6,7 @@ import cocotb
 import numpy as np
 
 from talbot.models.digital.sar import convert
-from talbot.models.parameters import MODES
+from talbot.models.parameters import MODES, SIGNED
 from talbot.rtl.messages import END, FRAME, ROW, SAMPLE, ScanMsg, step_msg
 from talbot.verif.bench.agents import Bench, Driver, Monitor, Stream, check, known
 
@@ -66,7 +66,7 @@ class AdcBankBench(Bench):
                 lanes = [lane for lane in range(LANES) if en >> lane & 1]
                 held = np.array([random.choice((random.uniform(-140, 300), random.uniform(-20, 20))) for _ in lanes])
                 self.values.update({(*at, lane): float(value) for lane, value in zip(lanes, held)})
-                got = convert(held, mode != "edge", threshold)
+                got = convert(held, mode not in SIGNED, threshold, ternary=mode == "ternary")
                 out += [
                     ScanMsg(SAMPLE, int(code) & 0xFF | (LAST if lane == lanes[-1] else 0))
                     for lane, code in zip(lanes, got.codes)

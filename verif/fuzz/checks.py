@@ -57,7 +57,7 @@ def _check_frame(frame: DecodedFrame, at: int, size: int) -> None:
     unread[frame.bad_rows] = True
     demand(not frame.samples[unread].any(), "samples in a row that is bad or was not sent")
     if header.edge and frame.samples.size:
-        low, high = -128, 127
+        low, high = (-1, 1) if header.mode == "ternary" else (-128, 127)
     else:
         low, high = 0, 255
     demand(frame.samples.min() >= low and frame.samples.max() <= high, "samples out of their range")

@@ -72,7 +72,7 @@ def a_frame(rng: np.random.Generator) -> None:
     try:
         frame = FrameParameters(
             Window(*(integer(rng) for _ in range(4))) if rng.random() < 0.3 else Window(0, 5, 1, 7),
-            MODES[rng.integers(4)],
+            MODES[rng.integers(len(MODES))],
             integer(rng),
             integer(rng) % 128,
             int(rng.integers(4)),

@@ -10,12 +10,12 @@ from talbot.imaging.frame import job
 from talbot.imaging.frame.request import request
 from talbot.models.chip import golden_frame
 from talbot.models.digital.stream import decode_stream, segments
-from talbot.models.parameters import MODES
+from talbot.models.parameters import MODES, SIGNED
 from talbot.models.parameters.stream_format import HEADER_BYTES, TRAILER_BYTES
 from talbot.verif.results import Sweep
 
 FRAMES = {**{mode: (mode, False) for mode in MODES}, "phase": ("tof", True)}
-SIZES = {"edge": (96, 144)}  # rows, cols of the array that sees the default scene
+SIZES = dict.fromkeys(SIGNED, (96, 144))  # rows, cols of the array that sees the default scene
 SIZE = 24, 36  # ... in the other modes, whose rows are plain bytes
 AROUND = "alone", "between frames", "followed by bytes"
 

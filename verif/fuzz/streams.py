@@ -80,6 +80,7 @@ def random_frame(rng: Rng) -> Sent:
     if header.edge:
         codes = np.clip(np.rint(rng.laplace(0, rng.choice([3, 20, 80]), shape)), -128, 127).astype(int)
         codes[(rng.random(shape) > rng.choice([0.05, 0.3, 1])) | (abs(codes) < header.threshold)] = 0
+        codes = np.sign(codes) if header.mode == "ternary" else codes
     samples = np.zeros(shape, int)
     for ordinal, row in enumerate(layout.rows):
         here = row, layout.places_of(ordinal)

@@ -60,11 +60,12 @@ module Lane (
     bits <= go && startable ? 0 : search ? answers : bits;
   end
 
-  wire [2:0] state = ready == 2 ? (younger[8] || ternary ? WAIT : WAIT_ZERO) : !running ? IDLE
+  wire [2:0] waits = younger == 0 ? WAIT_ZERO : ternary && younger == 1 ? OUTSIDE : WAIT;
+  wire [2:0] state = ready == 2 ? waits : !running ? IDLE
                      : search ? SEARCH : number == 0 ? ABOVE : above ? OUTSIDE : BELOW;
   assign holds = its_state == state && its_full == (ready != 0) && (ready == 0 || elder == {its_converted, its_code})
                  && ready != 3 && !(running && ready == 2)
-                 && (!running || !ternary || number < 2) && (state != WAIT || !ternary || its_trial - 8'h7F < 3)
-                 && (state != WAIT || younger == (ternary ? {1'b0, its_trial ^ 8'h80} : coded(its_trial))) && (state != WAIT_ZERO || younger == 0)
+                 && (!running || !ternary || number < 2)
+                 && (state != WAIT || younger == (ternary ? 9'h0FF : coded(its_trial))) && (state != WAIT_ZERO || younger == 0)
                  && (!running || its_trial == dac && (search ? digit <= 7 && !(bits & 8'hFF >> digit) : bits == 0));
 endmodule

@@ -3,10 +3,10 @@
 // the tokens mean. Together: a segment's bytes, decoded, are its samples.
 
 module PayloadProof (
-  input clk, input reset, input restart, input push, input flush, input coded, input signs,
-  input [6:0] threshold, input [7:0] code,
+  input clk, input reset, input restart, input push, input flush, input coded, input [6:0] threshold, input [7:0] code,
   input rdy, input watch, input [4:0] which
 );
+  (* anyconst *) wire signs;  // a segment has one mode; the coder begins each from its start
   wire ready, val;
   wire [7:0] octet;
   PayloadPacker dut (.*);
@@ -56,7 +56,7 @@ module PayloadProof (
       p_stable: assert (!was_val || was_rdy || val && octet == was_octet);
     end
     if (!first) begin
-      inv_coder: assert (\dut.coder.k [5:2] <= 12 && (\dut.coder.run == 0
+      inv_coder: assert (\dut.coder.k [5:2] <= 12 && (!signs || \dut.coder.k >= 4) && (\dut.coder.run == 0
               || \dut.coder.run < (13'd1 << \dut.coder.k [5:2]) >> 1));
       inv_inside: assert (\dut.count == inside && inside < 35);
       inv_bit: assert (!following || before < inside && gathered[33 - before] == followed);
