@@ -14,7 +14,7 @@ def test_every_cross_has_a_frame(seed):
         for frame in cross.frames(lanes, seed)
         for stall in cross.STALLS.values()
     }
-    assert seen == cross.every() and len({str(one) for one in seen}) == 4 * 3 * 3 * 2 * 3 * 3
+    assert seen == cross.every() and len({str(one) for one in seen}) == 5 * 3 * 3 * 2 * 3 * 3
     assert {one.mode for one in seen} == set(MODES)
 
 
