@@ -272,11 +272,14 @@ def test_a_tradeoff_is_a_table_and_a_plot():
     assert all(re.search(rf"\b{name}\b", talbot.tradeoff.__doc__) for name in SWEEPS)
 
 
-def test_a_light_field_by_every_method(monkeypatch):
+FAST = "direct", "linear", "mixture"  # imaging/lightfield/test has every method
+
+
+def test_a_light_field_by_a_method(monkeypatch):
     monkeypatch.setattr(frame_light_field, "prior_of", partial(frame_light_field.prior_of, disparities=7))
     run = talbot.Sensor(rows=24, cols=24).golden("tilted", mode="raw")
     truth = run.result.exposed.scene.full_light_field
-    error = {name: np.std(run.reconstruct("light_field", method=name).values - truth) for name in METHODS}
+    error = {name: np.std(run.reconstruct("light_field", method=name).values - truth) for name in FAST}
     assert error["mixture"] < error["linear"] < error["direct"]
     assert (run.reconstruct("light_field").values == run.reconstruct("light_field", method="linear").values).all()
     assert run.summary["light_field_method"] == "linear"

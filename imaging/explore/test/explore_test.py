@@ -365,6 +365,7 @@ def test_processes_that_were_killed_while_they_waited_are_replaced():
         assert list(pool.run(math.sqrt, [(9,)])) == [(0, 3.0)]
 
 
+@pytest.mark.slow
 def test_dask_runs_the_same_trials(whole, tmp_path, monkeypatch):
     import distributed
 
@@ -462,6 +463,7 @@ def test_every_task_beats_what_costs_nothing(name, monkeypatch):
     assert set(POINTS[name]) <= set(task.space) and task.words(point).startswith("make ")
 
 
+@pytest.mark.slow
 def test_the_divider_sends_less_than_the_depth_field():
     task = task_of("depth")
     values = POINTS["depth"] | {"electrical.f_mod": 100e6}  # a turn of 1.5 m, in a scene of 2.4 m

@@ -112,6 +112,7 @@ def estimated():
     return FieldEstimator(SENSOR, VIEWS, prior, 7).mixture(pair), pair, two_planes(VIEWS), prior.noise
 
 
+@pytest.mark.slow
 def test_layers_gain_where_a_plane_hides_another(estimated):
     mixture, pair, truth, noise = estimated
     field = layered(mixture, SENSOR, 7, noise, pair)
@@ -119,6 +120,7 @@ def test_layers_gain_where_a_plane_hides_another(estimated):
     assert psnr_db(field, truth) > psnr_db(mixture.light_field, truth) + 0.5
 
 
+@pytest.mark.slow
 def test_where_layers_do_not_explain_the_samples_the_mixture_stays(estimated):
     """Samples of another scene; and a disparity that nobody is sure of"""
     mixture, pair, _, noise = estimated
