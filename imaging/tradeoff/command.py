@@ -18,8 +18,8 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--only", help=f"names with commas between, of {', '.join(SWEEPS)} (default: all)")
     workers = "processes, -1: all cores (default: 1, so that nothing else of the run is in the seconds measured)"
     parser.add_argument("--workers", type=worker_count, default=1, help=workers)
-    parser.add_argument("--document", type=Path, help="also put each table between the marks of this file, of its name")
     parser.add_argument("--out", type=Path, default=Path("build/tradeoff"), help="folder for the tables and plots")
+    parser.add_argument("--document", type=Path, help="also put each table between the marks of this file, of its name")
 
 
 def run(options: Namespace) -> int:
