@@ -17,9 +17,9 @@ THRESHOLDS = 0, 2, 4, 7, 10, 14, 20  # the first four are within noise and fixed
 
 
 def check(codes, threshold, zstd_factor=1.0):
-    """At most 1.12 of the entropy and 150 bytes, and at most ``zstd_factor`` of zstd's."""
+    """At most 1.13 of the entropy and 150 bytes, and at most ``zstd_factor`` of zstd's."""
     size = stream_bytes(codes, threshold)
-    assert size <= 1.12 * entropy_bytes(codes) + 150
+    assert size <= 1.13 * entropy_bytes(codes) + 150
     assert size <= zstd_factor * zstd_bytes(codes)
 
 
