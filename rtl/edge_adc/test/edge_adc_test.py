@@ -171,6 +171,13 @@ class TestEdgeAdcCL(TestEdgeAdcFL):
         assert bench.results == expected([40.0, 50.0, 60.0], False, 10)
         assert bench.taken_at[0] == 40
 
+    def test_signs_wait_while_a_result_waits(self):
+        values = [9.0, -50.0, 9.0, 50.0, -50.0, 9.0, -50.0, -50.0, 50.0, 50.0]
+        for late in range(len(values)):
+            some = values[late:] + values[:late]
+            bench = self.bench(some, False, 10, IDEAL, True).run([(0, False)] * 20 + [(0, True)])
+            assert bench.results == expected(some, False, 10, ternary=True)
+
     @SETTINGS
     @given(
         st.lists(st.sampled_from([0.0, 5.0, 60.0, -90.0]), min_size=1, max_size=15),
