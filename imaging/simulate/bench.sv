@@ -36,7 +36,7 @@ module Bench #(
   wire [9:0] amp_row, reset_row;
   wire [8*LANES-1:0] dac;
   wire [LANES-1:0] comparator, en;
-  wire hold, unsigned_;
+  wire hold, wake, convert, unsigned_;
   wire [1:0] mode, sub;
   wire [7:0] group;
   wire [2:0] k;
@@ -45,7 +45,7 @@ module Bench #(
   AspChip chip (
       .clk(clk), .reset(reset), .sclk(sclk), .csn(csn), .mosi(mosi), .miso(miso),
       .link_data(link_data), .link_val(link_val), .link_rdy(link_rdy), .frame_sync(frame_sync),
-      .dac(dac), .hold(hold), .unsigned_(unsigned_), .mode(mode), .row(row), .group(group), .k(k), .sub(sub),
+      .dac(dac), .hold(hold), .wake(wake), .convert(convert), .unsigned_(unsigned_), .mode(mode), .row(row), .group(group), .k(k), .sub(sub),
       .en(en), .balance(balance), .comparator(comparator),
       .pixel_reset(pixel_reset), .integrate(integrate), .expose(expose), .cm_reset(cm_reset), .read(read),
       .amp_row(amp_row), .reset_row(reset_row), .busy(busy),

@@ -84,5 +84,9 @@ class AdcBankCL(Component):
         def range_of_dac():
             s.unsigned_ @= s.mode[0:2] != 0
 
+        @update
+        def wakes():
+            s.wake @= s.step.val & s.step.rdy & (s.step.msg.kind == SAMPLE)
+
     def line_trace(s):
         return f"{s.step} {'h' if s.hold else ' '} {len(s.leaving)} {s.scan}"

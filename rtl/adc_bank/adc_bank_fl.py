@@ -2,7 +2,7 @@
 
 from collections import deque
 
-from pymtl3 import Component, update_ff
+from pymtl3 import Component, update, update_ff
 
 from talbot.models.digital.sar import decisions
 from talbot.rtl.adc_bank.ports import TERNARY, declare_ports
@@ -76,6 +76,10 @@ class AdcBankFL(Component):
             s.scan.val <<= bool(s.queue)
             if s.queue:
                 s.scan.msg <<= s.queue[0][0]
+
+        @update
+        def wakes():
+            s.wake @= s.step.val & s.step.rdy & (s.step.msg.kind == SAMPLE)
 
     def line_trace(s):
         return f"{s.step} {len(s.runs)} {s.scan}"

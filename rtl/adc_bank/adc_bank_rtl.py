@@ -63,7 +63,6 @@ class AdcBank(Component):
         s.sent = Wire()
         s.drained = Wire()
         s.take = Wire()
-        s.convert = Wire()
 
         # Connections
         chain = s.none
@@ -99,7 +98,7 @@ class AdcBank(Component):
         @update
         def accept():
             s.take @= s.step.val & s.step.rdy
-            s.convert @= s.take & (s.step.msg.kind == SAMPLE)
+            s.wake @= s.take & (s.step.msg.kind == SAMPLE)
 
         # Logic: results, lane by lane
         @update
@@ -134,7 +133,7 @@ class AdcBank(Component):
                 s.at_pins <<= 0
                 s.pins_kind <<= 0
             else:
-                s.hold <<= s.convert
+                s.hold <<= s.wake
                 if s.take:
                     s.row <<= s.step.msg.row
                     s.group <<= s.step.msg.group

@@ -17,6 +17,7 @@ def declare_ports(s, lanes: int) -> None:
     s.comparator = InPort(lanes)
     s.dac = OutPort(mk_bits(8 * lanes))
     s.hold = OutPort()
+    s.wake = OutPort()
     s.row = OutPort(Bits10)
     s.group = OutPort(Bits8)
     s.k = OutPort(Bits3)

@@ -111,6 +111,8 @@ class AspChipFL(Component):
             pins = s.run.pins if s.run else s.idle
             s.dac <<= pins["dac"]
             s.hold <<= pins["hold"]
+            s.wake <<= pins["wake"]
+            s.convert <<= pins["convert"]
             s.unsigned_ <<= pins["unsigned_"]
             s.row <<= pins["row"]
             s.group <<= pins["group"]

@@ -62,12 +62,15 @@ class AspChip(Component):
             s.states = State()
         s.phase_on = Wire()
         s.selected = Wire()
+        s.converting = Wire()
         gated = {name: getattr(s.amp, name) for name in PHASES} | {
             "hold": s.bank.hold,
             "link_val": s.link.send.val,
             "frame_sync": s.encoder.frame_sync,
             "busy": s.frame_status.status.busy,
             "miso_oe": s.selected,
+            "wake": s.bank.wake,
+            "convert": s.converting,
         }
         s.gate = Gate(sum(levels._dsl.Type.nbits for levels in gated.values()))
 
@@ -196,6 +199,10 @@ class AspChip(Component):
         @update
         def up_selected():
             s.selected @= ~s.csn
+
+        @update
+        def up_converting():
+            s.converting @= ~s.bank.idle
 
     def line_trace(s):
         return f"{s.seq.line_trace()} {s.bank.line_trace()} {s.encoder.line_trace()}"

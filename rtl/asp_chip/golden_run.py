@@ -20,6 +20,8 @@ def idle_pins() -> dict[str, int]:
         (
             "dac",
             "hold",
+            "wake",
+            "convert",
             "unsigned_",
             "row",
             "group",
@@ -83,7 +85,11 @@ class GoldenRun:
         searches = {lane: decisions(*how) for lane in tiles}
         trial = {lane: next(search) for lane, search in searches.items()}
         kind = tile.order[tile.cols * (step.row % tile.rows) + step.k]
+        self.pins.update(wake=1)
+        yield
         self.pins.update(
+            wake=0,
+            convert=1,
             hold=1,
             unsigned_=int(how[0]),
             row=step.row,
@@ -110,3 +116,4 @@ class GoldenRun:
                     codes[step.row, tile.cols * tiles[lane] + step.k, step.sub] = code
                     self.made += converted
                     self.left_out += not converted
+        self.pins.update(convert=0)

@@ -21,6 +21,8 @@ def pins(lanes: int) -> tuple[dict[str, type], dict[str, type]]:
         # to the converters and the array's addressing
         "dac": mk_bits(8 * lanes),
         "hold": Bits1,
+        "wake": Bits1,
+        "convert": Bits1,
         "unsigned_": Bits1,
         "mode": Bits2,
         "row": Bits10,

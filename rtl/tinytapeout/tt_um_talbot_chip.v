@@ -19,7 +19,7 @@ module tt_um_talbot_chip
 );
   AspChip chip(.clk(clk), .reset(~rst_n), .sclk(ui_in[0]), .csn(ui_in[1]), .mosi(ui_in[2]), .miso(uio_out[4]),
                .miso_oe(), .link_data(uo_out), .link_val(uio_out[6]), .link_rdy(ui_in[3]), .frame_sync(uio_out[5]),
-               .busy(uio_out[7]), .comparator(8'b0), .dac(), .hold(uio_out[3]), .unsigned_(), .mode(), .row(), .group(),
+               .busy(uio_out[7]), .comparator(8'b0), .dac(), .hold(uio_out[3]), .wake(), .convert(), .unsigned_(), .mode(), .row(), .group(),
                .k(), .sub(), .en(), .balance(), .pixel_reset(uio_out[0]), .shutter(), .ref_ctl(),
                .integrate(uio_out[1]), .expose(), .cm_reset(), .read(uio_out[2]), .sample(), .tap(), .amp_row(),
                .reset_row());

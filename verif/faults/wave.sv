@@ -13,7 +13,7 @@ module Wave;
       .link_val(link_val), .link_rdy(link_rdy), .frame_sync(frame_sync), .busy(busy), .hold(hold),
       .comparator({LANES{1'b0}}), .pixel_reset(pixel_reset), .shutter(shutter), .ref_ctl(ref_ctl),
       .integrate(integrate), .cm_reset(cm_reset), .read(read), .sample(sample), .tap(tap),
-      .dac(), .unsigned_(), .mode(), .row(), .group(), .k(), .sub(), .en(), .balance(), .amp_row(), .expose(),
+      .dac(), .wake(), .convert(), .unsigned_(), .mode(), .row(), .group(), .k(), .sub(), .en(), .balance(), .amp_row(), .expose(),
       .reset_row());
 
   integer wave, trace, pins;

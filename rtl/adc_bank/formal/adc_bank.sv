@@ -9,7 +9,7 @@ module AdcBankProof (
 );
   localparam FRAME = 0, SAMPLE = 2, END = 3;
   wire [8 * `LANES - 1:0] dac;
-  wire hold, unsigned_, idle, step__rdy, scan__val;
+  wire hold, wake, unsigned_, idle, step__rdy, scan__val;
   wire [9:0] row; wire [7:0] group; wire [2:0] k; wire [1:0] sub;
   wire [`LANES - 1:0] en;
   wire [31:0] made, left_out;
@@ -104,6 +104,7 @@ module AdcBankProof (
       p_config: assert (!busy || unsigned_ == was_unsigned && threshold == was_threshold && ternary == was_ternary);
       // The step at the pins
       p_hold: assert (hold == was_sample);
+      p_wake: assert (wake == (take && samples));
       p_pins: assert ({row, group, k, sub, en} == was_pins && unsigned_ == (mode[1:0] != 0));
       p_start: assert (!go || startable);
       p_dac: assert (!running || lane_dac == expected_dac);

@@ -46,14 +46,14 @@ class Harness(Component):
         s.step = RecvIfcRTL(step_msg(lanes))
         s.scan = SendIfcRTL(ScanMsg)
         s.mode, s.threshold = InPort(Bits3), InPort(Bits7)
-        s.hold, s.idle = OutPort(), OutPort()
+        s.hold, s.wake, s.idle = OutPort(), OutPort(), OutPort()
 
         s.dut = dut
         s.afe = AfeFL(front_end(lanes, rough), SAMPLES)
 
         connect(s.step, s.dut.step)
         connect(s.dut.scan, s.scan)
-        for name in ("mode", "threshold", "hold", "idle"):
+        for name in ("mode", "threshold", "hold", "wake", "idle"):
             connect(getattr(s, name), getattr(s.dut, name))
         connect(s.mode[0:2], s.afe.mode)
         for name in ("row", "group", "k", "sub", "en", "dac", "hold", "unsigned_", "comparator"):
@@ -69,7 +69,7 @@ def simulator(cls, verilog, lanes=LANES, rough=True):
 
 
 class Run:
-    """A run of a bank with a list of StepMsg: messages with their cycles, hold and idle in every cycle, counters."""
+    """A run of a bank with a list of StepMsg: messages with their cycles; hold, wake, idle in every cycle; counters."""
 
     def __init__(self, sim, steps, mode, threshold, pattern=ALWAYS, limit=None):
         sim.mode @= MODES.index(mode)
@@ -80,6 +80,7 @@ class Run:
         sim.sim_tick()
         sim.reset @= 0
         self.messages, self.sent_at, self.hold, self.idle, self.counts = [], [], [], [], []
+        self.wake = []
         self.held = []  # row, group, k, sub, en at each hold
         limit = limit or (len(steps) + 4) * (20 + 2 * sim.dut.en.nbits * len(pattern))  # far more than it takes
         steps, cycle, ends = list(steps), 0, sum(int(m.kind) == END for m in steps)
@@ -93,6 +94,7 @@ class Run:
             if steps and offer and sim.step.rdy:
                 steps.pop(0)
             self.hold.append(bool(sim.hold))
+            self.wake.append(bool(sim.wake))
             if sim.hold:
                 self.held.append(tuple(int(getattr(sim.dut, name)) for name in ("row", "group", "k", "sub", "en")))
             self.idle.append(bool(sim.idle))
@@ -177,6 +179,7 @@ class TestAdcBankFL:
     def check(self, steps, mode, threshold, pattern=ALWAYS, lanes=LANES):
         got = self.run(steps, mode, threshold, pattern, lanes=lanes)
         assert (got.messages, got.counts) == expected(steps, lanes, mode, threshold)
+        assert got.hold == [False, *got.wake[:-1]]  # a cycle ahead
 
     @pytest.mark.parametrize("mode", MODES)
     def test_a_frame_of_every_mode(self, mode):
@@ -316,6 +319,7 @@ class TestOtherNumbersOfLanes:
         steps = data.draw(step_lists(lanes))
         got = Run(simulator(cls, False, lanes), steps, mode, threshold, pattern)
         assert (got.messages, got.counts) == expected(steps, lanes, mode, threshold)
+        assert got.hold == [False, *got.wake[:-1]]  # a cycle ahead
 
     def test_each_lane_alone_and_all_others(self, cls, lanes):
         Step, every = step_msg(lanes), (1 << lanes) - 1

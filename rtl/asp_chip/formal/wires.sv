@@ -4,7 +4,7 @@
 module AspChipWires (
   input clk, input reset, input sclk, input csn, input mosi, input link_rdy, input [`LANES - 1:0] comparator
 );
-  wire miso, miso_oe, link_val, frame_sync, busy, hold, unsigned_, pixel_reset, shutter, ref_ctl, integrate, expose,
+  wire miso, miso_oe, link_val, frame_sync, busy, hold, wake, convert, unsigned_, pixel_reset, shutter, ref_ctl, integrate, expose,
        cm_reset, read, sample;
   wire [7:0] link_data, group;
   wire [8 * `LANES - 1:0] dac;
@@ -48,7 +48,7 @@ module AspChipWires (
   (* hierconn *) wire [1:0] \dut.bank.sub , \dut.generator.sub ;
   (* hierconn *) wire [`LANES - 1:0] \dut.bank.en , \dut.bank.comparator , \dut.generator.comparator , \dut.generator.analog ;
   (* hierconn *) wire [8 * `LANES - 1:0] \dut.bank.dac , \dut.generator.dac ;
-  (* hierconn *) wire \dut.bank.hold , \dut.generator.hold , \dut.bank.unsigned_ ;
+  (* hierconn *) wire \dut.bank.hold , \dut.bank.wake , \dut.generator.hold , \dut.bank.unsigned_ ;
 
   (* hierconn *) wire [24 + `LANES:0] \dut.seq.step__msg , \dut.bank.step__msg ;
   (* hierconn *) wire \dut.seq.step__val , \dut.bank.step__val , \dut.seq.step__rdy , \dut.bank.step__rdy ;
@@ -119,11 +119,12 @@ module AspChipWires (
                      \dut.bank.idle , \dut.regs.start , \dut.seq.slot_resets , \dut.seq.slot_reads ,
                      \dut.seq.slot_opens });
     p_pins: assert ({pixel_reset, shutter, ref_ctl, integrate, expose, cm_reset, read, sample, tap, hold, link_val, frame_sync,
-                     busy, miso_oe} ==
-                    (\dut.gate.low ? 15'd0 :
+                     busy, miso_oe, wake, convert} ==
+                    (\dut.gate.low ? 17'd0 :
                      {\dut.amp.pixel_reset , \dut.amp.shutter , \dut.amp.ref_ctl , \dut.amp.integrate , \dut.amp.expose ,
                       \dut.amp.cm_reset , \dut.amp.read , \dut.amp.sample , \dut.amp.tap , \dut.bank.hold ,
-                      \dut.link.send__val , \dut.encoder.frame_sync , \dut.frame_status.status [3], !csn})
+                      \dut.link.send__val , \dut.encoder.frame_sync , \dut.frame_status.status [3], !csn,
+                      \dut.bank.wake , !\dut.bank.idle })
                     && {\dut.regs.sclk , \dut.regs.csn , \dut.regs.mosi , miso} == {sclk, csn, mosi, \dut.regs.miso }
                     && \dut.frame_status.frame_sync == \dut.encoder.frame_sync && \dut.regs.status == \dut.frame_status.status );
     p_states: assert (\dut.regs.state == {

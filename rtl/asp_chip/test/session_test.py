@@ -26,7 +26,19 @@ from talbot.rtl.harness.testbench import build
 CHIP = register_map()
 STATUS, OPTIONS, LOOP = (CHIP[name].byte for name in ("busy", "loop_enable", "loop_back"))
 LOOP_ENABLE, REFUSED = 1 << CHIP["loop_enable"].shift, 1 << CHIP["refused"].shift
-HELD_LOW = ("pixel_reset", "integrate", "cm_reset", "read", "hold", "link_val", "frame_sync", "busy", "miso_oe")
+HELD_LOW = (
+    "pixel_reset",
+    "integrate",
+    "cm_reset",
+    "read",
+    "hold",
+    "wake",
+    "convert",
+    "link_val",
+    "frame_sync",
+    "busy",
+    "miso_oe",
+)
 
 
 def sensor(rows, cols, lanes, tile=None, divider="radix4"):
