@@ -36,6 +36,8 @@ class GoldenFrame:
         Pixels that are read.
     decisions : int
         Comparator decisions, all lanes together.
+    strobes : int
+        Of all lanes' comparators: in a step each lane's is strobed from the sample until the last decision of any lane.
     """
 
     sensor: SensorParameters
@@ -45,6 +47,7 @@ class GoldenFrame:
     sent: npt.NDArray[np.int16]
     read: npt.NDArray[np.bool_]
     decisions: int
+    strobes: int
 
     @property
     def samples(self) -> int:
@@ -139,8 +142,17 @@ def golden_frame(
     codes = np.moveaxis(done.codes, 0, 2) * read[..., None]
     converted = np.moveaxis(done.converted, 0, 2) & read[..., None]
     decisions = int(done.decisions[:, read].sum(dtype=np.int64))
+    strobes = _strobes(done.decisions * read, sensor.chip.lanes, sensor.tile.cols)
     sent = codes
     if frame.phase:
         sent = np.zeros((*read.shape, 2), np.int16)
         sent[read] = np.stack(phase_samples(codes[read], sensor.chip, frame.noise_floor), -1)
-    return GoldenFrame(sensor, frame, codes, converted, sent, read, decisions)
+    return GoldenFrame(sensor, frame, codes, converted, sent, read, decisions, strobes)
+
+
+def _strobes(decisions: npt.NDArray[np.unsignedinteger], lanes: int, tile_cols: int) -> int:
+    """Return the comparators' strobes for decisions (subs, rows, cols) of each pixel, 0 where none is read."""
+    subs, rows, cols = decisions.shape
+    wide = lanes * tile_cols
+    steps = np.pad(decisions, ((0, 0), (0, 0), (0, -cols % wide))).reshape(subs, rows, -1, lanes, tile_cols).max(3)
+    return lanes * int(steps.sum(dtype=np.int64) + np.count_nonzero(steps))

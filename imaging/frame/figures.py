@@ -14,11 +14,12 @@ from talbot.imaging.frame.result import FrameResult, GoldenResult
 from talbot.models.afe.trim import TRIM_MAX, TRIM_MIN
 from talbot.models.chip import GoldenFrame
 from talbot.models.digital.exposure import integration_cycles, slot_cycles
-from talbot.models.parameters import ELEMENTARY_CHARGE, SIGNED, EnergyParameters, LightParameters
+from talbot.models.parameters import ELEMENTARY_CHARGE, SIGNED, CircuitEnergy, EnergyParameters, LightParameters
 from talbot.models.parameters.energy import DECISIONS, EYE_LIMIT, WINDOW, DigitalEvents, Events
 from talbot.models.parameters.stream_format import HEADER_BYTES, MARK, TRAILER_BYTES
 
 Codes, Values = npt.NDArray[np.integer], npt.NDArray[np.float64]
+ROW_PULSES = 4  # of a row's lines when it is read: reset, shutter, integrate and read; integrate again after each n_cm
 PEAK = 255.0  # span of the 8-bit codes
 
 
@@ -49,7 +50,9 @@ def golden_events(golden: GoldenFrame, stream: bytes, cycles: int, busy: int) ->
     # Data pins that change from byte to byte, and the strobe up and down
     toggles = int(np.unpackbits(sent[1:] ^ sent[:-1]).sum()) + 2 * sent.size
     digital = golden.digital_events(busy)
-    return Events(rows * array.cols * taps, rows * columns * taps, seconds, golden.decisions, toggles, digital)
+    pulses = rows * taps * (ROW_PULSES + golden.frame.exposing.n_cm)
+    pixels = rows * array.cols * taps, rows * columns * taps
+    return Events(*pixels, seconds, golden.decisions, toggles, digital, pulses, golden.strobes)
 
 
 def energy_of(result: FrameResult) -> dict[str, float]:
@@ -59,12 +62,14 @@ def energy_of(result: FrameResult) -> dict[str, float]:
     image_mode, image_mode_high: of an edge frame's samples converted in full and sent as a byte each. saved_by_edge: by
     how much it takes less, and edge_pays_below: the share of converted samples below which it does, both in the lower
     reading with the digital part by the layout. light: of the source in time of flight, on while a row integrates; in
-    no total.
+    no total. circuits: the analog parts by `CircuitEnergy`, the digital part by the layout, and the pads.
     """
     events, request, energy = events_of(result), result.request, EnergyParameters()
     parts = {name: (1e6 * low, 1e6 * high) for name, (low, high) in energy.frame(events).items()}
     out = {name: low for name, (low, _) in parts.items()} | {"adcs_high": parts["adcs"][1]}
     out["total"], out["total_high"] = (1e6 * total for total in energy.total(events))
+    circuits = {f"circuits_{name}": 1e6 * value for name, value in CircuitEnergy().frame(events).items()}
+    out |= circuits | {"circuits": sum(circuits.values()) + out["digital"] + out["pads"]}
     if (source := light_of(result)) is not None:
         out["light"] = 1e6 * source["power_w"] * source["lit_s"]
     if request.frame.mode not in SIGNED:
@@ -143,6 +148,8 @@ def energy_line(summary: dict[str, Any]) -> str:
     text = f"{e['total']:.1f} to {e['total_high']:.1f} uJ"
     if "image_mode" in e:
         text += f" (image mode {e['image_mode']:.1f} to {e['image_mode_high']:.1f})"
+    if "circuits" in e:
+        text += f", {e['circuits']:.1f} uJ by the circuits"
     if "light" in e:
         text += f" and {e['light'] / 1e6:.3g} J of light"
     if "edge_pays_below" in e:

@@ -19,7 +19,15 @@ from talbot.imaging.frame.quality import Values, decoding_error, depth_error, de
 from talbot.imaging.frame.report import Views, render
 from talbot.imaging.frame.result import FrameResult, GoldenResult, in_codes
 from talbot.imaging.simulate.frame import WAVES
-from talbot.models.parameters import SIGNED, STANDARD, EnergyParameters, LightParameters, sensor_text, sources
+from talbot.models.parameters import (
+    SIGNED,
+    STANDARD,
+    CircuitEnergy,
+    EnergyParameters,
+    LightParameters,
+    sensor_text,
+    sources,
+)
 from talbot.models.parameters.drawn import drawn_sources
 from talbot.models.parameters.sources import Sourced
 
@@ -207,6 +215,7 @@ def _where(s: dict[str, Any]) -> list[Markup]:
     return [
         drawn("bars", cycles, "cycles", f"Cycles: the amplifiers' phases ({s['cycles']:,} in all)"),
         drawn("bars", energy, "µJ", f"Energy, the lower reading ({s['energy_uj']['total']:.1f} µJ)"),
+        drawn("bars", circuit_parts(s), "µJ", f"Energy by the circuits ({s['energy_uj']['circuits']:.1f} µJ)"),
         drawn("bars", s["bytes"], "bytes", f"Bytes ({s['stream_bytes']:,})"),
     ]
 
@@ -219,6 +228,13 @@ def energy_parts(s: dict[str, Any]) -> dict[str, float]:
     return parts | {f"digital part ({source})": energy[name]}
 
 
+def circuit_parts(s: dict[str, Any]) -> dict[str, float]:
+    """Parts of ``circuits`` of the summary ``s`` in uJ."""
+    energy = s["energy_uj"]
+    parts = {name.removeprefix("circuits_"): value for name, value in energy.items() if name.startswith("circuits_")}
+    return parts | {"digital part (layout)": energy["digital"], "pads": energy["pads"]}
+
+
 def assumptions(result: FrameResult) -> list[Sourced]:
     """Every parameter of the camera, of noise, light and energy, named with its part, and where it comes from."""
     sensor = result.request.sensor
@@ -226,7 +242,12 @@ def assumptions(result: FrameResult) -> list[Sourced]:
     source = "ngspice: models/parameters/circuit.json"
     optics, electrical = sensor.optics, sensor.electrical
     parts = {"camera": optics.camera, "optics": optics, "array": sensor.array, "electrical": electrical}
-    parts |= {"room": result.request.room, "energy": EnergyParameters(), "light source": LightParameters()}
+    parts |= {
+        "room": result.request.room,
+        "energy": EnergyParameters(),
+        "circuits": CircuitEnergy(),
+        "light source": LightParameters(),
+    }
     drawn = drawn_sources(electrical)
     rows = [row._replace(name=f"{part} {row.name}") for part, group in parts.items() for row in sources(group)]
     rows = [row._replace(source=drawn.get(row.name.removeprefix("electrical "), row.source)) for row in rows]

@@ -15,7 +15,7 @@ from talbot.models.parameters.circuit import (
 from talbot.models.parameters.divider import DIVIDERS, NO_DIVIDER
 from talbot.models.parameters.drawn import LineParameters, drawn_curves, drawn_electrical, drawn_lines
 from talbot.models.parameters.electrical import ELEMENTARY_CHARGE, ConverterParameters, ElectricalParameters
-from talbot.models.parameters.energy import EnergyParameters, LightParameters
+from talbot.models.parameters.energy import CircuitEnergy, EnergyParameters, LightParameters
 from talbot.models.parameters.frame import (
     ALL_TYPES,
     EXPOSURE_MAX,
@@ -63,6 +63,7 @@ __all__ = [
     "ChipParameters",
     "ConverterParameters",
     "ElectricalParameters",
+    "CircuitEnergy",
     "EnergyParameters",
     "FrameParameters",
     "OpticsParameters",

@@ -9,6 +9,7 @@ from talbot.models.parameters.sources import sourced
 
 TABLE = "[Jayasuriya2017], Table 6.1"
 LAYOUT = "make layout-energy, tt, 1.8 V: flow/layout"
+CIRCUITS = "make analog, tt_027C_1v80: pixels/datasheet"
 DECISIONS = 8  # comparator decisions of one full conversion
 WINDOW = 2  # of the window comparison
 
@@ -57,6 +58,10 @@ class Events(NamedTuple):
         Changes of the stream's output pins.
     digital : DigitalEvents
         What it made the digital part do.
+    pulses : int
+        Of the rows' lines.
+    strobes : int
+        Of the comparators.
     """
 
     resets: int
@@ -65,6 +70,61 @@ class Events(NamedTuple):
     decisions: int
     toggles: int
     digital: DigitalEvents = DigitalEvents()
+    pulses: int = 0
+    strobes: int = 0
+
+
+@dataclass(frozen=True)
+class CircuitEnergy:
+    """Energy of an event by the circuits in ngspice, 0..1 J each; the amplifiers wake by the chip's pin.
+
+    Attributes
+    ----------
+    pulse : float
+        Of a row's line.
+    pixel : float
+        Column amplifiers of both diodes: read, turn and their share of the bias.
+    sample : float
+        A lane's amplifier: waking, sample, and what flows until the next.
+    decision : float
+        Comparator, capacitors and references.
+    strobe : float
+        A lane's line of inverters, in each cycle that converts.
+    idle : float
+        Comparator alone, strobed without a decision that counts.
+    """
+
+    pulse: float = sourced(63.6e-12, CIRCUITS, "J")
+    pixel: float = sourced(56.1e-12, CIRCUITS, "J")
+    sample: float = sourced(150e-12, CIRCUITS, "J")
+    decision: float = sourced(2.02e-12, CIRCUITS, "J")
+    strobe: float = sourced(0.555e-12, CIRCUITS, "J")
+    idle: float = sourced(1.0e-12, CIRCUITS, "J")
+
+    def __post_init__(self) -> None:
+        for item in fields(self):
+            check_real(item.name, getattr(self, item.name), 0, 1)
+
+    def frame(self, events: Events) -> dict[str, float]:
+        """Energy of the analog parts in one frame.
+
+        Parameters
+        ----------
+        events : Events
+            What the frame did; the columns of pixels that are left out run, too.
+
+        Returns
+        -------
+        dict of str to float
+            Part to energy in J.
+        """
+        idle = max(events.strobes - events.decisions, 0)
+        return {
+            "rows": self.pulse * events.pulses,
+            "columns": self.pixel * events.resets,
+            "amplifiers": self.sample * events.digital.samples,
+            "converters": self.decision * events.decisions + self.strobe * events.strobes + self.idle * idle,
+        }
 
 
 @dataclass(frozen=True)

@@ -7,13 +7,18 @@ from talbot.imaging.frame.figures import edge_pays_below, image_mode, light_line
 from talbot.imaging.frame.job import simulate_frame
 from talbot.imaging.frame.outputs import assumptions, energy_parts
 from talbot.imaging.frame.request import request
+from talbot.models.chip import front_end_of, golden_frame
+from talbot.models.digital.scan import Scan
 from talbot.models.parameters import (
     CameraParameters,
+    CircuitEnergy,
     ConverterParameters,
     ElectricalParameters,
     EnergyParameters,
+    FrameParameters,
     LightParameters,
     RoomParameters,
+    Window,
     sources,
 )
 from talbot.models.parameters.energy import DigitalEvents, Events
@@ -66,6 +71,30 @@ def test_at_the_share_where_edges_pay_both_modes_take_the_same(made):
     assert sum(first[n][0] for n in names) == pytest.approx(sum(second[n][0] for n in names)) and 0.5 < share < 1
 
 
+def test_the_circuits_energy_is_that_of_their_events():
+    """Every lane is strobed from the sample until the last decision of its step, whatever it has to decide."""
+    events = FULL._replace(decisions=1000, digital=DIGITAL, pulses=384 * 4, strobes=3000)
+    parts = CircuitEnergy().frame(events)
+    assert parts["amplifiers"] == pytest.approx(147456 * 150e-12)  # 22 uJ; never off they would take 292
+    assert parts["columns"] == pytest.approx(147456 * 56.1e-12) and parts["rows"] == pytest.approx(1536 * 63.6e-12)
+    assert parts["converters"] == pytest.approx(1000 * 2.02e-12 + 3000 * 0.555e-12 + 2000 * 1e-12)
+
+
+@pytest.mark.parametrize("mode", ["edge", "raw"])
+def test_strobes_are_those_of_the_steps(mode):
+    sensor = request(9, 50, lanes=4).sensor
+    frame = FrameParameters(Window(0, 1, 1, 6), mode=mode, mask=0x5A5A5A, threshold=12 if mode == "edge" else 0)
+    samples = np.random.default_rng(3).uniform(0, 127, (1, 9, 50, 2))
+    golden = golden_frame(samples, sensor, frame, front_end_of(sensor, (0,) * 24))
+    decisions = front_end_of(sensor, (0,) * 24).convert(samples, mode, frame.threshold).decisions
+    scan, strobes = Scan(9, 50, 4, frame, sensor.tile), 0
+    for row in scan.row_list:
+        for step in scan.steps(int(row)):
+            columns = [6 * (4 * step.group + lane) + step.k for lane in range(4) if step.enable >> lane & 1]
+            strobes += 4 * (1 + max(int(decisions[step.sub, row, column]) for column in columns)) if columns else 0
+    assert golden.strobes == strobes > golden.decisions
+
+
 def test_pads_pay_for_every_change():
     assert EnergyParameters().frame(FULL._replace(toggles=1000))["pads"][0] == pytest.approx(500 * 10e-12 * 1.8**2)
 
@@ -82,7 +111,7 @@ def test_light_reaches_the_sensor_through_the_same_pupil(f_number):
 
 
 @pytest.mark.parametrize(
-    "kind", [CameraParameters, ElectricalParameters, EnergyParameters, LightParameters, RoomParameters]
+    "kind", [CameraParameters, CircuitEnergy, ElectricalParameters, EnergyParameters, LightParameters, RoomParameters]
 )
 def test_every_default_names_its_source(kind):
     rows = sources(kind())
