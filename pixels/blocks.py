@@ -33,6 +33,8 @@ COLUMNS_IN = {
     "sub": 2,
     "hold": 1,
 }
+LANES_IN = {"clk": 1, "hold": 1, "wake": 1, "convert": 1, "mode": 2, "sub": 2, "unsigned_": 1, "balance": BALANCE_BITS}
+LANES_SUPPLIES = 0.25, 0.46, 0.75  # of the height: the supply of the lanes, the ground, the supply of the amplifiers
 MARGIN_UM, DEEP_UM = 5.0, 2.0  # of pins from a block's corners; how far a pin reaches into its block
 CONTROL_PITCH_UM = 4.0  # of the column amplifiers' control pins
 
@@ -206,7 +208,7 @@ def _adc_lanes(chip: ChipParameters, sizes: AnalogSizes) -> Block:
     ]
     if chip.lanes == 1:
         names = [name.removesuffix("[0]") if name.startswith(("en", "comparator")) else name for name in names]
-    shared = bits({"clk": 1, "hold": 1, "unsigned_": 1, "balance": BALANCE_BITS})
+    shared = bits(LANES_IN)
     pins = _spread("adc_lanes", [*shared, *names], "input", 0, width)
     return Block(
         "adc_lanes",
@@ -219,8 +221,8 @@ def _adc_lanes(chip: ChipParameters, sizes: AnalogSizes) -> Block:
                 for pin in pins
             ),
             *(
-                Pin(name, "inout", "east", sizes.lanes_um * (1 + k) / 4, True)
-                for k, name in enumerate(("vddc", "vssa", "vddc"))
+                Pin(name, "inout", "east", sizes.lanes_um * part, True)
+                for name, part in zip(("vddc", "vssa", "vddc"), LANES_SUPPLIES, strict=True)
             ),
         ),
     )

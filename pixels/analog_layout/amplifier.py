@@ -1,13 +1,14 @@
 """The difference amplifier: the operational amplifier between the banks of its two inputs, the trim's switches beyond.
 
-    trim         10 inverters and selectors, in two strips       north: column_a, column_b
+    pick         switches of both columns, with their gates      north: column_a, column_b
+    trim         10 inverters and selectors, in two strips
     bank         common node xp: trim, and what evens it out
     load         mirror, cascodes; switches of reset and rest
     pair         half of the pair's parts over half of the sinks
     tails        parts of the tail, mirrors of the bias
     pair         the other half
-    bank         common node xm: column_a, feedback
-                                                                 south: out, vref, ibias, on, reset, g9 .. g0
+    bank         common node xm: both parts of a, feedback
+                                                                 south: out, vref, ibias, wake, reset, g9 .. g0, mode
 
 Both sides of the pair have the same middle in every strip, and every row of parts ends with dummies.
 """
@@ -21,6 +22,7 @@ from talbot.pixels.analog_layout.amplifier_bank import BankPlan, draw_bank, unit
 from talbot.pixels.analog_layout.cells import MARGIN, Cell, new_canvas
 from talbot.pixels.analog_layout.comparator import BETWEEN_STRIPS
 from talbot.pixels.analog_layout.device import Device, snap
+from talbot.pixels.analog_layout.row_driver import legs
 from talbot.pixels.analog_layout.rows import dummies, row
 from talbot.pixels.analog_layout.strip import (
     FOURTH,
@@ -37,17 +39,17 @@ from talbot.pixels.analog_layout.strip import (
     join_rails,
     trunk,
 )
-from talbot.pixels.circuits.amplifier import PINS, TRIM_BITS, AmplifierSizes, amplifier
+from talbot.pixels.circuits.amplifier import LATE, PICK, PINS, TRIM_BITS, AmplifierSizes, amplifier
 from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.analog import AnalogMasks
 
 # um
 STRIP_LENGTH = 92.0
-BANK_WEST = 15.5  # x of a bank's first finger
+BANK_WEST = 16.5  # x of a bank's first finger
 BANK_SPACE = 1.6  # from a bank to a rail
 FIRST_TRUNK = 0.9  # x of the first trunk next to the banks
 TRUNK_PITCH = 1.0
-FIRST_OVER_STRIPS = 19.0  # x of the first trunk over the strips
+FIRST_OVER_STRIPS = 20.0  # x of the first trunk over the strips
 OVER_STRIPS_PITCH = 4.0
 PATCH_HALF = 0.35  # half length of the third metal where a common node goes up
 RAIL_VIAS = 24  # of a rail
@@ -57,16 +59,19 @@ BIAS_ROOM = 5.0  # additional room between the bias's transistors, for drops bet
 PAIR_ORDER = "pnnPPnnp", "nppNNppn"
 SINK_ORDER = "pnNPnp", "pnnppn"
 NORTH = "column_a", "column_b"
-WEST = ("column_a", "out", *(f"bottom{k}" for k in reversed(range(TRIM_BITS))), "vref")
-EAST = ("column_b", *(f"g{k}" for k in range(TRIM_BITS)), "reset", "on")
+WEST = ("whole", "half", "out", *(f"bottom{k}" for k in reversed(range(TRIM_BITS))), "vref")
+EAST = ("trim", *(f"g{k}" for k in range(TRIM_BITS)), "reset", "on", "wake", *PICK)
+OVER_PICK = {"column_a": 24.0, "column_b": 68.0}  # x of the columns' pins
+PICK_GATES = ("not_mode", "plain", "raw", "not_sub", "nand_first", "drive_first", "nand_second", "drive_second")
+WAKE_GATES = (*(f"late{k}" for k in range(LATE)), "asleep", "awake")
 INNER = ("tail", "fold_p", "steer_n", "diode_p", "vcn"), ("vcp", "diode_n", "steer_p", "fold_n")  # west, east
 INPUTS = "xm", "xp"
 
 
 def bank_nets(side: str) -> dict[str, str]:
-    """Nets of a bank's capacitors: side m has a, feedback and rest; side p the trim and rest."""
+    """Nets of a bank's capacitors: side m has both parts of a, feedback and rest; side p the trim and rest."""
     if side == "m":
-        return {name: {"b9": "column_a", "rest": "out"}.get(name, "vref") for name in units()}
+        return {name: {"b9": "whole", "b8": "half", "rest": "out"}.get(name, "vref") for name in units()}
     nets = {f"b{k}": f"bottom{k}" for k in range(TRIM_BITS)}
     return {name: nets.get(name, "vref") for name in units()}
 
@@ -101,7 +106,9 @@ def _order(orders: Sequence[str], names: str, capital: str) -> list[list[str]]:
 
 @dataclass(frozen=True)
 class AmplifierPlan:
-    """Strips of the operational amplifier and of the trim, from the south; both banks; x of the nets between them."""
+    """Strips of the operational amplifier, of the trim and of the columns' switches, from the south; both banks; x of
+    the nets between them.
+    """
 
     strips: tuple[Plan, ...]
     trim: tuple[Plan, ...]
@@ -116,7 +123,7 @@ def places() -> dict[str, float]:
     west, east = ([f"ota.{net}" for net in side] for side in INNER)
     at |= {net: FIRST_OVER_STRIPS + OVER_STRIPS_PITCH * k for k, net in enumerate((*west, "ibias"))}
     at |= {net: STRIP_LENGTH - FIRST_OVER_STRIPS - OVER_STRIPS_PITCH * k for k, net in enumerate((*east, "off"))}
-    return at | {net: STRIP_LENGTH / 2 + way * 1.5 for net, way in zip(INPUTS, (-1, 1), strict=True)}
+    return at | OVER_PICK | {net: STRIP_LENGTH / 2 + way * 1.5 for net, way in zip(INPUTS, (-1, 1), strict=True)}
 
 
 def amplifier_plan(d: Mapping[str, Device], masks: AnalogMasks, sizes: AmplifierSizes) -> AmplifierPlan:
@@ -161,9 +168,14 @@ def amplifier_plan(d: Mapping[str, Device], masks: AnalogMasks, sizes: Amplifier
         for k in bits:
             columns += [(d[f"not{k}.n"], d[f"not{k}.p"]), (d[f"select{k}.n"], d[f"select{k}.p"])]
             columns.append((d[f"select{k}.r"], None))
+        trim.append(columns)
+    switches = [(d[f"pick.{name}_n"], d[f"pick.{name}_p"]) for name in ("whole", "first", "second", "trim")]
+    rests = [(d[f"pick.{name}_r"], None) for name in ("whole", "half", "trim")]
+    gates = [pair for name in (*(f"pick.{gate}" for gate in PICK_GATES), *WAKE_GATES) for pair in legs(d, name)]
+    trim.append([switches[0], rests[0], switches[1], rests[1], *gates, switches[2], rests[2], switches[3]])
+    for k, columns in enumerate(trim):
         room = (STRIP_LENGTH - in_columns(columns, 0.0)[2]) / len(columns) - 1e-3
-        rows = in_columns(columns, 0.0, min(room, 2.0))
-        trim.append(plan(*rows[:2]))
+        trim[k] = plan(*in_columns(columns, 0.0, min(room, 2.0))[:2])
     ends = {net: x - TRUNK / 2 for net, x in at.items()}
     length = masks.finger_um(sizes.unit)
     banks = tuple(BankPlan(length, bank_nets(side), f"x{side}", ends, BANK_WEST) for side in "mp")

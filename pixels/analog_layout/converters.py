@@ -2,11 +2,11 @@
 
     north     lane_a, lane_b: of each lane, from the column amplifiers to its amplifier
               the amplifiers                                               | bias
-              channel: balance, amp_on; of each lane its reset, its current, the amplifier's output
+              channel: balance, wake, mode, sub; of each lane its reset, its current, the amplifier's output
               references, vcm and vref across all lanes
               the lanes, whose interface gives the amplifier its reset     | what rises to the amplifiers
               channel: the chip's nets, between their pins and the lanes   |
-    south     the chip's pins                                              | refp, refn, vcm, vref, amp_on
+    south     the chip's pins                                              | refp, refn, vcm, vref
 
 A lane's own reset rises between it and the next. The pins in the south-east are none of the black box: the die has pins
 for them. Supplies are straps of the top metal over lanes and amplifiers, the ground's joined in the west, the others in
@@ -29,20 +29,23 @@ from talbot.pixels.blocks import DIODES, AnalogSizes, Block, Pin, blocks
 from talbot.pixels.circuits.amplifier import TRIM_BITS, AmplifierSizes
 from talbot.pixels.circuits.dac import BITS
 from talbot.pixels.circuits.lane import LaneSizes
-from talbot.pixels.footprints import WIDE_UM, draw_pins
+from talbot.pixels.footprints import draw_pins
 from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.analog import AnalogMasks
 
 NAME = "adc_lanes"
 TOP = 5
-REFERENCES, AMPLIFIER_ON = ("refp", "refn", "vcm", "vref"), "amp_on"
+REFERENCES = "refp", "refn", "vcm", "vref"
+# Nets of the chip that rise to the amplifiers; pins of the frame that no circuit is on
+RISING = (*(f"balance[{bit}]" for bit in range(TRIM_BITS)), "wake", "mode[1]", "mode[0]", "sub[0]")
+UNUSED = "unsigned_", "sub[1]"
 # um
 CELL_INSET = 4.0  # of a cell from its place's west end
 FIRST_TRACK = 5.0  # of the lower channel from the south
 FIRST_REFERENCE_RISER = 8.0  # lines to the amplifiers in the east
 REFERENCE_RISER_PITCH = 5.0
-FIRST_BALANCE_RISER = 36.0
-BALANCE_RISER_PITCH = 2.0
+FIRST_RISER = 32.0
+RISER_PITCH = 2.0
 REFERENCE_RISER_WIDTH = 2.0
 REFERENCE_WIDTH = 4.0
 REFERENCE_PITCH = 6.0
@@ -71,7 +74,7 @@ class Converters(DrawnBlock):
 
     def spice(self, masks: AnalogMasks) -> str:
         """Netlist for LVS."""
-        ports = dict.fromkeys(pin.name for pin in self.block.pins if pin.name != "unsigned_")
+        ports = dict.fromkeys(pin.name for pin in self.block.pins if pin.name not in UNUSED)
         lines = [
             f"X{cell.cell.name}{k} {' '.join(instance_nets)} {cell.cell.name}"
             for cell, nets in self.parts
@@ -82,21 +85,18 @@ class Converters(DrawnBlock):
 
 
 def frame(chip: ChipParameters, sizes: AnalogSizes) -> Block:
-    """Return the frame, with pins for the references and the amplifiers' wake signal in the south-east."""
+    """Return the frame, with pins for the references in the south-east."""
     block = next(candidate for candidate in blocks(chip=chip, sizes=sizes) if candidate.name == NAME)
-    extra = (
-        Pin(name, "input" if name == AMPLIFIER_ON else "inout", "south", rise(name, chip, sizes))
-        for name in (*REFERENCES, AMPLIFIER_ON)
-    )
+    extra = (Pin(name, "inout", "south", rise(name, chip, sizes)) for name in REFERENCES)
     return replace(block, pins=(*block.pins, *extra))
 
 
 def rise(net: str, chip: ChipParameters, sizes: AnalogSizes) -> float:
     """X at which a net rises east of the lanes."""
     east = chip.lanes * sizes.lane_um
-    if net in (*REFERENCES, AMPLIFIER_ON):
-        return east + FIRST_REFERENCE_RISER + REFERENCE_RISER_PITCH * (*REFERENCES, AMPLIFIER_ON).index(net)
-    return east + FIRST_BALANCE_RISER + BALANCE_RISER_PITCH * int(net.removeprefix("balance[").removesuffix("]"))
+    if net in REFERENCES:
+        return east + FIRST_REFERENCE_RISER + REFERENCE_RISER_PITCH * REFERENCES.index(net)
+    return east + FIRST_RISER + RISER_PITCH * RISING.index(net)
 
 
 def lane_nets(lane: int, chip: ChipParameters, ports: tuple[str, ...]) -> tuple[str, ...]:
@@ -112,7 +112,8 @@ def amplifier_nets(lane: int, ports: tuple[str, ...]) -> tuple[str, ...]:
     """Return the block's nets at the ports of the amplifier of a lane."""
     nets = {f"g{bit}": f"balance[{bit}]" for bit in range(TRIM_BITS)}
     nets |= {f"column_{diode}": f"lane_{diode}[{lane}]" for diode in DIODES} | SUPPLIES
-    nets |= {"out": f"out_{lane}", "reset": f"reset_{lane}", "ibias": f"ibias_{lane}", "on": AMPLIFIER_ON}
+    nets |= {"out": f"out_{lane}", "reset": f"reset_{lane}", "ibias": f"ibias_{lane}"}
+    nets |= {"mode1": "mode[1]", "mode0": "mode[0]", "sub0": "sub[0]"}
     return tuple(nets.get(port, port) for port in ports)
 
 
@@ -165,7 +166,6 @@ def draw_converters(
     south.draw(canvas, 0.0, _rising(south, lanes, low, middle, block, chip, room))
     channel.draw(canvas, top - 0.1)
     _references(canvas, lanes, amplifiers, straps, top, channel.top, chip, room)
-    canvas.wire(FOURTH, (x := rise(AMPLIFIER_ON, chip, room)) - WIDE_UM / 2, 0, x + WIDE_UM / 2, middle + 0.1)
     _north(canvas, block, amplifiers)
     _supplies(canvas, block, lanes, [*amplifiers, biased], room)
     draw_pins(canvas.layout, canvas.cell, block, masks.base.name, room.supply_um)
@@ -206,7 +206,7 @@ def _south(block: Block, lanes: list[Placed], chip: ChipParameters, room: Analog
             if net in pins and net not in REFERENCES or net.startswith("reset_"):
                 above.setdefault(net, []).append(x)
         above[f"reset_{number}"].append(_gap(number, room))
-    above |= {net: [rise(net, chip, room)] for net in pins if net.startswith("balance")}
+    above |= {net: [rise(net, chip, room)] for net in RISING}
     return Channel(FIRST_TRACK, {net: xs for net, xs in pins.items() if net in above}, above)
 
 
@@ -221,7 +221,7 @@ def _rising(
 ) -> dict[float, float]:
     """Y up to which what is above the lower channel leads, by x: to the lanes, or to the upper channel."""
     ends = {x: low + 0.1 for xs in south.above.values() for x in xs}
-    high = [rise(pin.name, chip, room) for pin in block.pins if pin.name.startswith("balance")]
+    high = [rise(net, chip, room) for net in RISING]
     return ends | dict.fromkeys([*high, *(_gap(k, room) for k in range(len(lanes)))], middle + 0.1)
 
 
@@ -235,10 +235,7 @@ def _middle(
     room: AnalogSizes,
 ) -> Channel:
     """Return the channel between the lanes and the amplifiers."""
-    below: dict[str, list[float]] = {
-        net: [rise(net, chip, room)]
-        for net in [AMPLIFIER_ON, *(pin.name for pin in block.pins if pin.name.startswith("balance"))]
-    }
+    below: dict[str, list[float]] = {net: [rise(net, chip, room)] for net in RISING}
     below |= {f"reset_{k}": [_gap(k, room)] for k in range(len(lanes))}
     below |= {net: [x] for lane in lanes for net, x in lane.ends() if net.startswith("out_")}
     above: dict[str, list[float]] = {}

@@ -35,7 +35,7 @@ from talbot.pixels.analog_layout.strip import (
 )
 from talbot.pixels.analog_layout.switch import ORDER
 from talbot.pixels.circuits.dac import BITS
-from talbot.pixels.circuits.interface import CHIP, SLOW, interface
+from talbot.pixels.circuits.interface import CHIP, LATE, LINE, interface
 from talbot.pixels.circuits.lane import PINS, LaneSizes, sar_lane
 from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.analog import AnalogMasks
@@ -57,7 +57,10 @@ Column = tuple[Device | None, Device | None]
 CHIP_PINS = tuple(pin for pin in PINS if pin not in ("sample", "strobe")) + (*CHIP, "reset")
 INTERFACE = (
     tuple(f"drivers.{name}" for name in ORDER),
-    ("fired", *(f"slow{k}" for k in range(SLOW)), "held", "over", "sampled"),
+    (
+        *("clkn", *(f"past{k}" for k in range(LINE)), "settles", "rests", "fired"),
+        *("held", "holds", "over", *(f"late{k}" for k in range(LATE)), "sampled"),
+    ),
 )
 
 
@@ -118,7 +121,7 @@ def lane_plan(masks: AnalogMasks, sizes: LaneSizes, d: dict[str, Device]) -> Lan
         reach = {net: (x,) for net, x in at.items() if net in present}
         return Plan(n, p, left, right, reach, quiet=frozenset({*nets.values(), *other.values(), "lane_a", "lane_b"}))
 
-    drivers = [_gates(d, gates) for gates in INTERFACE] if "fired.n" in d else []
+    drivers = [_gates(d, gates) for gates in INTERFACE] if "rests.n" in d else []
     drivers.append(
         _gates(d, ("sample_0", "sample_1", "sample_2", "sample_3", "sample_n", "sample_p", "strobe_n", "strobe_p"))
     )

@@ -1,11 +1,12 @@
 """The difference amplifier of a lane: switched capacitors, with a 10-bit trim of the second diode's.
 
-Pins of `amplifier`: column_a column_b on reset g9 g8 g7 g6 g5 g4 g3 g2 g1 g0 out vref ibias vdd vss.
+Pins of `amplifier`: column_a column_b wake reset g9 .. g0 mode1 mode0 sub0 out vref ibias vdd vss.
 
     clk        |‾|______|‾|______|‾|______|
-    wake       |_/‾‾‾‾‾‾|_________________     on = wake or hold: `wake` is D of the chip's `hold`, while clk is low
+    wake       |_/‾‾‾‾‾‾|_________________     the chip's: D of `hold`
+    on         |_/‾‾‾‾‾‾‾‾‾‾‾‾‾‾‾|________     inside: from `wake` on, until the reset begins again
     hold       |________|‾‾‾‾‾‾‾‾|________
-    reset      |‾‾‾‾‾‾‾‾|________|‾‾‾‾‾‾‾‾     not hold
+    reset      |‾‾‾‾‾‾‾‾|________|‾‾‾‾‾‾‾‾     not hold, of the lane's interface
     columns    | reference | signal |          2 ns after the reset's end
     sample     |__________|__‾‾‾‾‾‾|           of the lane: its array is at `out` after its last decision
 
@@ -17,6 +18,9 @@ columns' level, are stored. After its fall the columns go to their signals, a an
 The code is the register `balance` with its top bit inverted: g = Cb / Ca = code / 512. Units of Cb that are off stand
 at vref, so that both inputs see the same total; what both columns have in common moves both inputs alike. `ibias`
 takes BIAS amperes while `on` is 1, from the `bias` of support.py; while it is 0 no current flows.
+
+In raw mode (mode1 and not mode0) half of Ca takes one diode's column, a or, where sub0 is 1, b; Cb and the other half
+are at vref. A full well is the converter's whole range then: out - vref = (Ca / 2) a / Cf.
 """
 
 from dataclasses import dataclass
@@ -25,14 +29,15 @@ from types import ModuleType
 from typing import Self
 
 from talbot.models.parameters import EnergyParameters, SensorParameters, check_int, check_real
-from talbot.pixels.circuits.gates import inverter
+from talbot.pixels.circuits.gates import inverter, nand, nor
 from talbot.pixels.circuits.netlist import Capacitor, Circuit, Instance, Transistor
 from talbot.pixels.circuits.specification import one_digit
 
 TRIM_BITS = 10
 UNITS = 512  # of the first diode's capacitor
 BIAS = 10e-6  # A
-PINS = ("column_a", "column_b", "on", "reset", *(f"g{k}" for k in reversed(range(TRIM_BITS))))
+PICK = "mode1", "mode0", "sub0"  # of the chip: which diodes the amplifier takes
+PINS = ("column_a", "column_b", "wake", "reset", *(f"g{k}" for k in reversed(range(TRIM_BITS))), *PICK)
 PINS += ("out", "vref", "ibias", "vdd", "vss")
 PAIR_PARTS = 2  # transistors in each of them
 RANGE = 192.0  # LSB between the ends of three quarters of the range
@@ -50,6 +55,8 @@ UNIT, CELLS, GAIN = 2.3499e-15, 3, 2.4  # F, of CELLS fringe cells; gain from a 
 EFFICIENCY = {"pair": 13.6, "tail": 9.0, "sink": 15.3, "cascode": 18.7, "top": 12.0, "cascode_p": 12.0, "leg": 12.0}
 SLEW = 10e-9  # s of the signal's time in which the output's current is at its limit
 LEFT = 0.03  # of the specification's rest, at the typical corner: others are slower
+LATE, LATE_UM = 4, 1.0  # inverters by which `wake` may end before the reset does, and the length of their gates
+PICK_W = 24.0  # um, n transistor of the switches that pick a diode
 STRAY = 0.3e-12  # F at the output in addition to the lane's array
 
 
@@ -67,8 +74,8 @@ class AmplifierSpec:
         V of a full well, 0.01..1.5.
     hold : float
         S, a cycle of the chip: the time for its output.
-    high : float
-        S of the cycle in which clk is high.
+    wake : float
+        S from the cycle's start until `wake` is there.
     track : float
         S from the cycle's start until the lane's array, after its last decision, connects to the output.
     settling : float
@@ -99,7 +106,7 @@ class AmplifierSpec:
     reset_level: float = 1.2
     swing: float = 1.0
     hold: float = 100e-9
-    high: float = 12e-9
+    wake: float = 12e-9
     track: float = 17e-9
     settling: float = 0.5
     gain: float = 0.05
@@ -118,8 +125,8 @@ class AmplifierSpec:
         check_real("reset_level", self.reset_level, 0.3, 1.8)
         check_real("swing", self.swing, 0.01, 1.5)
         check_real("hold", self.hold, 1e-9, 1e-3)
-        check_real("high", self.high, 0, self.hold)
-        check_real("track", self.track, self.high, self.hold)
+        check_real("wake", self.wake, 0, self.hold)
+        check_real("track", self.track, self.wake, self.hold)
         check_real("gain", self.gain, 1e-3, 1)
         for name in ("settling", "inl", "ktc", "ambient", "trim", "offset", "noise"):
             check_real(name, getattr(self, name), 0.01, 16)
@@ -314,12 +321,56 @@ def _selector(width: float) -> Circuit:
     )
 
 
+def pick() -> Circuit:
+    """Return what connects the columns. Pins: column_a column_b mode1 mode0 sub0 whole half trim vref vdd vss.
+
+    whole, half: the two parts of Ca; trim: the side of Cb's switches that is the column's. In raw mode half is at a
+    column and the others are at vref, else half is at vref.
+    """
+    supplies = ("vdd", "vss")
+
+    def through(name: str, a: str, b: str, on: str, off: str, w: float) -> tuple[Transistor, Transistor]:
+        return (
+            Transistor(f"{name}_n", a, on, b, "vss", "n_lvt", w, 0.15),
+            Transistor(f"{name}_p", a, off, b, "vdd", "p_lvt", 2 * w, 0.35),
+        )
+
+    def rest(name: str, on: str, w: float) -> Transistor:
+        return Transistor(f"{name}_r", name, on, "vref", "vss", "n_lvt", w, 0.15)
+
+    gates = (
+        Instance("not_mode", inverter(), ("mode0", "mode0n", *supplies)),
+        Instance("plain", nand(2), ("mode1", "mode0n", "plain", *supplies)),
+        Instance("raw", inverter(4), ("plain", "raw", *supplies)),
+        Instance("not_sub", inverter(), ("sub0", "sub0n", *supplies)),
+        Instance("nand_first", nand(2), ("raw", "sub0n", "firstn", *supplies)),
+        Instance("drive_first", inverter(2), ("firstn", "first", *supplies)),
+        Instance("nand_second", nand(2), ("raw", "sub0", "secondn", *supplies)),
+        Instance("drive_second", inverter(2), ("secondn", "second", *supplies)),
+    )
+    return Circuit(
+        "pick",
+        ("column_a", "column_b", *PICK, "whole", "half", "trim", "vref", *supplies),
+        (
+            *through("whole", "whole", "column_a", "plain", "raw", PICK_W),
+            *through("trim", "trim", "column_b", "plain", "raw", PICK_W),
+            *through("first", "half", "column_a", "first", "firstn", PICK_W / 2),
+            *through("second", "half", "column_b", "second", "secondn", PICK_W / 2),
+            rest("whole", "raw", PICK_W / 2),
+            rest("trim", "raw", PICK_W / 2),
+            rest("half", "plain", PICK_W / 2),
+        ),
+        instances=gates,
+    )
+
+
 def amplifier(sizes: AmplifierSizes, chip: bool = False) -> Circuit:
     """Pins as PINS. chip: g9..g0 are the chip's `balance`, whose top bit is inverted."""
     u = sizes.unit
     capacitors = [
-        Capacitor("a", "xm", "column_a", UNITS * u, UNITS),
-        Capacitor("a_rest", "xm", "vref", UNITS * u, UNITS),
+        Capacitor("a", "xm", "whole", UNITS * u, UNITS),
+        Capacitor("a_half", "xm", "half", UNITS / 2 * u, UNITS // 2),
+        Capacitor("a_rest", "xm", "vref", UNITS / 2 * u, UNITS // 2),
         Capacitor("f", "xm", "out", sizes.feedback * u, round(sizes.feedback)),
         Capacitor("b_rest", "xp", "vref", (sizes.feedback + 1) * u, round(sizes.feedback)),
     ]
@@ -327,6 +378,13 @@ def amplifier(sizes: AmplifierSizes, chip: bool = False) -> Circuit:
         Instance("ota", ota(sizes.ota), ("xp", "xm", "out", "ibias", "on", "off", "reset", "resetn", "vdd", "vss")),
         Instance("on_n", inverter(2), ("on", "off", "vdd", "vss")),
         Instance("reset_n", inverter(4), ("reset", "resetn", "vdd", "vss")),
+        Instance("pick", pick(), pick().ports),
+        *(
+            Instance(f"late{k}", inverter(1, LATE_UM), (f"wake_{k}" if k else "wake", f"wake_{k + 1}", "vdd", "vss"))
+            for k in range(LATE)
+        ),
+        Instance("asleep", nor(), ("wake", f"wake_{LATE}", "asleep", "vdd", "vss")),
+        Instance("awake", nand(3), ("asleep", "reset", "on", "vdd", "vss")),
     ]
     for k in range(TRIM_BITS):
         units = 1 << k
@@ -334,7 +392,7 @@ def amplifier(sizes: AmplifierSizes, chip: bool = False) -> Circuit:
         instances.append(Instance(f"not{k}", inverter(), (f"g{k}", f"g{k}n", "vdd", "vss")))
         chosen = _selector(max(0.5, units / 32))
         on, off = (f"g{k}n", f"g{k}") if chip and k == TRIM_BITS - 1 else (f"g{k}", f"g{k}n")
-        nodes = (f"bottom{k}", "column_b", on, off, "vref", "vdd", "vss")
+        nodes = (f"bottom{k}", "trim", on, off, "vref", "vdd", "vss")
         instances.append(Instance(f"select{k}", chosen, nodes))
     switches = tuple(
         Transistor(name, a, gate, b, bulk, role, w, length)

@@ -32,7 +32,7 @@ SECTIONS = 12  # of a lane's line
 GROUPS, PLACES = 8, 6  # lines of a group, of a place in the tile
 CLEAR = 1.15e-6  # s in which the charge amplifiers are reset: until the second stages' capacitors are charged
 LATE = 4  # inverters by which what must end last does
-BANK_INPUTS = ("ref_ctl", "read", "tap0", "tap1", "mode0", "mode1", "hold")
+BANK_INPUTS = ("ref_ctl", "read", "tap0", "tap1", "mode0", "hold")
 BANK_INPUTS += tuple(f"{name}{bit}" for name, bits in (("group", 3), ("k", 3), ("sub", 2)) for bit in range(bits))
 LINES = tuple(f"group_{g}" for g in range(GROUPS)) + tuple(f"k_{k}" for k in range(PLACES))
 CASCODES = "cn", "vcn", "vcnb"  # lines that are not the bank's
@@ -157,7 +157,8 @@ def bank(sizes: ColumnSizes) -> Circuit:
 
     A group's line is high in a turn alone. `clear` ends by itself: a current charges a capacitor from the row's start
     on. The holder's reset ends before the signal half begins, and its capacitors part from x before all else. While a
-    row is read or a lane has its turn no x is tied.
+    row is read or a lane has its turn no x is tied. mode0: of the modes with sums; in the others, edge and raw, both
+    diodes of a column drive their lanes, and its sample is that of tap 0 whatever the sub-sample.
     """
     parts, count = list[Instance](), 0
 
@@ -194,11 +195,13 @@ def bank(sizes: ColumnSizes) -> Circuit:
     longer("signal", "sig", "sign")
     parts.append(Instance("clear", clear_pulse(sizes), ("ref", "refn", "clear", "vbp", *SUPPLIES)))
     parts.append(Instance("cascodes", cascode_lines(), cascode_lines().ports))
-    gate(inverter(6), gate(inverter(6), gate(nor(), "mode0", "mode1", "first"), "edgen"), "edge")
+    gate(inverter(6), gate(inverter(6), gate(inverter(), "mode0", "first"), "edgen"), "edge")
     decoded("tap", TAPS, 2, "now")
     longer("hold", "turned")
     gate(inverter(6), gate(inverter(), gate(nor(), "reads", "turned", "alone"), "idlen"), "idle")
-    decoded("sub", TAPS, 2, "asked")
+    for bit in range(2):
+        gate(inverter(2), gate(nand(), f"sub{bit}", "mode0", f"held{bit}_"), f"held{bit}")
+    decoded("held", TAPS, 2, "asked")
     for t in range(TAPS):
         gate(inverter(6), gate(nand(), "read", f"now{t}", f"w{t}n"), f"w{t}")
         gate(inverter(6), f"asked{t}", f"unasked{t}")

@@ -4,7 +4,7 @@ It has its current from the `bias` of support.py, is off before the cycle in whi
 array comes to the output, with what the sample before left on it, after the lane's last decision:
 
     cycle      | 0      | 1 wake   | 2 hold   | 3 ...
-    on         |________|__/‾‾‾‾‾‾‾|‾‾‾‾‾‾‾‾‾‾|‾‾‾        for its energy: off after the hold
+    wake       |________|__/‾‾‾‾‾‾‾|_/________|___        for its energy: reset, and so off, after the hold
     reset      |‾‾‾‾‾‾‾‾|‾‾‾‾‾‾‾‾‾‾|__________|___
     lane       | before            |___/ out  |           sampled at the end of the hold
 """
@@ -18,7 +18,7 @@ from talbot.cells.corner import Corner
 from talbot.cells.spice.engine import Points, Simulator
 from talbot.cells.spice.wave import Wave
 from talbot.models.parameters.electrical import BOLTZMANN
-from talbot.pixels.circuits.amplifier import PINS, TRIM_BITS, UNITS, AmplifierSizes, AmplifierSpec, amplifier
+from talbot.pixels.circuits.amplifier import PICK, PINS, TRIM_BITS, UNITS, AmplifierSizes, AmplifierSpec, amplifier
 from talbot.pixels.circuits.dac import PARASITIC
 from talbot.pixels.circuits.lane import LaneSizes
 from talbot.pixels.circuits.netlist import Circuit, Instance
@@ -28,13 +28,14 @@ from talbot.pixels.datasheet.deck import EDGE, SETTINGS, Setup, deck, settling, 
 INPUTS = (
     "column_a",
     "column_b",
-    "on",
+    "wake",
     "reset",
     "before",
     "last",
     "keep",
     "track",
     *(f"g{k}" for k in range(TRIM_BITS)),
+    *PICK,
 )
 DARK = 0.1  # of a full well, of both diodes
 REACH = 0.75  # of +-128 LSB, of differences
@@ -43,8 +44,24 @@ WAKE, HOLD, END, LATER = 1, 2, 3, 5  # cycles: awake, hold, its end; when the ou
 EXACT = replace(SETTINGS, reltol=1e-4)  # at 1e-3 an output is off by up to half an LSB
 REST = 0.8  # cycles of rest before it wakes: the chip has six at the least
 LANE_OHM = 100.0  # ohm of the lane's switches, all side by side
+WAKEN = 1e-9  # s after the hold's begin at which `wake` ends
 COLUMNS = 2e-9  # s after the reset's end at which the columns go to their signals
+FILLS = 0.05, 0.35, 0.65, 0.95  # of a full well, of a diode that is read alone; the other has the first of them
 WRONG_GAIN, WRONG_WEIGHT = 0.1, 0.25  # relative: of the gain, of the trim's least bit; a bit of n units by sqrt(n) less
+
+
+@dataclass(frozen=True)
+class RawResult:
+    """A diode that is read alone, in LSB of the lane.
+
+    gain: over the ideal one. inl: peak off a straight line. left: at the cycle's end. other: change by light of the
+    other diode.
+    """
+
+    gain: float
+    inl: float
+    left: float
+    other: float
 
 
 @dataclass(frozen=True)
@@ -55,7 +72,7 @@ class AmplifierResult:
     settling: s after the hold's begin, to half an LSB. left: at its end. ambient: change of a difference under ambient
     light. trim: peak error of three steps around the middle, in steps. energy: J of a sample, with what flows until
     the next and the bias's share. always: J of a sample of an amplifier that is never off. off: A while it is.
-    points: (ideal, sampled) of differences.
+    points: (ideal, sampled) of differences. raw: of each diode that is read alone.
     """
 
     gain: float
@@ -69,8 +86,13 @@ class AmplifierResult:
     always: float
     off: float
     points: list[tuple[float, float]]
+    raw: list[RawResult]
     runs: int
     repeated: int
+
+    def most(self, field: str) -> float:
+        """Return a figure of the worse diode in raw mode."""
+        return max(getattr(one, field) for one in self.raw)
 
 
 def measure(
@@ -118,9 +140,34 @@ def measure(
             always=running * corner.supply * spec.sample,
             off=off,
             points=[(float(v * sizes.gain / lsb), float(x)) for v, x in zip(wanted, got, strict=True)],
+            raw=[_raw(setup, spec, sizes, corner, load, spice, sub) for sub in (0, 1)],
             runs=spice.runs,
             repeated=spice.repeated,
         )
+
+
+def _raw(
+    setup: Setup, spec: AmplifierSpec, sizes: AmplifierSizes, corner: Corner, load: float, spice: Simulator, sub: int
+) -> RawResult:
+    """Measure a diode alone; its columns begin at half a full well, the middle of the converter's range."""
+    lsb, end = setup.spec.lsb, END * spec.hold
+
+    def sampled(fill: float, other: float = FILLS[0]) -> tuple[float, float]:
+        pair = (other, fill) if sub else (fill, other)
+        volts = (one * spec.swing for one in pair)
+        before = spec.vref + sizes.gain / 2 * spec.swing * (0.5 - fill)
+        wave = sample(spice, spec, corner, load, *volts, UNITS, before, sub=sub)
+        return wave.at("lane", end) / lsb, wave.at("lane", LATER * spec.hold) / lsb
+
+    got = np.array([sampled(fill) for fill in FILLS])
+    slope, offset = np.polyfit(FILLS, got[:, 0], 1)
+    bright = sampled(FILLS[-2], FILLS[-1])[0]
+    return RawResult(
+        gain=float(slope * lsb / (sizes.gain / 2 * spec.swing)),
+        inl=float(np.abs(got[:, 0] - offset - slope * np.array(FILLS)).max()),
+        left=float(np.abs(got[:, 0] - got[:, 1]).max()),
+        other=float(abs(bright - got[-2, 0])),
+    )
 
 
 def faults(
@@ -206,21 +253,22 @@ def sample(
     before: float,
     ends: bool = False,
     until: int = LATER,
+    sub: int | None = None,
 ) -> Wave:
     """A transient: a sample of a and b V below the columns' reset level. ends: off after the hold. until: cycles.
 
-    before: V that the sample before left on the lane, and on the amplifier's output until it is off.
+    before: V that the sample before left on the lane, and on the amplifier's output until it is off. sub: in raw mode,
+    the sub-sample; the columns begin half a full well below their reset level.
     """
     begin = HOLD * spec.hold
+    rest = spec.reset_level - (0.0 if sub is None else spec.swing / 2)
     stimulus: dict[str, Points] = {
-        f"column_{name}": [
-            (0.0, spec.reset_level),
-            (begin + COLUMNS, spec.reset_level),
-            (begin + COLUMNS + 1e-9, spec.reset_level - value),
-        ]
+        f"column_{name}": [(0.0, rest), (begin + COLUMNS, rest), (begin + COLUMNS + 1e-9, spec.reset_level - value)]
         for name, value in (("a", a), ("b", b))
     }
     stimulus |= clocked(spec, corner, begin, code, before, (END * spec.hold + COLUMNS,) if ends else ())
+    if sub is not None:
+        stimulus |= {"mode1": [(0.0, corner.supply)], "sub0": [(0.0, corner.supply * sub)]}
     return spice.transient(stimulus, {"lane": load}, until * spec.hold, spec.hold / 20)
 
 
@@ -238,13 +286,14 @@ def clocked(
         return points
 
     stimulus: dict[str, Points] = {
-        "on": level(wake + spec.high, *stop),
+        "wake": level(wake + spec.wake, begin + WAKEN),
         "reset": level(begin, *stop, first=vdd),
         "last": level(wake - REST * spec.hold, first=vdd),
-        "keep": level(begin + spec.high, first=vdd),
+        "keep": level(begin + spec.wake, first=vdd),
         "track": level(begin + spec.track, *stop),
         "before": [(0.0, before)],
     }
+    stimulus |= {name: [(0.0, 0.0)] for name in PICK}
     return stimulus | {f"g{k}": [(0.0, vdd * (code >> k & 1))] for k in range(TRIM_BITS)}
 
 

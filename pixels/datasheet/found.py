@@ -6,8 +6,10 @@ from talbot.pixels.datasheet.amplifier import AmplifierResult
 from talbot.pixels.datasheet.column import ColumnResult
 from talbot.pixels.datasheet.comparator import Decisions
 from talbot.pixels.datasheet.curves import ColumnFit
+from talbot.pixels.datasheet.interface import InterfaceResult
 from talbot.pixels.datasheet.lane import LaneResult
 from talbot.pixels.datasheet.noise import Noise
+from talbot.pixels.datasheet.references import ReferencesResult
 from talbot.pixels.datasheet.row_driver import RowDriverResult
 from talbot.pixels.datasheet.spread import AmplifierNoise, Drawn
 from talbot.pixels.datasheet.supply import Ripple
@@ -42,3 +44,5 @@ class Found:
     pixel_offsets: list[float]
     turns: dict[str, TurnResult]
     column_fit: ColumnFit
+    interfaces: dict[str, InterfaceResult]
+    references: dict[str, ReferencesResult]

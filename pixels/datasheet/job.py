@@ -30,8 +30,10 @@ from talbot.pixels.datasheet import (
     column,
     comparator,
     curves,
+    interface,
     lane,
     linearity,
+    references,
     row_driver,
     spread,
     support,
@@ -45,8 +47,10 @@ from talbot.pixels.datasheet.comparator import BATCH, Decisions, interval
 from talbot.pixels.datasheet.curves import ColumnFit
 from talbot.pixels.datasheet.deck import Setup, deck, process_of
 from talbot.pixels.datasheet.found import TYPICAL, Found
+from talbot.pixels.datasheet.interface import InterfaceResult
 from talbot.pixels.datasheet.lane import LaneResult, inl
 from talbot.pixels.datasheet.noise import Noise
+from talbot.pixels.datasheet.references import ReferencesResult
 from talbot.pixels.datasheet.row_driver import RowDriverResult
 from talbot.pixels.datasheet.rows import datasheet
 from talbot.pixels.datasheet.spread import AmplifierNoise, Drawn
@@ -148,6 +152,7 @@ def make(
     rows = datasheet(setup.spec, found, len(found.offsets), sensor)
     counts = [*found.decisions.values(), *found.lanes.values(), *found.amplifiers.values(), *found.supports.values()]
     counts += [*found.rows.values(), *found.columns.values(), *found.turns.values()]
+    counts += [*found.interfaces.values(), *found.references.values()]
     summary = {
         "pdk": pdk,
         "sensor": sensors.figures(pdk, sensor),
@@ -217,6 +222,20 @@ def measured(
     columns = _everywhere("column", ColumnResult, column.measure, (setup, spec_c, sizes_c), places, workers)
     both = setup, (spec_c, spec_a), (sizes_c, sizes_a), sizes
     turns = _everywhere("turn", TurnResult, turn.measure, both, places, workers)
+    interfaces = _everywhere("interface", InterfaceResult, interface.measure, (setup,), places, workers)
+    shared = {
+        name: from_json(
+            ReferencesResult,
+            run(
+                [Job(f"references-{name}", references.measure, (setup, sizes, corner, at), (given, name, at))],
+                STORE,
+                "references",
+                workers,
+            )[0],
+        )
+        for name, corner in places.items()
+        for at in (interfaces[name].first,)
+    }
     note("mismatch")
     typical = places[TYPICAL]
     batches = range(1, -(-draws // BATCH) + 1)
@@ -282,6 +301,8 @@ def measured(
         pixel_offsets,
         turns,
         from_json(ColumnFit, run([curves_c], STORE, "curves", workers)[0]),
+        interfaces,
+        shared,
     )
 
 

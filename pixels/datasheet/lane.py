@@ -92,7 +92,7 @@ def convert(spice: Simulator, setup: Setup, value: float, passes: int = BITS + 1
     from the first that differs the search goes on with it, until all agree: what a lock-step run gives.
     """
     period = 1 / setup.spec.f_clk
-    assumed = [value >= code - 0.5 for code in _codes_for(value)]
+    assumed = [value >= code - 0.5 for code in codes_of(value)]
     for k in range(1, passes + 1):
         codes, code = _search(assumed)
         wave = run_codes(spice, setup, [value] * 9, [True] + [False] * 8, [codes[0], *codes])
@@ -116,7 +116,7 @@ def _search(answers: Sequence[bool]) -> tuple[list[int], int]:
     raise AssertionError("a search has eight decisions")
 
 
-def _codes_for(value: float) -> list[int]:
+def codes_of(value: float) -> list[int]:
     """Return the codes of an ideal search."""
     lane = search(True, 0)
     codes = [next(lane)]

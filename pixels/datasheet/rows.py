@@ -7,6 +7,7 @@ import numpy as np
 from talbot.models.parameters import STANDARD, SensorParameters
 from talbot.pixels.circuits.amplifier import BIAS, AmplifierSpec
 from talbot.pixels.circuits.column_sizes import ColumnSpec
+from talbot.pixels.circuits.interface import STROBE
 from talbot.pixels.circuits.row_driver import RowDriverSpec
 from talbot.pixels.circuits.specification import LaneSpec
 from talbot.pixels.circuits.support import SupportSpec
@@ -69,10 +70,38 @@ def datasheet(spec: LaneSpec, found: Found, draws: int, sensor: SensorParameters
             over=f"{len(found.enob)} drawn arrays, with noise",
         ),
         corners("lane", "energy of a decision", "pJ", energies, share),
+        *_timing(found, spec, AmplifierSpec.of(sensor)),
         *_amplifier(found, AmplifierSpec.of(sensor)),
         *_columns(found, ColumnSpec.of(sensor)),
         *_row_driver(found.rows, RowDriverSpec.of(sensor)),
         *_support(found.supports),
+    ]
+
+
+def _timing(found: Found, spec: LaneSpec, amplifier: AmplifierSpec) -> list[Row]:
+    """Return the rows of the lanes' timing and of their shared references."""
+
+    def row(circuit: str, name: str, unit: str, values: dict[str, float], **limits: float) -> Row:
+        return over_corners(circuit, name, unit, values.items(), TYPICAL, **limits)
+
+    def of(field: str, scale: float) -> dict[str, float]:
+        return {corner: scale * getattr(one, field) for corner, one in found.interfaces.items()}
+
+    def shared(field: str, scale: float = 1.0) -> dict[str, float]:
+        return {corner: scale * getattr(one, field) for corner, one in found.references.items()}
+
+    early = {name: 1e9 * (one.first - found.lanes[name].settling) for name, one in found.interfaces.items()}
+    decided = {name: 1e9 * (one.decided - found.decisions[name].delay) for name, one in found.interfaces.items()}
+    return [
+        row("interface", "strobe after the clock's rise, duty 20 to 80 %", "ns", of("last", 1e9), most=1e9 * STROBE),
+        row("interface", "strobe after the DAC's settling", "ns", early, least=0.0),
+        row("interface", "sample after the last decision", "ns", decided, least=0.0),
+        row("interface", "sample after the clock's rise", "ns", of("sample", 1e9), most=1e9 * amplifier.track),
+        row("interface", "energy of a strobe", "pJ", of("energy", 1e12)),
+        row("interface", "energy of a cycle without convert", "pJ", of("rest", 1e12)),
+        row("references", "levels of eight lanes, off by", "LSB", shared("off"), most=spec.settling),
+        row("references", "settling of eight lanes to half an LSB", "ns", shared("settling", 1e9)),
+        row("references", "refp less refn, end to end", "mV", shared("ripple", 1e3)),
     ]
 
 
@@ -86,6 +115,10 @@ def _amplifier(found: Found, spec: AmplifierSpec) -> list[Row]:
         values = {corner: scale * abs(getattr(one, field)) for corner, one in found.amplifiers.items()}
         return corners(name, unit, values, most)
 
+    def raw(field: str) -> dict[str, float]:
+        return {corner: one.most(field) for corner, one in found.amplifiers.items()}
+
+    raw_gains = {n: 100 * max(abs(d.gain - 1) for d in one.raw) for n, one in found.amplifiers.items()}
     count = len(found.amplifier_draws)
     over = f"{count} draws: 95 % interval"
     offset, *offset_ends = interval([one.offset for one in found.amplifier_draws])
@@ -105,6 +138,10 @@ def _amplifier(found: Found, spec: AmplifierSpec) -> list[Row]:
         corners("kT/C, rms", "LSB", found.amplifier_ktc, spec.ktc),
         Row("amplifier", "noise, rms", "LSB", found.amplifier_noise.total, None, None, most=spec.noise, over=TYPICAL),
         corners(f"by {1e3 * RIPPLE:g} mV on the supply, 10 kHz to 1 GHz", "LSB", rippled, spec.settling),
+        corners("raw mode, gain off by", "%", raw_gains, 100 * spec.gain),
+        corners("raw mode, INL", "LSB", raw("inl"), spec.inl),
+        corners("raw mode, left after one cycle", "LSB", raw("left"), spec.settling),
+        corners("raw mode, by the other diode's light", "LSB", raw("other"), spec.settling),
         row("energy of a sample, off between samples", "pJ", "energy", 1e12 * spec.energy, 1e12),
         row("energy of a sample, never off", "pJ", "always", None, 1e12),
         row("current while off", "uA", "off", None, 1e6),

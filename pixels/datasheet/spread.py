@@ -9,7 +9,7 @@ import numpy as np
 
 from talbot.base.tools import ToolError, finish
 from talbot.cells.corner import Corner
-from talbot.pixels.circuits.amplifier import TRIM_BITS, UNITS, AmplifierSizes, AmplifierSpec, amplifier
+from talbot.pixels.circuits.amplifier import PICK, TRIM_BITS, UNITS, AmplifierSizes, AmplifierSpec, amplifier
 from talbot.pixels.circuits.lane import LaneSizes
 from talbot.pixels.circuits.netlist import Circuit
 from talbot.pixels.datasheet.amplifier import END, LANE_OHM, REACH, biased, load_of, opened, sample
@@ -87,7 +87,8 @@ def still(
     setup: Setup, spec: AmplifierSpec, sizes: AmplifierSizes, corner: Corner, reset: float, driven: str
 ) -> list[str]:
     """Return the deck of an amplifier that rests with ``reset`` at a level, V; ``driven`` has an amplitude of 1 V."""
-    volts = {"vdd": corner.supply, "vss": 0.0, "vref": spec.vref, "on": corner.supply, "reset": reset}
+    volts = {"vdd": corner.supply, "vss": 0.0, "vref": spec.vref, "wake": corner.supply, "reset": reset}
+    volts |= dict.fromkeys(PICK, 0.0)
     volts |= dict.fromkeys(("column_a", "column_b"), spec.reset_level)
     volts |= {f"g{k}": corner.supply * (k == TRIM_BITS - 1) for k in range(TRIM_BITS)}
     return [

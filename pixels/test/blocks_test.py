@@ -54,6 +54,7 @@ def test_converters_and_columns_have_the_ports_of_their_real_number_model():
     }
     pins = widths(outer(columns) | outer(lanes))
     phases = {"ref_ctl": 1, "cm_reset": 1, "sample": 1, "read": 1, "tap": 2}
+    phases |= {"wake": 1, "convert": 1}  # of energy and time alone
     assert len(ports) == 12 and pins == ports | phases
     assert widths(outer(driver)) == {"amp_row": 10, "reset_row": 10, "expose": 1, "ref_ctl": 1} | ROW_PHASES
     assert {name for name, way in outer(lanes).items() if way == "output"} == {f"comparator[{k}]" for k in range(8)}

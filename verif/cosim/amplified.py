@@ -1,12 +1,12 @@
 """The difference amplifier of a lane in the deck of a co-simulation, with its bias, and what its columns carry.
 
-    clk        |‾|______|‾|______|      high for 12 ns
+    clk        |‾‾‾‾|____|‾‾‾‾|____|
     hold       |________|‾‾‾‾‾‾‾‾|
     reset      |‾‾‾‾‾‾‾‾|________|‾     not hold; ends the lane's sample before it begins again
     columns    | level  | signal |      2 ns after the reset's end
     sample     |__________|__‾‾‾‾|      of the lane, after its last decision
 
-It is never off: no pin of the chip is a cycle ahead of `hold`.
+It is never off.
 """
 
 from collections.abc import Callable
@@ -39,14 +39,16 @@ def column_volts(spec: LaneSpec, sizes: AmplifierSizes, gain: float) -> float:
     return gain * spec.lsb / sizes.gain
 
 
-def lane_lines(lane: int, drive: Drive, supply: float, dark: bool = True) -> list[str]:
+def lane_lines(lane: int, drive: Drive, supply: float, dark: bool = True, second: str = "") -> list[str]:
     """The amplifier of a lane from its columns cola, colb to its input. drive: makes a control of the lane's sample.
 
-    dark: between samples its columns are at column_dark; else something else puts them there.
+    dark: between samples its columns are at column_dark; else something else puts them there. second: in raw mode, the
+    node that is high for the second diode.
     """
     reset = drive(f"amplifier_reset{lane}", 0.0, fall=AFTER, low=supply)
     code = ("vdd" if UNITS >> k & 1 else "0" for k in reversed(range(TRIM_BITS)))
-    pins = f"cola{lane} colb{lane} vdd {reset}", " ".join(code), f"in{lane} ref ibias{lane} vdd 0 amplifier"
+    mode = f"vdd 0 {second}" if second else "0 0 0"
+    pins = f"cola{lane} colb{lane} vdd {reset}", " ".join(code), f"{mode} in{lane} ref ibias{lane} vdd 0 amplifier"
     lines = [f"Xamplifier{lane} {' '.join(pins)}", f"Xbias{lane} ibias{lane} vdd 0 bias"]
     if dark:
         on = drive(f"amplifier_dark{lane}", 0.0, rise=COLUMNS / 2, fall=2 * AFTER, low=supply)

@@ -39,6 +39,9 @@ BIAS = (
 NO_TRANSIENT = ".control", "optran 1 1 1 0 0 0", ".endc"  # for an operating point: what is to begin elsewhere would not
 
 
+BOTH = "edge", "raw"  # modes in which both diodes of a column drive their lanes
+
+
 class Trim(NamedTuple):
     """Result of a trim.
 
@@ -62,7 +65,7 @@ def circuits(spec: ColumnSpec, sizes: ColumnSizes) -> tuple[Circuit, ...]:
 def lines(
     diodes: Mapping[int, Mapping[int, tuple[float, float]]],
     lanes: Mapping[int, int],
-    edge: bool,
+    mode: str,
     integration: float,
     spec: ColumnSpec,
     sizes: ColumnSizes,
@@ -74,15 +77,15 @@ def lines(
 ) -> list[str]:
     """Lines of the deck; see `drive` for their controls. lanes: of each column; the lanes' lines end at cola0, colb0.
 
-    diodes: (a, b) in LSB of each column and tap. edge: lanes get both diodes, else the mean. trim: initial voltages: an
-    operating point of these floating nodes takes minutes, and what rises from 0 V couples into the others (as drawn
-    0.5 LSB of a sum). cols: that the row's lines pass. swapped: columns whose diodes are on each other's line. cut:
-    column from which on the row's read line is open.
+    diodes: (a, b) in LSB of each column and tap. mode: in edge and raw lanes get both diodes, else the mean. trim:
+    initial voltages: an operating point of these floating nodes takes minutes, and what rises from 0 V couples into the
+    others (as drawn 0.5 LSB of a sum). cols: that the row's lines pass. swapped: columns whose diodes are on each
+    other's line. cut: column from which on the row's read line is open.
     """
+    edge = mode in BOTH
     own = {"edge": "vdd" if edge else "0", "edgen": "0" if edge else "vdd", "k": "vdd", "vss": "0", "ref": "row_ref"}
     deck = [
-        f"Vdark dark 0 {spec.dark:g}",
-        f"Vreference reference 0 {spec.dark - (not edge) * CODES / 2 * spec.lsb:.9g}",
+        *(f"V{name} {name} 0 {volts:.9g}" for name, volts in levels(mode, spec).items()),
         *(f"V{name} {name} 0 {volts:.9g}" for name, volts in zip(("start_a", "start"), trim.start, strict=True)),
         begun(trim.rest),
         *(f"Coutside_{name} {name} 0 {OUTSIDE:g}" for name in (*BIASES, "level")),
@@ -112,6 +115,15 @@ def lines(
                 ampere = value / DIODE * spec.full_well * ELEMENTARY_CHARGE / integration
                 deck.append(f"Gphoto{diode}{c}_{tap} well_{diode}{c} 0 light{tap} 0 {ampere:.9g}")
     return deck
+
+
+def levels(mode: str, spec: ColumnSpec) -> dict[str, float]:
+    """V of `reference` and `dark`, at which the lanes' lines begin: of code 0 in edge mode, else of code -128.
+
+    In raw mode an LSB at a lane is two of a column.
+    """
+    below = {"edge": 0.0, "raw": CODES * spec.lsb}.get(mode, CODES / 2 * spec.lsb)
+    return {"reference": spec.dark - below, "dark": spec.dark - (below if mode == "raw" else 0.0)}
 
 
 def begun(volts: Mapping[str, float]) -> str:
@@ -209,7 +221,8 @@ def trimmed(spec: ColumnSpec, edge: bool, cycle: float, high: float, drawn: bool
     names = {net: extracted.flat(_of_column(net, 0)) if drawn else _of_column(net, 0) for net in inside}
     end, over = float(np.nextafter((turn + 1) * cycle, 0)), (turn + 2) * cycle
     for _ in range(STEPS):
-        own = lines({0: {0: (0.0, 0.0)}}, {0: lane_bit}, edge, 1.0, spec, sizes, pixels, trim)
+        mode = "edge" if edge else "image"
+        own = lines({0: {0: (0.0, 0.0)}}, {0: lane_bit}, mode, 1.0, spec, sizes, pixels, trim)
         own = extracted.as_drawn(own, layouts)
         with Simulator([*deck, *own], tuple(waves), (*outs, *names.values()), rails, CELSIUS, EXACT) as spice:
             wave = spice.transient(waves, dict.fromkeys(outs, spec.input), over, cycle / 5)

@@ -42,7 +42,7 @@ SHARED = (
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot cosim`: texts, checked by `run`."""
     add = parser.add_argument
-    add("--modes", default="edge,image,tof", help="modes whose row is read")
+    add("--modes", help="modes whose row is read (default: edge,image,tof)")
     add_sensor(parser)
     for number in (TYPES, RELTOL, *CUT.values(), *SHARED):
         number.add(parser)
@@ -70,11 +70,11 @@ def run(options: Namespace) -> int:
     sensor = sensor_asked(options, VARIED)
     if options.sensor and (options.study or options.faults):
         raise ParameterError(f"sensor = {str(options.sensor)!r}: must be left out with study and faults")
-    modes = options.modes.split(",")
-    if not set(modes) <= set(MODES):
-        raise ParameterError(f"modes = {options.modes!r}: must be some of {','.join(MODES)}")
     check_choice("amplifiers", options.amplifiers, AMPLIFIERS)
     columns = options.amplifiers == "all"
+    modes = options.modes.split(",") if options.modes else [mode for mode in MODES if mode != "raw"]
+    if not set(modes) <= set(MODES):
+        raise ParameterError(f"modes = {options.modes!r}: must be some of {','.join(MODES)}")
     types, accuracy = (
         min(TYPES.value(options), sensor.tile.cols),
         Accuracy(reltol=RELTOL.value(options), method=options.method),

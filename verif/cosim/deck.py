@@ -102,12 +102,13 @@ def build(
     everything: bool = False,
     row: "RowOfPixels | None" = None,
     drawn: bool = False,
+    mode: str = "",
 ) -> Deck:
     """Return the circuit that reads one row.
 
     values: LSB at (column, sub-sample). lanes: of the chip; only those that serve one of these columns are built, with
     ``everything`` all. unsigned: the range of all values; else -128..127. row: pixels instead of ideal columns. drawn:
-    circuits as drawn and extracted; without ``fault``.
+    circuits as drawn and extracted; without ``fault``. mode: of the row with columns in transistors.
     """
     columns = tuple(sorted({column for column, _ in values}))
     used = {column // tile_cols % lanes for column in columns}
@@ -123,6 +124,7 @@ def build(
     if amplifier:
         circuits |= {one.name: one for one in amplified.circuits(amplifier[1])}
     charges = row is not None and row.columns  # the columns have amplifiers of their own
+    second = _source(deck, "second", spec.supply, _second(lanes, row.cols)) if row and mode == "raw" else ""
     if amplifier and not charges:
         body.append(f"Vdark column_dark 0 {amplifier[0].reset_level:g}")
     for i in served:
@@ -137,7 +139,7 @@ def build(
         body += [f"Xlane{i} {' '.join(pins)} {one.name}", f"Cin{i} in{i} 0 50f"]
         deck.saved += [f"q{i}", f"in{i}", *deck.inside(i)]
         if amplifier:
-            body += amplified.lane_lines(i, partial(_source, deck, bit=i), spec.supply, not charges)
+            body += amplified.lane_lines(i, partial(_source, deck, bit=i), spec.supply, not charges, second)
             deck.saved += [f"cola{i}", f"colb{i}"]
     level = 0.5 * (spec.refp + spec.refn)
     for (column, sub), value in sorted(values.items()) if not charges else ():
@@ -151,7 +153,7 @@ def build(
         if row is None:
             body.append(f"Vcolumn{name} column{name} 0 {level + (value - MIDDLE * unsigned) * spec.lsb:.9g}")
     if row is not None and row.columns:
-        circuits |= _columns(deck, body, row, unsigned, spec, lanes, tile_cols, timing, fault)
+        circuits |= _columns(deck, body, row, mode, spec, lanes, tile_cols, timing, fault)
     elif row is not None:
         circuits |= {one.name: one for one in (pixels.pixel(row.sizes.well), pixels.clear(), pixels.sampler())}
         own = pixels.amplifier(row.sizes)
@@ -196,7 +198,7 @@ def _columns(
     deck: Deck,
     body: list[str],
     row: RowOfPixels,
-    unsigned: bool,
+    mode: str,
     spec: LaneSpec,
     lanes: int,
     tile_cols: int,
@@ -208,11 +210,11 @@ def _columns(
     sizes = size(column, analog)
     swapped = frozenset(fault.where if fault and fault.kind == "diodes" else ())
     cut = fault.where[0] if fault and fault.kind == "row" else None
-    trim = own_columns.trimmed(column, not unsigned, timing.period, spec.supply, deck.flat)
+    trim = own_columns.trimmed(column, mode in own_columns.BOTH, timing.period, spec.supply, deck.flat)
     deck.repeated = trim.repeated
     taps = {c: row.diodes[c] for c in deck.columns}
     of_lane = {c: c // tile_cols % lanes for c in deck.columns}
-    given = (not unsigned, row.integration, column, sizes, row.sizes, trim, row.cols, swapped, cut)
+    given = (mode, row.integration, column, sizes, row.sizes, trim, row.cols, swapped, cut)
     body += own_columns.lines(taps, of_lane, *given)
     body += [own_columns.amplifier_bias(lane, trim.rest) for lane in deck.lanes]
     first = 10 * lanes + SUBS * row.cols
@@ -276,6 +278,11 @@ def _source(
     deck.sources.append(f"V{name} {name} 0 external")
     deck.drive.append(f"v{name} {bit} {low:g} {high:g} {int(half)} {rise:.9g} {fall:.9g}")
     return name
+
+
+def _second(lanes: int, cols: int) -> int:
+    """Return the last bit of the controls of front_end.sv: the second sub-sample is at the pins."""
+    return 10 * lanes + SUBS * cols + 3 + SUBS + 2 + 4 * SUBS + cols
 
 
 def _selector() -> Circuit:

@@ -25,7 +25,7 @@ from talbot.models.parameters import (
     circuit_converter,
 )
 from talbot.models.parameters.electrical import AMPLIFIER
-from talbot.pixels.circuits.amplifier import AmplifierSpec
+from talbot.pixels.circuits.interface import STROBE_TYPICAL
 from talbot.pixels.circuits.specification import LaneSpec
 from talbot.verif.cosim import lockstep
 from talbot.verif.cosim.accuracy import Accuracy
@@ -33,7 +33,7 @@ from talbot.verif.cosim.columns import TIMING
 from talbot.verif.cosim.deck import Deck, RowOfPixels, Timing, build
 from talbot.verif.cosim.faults import Fault
 
-MODES = ("edge", "image", "tof")
+MODES = ("edge", "image", "raw", "tof")
 GAIN = 4.0
 
 
@@ -66,8 +66,8 @@ class RowRequest:
     whole : bool
         Every cycle of the integration is simulated, not one instead of all.
     amplifier : bool
-        The lanes' difference amplifiers are in the circuit: edge mode with its pixels, or any with ``columns``; a clock
-        that is high for what the amplifier asks.
+        The lanes' difference amplifiers are in the circuit: edge mode with its pixels, or any with ``columns``; strobes
+        as early as a lane times them.
     columns : bool
         The column amplifiers are transistors, too, and each half of the row's read takes 16 cycles.
     extracted : bool
@@ -111,6 +111,8 @@ class RowRequest:
             raise ParameterError(f"fault = {self.fault.name}: must be none with extracted circuits")
         if self.columns and not self.amplifier:
             raise ParameterError("columns = True: must be False without amplifier")
+        if self.mode == "raw" and not self.columns:
+            raise ParameterError("columns = False: must be True in mode raw, a lane reads either diode from them")
         if self.amplifier and not (self.pixels and (self.mode == "edge" or self.columns)):
             raise ParameterError("amplifier = True: must be False but in mode edge with pixels, or with columns")
 
@@ -122,7 +124,7 @@ class RowRequest:
     @cached_property
     def clock(self) -> Timing:
         """The circuit's timing."""
-        return replace(self.timing, high=AmplifierSpec().high) if self.amplifier else self.timing
+        return replace(self.timing, high=STROBE_TYPICAL) if self.amplifier else self.timing
 
     @cached_property
     def frame(self) -> tuple[SensorParameters, FrameParameters]:
@@ -214,6 +216,7 @@ class RowRequest:
                 self.everything,
                 self._pixels if self.pixels else None,
                 self.extracted,
+                self.mode,
             )
             for values in self.parts
         )

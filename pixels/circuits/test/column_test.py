@@ -165,13 +165,15 @@ def test_the_phases_of_a_row():
 
 
 def test_modes_and_sub_samples():
-    assert lines()["edge"] and not lines(mode0=True)["edge"] and lines(mode0=True, mode1=True)["edgen"]
+    assert lines()["edge"] and not lines(mode0=True)["edge"] and lines(mode0=True)["edgen"]
     for sub in range(TAPS):
-        levels = lines(sub0=bool(sub & 1), sub1=bool(sub & 2))
+        levels = lines(mode0=True, sub0=bool(sub & 1), sub1=bool(sub & 2))
         assert [levels[f"unasked{t}"] for t in range(TAPS)] == [t != sub for t in range(TAPS)]
         assert not any(levels[f"f{t}"] for t in range(TAPS))
-        levels = lines(hold=True, sub0=bool(sub & 1), sub1=bool(sub & 2))
+        levels = lines(hold=True, mode0=True, sub0=bool(sub & 1), sub1=bool(sub & 2))
         assert [levels[f"f{t}"] for t in range(TAPS)] == [t == sub for t in range(TAPS)] and not levels["idle"]
+        levels = lines(hold=True, sub0=bool(sub & 1), sub1=bool(sub & 2))  # raw: both diodes are in the only tap
+        assert [levels[f"f{t}"] for t in range(TAPS)] == [True, False, False, False] and levels["turnb"]
 
 
 def selected(**driven):

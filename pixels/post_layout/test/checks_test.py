@@ -148,13 +148,13 @@ def test_lanes_with_amplifiers_and_bias_keep_the_rules_are_their_circuits_and_sw
         assert any(one in name or f"{cell}0" in name for name in differences(report)), one
 
 
-def test_the_blocks_pins_are_the_black_boxes_and_those_of_references_and_wake(tmp_path):
+def test_the_blocks_pins_are_the_black_boxes_and_those_of_references(tmp_path):
     made = draw_converters(MASKS, LANE, AMPLIFIER, ChipParameters(), AnalogSizes())
     paths = tmp_path / "own.lef", tmp_path / "black_box.lef"
     paths[0].write_text(made.lef(MASKS))
     black_box = next(block for block in blocks() if block.name == "adc_lanes")
     paths[1].write_text(lef(black_box, "sky130", AnalogSizes().supply_um))
-    assert sorted(extra_pins(*paths)) == ["amp_on", "refn", "refp", "vcm", "vref"]
+    assert sorted(extra_pins(*paths)) == ["refn", "refp", "vcm", "vref"]
     own, other = (read_macro(path.read_text()) for path in paths)
     assert (own.width_um, own.height_um) == (other.width_um, other.height_um)
     with pytest.raises(ParameterError, match="lanes_um = 200"):

@@ -8,10 +8,10 @@ import pytest
 
 from talbot.base.tools import ToolError
 from talbot.models.parameters import DIODE, ParameterError, circuit_columns
-from talbot.pixels.circuits.amplifier import AmplifierSpec
 from talbot.pixels.circuits.column import PINS, column
 from talbot.pixels.circuits.column_sizes import ColumnSpec
 from talbot.pixels.circuits.column_sizes import size as column_size
+from talbot.pixels.circuits.interface import STROBE_TYPICAL
 from talbot.pixels.circuits.lane import sar_lane, size
 from talbot.pixels.circuits.netlist import Circuit, Resistor
 from talbot.pixels.circuits.specification import LaneSpec
@@ -232,7 +232,9 @@ def test_columns_need_the_lanes_amplifiers():
 
 
 def test_an_amplifier_needs_a_difference_and_a_clock_that_is_low_for_longer():
-    assert replace(SMALL, mode="edge", amplifier=True).clock.high == AmplifierSpec().high < SMALL.clock.high
+    assert replace(SMALL, mode="edge", amplifier=True).clock.high == STROBE_TYPICAL < SMALL.clock.high
+    with pytest.raises(ParameterError, match="columns = False: must be True in mode raw"):
+        replace(SMALL, mode="raw")
     for wrong in (SMALL, replace(SMALL, mode="edge", pixels=False)):
         with pytest.raises(ParameterError, match="amplifier = True: must be False"):
             replace(wrong, amplifier=True)
@@ -326,7 +328,7 @@ def test_ngspice_that_gives_up_is_an_error_after_the_whole_ladder(monkeypatch):
 
 @pytest.mark.parametrize(
     ("field", "value"),
-    [("mode", "raw"), ("cols", 5), ("lanes", 3), ("types", 7), ("t_int", 0), ("threshold", 128), ("seed", -1)],
+    [("mode", "rgb"), ("cols", 5), ("lanes", 3), ("types", 7), ("t_int", 0), ("threshold", 128), ("seed", -1)],
 )
 def test_requests_are_checked(field: str, value: object):
     with pytest.raises(ParameterError, match=field):
