@@ -43,6 +43,6 @@ class Found:
     column_offsets: list[float]
     pixel_offsets: list[float]
     turns: dict[str, TurnResult]
-    column_fit: ColumnFit
+    column_fit: ColumnFit | None  # None where nothing needs it
     interfaces: dict[str, InterfaceResult]
     references: dict[str, ReferencesResult]

@@ -147,7 +147,8 @@ def make(
     ]
     if wrong := [fault for faults in run(checks, STORE, "check", workers) for fault in faults]:
         raise ParameterError(wrong[0])
-    found = measured(setup, sizes, corners, draws, workers, note, sensor)
+    fit = table is not None or draws >= BOUNDING  # minutes that a quick look does not take
+    found = measured(setup, sizes, corners, draws, workers, note, sensor, fit)
     note("report")
     rows = datasheet(setup.spec, found, len(found.offsets), sensor)
     counts = [*found.decisions.values(), *found.lanes.values(), *found.amplifiers.values(), *found.supports.values()]
@@ -170,7 +171,7 @@ def make(
         ],
         "transients": sum(one.runs for one in counts),
         "retried": sum(one.repeated for one in counts),
-        "converter": converter(setup.spec, sizes, found, column_spec),
+        "converter": converter(setup.spec, sizes, found, column_spec, found.column_fit) if found.column_fit else None,
         "noise": asdict(found.noise),
         "amplifier_noise": asdict(found.amplifier_noise),
         "wall_s": perf_counter() - start,
@@ -198,8 +199,9 @@ def measured(
     workers: int = -1,
     note: Callable[[str], None] = lambda text: None,
     sensor: SensorParameters = STANDARD,
+    fit: bool = True,
 ) -> Found:
-    """All measurements; those that an earlier run made with the same circuits and code are read."""
+    """All measurements; those of an earlier run with the same circuits and code are read. fit: the curves, too."""
     places = {name: Corner.parse(name) for name in corners}
     given = repr((setup, sizes))
     jobs = [
@@ -259,7 +261,7 @@ def measured(
             f"{name}s drawn",
             workers,
         )
-        for name, count, pixel in (("column", draws, False), ("pixel", min(draws // 2, PIXELS), True))
+        for name, count, pixel in (("column", draws, False), ("pixel", min(draws // 4, PIXELS), True))
     )
     curves_c = Job("column-curves", curves.fitted, given_f, (given_c, start))
     note("noise")
@@ -300,7 +302,7 @@ def measured(
         column_offsets,
         pixel_offsets,
         turns,
-        from_json(ColumnFit, run([curves_c], STORE, "curves", workers)[0]),
+        from_json(ColumnFit, run([curves_c], STORE, "curves", workers)[0]) if fit else None,
         interfaces,
         shared,
     )
@@ -322,7 +324,9 @@ def _everywhere(
     return {name: from_json(record, one) for name, one in zip(places, run(jobs, STORE, what, workers), strict=True)}
 
 
-def converter(spec: LaneSpec, sizes: LaneSizes, found: Found, column_spec: ColumnSpec) -> dict[str, Any]:
+def converter(
+    spec: LaneSpec, sizes: LaneSizes, found: Found, column_spec: ColumnSpec, fit: ColumnFit
+) -> dict[str, Any]:
     """Return the figures for `models/afe`, each with its source and the fit's error where there is one (LSB)."""
     rms, low, high = interval(found.offsets)
     rms_a, low_a, high_a = interval([one.offset for one in found.amplifier_draws])
@@ -344,7 +348,7 @@ def converter(spec: LaneSpec, sizes: LaneSizes, found: Found, column_spec: Colum
             "unit_mismatch": round(sizes.dac.unit_mismatch, 6),
             **bend,
         },
-        "columns": asdict(found.column_fit.curves),
+        "columns": asdict(fit.curves),
         "diodes": {
             "read_noise": round(found.column_noise[TYPICAL] / column_spec.full_well * DIODE, 4),
             "column_fpn": round(rms_c / of_diode, 4),
@@ -374,8 +378,8 @@ def converter(spec: LaneSpec, sizes: LaneSizes, found: Found, column_spec: Colum
             "amplifier_settling": round(found.amplifiers[TYPICAL].left, 4),
             "settling": round(_left(spec, found.lanes[TYPICAL]), 6),
             "droop": round(found.lanes[TYPICAL].droop, 4),
-            "columns": found.column_fit.error,
-            "sums": found.column_fit.sum_error,
+            "columns": fit.error,
+            "sums": fit.sum_error,
             "column_fpn": round((high_c - low_c) / 2 / of_diode, 4),
             "offset_fpn": round((high_p - low_p) / 2 / of_diode, 4),
         },
