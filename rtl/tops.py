@@ -131,8 +131,15 @@ def proc(sensor: SensorParameters) -> "Component":
     return Proc()
 
 
+def test_chip_1(sensor: SensorParameters) -> "Component":
+    """Return test chip 1, the same for any sensor."""
+    from talbot.rtl.test_chip_1 import TestChip1
+
+    return TestChip1()
+
+
 # Of AspChip, to be proven for any sensor, and of test chip 1: exported by name only
-PARTS: dict[str, Build] = {"Balance": balance, "Pattern": pattern, "Proc": proc}
+PARTS: dict[str, Build] = {"Balance": balance, "Pattern": pattern, "Proc": proc, "TestChip1": test_chip_1}
 
 # Of rtl.tinytapeout: Verilog around a top, exported by name only
 WRAPPERS = {

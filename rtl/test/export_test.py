@@ -93,10 +93,11 @@ def test_fusesoc_reads_and_lints_the_core(tmp_path):
     assert "talbot:asp:AmpCtrl:" in done.stdout + done.stderr
 
 
-def test_the_processor_is_lint_clean(tmp_path):
-    path = tmp_path / "Proc.sv"
-    path.write_text(translate("Proc", SensorParameters()))
-    assert "Verilator clean" in lint(path, "Proc")
+@pytest.mark.parametrize("name", ["Proc", "TestChip1"])
+def test_test_chip_1_is_lint_clean(name, tmp_path):
+    path = tmp_path / f"{name}.sv"
+    path.write_text(translate(name, SensorParameters()))
+    assert "Verilator clean" in lint(path, name)
 
 
 def test_a_small_tile_is_lint_clean(tmp_path):
