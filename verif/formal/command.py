@@ -18,7 +18,6 @@ from talbot.base.jobs import worker_count
 from talbot.base.records import from_json
 from talbot.base.tools import located
 from talbot.models.parameters import ParameterError
-from talbot.rtl.tops import TOPS
 from talbot.verif.formal import manifest, owners, sizes
 from talbot.verif.formal.engine import UNDECIDED, version
 from talbot.verif.formal.freedom import FreedomResult
@@ -164,7 +163,7 @@ def summary(outcomes: Sequence[Outcome]) -> dict[str, BlockResults]:
         entry = results.setdefault(outcome.proof.block, BlockResults())
         entry.proofs += outcome.properties
         entry.open_points += outcome.problems
-    return {block: results[block] for block in TOPS if block in results}
+    return {block: results[block] for block in manifest.BLOCKS if block in results}
 
 
 def table(outcomes: Iterable[Outcome]) -> str:
@@ -197,7 +196,9 @@ def chosen(proofs: Sequence[Proof], options: Namespace) -> list[Proof]:
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot formal`."""
-    parser.add_argument("--only", action="append", metavar="BLOCK", choices=TOPS, help="a block (may be repeated)")
+    parser.add_argument(
+        "--only", action="append", metavar="BLOCK", choices=manifest.BLOCKS, help="a block (may be repeated)"
+    )
     parser.add_argument("--proof", action="append", metavar="NAME", help="a proof by its name (may be repeated)")
     parser.add_argument("--out", type=Path, default=OUT, help="folder of formal.json")
     parser.add_argument(

@@ -9,10 +9,11 @@ import yaml
 
 from talbot.base.paths import PACKAGE
 from talbot.models.parameters import ParameterError
-from talbot.rtl.tops import TOPS
+from talbot.rtl.tops import TEST_CHIP_1, TOPS
 from talbot.verif.formal.owners import parse
 from talbot.verif.formal.proof import ENGINES, RESET, Proof, Twin, labels
 
+BLOCKS = *TOPS, *TEST_CHIP_1  # with proofs
 SIZE = "rows", "cols", "lanes", "tile_rows", "tile_cols"
 
 
@@ -56,8 +57,8 @@ def _proof(folder: Path, entry: dict[str, Any]) -> Proof:
     entry["engines"] = entry["engines"] or ENGINES[:1]
     entry["sources"] = tuple(folder / name for name in entry["sources"])
     proof = Proof(**entry)
-    if proof.block not in TOPS:
-        raise ParameterError(f"{proof.name}.block = {proof.block}: must be one of {', '.join(TOPS)}")
+    if proof.block not in BLOCKS:
+        raise ParameterError(f"{proof.name}.block = {proof.block}: must be one of {', '.join(BLOCKS)}")
     named = labels(proof.text)
     if set(named.properties) != set(proof.twins):
         odd = ", ".join(sorted(set(named.properties) ^ set(proof.twins)))
@@ -77,4 +78,4 @@ def every() -> list[Proof]:
     names = [proof.name for proof in proofs]
     if len(set(names)) != len(names):
         raise ParameterError(f"proofs = {', '.join(n for n in set(names) if names.count(n) > 1)}: must occur once")
-    return sorted(proofs, key=lambda proof: list(TOPS).index(proof.block))
+    return sorted(proofs, key=lambda proof: BLOCKS.index(proof.block))

@@ -1,6 +1,6 @@
 """Which block a test counts for, and which level it runs."""
 
-from talbot.rtl.tops import TOPS
+from talbot.rtl.tops import TEST_CHIP_1, TOPS
 
 DIVIDERS = {
     "radix2": "QuadDividerRadix2",
@@ -9,7 +9,7 @@ DIVIDERS = {
     "cordic": "Cordic",
 }
 DECODER, HOST, MODELS, FLOW = "Decoder", "Host", "Models", "Flow"
-BLOCKS = (*TOPS, DECODER, HOST, MODELS, FLOW)
+BLOCKS = (*TOPS, *TEST_CHIP_1, DECODER, HOST, MODELS, FLOW)
 
 # The first prefix that matches a test file's folder decides
 FOLDERS = (
@@ -23,6 +23,9 @@ FOLDERS = (
     ("rtl/run_length", ("RunLength",)),
     ("rtl/reg_file", ("RegFile",)),
     ("rtl/asp_chip", ("AspChip",)),
+    ("rtl/proc", ("Proc",)),
+    ("rtl/test_chip_1", ("TestChip1",)),
+    ("verif/test_chip_1", ("TestChip1",)),
     ("imaging/simulate", ("AspChip",)),
     ("verif/faults", ("AspChip",)),
     ("models/digital/stream", (DECODER,)),

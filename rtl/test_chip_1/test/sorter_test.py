@@ -2,7 +2,7 @@
 
 from collections import deque
 from functools import cache
-from itertools import cycle
+from itertools import cycle, product
 
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -75,6 +75,11 @@ class TestRTL:
     @pytest.mark.parametrize("length", range(18))
     def test_every_length(self, length):
         self.sorted([(0x9E3779B9 * n + 0x80000000) % 2**32 for n in range(length)])
+
+    @pytest.mark.parametrize("length", [2, 3, 4])
+    def test_every_order_of_few_words(self, length):
+        for words in product((1, 2, 2**32 - 1, 2**31)[:length], repeat=length):
+            self.sorted([*words])
 
     def test_equal_words_and_words_in_order(self):
         for words in ([7] * 9, list(range(16)), list(range(16, 0, -1)), [2**31, 2**31 - 1] * 8):

@@ -1,0 +1,1 @@
+"""Programs on test chip 1: the sensor's stream decoded there, sorting, and their cycles."""
