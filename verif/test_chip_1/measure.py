@@ -19,7 +19,7 @@ from talbot.verif.test_chip_1.programs import RIGHT, Wake, edges_of, host_edges,
 PAGE = ROOT / "docs" / "results" / "test_chip_1.md"
 FRAMES = (  # scene, pixels of a side, shift of the cells
     ("motorcycle", 96, 0),
-    ("motorcycle", 384, 1),
+    ("motorcycle", 192, 1),
 )
 LENGTHS = 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024
 

@@ -161,9 +161,9 @@ int main(void)
   tile_cols = head[8] & 15;
   for (u32 n = 0; n < tile_rows; n++)
     types = types << tile_cols | ((1 << tile_cols) - 1);
-  if (head[0] != 'T' || head[1] != 'L' || head[2] != 'B' || head[3] != 'T' || head[4] != 3 || head[5] & 0x37
+  if (head[0] != 'T' || head[1] != 'L' || head[2] != 'B' || head[3] != 'T' || head[4] != 3 || head[5] & 0x3f
       || types != (u32)(head[17] << 16 | head[18] << 8 | head[19]))
-    return 0; // edge mode, every row and type
+    return 0; // edge mode without ternary, every row and type
   row_end = head[9] << 8 | head[10];
   first_tile = head[15];
   past_tile = head[16] + 1;

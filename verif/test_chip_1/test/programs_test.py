@@ -95,7 +95,8 @@ def test_damage_and_other_frames():
         damaged[place] ^= 0x10
         assert edges_of(golden_edges(code, bytes(damaged), wake), stream, wake).status == DAMAGED
     raw = stream_of(8, 12, 10, 0.3, mode="image")
-    for other in (raw, b"X" + stream[1:], stream[:19] + b"\0" + stream[20:]):
+    ternary = stream[:5] + bytes([stream[5] | 8]) + stream[6:]
+    for other in (raw, ternary, b"X" + stream[1:], stream[:19] + b"\0" + stream[20:]):
         assert edges_of(golden_edges(code, other, wake), stream, wake).status == OTHER_KIND
 
 
