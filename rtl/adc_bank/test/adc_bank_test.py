@@ -325,6 +325,7 @@ class TestOtherNumbersOfLanes:
         Step, every = step_msg(lanes), (1 << lanes) - 1
         ones = [1 << lane for lane in range(lanes)]
         steps = [Step(SAMPLE, 2, 0, 3, 0, en) for en in (*ones, *(every ^ one for one in ones))]
-        steps = [Step(FRAME, 0, 0, 0, 0, 0), *steps, Step(END, 0, 0, 0, 0, 0)]
+        begin, end = Step(FRAME, 0, 0, 0, 0, 0), Step(END, 0, 0, 0, 0, 0)
+        steps = [begin, *steps, end, begin, end]  # the second frame's counts start at 0
         got = Run(simulator(cls, False, lanes), steps, "edge", 3, [(True, True), (True, False), (False, True)])
         assert (got.messages, got.counts) == expected(steps, lanes, "edge", 3)
