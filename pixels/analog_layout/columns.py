@@ -25,7 +25,7 @@ from talbot.pixels.analog_layout.column import (
     names,
 )
 from talbot.pixels.analog_layout.strip import FOURTH, SECOND, THIRD, name_track
-from talbot.pixels.circuits.column import PINS, SUPPLIES, line
+from talbot.pixels.circuits.column import PINS, SUPPLIES, block_line
 from talbot.pixels.circuits.column_block import LINES, taken
 from talbot.pixels.circuits.column_sizes import ColumnSizes
 from talbot.pixels.layout.canvas import Canvas
@@ -55,7 +55,7 @@ class Columns:
             kind, lane = net[:-1].split("[")
             return [self.plan.lines[f"{name}{lane}"] for name in (kind, kind.replace("lane", "sense"))]
         pin = net.replace("_", "") if net in LINES else net
-        return [x for name, x in self.plan.lines.items() if line(name) == pin]
+        return [x for name, x in self.plan.lines.items() if block_line(name) == pin]
 
 
 def column_nets(number: int, lanes: int = LANES) -> tuple[str, ...]:
@@ -66,7 +66,7 @@ def column_nets(number: int, lanes: int = LANES) -> tuple[str, ...]:
     nets |= {name: f"{name}_{value}" for name, value in code.items()} | dict(
         zip(SUPPLIES, ("vddc", "vssa"), strict=True)
     )
-    return tuple(nets.get(pin, pin) for pin in map(line, PINS))
+    return tuple(nets.get(pin, pin) for pin in map(block_line, PINS))
 
 
 def draw_columns(

@@ -22,7 +22,8 @@ start_a, of the second and the first diode, are trimmed until a column without l
 Without the gate of its cascodes, cn, a column takes no current.
 
 In the modes with codes 0..255 (edgen) a quarter of the first diode's Cin is at either charge amplifier's output and a
-half at none: lane_a is dark - (a + b) / 2 then, and its reference a quarter of the swing below dark.
+half at none: lane_a is dark - (a + b) / 2 then, and its reference a quarter of the swing below dark. In raw mode the
+first diode's sample is in its tap 1: a turn takes charge of the samples that it joins, and each diode has a turn alone.
 """
 
 from talbot.pixels.circuits.column_sizes import BACK_TOP, CASCODE, CASCODE_P, FRONT, LANE, TOP, ColumnSizes
@@ -43,9 +44,18 @@ PINS = ("column_a", "column_b", "lane_a", "sense_a", "lane_b", "sense_b", "group
 PINS += ("vbp", "vcp", "level", "start", *TWICE, *SUPPLIES)
 
 
+# Lines of the first diode's tap 0 that the block's bank drives apart: in raw mode its sample is in tap 1
+APART = "w0_a", "f0_a", "fn0_a"
+
+
 def line(pin: str) -> str:
-    """Return the line on a pin: `reads` on `reads_a`."""
+    """Return the line on a pin, where both diodes have theirs in tap 0: `reads` on `reads_a`."""
     return pin.removesuffix("_a") if pin in TWICE and pin != "start_a" else pin
+
+
+def block_line(pin: str) -> str:
+    """Return the block's line on a pin of a column."""
+    return pin if pin in APART else line(pin)
 
 
 def n(name: str, nodes: str, w: float, kind: tuple[str, float]) -> Transistor:

@@ -3,7 +3,19 @@
 from itertools import pairwise
 
 from talbot.pixels.circuits.amplifier import BIAS
-from talbot.pixels.circuits.column import BIASES, CONTROLS, OF_TAPS, SUPPLIES, SWITCH, SWITCH_P, TAPS, n, p, source
+from talbot.pixels.circuits.column import (
+    APART,
+    BIASES,
+    CONTROLS,
+    OF_TAPS,
+    SUPPLIES,
+    SWITCH,
+    SWITCH_P,
+    TAPS,
+    n,
+    p,
+    source,
+)
 from talbot.pixels.circuits.column_sizes import (
     CASCODE,
     CASCODE_P,
@@ -32,11 +44,20 @@ SECTIONS = 12  # of a lane's line
 GROUPS, PLACES = 8, 6  # lines of a group, of a place in the tile
 CLEAR = 1.15e-6  # s in which the charge amplifiers are reset: until the second stages' capacitors are charged
 LATE = 4  # inverters by which what must end last does
-BANK_INPUTS = ("ref_ctl", "read", "tap0", "tap1", "mode0", "hold")
+BANK_INPUTS = ("ref_ctl", "read", "tap0", "tap1", "mode0", "mode1", "hold")
 BANK_INPUTS += tuple(f"{name}{bit}" for name, bits in (("group", 3), ("k", 3), ("sub", 2)) for bit in range(bits))
 LINES = tuple(f"group_{g}" for g in range(GROUPS)) + tuple(f"k_{k}" for k in range(PLACES))
 CASCODES = "cn", "vcn", "vcnb"  # lines that are not the bank's
-BANK_OUTPUTS = (*(name for name in CONTROLS if name != "vcn"), *OF_TAPS, *LINES, "turn", "turnn", "turnb", "turnbn")
+BANK_OUTPUTS = (
+    *(name for name in CONTROLS if name != "vcn"),
+    *OF_TAPS,
+    *APART,
+    *LINES,
+    "turn",
+    "turnn",
+    "turnb",
+    "turnbn",
+)
 
 
 def column_bias(sizes: ColumnSizes) -> Circuit:
@@ -158,7 +179,8 @@ def bank(sizes: ColumnSizes) -> Circuit:
     A group's line is high in a turn alone. `clear` ends by itself: a current charges a capacitor from the row's start
     on. The holder's reset ends before the signal half begins, and its capacitors part from x before all else. While a
     row is read or a lane has its turn no x is tied. mode0: of the modes with sums; in the others, edge and raw, both
-    diodes of a column drive their lanes, and its sample is that of tap 0 whatever the sub-sample.
+    diodes of a column drive their lanes. In raw mode the first diode's sample is in tap 1, the second's in tap 0, and
+    each is joined in its sub-sample alone.
     """
     parts, count = list[Instance](), 0
 
@@ -199,16 +221,23 @@ def bank(sizes: ColumnSizes) -> Circuit:
     decoded("tap", TAPS, 2, "now")
     longer("hold", "turned")
     gate(inverter(6), gate(inverter(), gate(nor(), "reads", "turned", "alone"), "idlen"), "idle")
-    for bit in range(2):
-        gate(inverter(2), gate(nand(), f"sub{bit}", "mode0", f"held{bit}_"), f"held{bit}")
+    gate(inverter(2), gate(nand(), "mode1", "first", "rawn"), "raw")
+    swapped = gate(nand(), "raw", gate(inverter(), "sub0", "subn"), "held0_r")
+    gate(nand(2), gate(nand(), "sub0", "mode0", "held0_s"), swapped, "held0")
+    gate(inverter(2), gate(nand(), "sub1", "mode0", "held1_"), "held1")
     decoded("held", TAPS, 2, "asked")
-    for t in range(TAPS):
-        gate(inverter(6), gate(nand(), "read", f"now{t}", f"w{t}n"), f"w{t}")
-        gate(inverter(6), f"asked{t}", f"unasked{t}")
-        ends = gate(nand(), "sig", f"now{t}", f"f{t}r"), gate(nand(), "turned", f"asked{t}", f"f{t}s")
-        gate(inverter(6), gate(inverter(2), gate(nand(), *ends, f"f{t}_0"), f"f{t}_1"), f"f{t}")
+    gate(inverter(2), gate(nand(), "now0", "rawn", "now0_n"), "now0_a")
+    gate(nand(2), gate(inverter(), "now1", "now1_n"), gate(nand(), "now0", "raw", "now1_r"), "now1_a")
+    nows = {"0": "now0", "0_a": "now0_a", "1": "now1_a", "2": "now2", "3": "now3"}
+    for name, now in nows.items():
+        asked = f"asked{name[0]}"
+        gate(inverter(6), gate(nand(), "read", now, f"wn{name}"), f"w{name}")
+        ends = gate(nand(), "sig", now, f"fr{name}"), gate(nand(), "turned", asked, f"fs{name}")
+        gate(inverter(6), gate(inverter(2), gate(nand(), *ends, f"fp{name}"), f"fq{name}"), f"f{name}")
         # In the reference half too: f is at start then, or what it had in the turn before were in the sample
-        gate(inverter(6), gate(nand(2), f"f{t}_1", f"w{t}n", f"f{t}_2"), f"fn{t}")
+        gate(inverter(6), gate(nand(2), f"fq{name}", f"wn{name}", f"fo{name}"), f"fn{name}")
+    for t in range(TAPS):
+        gate(inverter(6), f"asked{t}", f"unasked{t}")
     gate(inverter(6), gate(inverter(6), "hold", "turnn"), "turn")
     gate(inverter(6), gate(nand(6), "hold", "edge", "turnbn"), "turnb")
     decoded("group", GROUPS, 3, "group_", ("turn",))

@@ -12,7 +12,7 @@ import numpy as np
 
 from talbot.cells.spice.engine import Simulator
 from talbot.models.parameters import DIODE, ELEMENTARY_CHARGE, AmpTiming
-from talbot.pixels.circuits.column import BIASES, PINS, TAPS, column, line
+from talbot.pixels.circuits.column import BIASES, PINS, TAPS, block_line, column
 from talbot.pixels.circuits.column_block import OUTSIDE, cascode_lines, clear_pulse, column_bias, lane_end, lane_line
 from talbot.pixels.circuits.column_sizes import ColumnSizes, ColumnSpec, size
 from talbot.pixels.circuits.netlist import Circuit
@@ -109,7 +109,7 @@ def lines(
         lane = lanes[c]
         nodes = own | {f"column_{d}": f"line_{d}{c}" for d in "ab"} | {"group": f"turn_column{c}"}
         nodes |= {f"{name}_{d}": f"{name}{d}{lane}" for name in ("lane", "sense") for d in "ab"}
-        deck.append(f"Xcolumn{c} {' '.join(nodes.get(pin, pin) for pin in map(line, PINS))} column")
+        deck.append(f"Xcolumn{c} {' '.join(nodes.get(pin, pin) for pin in map(block_line, PINS))} column")
         for tap, pair in taps.items():
             for diode, value in zip("ab", pair, strict=True):
                 ampere = value / DIODE * spec.full_well * ELEMENTARY_CHARGE / integration
@@ -149,9 +149,13 @@ def nets(circuit: Circuit, inside: str = "") -> Iterator[str]:
         yield from nets(one.circuit, f"{inside}x{one.name}.")
 
 
-def drive(source: Drive, columns: Sequence[int], lanes: Sequence[int], first: int, high: float) -> None:
+def drive(source: Drive, columns: Sequence[int], lanes: Sequence[int], first: int, cols: int, high: float) -> None:
     """Makes every control. first: the bit of the row's reset; what follows it is as in front_end.sv."""
     more = first + 3 + TAPS
+    apart = more + 2 + 4 * TAPS + cols + 1
+    source("w0_a", high, apart)
+    source("f0_a", high, apart + 1, rise=GAP, fall=3 * AFTER)
+    source("fn0_a", 0.0, apart + 2, low=high, rise=GAP, fall=3 * AFTER)
     source("reset_row", ROW, first)
     source("read_row", ROW, first + 1, rise=GAP, fall=10 * GAP)
     source("row_ref", high, first + 2)
@@ -189,6 +193,8 @@ def trimmed(spec: ColumnSpec, edge: bool, cycle: float, high: float, drawn: bool
     on = {0: range(1, reset + 1), 1: halves[1], 2: halves[0], more: range(read, ends)}
     on |= {more + 1: [*range(read, ends), turn], more + 2: range(read, ends), more + 2 + TAPS: [*halves[1], turn]}
     on |= {more + 2 + 2 * TAPS: range(turn + 2), more + 2 + 3 * TAPS: on[more + 1], more + 2 + 4 * TAPS: [turn]}
+    apart = more + 2 + 4 * TAPS + 2  # of a single column
+    on |= {apart: on[more + 2], apart + 1: on[more + 2 + TAPS], apart + 2: on[more + 1]}
     lane_bit = 100  # the lane's own, none of the row's
     on[lane_bit] = [turn]
     waves: dict[str, list[tuple[float, float]]] = {}
@@ -204,7 +210,7 @@ def trimmed(spec: ColumnSpec, edge: bool, cycle: float, high: float, drawn: bool
         waves[name] = points
         return name
 
-    drive(source, (0,), (lane_bit,), 0, high)
+    drive(source, (0,), (lane_bit,), 0, 1, high)
     layouts = extracted.circuits() if drawn else {}
     parts = [layouts.get(one.name, one) for one in circuits(spec, sizes)]
     inner = {one.name: one for part in parts for one in part.circuits().values()}

@@ -42,7 +42,7 @@ SHARED = (
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot cosim`: texts, checked by `run`."""
     add = parser.add_argument
-    add("--modes", help="modes whose row is read (default: edge,image,tof)")
+    add("--modes", help="modes whose row is read (default: edge,image,raw,tof; raw with all amplifiers alone)")
     add_sensor(parser)
     for number in (TYPES, RELTOL, *CUT.values(), *SHARED):
         number.add(parser)
@@ -72,7 +72,7 @@ def run(options: Namespace) -> int:
         raise ParameterError(f"sensor = {str(options.sensor)!r}: must be left out with study and faults")
     check_choice("amplifiers", options.amplifiers, AMPLIFIERS)
     columns = options.amplifiers == "all"
-    modes = options.modes.split(",") if options.modes else [mode for mode in MODES if mode != "raw"]
+    modes = options.modes.split(",") if options.modes else [mode for mode in MODES if columns or mode != "raw"]
     if not set(modes) <= set(MODES):
         raise ParameterError(f"modes = {options.modes!r}: must be some of {','.join(MODES)}")
     types, accuracy = (

@@ -218,7 +218,7 @@ def _columns(
     body += own_columns.lines(taps, of_lane, *given)
     body += [own_columns.amplifier_bias(lane, trim.rest) for lane in deck.lanes]
     first = 10 * lanes + SUBS * row.cols
-    own_columns.drive(partial(_source, deck), deck.columns, deck.lanes, first, spec.supply)
+    own_columns.drive(partial(_source, deck), deck.columns, deck.lanes, first, row.cols, spec.supply)
     deck.saved += [f"xcolumn{c}.out_{d}" for c in deck.columns for d in "ab"]
     return {one.name: one for one in own_columns.circuits(column, sizes)}
 

@@ -14,6 +14,7 @@
 //                                     the pins; the row's read or a lane's sample, of each tap
 //              COLS                   column c is selected while its lane samples
 //              1                      the second sub-sample is at the pins
+//              1, 1, 1                of the first diode's tap 0: the row's read; its signal half or a lane's sample; either
 `default_nettype none
 `ifndef BALANCE_BITS
 `define BALANCE_BITS 10
@@ -37,7 +38,7 @@ module Afe #(
 );
   localparam int SUBS = 4, LAST = 10;                   // decisions of a conversion, with those of the window
   localparam int ROW = 10 * LANES + SUBS * COLS, MORE = ROW + 3 + SUBS, OWN = MORE + 2 + 4 * SUBS;
-  localparam int BITS = OWN + COLS + 1;
+  localparam int BITS = OWN + COLS + 4;
 
   reg [LANES-1:0] answers  /*verilator public_flat_rw*/;
   wire [BITS-1:0] controls  /*verilator public_flat_rd*/;
@@ -58,7 +59,9 @@ module Afe #(
   assign converting = |(hold ? en : {LANES{1'b0}}) || |deciding;
 
   wire reads = Bench.read & ~Bench.chip.ref_ctl;
-  wire [1:0] held_tap = mode == 2'd3 ? sub : 2'd0;      // a column has one sample but in time of flight
+  wire raw = mode == 2'd2;                              // its first diode is in tap 1: each diode has a turn alone
+  wire [1:0] tap_a = raw ? 2'd1 : tap;
+  wire [1:0] held_tap = raw ? {1'b0, ~sub[0]} : sub;
   wire phase = Bench.pixel_reset | Bench.read;
   reg was_phase;
   initial was_phase = 0;
@@ -70,8 +73,9 @@ module Afe #(
   assign controls[MORE] = Bench.read;
   assign controls[MORE+1] = Bench.read | hold;
   for (genvar t = 0; t < SUBS; t++) begin : of_tap
-    assign controls[MORE+2+t] = Bench.read && int'(tap) == t;
-    assign controls[MORE+2+SUBS+t] = (reads && int'(tap) == t) || (hold && int'(held_tap) == t);
+    wire [1:0] now = t == 0 ? tap : tap_a;
+    assign controls[MORE+2+t] = Bench.read && int'(now) == t;
+    assign controls[MORE+2+SUBS+t] = (reads && int'(now) == t) || (hold && int'(held_tap) == t);
     assign controls[MORE+2+2*SUBS+t] = int'(held_tap) == t;
     assign controls[MORE+2+3*SUBS+t] = controls[MORE+2+t] | controls[MORE+2+SUBS+t];
   end
@@ -79,6 +83,9 @@ module Afe #(
     assign controls[ROW+3+t] = reads && Bench.chip.sample && int'(tap) == t;
   end
   assign controls[OWN+COLS] = sub[0];
+  assign controls[OWN+COLS+1] = Bench.read && tap_a == 0;
+  assign controls[OWN+COLS+2] = (reads && tap_a == 0) || (hold && held_tap == 0);
+  assign controls[OWN+COLS+3] = controls[OWN+COLS+1] | controls[OWN+COLS+2];
   assign place = {6'd0, hold, unsigned_, 1'b0, row, sub, k, group};
 
   RealAfe #(.ROWS(ROWS), .COLS(COLS), .LANES(LANES), .TILE_ROWS(TILE_ROWS), .TILE_COLS(TILE_COLS)) twin (

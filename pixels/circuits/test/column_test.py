@@ -172,8 +172,19 @@ def test_modes_and_sub_samples():
         assert not any(levels[f"f{t}"] for t in range(TAPS))
         levels = lines(hold=True, mode0=True, sub0=bool(sub & 1), sub1=bool(sub & 2))
         assert [levels[f"f{t}"] for t in range(TAPS)] == [t == sub for t in range(TAPS)] and not levels["idle"]
-        levels = lines(hold=True, sub0=bool(sub & 1), sub1=bool(sub & 2))  # raw: both diodes are in the only tap
-        assert [levels[f"f{t}"] for t in range(TAPS)] == [True, False, False, False] and levels["turnb"]
+
+
+@pytest.mark.parametrize("sub", [0, 1])
+def test_in_raw_mode_each_diode_has_a_turn_alone(sub):
+    """A turn takes charge of the samples that it joins: the first diode's is in tap 1, the second's in tap 0."""
+    raw = {"mode1": True, "sub0": bool(sub)}
+    written, turn = lines(read=True, **raw), lines(hold=True, **raw)
+    assert [written[name] for name in ("w0", "w0_a", "w1", "w2", "w3")] == [True, False, True, False, False]
+    assert [written[name] for name in ("f0", "f0_a", "f1")] == [True, False, True]
+    assert [turn[f"unasked{t}"] for t in range(TAPS)] == [t == sub for t in range(2)] + [True, True]
+    assert turn["edge"] and turn["turnb"] and [turn[f"f{t}"] for t in range(2)] == [bool(sub), not sub]
+    plain = lines(read=True)
+    assert plain["w0"] and plain["w0_a"] and not plain["w1"] and plain["f0_a"] == plain["f0"]
 
 
 def selected(**driven):
