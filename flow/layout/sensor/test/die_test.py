@@ -314,7 +314,7 @@ def test_verilog_joins_every_port_of_the_chip(made, tmp_path):
     own = set(
         re.findall(r"(?m)^\s*(?:input|output)\s+(?:logic|wire|reg)?\s*(?:\[\S+\])?\s*(\w+)", head[: head.index(");")])
     )
-    assert len(own) == 34 and names == own
+    assert len(own) == 36 and names == own
     assert {block.name for block in blocks()} == set(re.findall(r"(?m)^  (\w+) \1 \(", module))
     said = finish(["yosys", "-q", "-p", f"read_verilog -sv {chip} {top}; hierarchy -check -top asp_sensor"])
     assert said.returncode == 0 and "Warning: Resizing" not in said.stdout + said.stderr, said.stderr
