@@ -154,9 +154,9 @@ def _raw(
 
     def sampled(fill: float, other: float = FILLS[0]) -> tuple[float, float]:
         pair = (other, fill) if sub else (fill, other)
-        volts = (one * spec.swing for one in pair)
+        a, b = (one * spec.swing for one in pair)
         before = spec.vref + sizes.gain / 2 * spec.swing * (0.5 - fill)
-        wave = sample(spice, spec, corner, load, *volts, UNITS, before, sub=sub)
+        wave = sample(spice, spec, corner, load, a, b, UNITS, before, sub=sub)
         return wave.at("lane", end) / lsb, wave.at("lane", LATER * spec.hold) / lsb
 
     got = np.array([sampled(fill) for fill in FILLS])
