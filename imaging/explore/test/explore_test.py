@@ -487,9 +487,9 @@ def test_a_point_is_the_frame_of_its_sensor():
 def test_the_command_of_a_point_has_its_exposure():
     task, point = task_of("edges"), point_of(POINTS["edges"], STANDARD)
     lead = task.requests(point)[0].frame.timing.exposure
-    assert task.words(point) == f"make sim SCENE=motorcycle MODE=edge LUX=500 THRESHOLD=4 EXPOSURE={lead}"
+    assert task.words(point) == f"make sim SCENE=motorcycle MODE=edge LUX=500 THRESHOLD=10 EXPOSURE={lead}"
     bright = task_of("edges", lux=5e5)  # t_int alone is long enough: the command is to choose it, too
-    assert not bright.requests(point)[0].frame.timing.exposure and bright.words(point).endswith("THRESHOLD=4")
+    assert not bright.requests(point)[0].frame.timing.exposure and bright.words(point).endswith("THRESHOLD=10")
 
 
 def test_a_pool_gives_every_result_or_failure():

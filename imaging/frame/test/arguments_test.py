@@ -7,6 +7,7 @@ from talbot.imaging.frame.arguments import named, pixel_types, window
 from talbot.imaging.frame.command import add_arguments, request_of, typed_of
 from talbot.models.parameters import (
     ALL_TYPES,
+    STANDARD,
     ConverterParameters,
     ElectricalParameters,
     ParameterError,
@@ -77,11 +78,14 @@ def test_the_circuits_converters_are_asked_for():
     assert typed_of(parsed("--afe", "circuit"), add_arguments)["afe"] == "circuit"
 
 
-def test_the_circuits_converters_replace_those_of_a_sensor_file(tmp_path):
+def test_with_the_circuits_a_sensor_file_has_their_converters(tmp_path):
     file = tmp_path / "sensor.toml"
+    file.write_text(sensor_text(STANDARD))
+    assert request_of(parsed("--sensor", str(file), "--afe", "circuit")).sensor.converter == circuit_converter()
     file.write_text(sensor_text(SensorParameters()))
     assert request_of(parsed("--sensor", str(file))).sensor.converter == ConverterParameters()
-    assert request_of(parsed("--sensor", str(file), "--afe", "circuit")).sensor.converter == circuit_converter()
+    with pytest.raises(ParameterError, match=r"converter.inl = 0: must be 0.2 \(afe = circuit"):
+        request_of(parsed("--sensor", str(file), "--afe", "circuit"))
 
 
 def test_afe_is_refused_by_name():

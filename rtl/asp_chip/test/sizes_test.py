@@ -43,7 +43,7 @@ def test_the_blocks_have_the_size_of_the_chip(name):
         "encoder": (rows, cols, lanes, *tile),
         "generator": (lanes,),
         "balancer": (order, *tile, 10, 16),
-        "gate": (15,),
+        "gate": (17,),
     }
     assert connections(top) == connections(elaborated(SIZES["small"])[0])
     assert all(block.__code__.co_freevars == ("s",) for block in top.get_update_blocks())

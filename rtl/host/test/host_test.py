@@ -118,7 +118,7 @@ def running(host, bench, frame=SHORT):
 
 def test_identity(host):
     known = {
-        "id": 0x54, "version": 5, "stepping": 0, "lanes": LANES, "rows": ROWS, "cols": COLS, "tile_rows": 4,
+        "id": 0x54, "version": 6, "stepping": 0, "lanes": LANES, "rows": ROWS, "cols": COLS, "tile_rows": 4,
         "tile_cols": 6, "divider": 1,
     }  # fmt: skip
     assert host.identify() == {f.name: known[f.name] for f in CHIP.identity}
@@ -157,7 +157,7 @@ def test_every_trim_and_every_field_reads_back(host):
 
 
 @pytest.mark.parametrize(
-    "wrong", [{"threshold": 128}, {"mode": 4}, {"trim[5].trim": 512}, {"trim[23].trim": -513}, {"mask": 1 << 24}]
+    "wrong", [{"threshold": 128}, {"mode": 8}, {"trim[5].trim": 512}, {"trim[23].trim": -513}, {"mask": 1 << 24}]
 )
 def test_values_out_of_range(host, wrong):
     with Fails(Code.RANGE):

@@ -234,7 +234,7 @@ def with_crc(fields):
     [
         (0, 0x55, "starts with"),
         (4, 1, "version 1"),
-        (5, 0x08, "reserved"),
+        (5, 0x09, "ternary"),
         (5, 0x04, "phase"),
         (6, 128, "threshold"),
         (7, 3, "lanes"),
