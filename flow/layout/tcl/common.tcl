@@ -48,6 +48,23 @@ proc repair_loads {} {
   repair_design -slew_margin $load_margin -cap_margin $load_margin
 }
 
+# A buffer at each output port that its driver alone moves too slowly: repair_design leaves a load that is the port's.
+# With placement's estimates: the wheel crashes here when global routes are present.
+proc buffer_slow_ports {} {
+  global load_margin
+  set longest [expr {(1 - 0.01 * $load_margin) * [sta::max_slew_check_limit]}]
+  set fast {}
+  foreach port [all_outputs] {
+    if {[get_property $port slew_max] <= $longest} {
+      lappend fast [[[ord::get_db_block] findBTerm [get_property $port full_name]] getNet]
+    }
+  }
+  if {[llength $fast] == [llength [all_outputs]]} { return }
+  foreach net $fast { $net setDoNotTouch 1 }
+  buffer_ports -outputs
+  foreach net $fast { $net setDoNotTouch 0 }
+}
+
 proc legalize {} {
   global padding
   set_placement_padding -global -left $padding -right $padding

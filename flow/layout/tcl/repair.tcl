@@ -4,6 +4,7 @@ open_stage cts
 set_propagated_clock [all_clocks]
 routing_layers
 estimate_parasitics -placement -spef_file placement.spef
+buffer_slow_ports
 global_route -allow_congestion -congestion_iterations $congestion_iterations
 estimate_parasitics -global_routing
 repair_loads
