@@ -6,22 +6,69 @@ open_stage repair
 set_propagated_clock [all_clocks]
 routing_layers
 
-# Legal places, and routes of the cells that are new or moved. args: of estimate_parasitics
+# Legal places, and routes of the cells that are new or moved; first a larger cell or a buffer for each driver that is
+# beyond a limit on the routes of now. The number of these. args: of estimate_parasitics
 proc place_and_reroute {args} {
   global_route -start_incremental -allow_congestion
+  set helped [help_drivers]
   legalize
   optimize_mirroring
   global_route -end_incremental -allow_congestion
   estimate_parasitics -global_routing {*}$args
+  return $helped
 }
 
-global_route -allow_congestion -congestion_iterations $congestion_iterations
-estimate_parasitics -global_routing
-set load_margin [expr {2 * $load_margin}]
-repair_loads
-place_and_reroute
-repair_timing -hold -hold_margin $hold_margin
-place_and_reroute -spef_file global.spef
+# repair_design takes the shortest wires for its own: where a global route goes around what is full, a load stays beyond
+# the driver's limit. Such a driver becomes the next larger of its kind; without one, a buffer halves the way.
+proc help_drivers {} {
+  set beyond [beyond_limits]
+  set helped 0
+  foreach net [[ord::get_db_block] getNets] {
+    if {[llength [$net getBTerms]] || ![is_beyond $net $beyond]} { continue }
+    foreach driver [drivers $net] {
+      set larger [larger_cell $driver]
+      if {$larger ne "NULL"} {
+        $driver swapMaster $larger
+      } elseif {[$net getSigType] eq "SIGNAL"} {
+        buffer_halfway $net $driver
+      } else { continue }
+      incr helped
+    }
+  }
+  return $helped
+}
+
+# The cell of twice the strength, NULL if there is none.
+proc larger_cell {inst} {
+  if {![regexp {^(.*[x_])(\d+)$} [[$inst getMaster] getName] - kind strength]} { return NULL }
+  return [[ord::get_db] findMaster $kind[expr {2 * $strength}]]
+}
+
+proc buffer_halfway {net driver} {
+  global clock_buffers
+  set block [ord::get_db_block]
+  set name halfway_[$net getName]
+  set inst [odb::dbInst_create $block [[ord::get_db] findMaster [lindex $clock_buffers 0]] $name]
+  set second [odb::dbNet_create $block ${name}_net]
+  set corners {}
+  foreach pin [$net getITerms] {
+    lappend corners [list {*}[$pin getAvgXY]]
+    if {[$pin isInputSignal]} {
+      $pin disconnect
+      $pin connect $second
+    }
+  }
+  foreach pin [$inst getITerms] {
+    if {[$pin isInputSignal]} { $pin connect $net }
+    if {[$pin isOutputSignal]} { $pin connect $second }
+  }
+  foreach axis {1 2} middle {x y} {
+    set all [lsort -real [lmap at $corners { lindex $at $axis }]]
+    set $middle [expr {round(([lindex $all 0] + [lindex $all end]) / 2)}]
+  }
+  $inst setLocation $x $y
+  $inst setPlacementStatus PLACED
+}
 
 # The cells between the clock's port and its registers, as a dictionary: their edges are balanced against one another.
 proc clock_cells {} {
@@ -56,11 +103,7 @@ proc too_slow {margin} {
       dict set found [string range $pin 0 [expr {[string last / $pin] - 1}]] 1
     }
   }
-  with_output_to_variable text { report_check_types -max_slew -max_capacitance -violators }
-  set beyond [dict create]
-  foreach line [split $text \n] {
-    if {[string match *(VIOLATED)* $line]} { dict set beyond [plain_name [lindex [split [string trim $line]] 0]] 1 }
-  }
+  set beyond [beyond_limits]
   if {![dict size $beyond]} { return $found }
   foreach net [[ord::get_db_block] getNets] {
     if {[is_beyond $net $beyond]} {
@@ -74,6 +117,16 @@ proc too_slow {margin} {
     }
   }
   return $found
+}
+
+# Pins and ports beyond a limit of slew or load, as a dictionary.
+proc beyond_limits {} {
+  with_output_to_variable text { report_check_types -max_slew -max_capacitance -violators }
+  set beyond [dict create]
+  foreach line [split $text \n] {
+    if {[string match *(VIOLATED)* $line]} { dict set beyond [plain_name [lindex [split [string trim $line]] 0]] 1 }
+  }
+  return $beyond
 }
 
 proc is_beyond {net beyond} {
@@ -124,7 +177,15 @@ proc raise_thresholds {margin} {
   measured raised_thresholds [dict size $raised]
 }
 
+global_route -allow_congestion -congestion_iterations $congestion_iterations
+estimate_parasitics -global_routing
+set load_margin [expr {2 * $load_margin}]
+repair_loads
+for {set turn 0} {[place_and_reroute] && $turn < 3} {incr turn} {}
+repair_timing -hold -hold_margin $hold_margin
+place_and_reroute -spef_file global.spef
 raise_thresholds $setup_margin
+measured estimated_beyond [dict size [beyond_limits]]
 
 # A design that is late now stops here, before the hours of detailed routing
 foreach {name path} {setup max hold min} {
