@@ -34,12 +34,10 @@ from talbot.pixels.analog_layout.strip import (
     join_rails,
 )
 from talbot.pixels.circuits.row_driver import CODES, CONTROLS, ROW_INPUTS, ROW_LINES, SIDES, SUPPLIES
-from talbot.pixels.drawn import DRAWN_PITCH_UM
 from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.analog import AnalogMasks
 
 # um
-PITCH = DRAWN_PITCH_UM  # of the rows
 RAIL_GAP = 1.2  # between the centres of adjacent rows' rails
 LINE_WIDTH = 0.4  # of lines that cross all rows
 LINE_PITCH = 0.8
@@ -84,6 +82,7 @@ class RowPlan:
     pins: x of the block's south pins.
     right: its east edge.
     west: of its logic from the block's west edge.
+    pitch: of the rows.
     """
 
     plan: Plan
@@ -95,6 +94,11 @@ class RowPlan:
     pins: Mapping[str, float]
     right: float
     west: float
+    pitch: float
+
+    def places(self) -> dict[str, float]:
+        """Return y of each line in its row, from the row's south edge."""
+        return {net: (k + 0.5) / len(ROW_LINES) * self.pitch for k, net in enumerate(ROW_LINES)}
 
 
 def _lines(n: Sequence[Placed], pins: Collection[float]) -> dict[str, float]:
@@ -129,8 +133,8 @@ def _renamed(device: Device) -> Device:
     return replace(device, transistor=t._replace(gate=GATE_OF_VDD)) if thick and t.gate == "vdd" else device
 
 
-def row_plan(d: Mapping[str, Device], width: float, pins: Mapping[str, float]) -> RowPlan:
-    """Return the row in a block of ``width`` um, whose ``pins`` in the south are so far from its west.
+def row_plan(d: Mapping[str, Device], width: float, pitch: float, pins: Mapping[str, float]) -> RowPlan:
+    """Return the row of a ``pitch`` in a block of ``width`` (um), whose ``pins`` in the south are so far from its west.
 
     Raises ParameterError where the row is wider, or has more nets than its pitch has tracks.
     """
@@ -153,31 +157,27 @@ def row_plan(d: Mapping[str, Device], width: float, pins: Mapping[str, float]) -
         for group, count in CODES.items():
             reach[f"{side}_{group}"] = lines[f"{side}_{group}0"], lines[f"{side}_{group}{count - 1}"]
     reach[GATE_OF_VDD] = (joints["vdd"],)
-    least = PITCH - RAIL_GAP
+    least = pitch - RAIL_GAP
     for order in permutations(ROW_LINES):
         jogs = {net: round(first + JOG_PITCH * k, 3) for k, net in enumerate(order)}
         through = reach | {net: (at,) for net, at in jogs.items()}
         plan = Plan((*n, *tn), (*p, *tp), 0.0, right, through, rails=("vss", "vdd", "vddr"), least_um=least)
-        if plan.height_um > PITCH - RAIL_GAP + 1e-9:
-            raise ParameterError(f"row = {len(plan.tracks())} nets: must have tracks in {PITCH:g} um")
-        if _clear(plan, jogs):
+        if plan.height_um > pitch - RAIL_GAP + 1e-9:
+            raise ParameterError(f"row = {len(plan.tracks())} nets: must have tracks in {pitch:g} um")
+        row = RowPlan(plan, plan, plan, lines, joints, jogs, pins, whole, west, pitch)
+        if _clear(row):
             break
     else:
         raise ParameterError("row: its lines must have ways to their places")
     logic = Plan(n, p, 0.0, end, {}, least_um=least)
     shifters = Plan(tn, tp, begin, right, {}, rails=("vss", "vddr"), least_um=least)
-    return RowPlan(plan, logic, shifters, lines, joints, jogs, pins, whole, west)
+    return replace(row, logic=logic, thick=shifters)
 
 
-def places() -> dict[str, float]:
-    """Return y of each line in its row, from the row's south edge."""
-    return {net: (k + 0.5) / len(ROW_LINES) * PITCH for k, net in enumerate(ROW_LINES)}
-
-
-def _clear(plan: Plan, jogs: Mapping[str, float]) -> bool:
+def _clear(row: RowPlan) -> bool:
     """Return whether no line from its jog to its place is next to the track of a longer one."""
-    at = places()
-    tracks = {track.net: RAIL_GAP / 2 + track.y for track in plan.tracks() if track.net in jogs}
+    at, jogs = row.places(), row.jogs
+    tracks = {track.net: RAIL_GAP / 2 + track.y for track in row.plan.tracks() if track.net in jogs}
     return not any(
         jogs[far] > jogs[near] and abs(tracks[far] - at[near]) < TRACK + 0.32
         for near in jogs
@@ -188,7 +188,7 @@ def _clear(plan: Plan, jogs: Mapping[str, float]) -> bool:
 
 def draw_row(canvas: Canvas, masks: AnalogMasks, row: RowPlan) -> Strip:
     """Return a row, its south edge at y = 0, with its part of the controls and supplies that cross all rows."""
-    y, top = RAIL_GAP / 2, PITCH - RAIL_GAP / 2
+    y, top = RAIL_GAP / 2, row.pitch - RAIL_GAP / 2
     strip = draw_rows(canvas, masks, row.plan, y)
     for plan in (row.logic, row.thick):
         draw_rails(canvas, masks, plan, y)
@@ -198,8 +198,8 @@ def draw_row(canvas: Canvas, masks: AnalogMasks, row: RowPlan) -> Strip:
     crossing = {name: row.lines[name] for name in CONTROLS}
     for places_of, wide in ((crossing, LINE_WIDTH), (row.joints, RAIL_TRUNK)):
         for x in places_of.values():
-            canvas.wire(FOURTH, x - wide / 2, 0, x + wide / 2, PITCH)
-    at = places()
+            canvas.wire(FOURTH, x - wide / 2, 0, x + wide / 2, row.pitch)
+    at = row.places()
     for track in strip.tracks:
         for x in [row.lines[track.net]] if track.net in CONTROLS else []:
             canvas.stack(x, track.y, THIRD, FOURTH)
@@ -223,7 +223,7 @@ def _thick(canvas: Canvas, row: RowPlan, y: float, top: float) -> None:
     process, plan = canvas.process, row.thick
     (oxide, _), (tip, _) = process.thick
     ends = RAIL_ENDS + WELL_ENDS + THICK_MARGIN
-    canvas.box(oxide, plan.left - ends, 0, plan.right + ends, PITCH)
+    canvas.box(oxide, plan.left - ends, 0, plan.right + ends, row.pitch)
     low = min(top - 0.96 - placed.device.finger_um for placed in plan.p) - THICK_WELL
     canvas.box(
         process.well,

@@ -13,13 +13,13 @@ from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from talbot.base.gds import db
-from talbot.models.parameters import ArrayParameters, ParameterError
+from talbot.models.parameters import ArrayParameters, ParameterError, check_real
 from talbot.pixels.analog_layout.cells import Cell, new_canvas
 from talbot.pixels.analog_layout.comparator import devices
 from talbot.pixels.analog_layout.device import Device
 from talbot.pixels.analog_layout.drawn_block import DrawnBlock
 from talbot.pixels.analog_layout.row_bank import draw_bank
-from talbot.pixels.analog_layout.row_driver import LINE_WIDTH, PITCH, RowPlan, as_cell, draw_row, row_plan
+from talbot.pixels.analog_layout.row_driver import LINE_WIDTH, RowPlan, as_cell, draw_row, row_plan
 from talbot.pixels.analog_layout.strip import FOURTH, RAIL_ENDS, THIRD, name_track
 from talbot.pixels.blocks import AnalogSizes, Block, row_driver
 from talbot.pixels.circuits.row_driver import (
@@ -34,6 +34,7 @@ from talbot.pixels.circuits.row_driver import (
     row,
     taken,
 )
+from talbot.pixels.drawn import PIXEL_PITCHES_UM
 from talbot.pixels.footprints import draw_pins
 from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.analog import AnalogMasks
@@ -94,7 +95,7 @@ def _plan(d: Mapping[str, Device], array: ArrayParameters, room: AnalogSizes) ->
     """Return the frame as the black box has it, and a row in it."""
     plain = row_driver(array, room)
     south = {pin.name: pin.at_um for pin in plain.pins if pin.side == "south"}
-    return plain, row_plan(d, plain.width_um, {name: south[chip_pin(name)] for name in BANK_INPUTS})
+    return plain, row_plan(d, plain.width_um, array.pitch_um, {name: south[chip_pin(name)] for name in BANK_INPUTS})
 
 
 def row_cell(masks: AnalogMasks, array: ArrayParameters, room: AnalogSizes | None = None) -> Cell:
@@ -103,7 +104,7 @@ def row_cell(masks: AnalogMasks, array: ArrayParameters, room: AnalogSizes | Non
     _, plan = _plan(d, array, room or AnalogSizes())
     cell = as_cell(canvas, d, draw_row(canvas, masks, plan))
     _names(canvas, cell)
-    canvas.box(masks.base.outline, plan.logic.left - RAIL_ENDS, 0, plan.right, PITCH)
+    canvas.box(masks.base.outline, plan.logic.left - RAIL_ENDS, 0, plan.right, plan.pitch)
     return cell
 
 
@@ -117,8 +118,7 @@ def _names(canvas: Canvas, cell: Cell) -> None:
 def draw_row_drivers(masks: AnalogMasks, array: ArrayParameters, room: AnalogSizes | None = None) -> RowDrivers:
     """Draw all rows in their frame. Raises ParameterError where they do not fit, or the bank has too few lines."""
     room = room or AnalogSizes()
-    if array.pitch_um != PITCH:
-        raise ParameterError(f"pitch = {array.pitch:g}: must be {PITCH * 1e-6:g}, that of the drawn rows")
+    check_real("array.pitch_um", array.pitch_um, *PIXEL_PITCHES_UM, "um")
     if taken(array.rows - 1)["high"] >= CODES["high"]:
         raise ParameterError(f"rows = {array.rows}: must be at most {64 * CODES['high']} for the drawn bank")
     d = devices(row())
@@ -130,7 +130,7 @@ def draw_row_drivers(masks: AnalogMasks, array: ArrayParameters, room: AnalogSiz
     _names(row_canvas, row_cell_drawn)
     moved = (pin if pin.side == "south" else replace(pin, at_um=pin.at_um + height) for pin in plain.pins)
     block = Block(NAME, plain.width_um, round(plain.height_um + height, 3), tuple(moved))
-    x, y, pitch = canvas.snap(plan.west), canvas.snap(height), canvas.snap(PITCH)
+    x, y, pitch = canvas.snap(plan.west), canvas.snap(height), canvas.snap(plan.pitch)
     canvas.cell.insert(db.CellInstArray(bank.cell.cell_index(), db.Trans(x, 0)))
     step = db.Vector(0, pitch)
     canvas.cell.insert(
@@ -152,12 +152,12 @@ def _lines(canvas: Canvas, plan: RowPlan, row: Cell, south: float, rows: int) ->
         for group, count in CODES.items():
             for code in range(count):
                 x = plan.west + plan.lines[f"{side}_{group}{code}"]
-                canvas.wire(FOURTH, x - LINE_WIDTH / 2, south, x + LINE_WIDTH / 2, south + rows * PITCH)
+                canvas.wire(FOURTH, x - LINE_WIDTH / 2, south, x + LINE_WIDTH / 2, south + rows * plan.pitch)
     for number in range(rows):
         for group, code in taken(number).items():
             for side in SIDES:
                 x = plan.west + plan.lines[f"{side}_{group}{code}"]
-                y = south + (rows - 1 - number) * PITCH + tracks[f"{side}_{group}"]
+                y = south + (rows - 1 - number) * plan.pitch + tracks[f"{side}_{group}"]
                 at = db.Trans(canvas.snap(x), canvas.snap(y))
                 canvas.cell.insert(db.CellInstArray(via.cell.cell_index(), at))
 
