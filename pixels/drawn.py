@@ -10,7 +10,6 @@ ARRAY_FIELDS = {"rows": "array.rows", "cols": "array.cols"}  # options that repl
 PIXEL_PITCH = {"array.pitch": (round(1e-6 * PIXEL_PITCHES_UM[0], 12), round(1e-6 * PIXEL_PITCHES_UM[1], 12))}
 DRAWN_ARRAY = Varied(used=(*ARRAY_FIELDS.values(), "array.pitch", "tile"), limits=PIXEL_PITCH)
 DRAWN_LINES = {"array.pitch": "resistance and capacitance of lines are those of pixels drawn on this pitch"}
-DRAWN_LANES = {"chip.lanes": "converters are drawn for this number of lines over the columns"}
 DRAWN_SIZES = dict.fromkeys(
     (
         "chip.f_clk",

@@ -1,4 +1,4 @@
-"""A column on the pixels' pitch, lying: the array in the west, the converters in the east; n transistors at y = 0.
+"""A column, lying, 10 um high at any pitch: the array in the west, the converters in the east; n transistors at y = 0.
 
     column_a ---- Cf Cf | front strip |  Cin  Cin  Cin  | back strip | Chold Chold Chold Chold Chold
     column_b ----       |             |                 |            |
@@ -42,12 +42,11 @@ from talbot.pixels.analog_layout.strip import (
 from talbot.pixels.circuits.column import CONTROLS, OF_TAPS, PINS, TAPS, TWICE, column
 from talbot.pixels.circuits.column_block import GROUPS, PLACES
 from talbot.pixels.circuits.column_sizes import FINGER, ColumnSizes
-from talbot.pixels.drawn import DRAWN_PITCH_UM
 from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.analog import AnalogMasks
 
 # um
-PITCH = DRAWN_PITCH_UM  # of the columns
+HEIGHT = 10.0  # of a column: a larger pitch leaves room between columns
 RAIL_GAP = 1.2  # between the centres of adjacent columns' rails
 ROWS = 13  # tracks in a strip
 ROW_IN = 0.2  # from a rail's centre to the first track
@@ -73,8 +72,9 @@ SHIELD = 0.3  # width of the line of vss at a column's edge
 FIRST_TRACK_VIA_INSET = 0.1  # in the strip: the rails are joined next to it
 EXIT_Y = {"column_a": 1.7, "column_b": 8.3, "cin_b": 4.0, "cin_a": 2.0}  # of lines that leave on the fourth metal
 RAILS = 1  # the metal of the rails
-LANES = 8
-GROUPED = {"group": GROUPS, "k": PLACES} | {f"{name}_{d}": LANES for name in ("lane", "sense") for d in "ab"}
+LANES = 8  # at most, with two lines for each diode
+LANE_LINES = tuple(f"{name}_{d}" for name in ("lane", "sense") for d in "ab")
+GROUPED = "group", "k", *LANE_LINES  # nets of which a column is on one of several lines
 SINGLE = (*CONTROLS, *OF_TAPS, "vbp", "vcp", "level", "start", *TWICE)
 
 
@@ -113,8 +113,8 @@ class Cap(NamedTuple):
     upper: str
     from_east: bool = False
     beside: float = 0.0
-    low: float = (PITCH - PLATE_WIDTH) / 2
-    high: float = (PITCH + PLATE_WIDTH) / 2
+    low: float = (HEIGHT - PLATE_WIDTH) / 2
+    high: float = (HEIGHT + PLATE_WIDTH) / 2
     above: bool = False
 
 
@@ -294,8 +294,8 @@ PIECES = (
 # Between the strips, and at both ends of the column
 CAPS = (
     (
-        Cap("front_a.f", "out_a", "column_a", True, 0.6e-15, high=(PITCH - HALF_PLATE_GAP) / 2),
-        Cap("front_b.f", "out_b", "column_b", True, 0.6e-15, low=(PITCH + HALF_PLATE_GAP) / 2, above=True),
+        Cap("front_a.f", "out_a", "column_a", True, 0.6e-15, high=(HEIGHT - HALF_PLATE_GAP) / 2),
+        Cap("front_b.f", "out_b", "column_b", True, 0.6e-15, low=(HEIGHT + HALF_PLATE_GAP) / 2, above=True),
     ),
     (
         Cap("in_a", "out_a", "cin_a"),
@@ -337,6 +337,7 @@ class ColumnPlan:
     plates: of the capacitors.
     right: its east end.
     free: names of additional lines that cross all columns.
+    lanes: converters, of each of which two lines a diode cross all columns.
     """
 
     strips: tuple[Plan, ...]
@@ -345,6 +346,7 @@ class ColumnPlan:
     plates: tuple[Drawn, ...]
     right: float
     free: tuple[str, ...] = ()
+    lanes: int = LANES
 
 
 def line_um(net: str) -> float:
@@ -366,15 +368,16 @@ def devices(sizes: ColumnSizes) -> dict[str, Device]:
     return {t.name: Device.of(t, FINGER) for t in flat.transistors(column(sizes))}
 
 
-def names(net: str) -> tuple[str, ...]:
+def names(net: str, lanes: int = LANES) -> tuple[str, ...]:
     """Lines that cross all columns, of a pin of a column."""
-    return tuple(f"{net}{k}" for k in range(GROUPED[net])) if net in GROUPED else (net,)
+    count = {"group": GROUPS, "k": PLACES, **dict.fromkeys(LANE_LINES, lanes)}.get(net)
+    return (net,) if count is None else tuple(f"{net}{k}" for k in range(count))
 
 
 def column_plan(
-    d: Mapping[str, Device], sizes: ColumnSizes, masks: AnalogMasks, extra: Iterable[str] = ()
+    d: Mapping[str, Device], sizes: ColumnSizes, masks: AnalogMasks, extra: Iterable[str] = (), lanes: int = LANES
 ) -> ColumnPlan:
-    """Plan a column. extra: names of additional lines across.
+    """Plan a column. extra: names of additional lines across. lanes: converters, 1..LANES.
 
     Raises ParameterError where a strip has more nets than tracks, or a line no place.
     """
@@ -395,13 +398,13 @@ def column_plan(
             + STRIP_TO_PLATE
             + (STRIP_TO_JOG[1] - STRIP_TO_JOG[0] + PLATE_VIA_AT if group[-1].upper in EXIT_Y or number == 1 else 0.0)
         )
-        strip, strip_lines = _strip(piece, d, left, number, lines)
+        strip, strip_lines = _strip(piece, d, left, number, lines, lanes)
         strips.append(strip)
         lines |= strip_lines
         joints |= {"vss": (*joints.get("vss", ()), strip.left - RAIL_AT)}
         joints |= {"vdd": (*joints.get("vdd", ()), strip.right + RAIL_AT)}
         x = strip.right + STRIP_TO_PLATE
-    if lacking := {line for net in (*GROUPED, *SINGLE) for line in names(net)} - lines.keys():
+    if lacking := {line for net in (*GROUPED, *SINGLE) for line in names(net, lanes)} - lines.keys():
         raise ParameterError(f"column: line {min(lacking)} must have a place")
     for name in extra:
         taken = [(at, (line_um(name_of_line) + LINE_WIDTH) / 2 + LINE_SPACE) for name_of_line, at in lines.items()]
@@ -412,11 +415,11 @@ def column_plan(
         lines[name] = next(free, -1.0)
         if lines[name] < 0:
             raise ParameterError(f"column strips: must have room for line {name}")
-    return ColumnPlan(tuple(strips), lines, joints, tuple(plates), snap(x + PLATE_VIA_AT), tuple(extra))
+    return ColumnPlan(tuple(strips), lines, joints, tuple(plates), snap(x + PLATE_VIA_AT), tuple(extra), lanes)
 
 
 def _strip(
-    piece: Piece, d: Mapping[str, Device], left: float, number: int, known: Collection[str]
+    piece: Piece, d: Mapping[str, Device], left: float, number: int, known: Collection[str], lanes: int
 ) -> tuple[Plan, dict[str, float]]:
     """Return a strip, and the lines over it that are not ``known``."""
     count = max(len(piece.n), len(piece.p))
@@ -437,28 +440,28 @@ def _strip(
     plain = Plan(row_n, row_p, left, right, ends)
     for net, other in piece.over.items():
         ends[net] = (*ends.get(net, ()), *plain.spans()[other])
-    lines = _lines(plain, {net for net in present if names(net)[0] not in known}, left, right, number)
-    for net in present & (GROUPED.keys() | set(SINGLE)):
+    lines = _lines(plain, {net for net in present if names(net)[0] not in known}, left, right, number, lanes)
+    for net in sorted(present & {*GROUPED, *SINGLE}):
         if names(net)[0] in lines:
-            ends[net] = (*ends.get(net, ()), lines[names(net)[0]], lines[names(net)[-1]])
+            ends[net] = (*ends.get(net, ()), lines[names(net)[0]], lines[names(net, lanes)[-1]])
     plan = Plan(
-        row_n, row_p, left, right, ends, least_um=PITCH - RAIL_GAP, fixed=piece.fixed, least_rows=ROWS, track_in=ROW_IN
+        row_n, row_p, left, right, ends, least_um=HEIGHT - RAIL_GAP, fixed=piece.fixed, least_rows=ROWS, track_in=ROW_IN
     )
-    if plan.height_um > PITCH - RAIL_GAP + 1e-9:
-        rows = round((plan.height_um - (PITCH - RAIL_GAP)) / 0.7) + ROWS
+    if plan.height_um > HEIGHT - RAIL_GAP + 1e-9:
+        rows = round((plan.height_um - (HEIGHT - RAIL_GAP)) / 0.7) + ROWS
         raise ParameterError(f"column strip {number} = {rows} tracks: must be {ROWS} at most")
     return plan, lines
 
 
-def _lines(plan: Plan, present: set[str], left: float, right: float, number: int) -> dict[str, float]:
+def _lines(plan: Plan, present: set[str], left: float, right: float, number: int, lanes: int) -> dict[str, float]:
     """Return x of the lines over a strip: a group's lines together, each as near as possible to its gates."""
     spans, taken, lines = plan.spans(), list[tuple[float, float]](), dict[str, float]()
     crossing = sorted((set(GROUPED) | set(SINGLE)) & present)
-    crossing.sort(key=lambda net: (-len(names(net)), spans[net][1] - spans[net][0]))
+    crossing.sort(key=lambda net: (-len(names(net, lanes)), spans[net][1] - spans[net][0]))
     places = [snap(left + LINE_STEP * k) for k in range(2, int((right - left) / LINE_STEP) - 1)]
     for net in crossing:
         half = line_um(net) / 2
-        pitch, count = 2 * half + LINE_SPACE, len(names(net))
+        pitch, count = 2 * half + LINE_SPACE, len(names(net, lanes))
         low, high = spans[net]
         middle = (low + high) / 2 - pitch * (count - 1) / 2
 
@@ -472,7 +475,7 @@ def _lines(plan: Plan, present: set[str], left: float, right: float, number: int
         if place is None:
             raise ParameterError(f"column strip {number} = {right - left:.0f} um: must have room for line {net}")
         taken.append((place - half, place + pitch * (count - 1) + half))
-        lines |= {line: snap(place + pitch * k) for k, line in enumerate(names(net))}
+        lines |= {line: snap(place + pitch * k) for k, line in enumerate(names(net, lanes))}
     return lines
 
 
@@ -485,10 +488,10 @@ def draw_column(canvas: Canvas, masks: AnalogMasks, positions: ColumnPlan) -> li
         join_rails(canvas, [strip])
         strips.append(strip)
     ends = positions.strips[0].left, positions.strips[-1].right
-    for rail in (y, PITCH - y):  # next to the plates from strip to strip
+    for rail in (y, HEIGHT - y):  # next to the plates from strip to strip
         canvas.wire(RAILS, ends[0], rail - RAIL_HALF, ends[1], rail + RAIL_HALF)
     for x in positions.joints["vss"] + positions.joints["vdd"]:
-        canvas.wire(FOURTH, x - RAIL_TRUNK / 2, 0, x + RAIL_TRUNK / 2, PITCH)
+        canvas.wire(FOURTH, x - RAIL_TRUNK / 2, 0, x + RAIL_TRUNK / 2, HEIGHT)
     for net in SINGLE:
         for strip in strips:
             for track in strip.tracks:
@@ -592,7 +595,7 @@ def _leave(canvas: Canvas, positions: ColumnPlan, strips: Sequence[Strip], numbe
                 canvas.wire(FOURTH, min(ends), y - LINE_WIDTH / 2, max(ends), y + LINE_WIDTH / 2)
     if number + 1 < len(strips):
         after = strips[number + 1]
-        for net in set(PIECES[number].east) & set(PIECES[number + 1].west):
+        for net in sorted(set(PIECES[number].east) & set(PIECES[number + 1].west)):
             y, x0, x1 = tracks[net], plan.right + STRIP_TO_VIA, after.plan.left - STRIP_TO_VIA
             canvas.wire(SECOND, x0, y - half, x1, y + half)
             for x in (x0, x1):
@@ -634,11 +637,11 @@ def column_cell(masks: AnalogMasks, sizes: ColumnSizes) -> Cell:
         if net in ("column_a", "column_b"):
             canvas.label(FOURTH, net, 0.2, EXIT_Y[net])
         elif net in SINGLE:
-            canvas.wire(FOURTH, plan.lines[net] - LINE_WIDTH / 2, 0, plan.lines[net] + LINE_WIDTH / 2, PITCH)
+            canvas.wire(FOURTH, plan.lines[net] - LINE_WIDTH / 2, 0, plan.lines[net] + LINE_WIDTH / 2, HEIGHT)
             canvas.label(FOURTH, net, plan.lines[net], 0.2)
         elif net in GROUPED:
             name_track(canvas, next(track for track in cell.tracks if track.net == net))
-    for net, y in (("vss", RAIL_GAP / 2), ("vdd", PITCH - RAIL_GAP / 2)):
+    for net, y in (("vss", RAIL_GAP / 2), ("vdd", HEIGHT - RAIL_GAP / 2)):
         canvas.label(RAILS, net, plan.strips[0].left, y)
-    canvas.box(masks.base.outline, 0, 0, plan.right, PITCH)
+    canvas.box(masks.base.outline, 0, 0, plan.right, HEIGHT)
     return cell

@@ -16,7 +16,7 @@ from typing import ClassVar
 from talbot.base.gds import db
 from talbot.models.parameters import ArrayParameters, ChipParameters, ParameterError
 from talbot.pixels.analog_layout.cells import new_canvas
-from talbot.pixels.analog_layout.column import EXIT_Y, LANES, LINE_WIDTH, PITCH
+from talbot.pixels.analog_layout.column import EXIT_Y, LINE_WIDTH
 from talbot.pixels.analog_layout.column_band import Band, draw_band
 from talbot.pixels.analog_layout.columns import WAY_END, Columns, column_nets, draw_columns, draw_grounds, draw_way
 from talbot.pixels.analog_layout.device import snap
@@ -69,7 +69,7 @@ class ColumnAmplifiers(DrawnBlock):
         """Netlist for LVS; unused pins are no ports."""
         column, band = self.columns.column, self.band.cell
         parts = [(column, column_nets(k, self.lanes)) for k in range(self.columns.count)]
-        parts.append((band, band_nets(band.ports)))
+        parts.append((band, band_nets(band.ports, self.lanes)))
         used = {net for _, nets in parts for net in nets}
         ports = dict.fromkeys(pin.name for pin in self.block.pins if pin.name in used)
         lines = [f"X{k} {' '.join(nets)} {cell.cell.name}" for k, (cell, nets) in enumerate(parts)]
@@ -77,10 +77,10 @@ class ColumnAmplifiers(DrawnBlock):
         return column.spice(masks) + band.spice(masks) + "\n".join(top)
 
 
-def band_nets(ports: Iterable[str]) -> tuple[str, ...]:
+def band_nets(ports: Iterable[str], lanes: int) -> tuple[str, ...]:
     """Return the block's nets at the ports of the band."""
     nets = NETS | {name: chip_pin(name) for name in BANK_INPUTS} | {"ibias": SOURCE}
-    nets |= {f"lane_{d}{lane}": f"lane_{d}[{lane}]" for d in "ab" for lane in range(LANES)}
+    nets |= {f"lane_{d}{lane}": f"lane_{d}[{lane}]" for d in "ab" for lane in range(lanes)}
     return tuple(nets.get(port, port) for port in ports)
 
 
@@ -93,19 +93,15 @@ def draw_column_amplifiers(
 ) -> ColumnAmplifiers:
     """Draw all columns and their drivers. Raises ParameterError where they do not fit."""
     room = room or AnalogSizes()
-    if array.pitch_um != PITCH:
-        raise ParameterError(f"pitch = {array.pitch:g}: must be {PITCH * 1e-6:g}, that of the drawn columns")
-    if chip.lanes != LANES:
-        raise ParameterError(f"lanes = {chip.lanes}: must be {LANES}, the lines over the drawn columns")
     canvas = new_canvas(masks, NAME)
-    columns = draw_columns(canvas.layout, masks, sizes, array.cols, EXTRA)
+    columns = draw_columns(canvas.layout, masks, sizes, array, chip.lanes, EXTRA)
     plain = frame(array, chip, room)
     south = {pin.name: pin.at_um for pin in plain.pins if pin.side == "south"}
     nets = {name: chip_pin(name) for name in BANK_INPUTS}
-    nets |= {f"lane_{d}{lane}": f"lane_{d}[{lane}]" for d in "ab" for lane in range(LANES)}
+    nets |= {f"lane_{d}{lane}": f"lane_{d}[{lane}]" for d in "ab" for lane in range(chip.lanes)}
     pins = {name: south[pin] for name, pin in nets.items()}
     lanes = [name for name in nets if name.startswith("lane_")]
-    band = draw_band(canvas.layout, masks, sizes, LANES, pins, (*OUTWARD, *lanes))
+    band = draw_band(canvas.layout, masks, sizes, array.pitch_um, chip.lanes, pins, (*OUTWARD, *lanes))
     height = snap(band.height - OVERLAP + WAY_END + columns.plan.right)
     block = frame(array, chip, replace(room, columns_um=height))
     turned = Canvas(canvas.layout, "columns_and_ways", masks.base)
@@ -117,14 +113,14 @@ def draw_column_amplifiers(
             vias.setdefault(number, []).extend(xs)
     for pin in block.pins:
         if pin.name in EXTERNAL_PINS or pin.name == SOURCE:
-            number = round(pin.at_um / PITCH)
+            number = round(pin.at_um / array.pitch_um)
             xs = draw_way(turned, columns, "ibias" if pin.name == SOURCE else pin.name, number)
             vias.setdefault(number, []).extend(xs)
             canvas.wire(FOURTH, pin.at_um - TRUNK / 2, 0, pin.at_um + TRUNK / 2, band.height)
     draw_grounds(turned, columns, vias)
     for pin in block.pins:
         if pin.side == "north":
-            _join(turned, pin)
+            _join(turned, pin, array.pitch_um)
     lying = db.Trans(3, False, 0, canvas.snap(height))
     canvas.cell.insert(db.CellInstArray(turned.cell.cell_index(), lying))
     canvas.cell.insert(db.CellInstArray(band.cell.cell.cell_index(), db.Trans()))
@@ -134,9 +130,9 @@ def draw_column_amplifiers(
     return ColumnAmplifiers(block, canvas.layout, canvas.cell, columns, band, chip.lanes)
 
 
-def _join(canvas: Canvas, pin: Pin) -> None:
+def _join(canvas: Canvas, pin: Pin, pitch: float) -> None:
     """A column's line, where it is in the column, and the array's pin."""
-    at = pin.at_um // PITCH * PITCH + EXIT_Y[pin.name.split("[")[0]]
+    at = pin.at_um // pitch * pitch + EXIT_Y[pin.name.split("[")[0]]
     canvas.wire(FOURTH, 0, min(at, pin.at_um) - LINE_WIDTH / 2, DEEP_UM, max(at, pin.at_um) + LINE_WIDTH / 2)
 
 
@@ -144,11 +140,14 @@ def frame(array: ArrayParameters, chip: ChipParameters, room: AnalogSizes) -> Bl
     """Return the black box's frame, with pins in the south-east."""
     block = next(candidate for candidate in blocks(array, chip, room) if candidate.name == NAME)
     first = max(pin.at_um for pin in block.pins if pin.side == "south") + room.bias_um + room.lane_um
-    number = round(first / PITCH)
+    number = round(first / array.pitch_um)
     names = {**EXTERNAL_PINS, SOURCE: "input"}
-    extra = (
-        Pin(name, way, "south", PITCH * (number + PIN_COLUMNS * k)) for k, (name, way) in enumerate(names.items(), 1)
-    )
+    extra = [
+        Pin(name, way, "south", array.pitch_um * (number + PIN_COLUMNS * k))
+        for k, (name, way) in enumerate(names.items(), 1)
+    ]
+    if (end := extra[-1].at_um) > block.width_um:
+        raise ParameterError(f"array.cols = {array.cols}: {block.width_um:g} um must have room for pins, {end:g} um")
     return replace(block, pins=(*block.pins, *extra))
 
 

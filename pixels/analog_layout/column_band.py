@@ -9,13 +9,14 @@ All nets between strips, pins and ways are on the fourth metal, each at separate
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from math import ceil
 
 from talbot.base.gds import db
 from talbot.models.parameters import ParameterError
 from talbot.pixels.analog_layout import flat
 from talbot.pixels.analog_layout.array import LOWER_ENCLOSURE, LOWER_TAB, VIA_INSET
 from talbot.pixels.analog_layout.cells import Cell
-from talbot.pixels.analog_layout.column import PATCH_INSET, PITCH, draw_patch, length_um, steps
+from talbot.pixels.analog_layout.column import PATCH_INSET, draw_patch, length_um, steps
 from talbot.pixels.analog_layout.comparator import BETWEEN_STRIPS
 from talbot.pixels.analog_layout.device import Device, snap
 from talbot.pixels.analog_layout.row_driver import legs
@@ -47,18 +48,22 @@ NORTH = 3.0  # from the highest rail to the columns
 WEST = 8.0  # of the bank's strips
 ROOM = 0.6  # next to each pair of devices
 CROSSING_SPACE = 0.95  # least, between centres of lines that cross strips
-BIAS_WEST = 540.0  # x of the first capacitor of the bias's lines
-PARTS_OF = 3  # parts of each of these capacitors
+PARTS_OF = 3  # parts of each of the bias's capacitors, at most
 PLATE = 28.0  # width of a part
-PLATE_PITCH = 30.0
+PLATE_SPACE = 2.0  # between parts, for a way
+ENDS_ROOM = 20.0  # of the lanes' ends in the west and in the east
 PLATE_RISE = 1.9  # from the rail to a part
 RAMP = "bank.clear.ramp"  # the pulse's capacitor, and its net
-RAMP_AT = 15.0  # x of its net
+RAMP_COLUMNS = 1.5  # x of its net, in columns: between two ways
+RAMP_HALF = 4.2  # half the width of its plate's metal
 RAMP_WIDTH = 40.0
 RAMP_RISE = 1.5  # from the rail
 STRIPS = 2  # of the bank
-BANK = 500.0  # east end of the bank
+BANK = 500.0  # least east end of the bank
+SPARE_WAYS = 4  # places over the bank that no way takes
 BIAS_OFFSET = 20.0  # of the bias from there
+PLATES_SPACE = 5.0  # from the last capacitor to the lanes' ends
+PLATES_OFFSET = 40.0  # of the first capacitor of its lines, at the least
 
 Pair = tuple[Device | None, Device | None]
 
@@ -116,7 +121,7 @@ class Group:
         y = SOUTH
         for n, p, _ in self.rows:
             present = {net for device in (*n, *p) for net in device.device.transistor.nodes}
-            reach = {net: self.of(net) for net in present if self.of(net)}
+            reach = {net: self.of(net) for net in sorted(present) if self.of(net)}
             plan = Plan(tuple(n), tuple(p), self.left, self.right, reach)
             self.strips.append(draw_strip(canvas, masks, plan, snap(y)))
             y = self.strips[-1].y + self.strips[-1].plan.height_um + BETWEEN_STRIPS
@@ -157,27 +162,36 @@ def draw_band(
     layout: "db.Layout",
     masks: AnalogMasks,
     sizes: ColumnSizes,
+    pitch: float,
     lanes: int,
     pins: Mapping[str, float],
     outward: Sequence[str],
 ) -> Band:
     """Draw it, its south edge at y = 0.
 
-    pins: x of the pins in the south by net. outward: nets that have ways; a lane's two have two each. Raises
-    ParameterError.
+    pitch: of the columns, um. pins: x of the pins in the south by net. outward: nets that have ways; a lane's two have
+    two each. Raises ParameterError.
     """
     d = {t.name: _device(t) for t in flat.transistors(band(sizes, lanes))}
     canvas = Canvas(layout, "column_band", masks.base)
-    bank = Group(WEST, BANK, [in_columns(row, WEST, ROOM) for row in bank_rows(sizes, d)])
-    bank.inner[RAMP] = RAMP_AT
-    bias = Group(
-        BANK + BIAS_OFFSET, BIAS_WEST + PLATE_PITCH * PARTS_OF * len(BIASES) + 5.0, [_bias(d, BANK + BIAS_OFFSET)]
-    )
-    for k, net in enumerate(net for net in BIASES for _ in range(PARTS_OF)):
-        bias.plates.setdefault(net, []).append(BIAS_WEST + (k + 0.5) * PLATE_PITCH)
-    first = snap(min(x for net, x in pins.items() if net.startswith("lane_")) - 2 * PITCH)
+    rows = bank_rows(sizes, d)
+    of_bank = {net for row in rows for net in _nets(in_columns(row, WEST, ROOM))} & set(outward)
+    bank_east = snap(max(BANK, (len(of_bank) + SPARE_WAYS) * pitch))
+    bank = Group(WEST, bank_east, [in_columns(row, WEST, ROOM) for row in rows])
+    bank.inner[RAMP] = RAMP_COLUMNS * pitch
+    first = snap(min(x for net, x in pins.items() if net.startswith("lane_")) - ENDS_ROOM)
+    plate_pitch = ceil((PLATE + PLATE_SPACE) / pitch) * pitch
+    plate_west = ceil((bank_east + PLATES_OFFSET) / plate_pitch) * plate_pitch
+    parts = min(PARTS_OF, int((first - PLATES_SPACE - plate_west) / plate_pitch / len(BIASES)))
+    if parts < 1:
+        raise ParameterError(f"array.pitch = {1e-6 * pitch:g}: must be less, for the bias west of the lanes")
+    bias_west = bank_east + BIAS_OFFSET
+    bias_east = plate_west + plate_pitch * parts * len(BIASES) + PLATES_SPACE
+    bias = Group(bias_west, bias_east, [_bias(d, bias_west)])
+    for k, net in enumerate(net for net in BIASES for _ in range(parts)):
+        bias.plates.setdefault(net, []).append(plate_west + (k + 0.5) * plate_pitch)
     ends = Group(first, 0.0, [_ends(d, lanes, first)])
-    ends.right = snap(ends.rows[0][2] + 2 * PITCH)
+    ends.right = snap(ends.rows[0][2] + ENDS_ROOM)
     groups = bank, bias, ends
     for group in groups:
         middles = group.middles()
@@ -185,15 +199,15 @@ def draw_band(
         nets_by_x = sorted((net for net in outward if net in middles), key=lambda net: middles[net])
         for k, net in enumerate(nets_by_x):
             for _ in range(2 if net.startswith("lane_") else 1):
-                near = middles[net] if group is not bank else WEST + (k + 0.5) / len(nets_by_x) * (BANK - WEST)
-                group.ways.setdefault(net, []).append(group.free(near, PLATE_PITCH if group is bias else PITCH))
+                near = middles[net] if group is not bank else WEST + (k + 0.5) / len(nets_by_x) * (bank_east - WEST)
+                group.ways.setdefault(net, []).append(group.free(near, plate_pitch if group is bias else pitch))
         for net, x in middles.items():
             if sum(net in _nets(row) for row in group.rows) > 1 and not group.of(net):
                 group.inner[net] = group.free(x, 0.5, 0.25)
     tops = [group.place(canvas, masks) for group in groups]
     plates = [_ramp(canvas, masks, sizes, bank, tops[0])]
-    plates += _decoupling(canvas, masks, sizes, bias, tops[1])
-    ups = RAMP_RISE + plates[0].area / RAMP_WIDTH, PLATE_RISE + plates[1].area / PLATE / PARTS_OF
+    plates += _decoupling(canvas, masks, sizes, bias, tops[1], parts, plate_west, plate_pitch)
+    ups = RAMP_RISE + plates[0].area / RAMP_WIDTH, PLATE_RISE + plates[1].area / PLATE / parts
     height = snap(max(top + up for top, up in zip(tops, ups, strict=False)) + NORTH)
     joints: dict[str, list[tuple[float, float, float]]] = {"vss": [], "vdd": []}
     for group in groups:
@@ -204,7 +218,7 @@ def draw_band(
     ways = {net: [] for net in outward}
     for group in groups:
         for net, xs in group.ways.items():
-            ways[net] += [round(x / PITCH) for x in xs]
+            ways[net] += [round(x / pitch) for x in xs]
     return Band(cell, height, {net: tuple(xs) for net, xs in ways.items()}, joints)
 
 
@@ -273,22 +287,31 @@ def _ramp(canvas: Canvas, masks: AnalogMasks, sizes: ColumnSizes, bank: Group, t
     canvas.wire(FOURTH, ground - 0.5, SOUTH, ground + 0.5, high)
     for y in steps(low, high):
         canvas.square(masks.base.vias[THIRD].gds, ground, y, 0.2)
-    half = PITCH / 2 - 0.8
-    draw_patch(canvas, RAMP_AT - half, low + PATCH_INSET, RAMP_AT + half, high - PATCH_INSET)
+    at = bank.inner[RAMP]
+    draw_patch(canvas, at - RAMP_HALF, low + PATCH_INSET, at + RAMP_HALF, high - PATCH_INSET)
     track = next(piece for strip in bank.strips for piece in strip.tracks if piece.net == RAMP)
-    canvas.wire(FOURTH, RAMP_AT - TRUNK / 2, track.y, RAMP_AT + TRUNK / 2, low + 1)
+    canvas.wire(FOURTH, at - TRUNK / 2, track.y, at + TRUNK / 2, low + 1)
     return flat.Plate(RAMP, RAMP, "vss", RAMP_WIDTH * (high - low), 2 * (RAMP_WIDTH + high - low))
 
 
-def _decoupling(canvas: Canvas, masks: AnalogMasks, sizes: ColumnSizes, bias: Group, top: float) -> list[flat.Plate]:
-    """Return the capacitors of the bias's lines, between the places of ways above its strip."""
-    strip, plates, x = bias.strips[0], list[flat.Plate](), BIAS_WEST
+def _decoupling(
+    canvas: Canvas,
+    masks: AnalogMasks,
+    sizes: ColumnSizes,
+    bias: Group,
+    top: float,
+    parts: int,
+    west: float,
+    pitch: float,
+) -> list[flat.Plate]:
+    """Return the capacitors of the bias's lines, each in ``parts``, from ``west`` on, between ways above its strip."""
+    strip, plates, x = bias.strips[0], list[flat.Plate](), west
     tracks = {track.net: track.y for track in strip.tracks}
     for c in (c for c in flat.capacitors(band(sizes, 1)) if c.name.startswith("bias.c_")):
         wide, low = PLATE, top + PLATE_RISE
-        high = snap(low + length_um(c.value / PARTS_OF, masks, wide))
-        for _ in range(PARTS_OF):
-            left, middle = x + (PLATE_PITCH - PLATE) / 2, x + PLATE_PITCH / 2
+        high = snap(low + length_um(c.value / parts, masks, wide))
+        for _ in range(parts):
+            left, middle = x + (pitch - PLATE) / 2, x + pitch / 2
             canvas.box(masks.mim, left, low, left + wide, high)
             canvas.wire(
                 THIRD, left - LOWER_ENCLOSURE, low - LOWER_TAB, left + wide + LOWER_ENCLOSURE, high + LOWER_ENCLOSURE
@@ -299,7 +322,6 @@ def _decoupling(canvas: Canvas, masks: AnalogMasks, sizes: ColumnSizes, bias: Gr
             canvas.stack(at, low - VIA_INSET, SECOND, THIRD)
             canvas.wire(SECOND, at - 0.19, rail - 0.19, at + 0.19, low - VIA_INSET + 0.19)
             canvas.stack(at, rail, 1, SECOND)
-            x += PLATE_PITCH
-        count = PARTS_OF
-        plates.append(flat.Plate(c.name, c.a, c.b, count * wide * (high - low), count * 2 * (wide + high - low)))
+            x += pitch
+        plates.append(flat.Plate(c.name, c.a, c.b, parts * wide * (high - low), parts * 2 * (wide + high - low)))
     return plates

@@ -7,12 +7,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from talbot.base.gds import db
+from talbot.models.parameters import ArrayParameters, ParameterError, check_int, check_real
 from talbot.pixels.analog_layout.cells import Cell
 from talbot.pixels.analog_layout.column import (
     EXIT_Y,
     GROUPED,
+    HEIGHT,
     LANES,
-    PITCH,
     PLATE_VIA_PAD,
     SINGLE,
     ColumnPlan,
@@ -24,10 +25,11 @@ from talbot.pixels.analog_layout.column import (
     line_um,
     names,
 )
-from talbot.pixels.analog_layout.strip import FOURTH, SECOND, THIRD, name_track
+from talbot.pixels.analog_layout.strip import FOURTH, RAIL_TRUNK, SECOND, THIRD, name_track
 from talbot.pixels.circuits.column import PINS, SUPPLIES, block_line
-from talbot.pixels.circuits.column_block import LINES, taken
+from talbot.pixels.circuits.column_block import GROUPS, LINES, PLACES, taken
 from talbot.pixels.circuits.column_sizes import ColumnSizes
+from talbot.pixels.drawn import PIXEL_PITCHES_UM
 from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.analog import AnalogMasks
 
@@ -39,15 +41,17 @@ WAY_END = 1.0  # um, beyond the columns, where it goes up
 class Columns:
     """The drawn columns.
 
-    cell: all of them; column k begins at y = k PITCH.
+    cell: all of them; column k begins at y = k pitch.
     column: a single one.
     count: their number.
+    pitch: um.
     """
 
     cell: "db.Cell"
     column: Cell
     plan: ColumnPlan
     count: int
+    pitch: float
 
     def lines(self, net: str) -> list[float]:
         """Return x of a block net's lines; a lane has two, to the columns and back."""
@@ -58,7 +62,7 @@ class Columns:
         return [x for name, x in self.plan.lines.items() if block_line(name) == pin]
 
 
-def column_nets(number: int, lanes: int = LANES) -> tuple[str, ...]:
+def column_nets(number: int, lanes: int) -> tuple[str, ...]:
     """Return the block's nets at the ports of a column."""
     lane, code = taken(number, lanes)
     nets = {f"column_{d}": f"column_{d}[{number}]" for d in "ab"}
@@ -70,11 +74,23 @@ def column_nets(number: int, lanes: int = LANES) -> tuple[str, ...]:
 
 
 def draw_columns(
-    layout: "db.Layout", masks: AnalogMasks, sizes: ColumnSizes, count: int, extra: Iterable[str] = ()
+    layout: "db.Layout",
+    masks: AnalogMasks,
+    sizes: ColumnSizes,
+    array: ArrayParameters,
+    lanes: int,
+    extra: Iterable[str] = (),
 ) -> Columns:
-    """Draw ``count`` of them, and the names of a column's ports. extra: nets that have a line across, and no column."""
-    d = devices(sizes)
-    plan = column_plan(d, sizes, masks, extra)
+    """Draw them, and the names of a column's ports. extra: nets that have a line across, and no column.
+
+    Raises ParameterError where a pitch is less than a column's height, or lines are too many.
+    """
+    check_real("array.pitch_um", array.pitch_um, HEIGHT, PIXEL_PITCHES_UM[1], "um")
+    check_int("chip.lanes", lanes, 1, LANES)
+    if (most := lanes * GROUPS * PLACES) < array.cols:
+        raise ParameterError(f"array.cols = {array.cols}: must be at most {most}, the lines of {lanes} lanes")
+    d, count, pitch = devices(sizes), array.cols, array.pitch_um
+    plan = column_plan(d, sizes, masks, extra, lanes)
     canvas = Canvas(layout, "column", masks.base)
     column = as_cell(canvas, d, plan, draw_column(canvas, masks, plan))
     for net in column.ports:
@@ -83,23 +99,26 @@ def draw_columns(
         elif net not in plan.joints:
             name_track(canvas, next(track for track in column.tracks if track.net == net))
     whole = Canvas(layout, "columns", masks.base)
-    step = db.Vector(0, whole.snap(PITCH))
+    step = db.Vector(0, whole.snap(pitch))
     whole.cell.insert(db.CellInstArray(column.cell.cell_index(), db.Trans(), step, db.Vector(1, 0), count, 1))
     for net in (*GROUPED, *SINGLE, *plan.free):
         half = line_um(net) / 2
-        for name in names(net):
+        for name in names(net, lanes):
             x = plan.lines[name]
-            whole.wire(FOURTH, x - half, 0, x + half, count * PITCH)
+            whole.wire(FOURTH, x - half, 0, x + half, count * pitch)
+    if pitch > HEIGHT:
+        for x in plan.joints["vss"] + plan.joints["vdd"]:
+            whole.wire(FOURTH, x - RAIL_TRUNK / 2, 0, x + RAIL_TRUNK / 2, count * pitch)
     via = Canvas(layout, "column_code", masks.base)
     via.stack(0, 0, THIRD, FOURTH)
     tracks = {track.net: track.y for track in column.tracks if track.net in GROUPED}
     for number in range(count):
-        lane, code = taken(number, LANES)
+        lane, code = taken(number, lanes)
         codes = {net: code.get(net, lane) for net in GROUPED}
         for net, k in codes.items():
-            x, y = plan.lines[f"{net}{k}"], number * PITCH + tracks[net]
+            x, y = plan.lines[f"{net}{k}"], number * pitch + tracks[net]
             whole.cell.insert(db.CellInstArray(via.cell.cell_index(), db.Trans(whole.snap(x), whole.snap(y))))
-    return Columns(whole.cell, column, plan, count)
+    return Columns(whole.cell, column, plan, count, pitch)
 
 
 def draw_way(canvas: Canvas, columns: Columns, net: str, number: int, only: int | None = None) -> list[float]:
@@ -107,7 +126,7 @@ def draw_way(canvas: Canvas, columns: Columns, net: str, number: int, only: int 
 
     Returns x of its vias.
     """
-    lines, y, half = columns.lines(net), number * PITCH, WAY_WIDTH / 2
+    lines, y, half = columns.lines(net), number * columns.pitch, WAY_WIDTH / 2
     lines = lines if only is None else lines[only : only + 1]
     end = columns.plan.right + WAY_END
     canvas.wire(SECOND, min(lines) - half, y - half, end + half, y + half)
@@ -120,4 +139,4 @@ def draw_way(canvas: Canvas, columns: Columns, net: str, number: int, only: int 
 def draw_grounds(canvas: Canvas, columns: Columns, vias: Mapping[int, Sequence[float]]) -> None:
     """The ground's lines in the south of each column, up to the first of the ways' vias there. vias: x, by column."""
     for number in range(columns.count):
-        draw_ground(canvas, columns.plan, number * PITCH, vias.get(number, ()))
+        draw_ground(canvas, columns.plan, number * columns.pitch, vias.get(number, ()))

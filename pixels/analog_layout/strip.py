@@ -104,7 +104,7 @@ class Plan:
         by_net: dict[str, tuple[float, float]] = {}
         for placed in self.placed():
             t = placed.device.transistor
-            for net in {t.drain, t.gate, t.source} - set(self.rails):
+            for net in sorted({t.drain, t.gate, t.source} - set(self.rails)):
                 left, right = by_net.get(net, (placed.low, placed.high))
                 by_net[net] = min(left, placed.low), max(right, placed.high)
         for net, reached in self.through.items():
@@ -125,7 +125,7 @@ class Plan:
                 rows.append([(net, *end) for net, end in zip(nets, ends, strict=True)])
         paired = {net for pair in (*self.split, *self.twisted) for net in pair}
         rows += [[] for _ in range(self.least_rows - len(rows))]
-        for net in self.fixed.keys() & spans.keys():
+        for net in sorted(self.fixed.keys() & spans.keys()):
             rows[self.fixed[net]].append((net, *spans[net]))
         paired |= self.fixed.keys()
         for kind in (spans.keys() & self.quiet - paired, spans.keys() - self.quiet - paired):

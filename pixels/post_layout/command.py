@@ -9,12 +9,17 @@ from talbot.base.progress import Steps
 from talbot.base.sensor import Varied, add_sensor, labelled, sensor_asked
 from talbot.models.parameters import STANDARD
 from talbot.pixels.blocks import blocks
-from talbot.pixels.drawn import DRAWN_LANES, DRAWN_PITCH, DRAWN_SIZES
+from talbot.pixels.drawn import DRAWN_SIZES, PIXEL_PITCH
 
 VARIED = Varied(
-    used=("array.rows", "array.cols"),
-    fixed=DRAWN_PITCH | DRAWN_LANES | DRAWN_SIZES,
-    limits={"array.rows": (1, STANDARD.array.rows), "array.cols": (1, STANDARD.array.cols)},
+    used=("array.rows", "array.cols", "array.pitch", "chip.lanes"),
+    fixed=DRAWN_SIZES,
+    limits={
+        "array.rows": (1, STANDARD.array.rows),
+        "array.cols": (1, STANDARD.array.cols),
+        "chip.lanes": (1, STANDARD.chip.lanes),
+        **PIXEL_PITCH,
+    },
 )
 
 SHOWN = 10  # differences of a cell

@@ -79,7 +79,7 @@ def test_no_two_lines_are_nearer_than_their_rule():
 def test_each_column_has_a_via_at_one_line_of_each_group():
     layout = db.Layout()
     layout.dbu = 0.001
-    made = draw_columns(layout, MASKS, SIZES, 60)
+    made = draw_columns(layout, MASKS, SIZES, ArrayParameters(48, 60), 8)
     codes: dict[int, set[float]] = {}
     for one in made.cell.each_inst():
         if one.cell.name == "column_code":
@@ -90,7 +90,7 @@ def test_each_column_has_a_via_at_one_line_of_each_group():
     assert codes[50] == {lines[f"{net}{k}"] for net, k in {"group": 1, "k": 2}.items()} | {
         lines[f"{kind}_{d}0"] for kind in ("lane", "sense") for d in "ab"
     }
-    nets = dict(zip(PINS, column_nets(50), strict=True))
+    nets = dict(zip(PINS, column_nets(50, 8), strict=True))
     assert (nets["group"], nets["k"], nets["lane_b"], nets["sense_b"]) == ("group_1", "k_2", "lane_b[0]", "lane_b[0]")
     assert (nets["ref_a"], nets["start_a"], nets["column_a"]) == ("ref", "start_a", "column_a[50]")
 
@@ -102,7 +102,7 @@ def test_pins_are_those_of_the_black_box_and_what_is_outside(block):
     assert wanted < own and {name for name, *_ in own - wanted} == {*EXTERNAL_PINS, SOURCE}
     assert any(pin.name == "hold" for pin in plain.pins)
     assert block.count == 384 * len(sizes(column(SIZES))) + len(sizes(band(SIZES, 8)))
-    nets = band_nets(block.band.cell.ports)
+    nets = band_nets(block.band.cell.ports, 8)
     assert {"tap[1]", "hold", "vddc", "lane_b[7]", "ibias_columns"} < set(nets)
 
 
@@ -113,9 +113,11 @@ def test_ways_are_apart(block):
 
 
 def test_what_does_not_fit_is_named():
-    with pytest.raises(ParameterError, match="pitch = 1.2e-05"):
-        draw_column_amplifiers(MASKS, SIZES, ArrayParameters(8, 384, pitch=12e-6), ChipParameters())
+    with pytest.raises(ParameterError, match="array.pitch_um = 9.0: must be .*10.*15"):
+        draw_column_amplifiers(MASKS, SIZES, ArrayParameters(8, 384, pitch=9e-6), ChipParameters())
     with pytest.raises(ParameterError, match="column strip 0 = .* tracks: must be 13 at most"):
         column_cell(MASKS, replace(SIZES, front=replace(SIZES.front, top=4.0)))
-    with pytest.raises(ParameterError, match="lanes = 4: must be 8"):
+    with pytest.raises(ParameterError, match="array.cols = 384: must be at most 192, the lines of 4 lanes"):
         draw_column_amplifiers(MASKS, SIZES, ArrayParameters(8, 384), replace(ChipParameters(), lanes=4))
+    with pytest.raises(ParameterError, match="chip.lanes = 16: must be .*1..8"):
+        draw_column_amplifiers(MASKS, SIZES, ArrayParameters(8, 384), replace(ChipParameters(), lanes=16))

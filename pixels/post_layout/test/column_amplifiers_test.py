@@ -4,7 +4,7 @@ import pytest
 
 from talbot.base.gds import db, write_gds
 from talbot.models.parameters import ArrayParameters, ChipParameters
-from talbot.pixels.analog_layout.column import PITCH
+from talbot.pixels.analog_layout.column import HEIGHT
 from talbot.pixels.analog_layout.column_amplifiers import draw_column_amplifiers
 from talbot.pixels.circuits.column_sizes import ColumnSpec, size
 from talbot.pixels.post_layout.checks import differences, drc, lvs
@@ -39,7 +39,7 @@ def over(block, top, mask, number, box):
     """Draw a box above one column; um from that column's corner, as `column_cell` has them."""
     left, low, right, high = box
     height = block[0].block.height_um
-    shape = db.DBox(PITCH * number + low, height - right, PITCH * number + high, height - left)
+    shape = db.DBox(HEIGHT * number + low, height - right, HEIGHT * number + high, height - left)
     top.shapes(top.layout().layer(*mask)).insert(shape)
 
 
@@ -81,7 +81,7 @@ def test_what_reaches_into_a_column_is_found(block, tmp_path):
     line = next(x for x in sorted(block[0].columns.plan.lines.values()) if track.left + 1 < x < track.right - 1)
 
     def neighbours(layout, top):
-        over(block, top, METALS[3], 10, (track.left, track.y - 0.15, track.left + 0.3, track.y + PITCH + 0.15))
+        over(block, top, METALS[3], 10, (track.left, track.y - 0.15, track.left + 0.3, track.y + HEIGHT + 0.15))
 
     def to_a_line(layout, top):
         over(block, top, VIAS[3], 10, (line - 0.1, track.y - 0.1, line + 0.1, track.y + 0.1))

@@ -105,6 +105,6 @@ def test_the_band_keeps_the_rules(tmp_path):
     pins |= {f"lane_{d}{n}": 984 + 100 * n + 33 * (1 + "ab".index(d)) for n in range(8) for d in "ab"}
     lanes = [name for name in pins if name.startswith("lane_")]
     outward = (*BANK_OUTPUTS, "vbp", "vcp", "vcn", "vbl", "level", "reference", "dark", *lanes)
-    made = draw_band(layout, MASKS, SIZES, ChipParameters().lanes, pins, outward)
+    made = draw_band(layout, MASKS, SIZES, 10.0, ChipParameters().lanes, pins, outward)
     write_gds(layout, tmp_path / "band.gds", made.cell.cell)
     assert drc(tmp_path / "band.gds", "sky130", tmp_path / "band.lyrdb") == {}
