@@ -50,6 +50,8 @@ ROOM = 0.6  # next to each pair of devices
 CROSSING_SPACE = 0.95  # least, between centres of lines that cross strips
 PARTS_OF = 3  # parts of each of the bias's capacitors, at most
 PLATE = 28.0  # width of a part
+PLATE_LENGTH = 32.0  # of a row of a part, at most: 900 um2 (capm.12)
+ROW_SPACE = 1.5  # between these rows
 PLATE_SPACE = 2.0  # between parts, for a way
 ENDS_ROOM = 20.0  # of the lanes' ends in the west and in the east
 PLATE_RISE = 1.9  # from the rail to a part
@@ -60,7 +62,7 @@ RAMP_WIDTH = 40.0
 RAMP_RISE = 1.5  # from the rail
 STRIPS = 2  # of the bank
 BANK = 500.0  # least east end of the bank
-SPARE_WAYS = 4  # places over the bank that no way takes
+SPARE_WAYS = 3  # places over the bank that no way takes
 BIAS_OFFSET = 20.0  # of the bias from there
 PLATES_SPACE = 5.0  # from the last capacitor to the lanes' ends
 PLATES_OFFSET = 40.0  # of the first capacitor of its lines, at the least
@@ -205,16 +207,16 @@ def draw_band(
             if sum(net in _nets(row) for row in group.rows) > 1 and not group.of(net):
                 group.inner[net] = group.free(x, 0.5, 0.25)
     tops = [group.place(canvas, masks) for group in groups]
-    plates = [_ramp(canvas, masks, sizes, bank, tops[0])]
-    plates += _decoupling(canvas, masks, sizes, bias, tops[1], parts, plate_west, plate_pitch)
-    ups = RAMP_RISE + plates[0].area / RAMP_WIDTH, PLATE_RISE + plates[1].area / PLATE / parts
-    height = snap(max(top + up for top, up in zip(tops, ups, strict=False)) + NORTH)
+    ramp = _ramp(canvas, masks, sizes, bank, tops[0])
+    decoupling, top = _decoupling(canvas, masks, sizes, bias, tops[1], parts, plate_west, plate_pitch)
+    plates = ramp, *decoupling
+    height = snap(max(tops[0] + RAMP_RISE + ramp.area / RAMP_WIDTH, top) + NORTH)
     joints: dict[str, list[tuple[float, float, float]]] = {"vss": [], "vdd": []}
     for group in groups:
         group.draw(canvas, height)
         _rails(canvas, group.strips, joints)
     terminals = tuple(terminal for group in groups for strip in group.strips for terminal in strip.terminals)
-    cell = Cell(canvas.layout, canvas.cell, band(sizes, lanes).ports, tuple(d.values()), tuple(plates), terminals)
+    cell = Cell(canvas.layout, canvas.cell, band(sizes, lanes).ports, tuple(d.values()), plates, terminals)
     ways = {net: [] for net in outward}
     for group in groups:
         for net, xs in group.ways.items():
@@ -303,25 +305,33 @@ def _decoupling(
     parts: int,
     west: float,
     pitch: float,
-) -> list[flat.Plate]:
-    """Return the capacitors of the bias's lines, each in ``parts``, from ``west`` on, between ways above its strip."""
-    strip, plates, x = bias.strips[0], list[flat.Plate](), west
+) -> tuple[list[flat.Plate], float]:
+    """Return the capacitors of the bias's lines, each in ``parts`` from ``west`` on between ways, and their top."""
+    strip, plates, x, highest = bias.strips[0], list[flat.Plate](), west, top
     tracks = {track.net: track.y for track in strip.tracks}
     for c in (c for c in flat.capacitors(band(sizes, 1)) if c.name.startswith("bias.c_")):
         wide, low = PLATE, top + PLATE_RISE
-        high = snap(low + length_um(c.value / parts, masks, wide))
+        whole = length_um(c.value / parts, masks, wide)
+        rows = ceil(whole / PLATE_LENGTH)
+        piece = length_um(c.value / parts / rows, masks, wide)
+        high = snap(low + rows * piece + (rows - 1) * ROW_SPACE)
+        highest = max(highest, high)
         for _ in range(parts):
             left, middle = x + (pitch - PLATE) / 2, x + pitch / 2
-            canvas.box(masks.mim, left, low, left + wide, high)
             canvas.wire(
                 THIRD, left - LOWER_ENCLOSURE, low - LOWER_TAB, left + wide + LOWER_ENCLOSURE, high + LOWER_ENCLOSURE
             )
-            draw_patch(canvas, left + PATCH_INSET, low + PATCH_INSET, left + wide - PATCH_INSET, high - PATCH_INSET)
-            canvas.wire(FOURTH, middle - TRUNK / 2, tracks[c.a] - TRUNK / 2, middle + TRUNK / 2, low + 1)
+            for row in range(rows):
+                y = snap(low + row * (piece + ROW_SPACE))
+                canvas.box(masks.mim, left, y, left + wide, snap(y + piece))
+                patch = left + PATCH_INSET, y + PATCH_INSET, left + wide - PATCH_INSET, snap(y + piece - PATCH_INSET)
+                draw_patch(canvas, *patch)
+            canvas.wire(FOURTH, middle - TRUNK / 2, tracks[c.a] - TRUNK / 2, middle + TRUNK / 2, high - 1)
             rail, at = (top if c.b == "vdd" else strip.y), middle + 3.0
             canvas.stack(at, low - VIA_INSET, SECOND, THIRD)
             canvas.wire(SECOND, at - 0.19, rail - 0.19, at + 0.19, low - VIA_INSET + 0.19)
             canvas.stack(at, rail, 1, SECOND)
             x += pitch
-        plates.append(flat.Plate(c.name, c.a, c.b, parts * wide * (high - low), parts * 2 * (wide + high - low)))
-    return plates
+        count = parts * rows
+        plates.append(flat.Plate(c.name, c.a, c.b, count * wide * piece, count * 2 * (wide + piece)))
+    return plates, highest

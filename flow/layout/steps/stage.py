@@ -30,7 +30,12 @@ STAGES: dict[str, dict[str, str]] = {
     "place": {"placement_density": ""},
     "cts": {},
     "repair": {},
-    "loads": {"raised_thresholds": "", "estimated_beyond": "pins", "estimated_setup_ns": "ns", "estimated_hold_ns": "ns"},
+    "loads": {
+        "raised_thresholds": "",
+        "estimated_beyond": "pins",
+        "estimated_setup_ns": "ns",
+        "estimated_hold_ns": "ns",
+    },
     "route": {"router_drc_violations": "", "router_antennas": ""},
     "finish": {"open_nets": ""},
 }
