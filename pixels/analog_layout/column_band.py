@@ -62,7 +62,7 @@ RAMP_WIDTH = 40.0
 RAMP_RISE = 1.5  # from the rail
 STRIPS = 2  # of the bank
 BANK = 500.0  # least east end of the bank
-SPARE_WAYS = 3  # places over the bank that no way takes
+SPARE_WAYS = 1  # places over the bank that no way takes
 BIAS_OFFSET = 20.0  # of the bias from there
 PLATES_SPACE = 5.0  # from the last capacitor to the lanes' ends
 PLATES_OFFSET = 40.0  # of the first capacitor of its lines, at the least
@@ -107,7 +107,7 @@ class Group:
         places = (snap(first + step * k) for k in range(int(self.right / step) + 1))
         free = [at for at in places if at > self.left and all(abs(at - other) >= CROSSING_SPACE for other in taken)]
         if not free:
-            raise ParameterError(f"column band from {self.left:.0f} um: must have room for its lines")
+            raise ParameterError(f"array.pitch: column band from {self.left:.0f} um must have room for its lines")
         return min(free, key=lambda at: abs(at - x))
 
     def draw(self, canvas: Canvas, height: float) -> None:

@@ -104,7 +104,7 @@ class Plan:
         by_net: dict[str, tuple[float, float]] = {}
         for placed in self.placed():
             t = placed.device.transistor
-            for net in sorted({t.drain, t.gate, t.source} - set(self.rails)):
+            for net in [net for net in dict.fromkeys((t.drain, t.gate, t.source)) if net not in self.rails]:
                 left, right = by_net.get(net, (placed.low, placed.high))
                 by_net[net] = min(left, placed.low), max(right, placed.high)
         for net, reached in self.through.items():
