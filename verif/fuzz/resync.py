@@ -15,7 +15,8 @@ from talbot.models.parameters.stream_format import HEADER_BYTES, TRAILER_BYTES
 from talbot.verif.results import Sweep
 
 FRAMES = {**{mode: (mode, False) for mode in MODES}, "phase": ("tof", True)}
-SIZES = dict.fromkeys(SIGNED, (96, 144))  # rows, cols of the array that sees the default scene
+# Rows, cols of the array that sees the default scene
+SIZES: dict[str, tuple[int, int]] = dict.fromkeys(SIGNED, (96, 144))
 SIZE = 24, 36  # ... in the other modes, whose rows are plain bytes
 AROUND = "alone", "between frames", "followed by bytes"
 
