@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from talbot.base.lef.read import read_macro
+from talbot.base.table import markdown_table
 from talbot.flow.layout.design import Design
 
 WATCHED = {"frame": "a real frame", "tests": "the block's own tests", "host": "an example behind its host"}
@@ -11,10 +12,9 @@ WATCHED = {"frame": "a real frame", "tests": "the block's own tests", "host": "a
 
 def pinout(lef: str) -> str:
     """Markdown table of the pins of a LEF."""
-    lines = ["# Pinout", "", "| pin | direction | use | layer | x um | y um |", "|---|---|---|---|---:|---:|"]
-    for p in read_macro(lef).pins.values():
-        lines.append(f"| {p.name} | {p.direction.lower()} | {p.use.lower()} | {p.layer} | {p.x_um} | {p.y_um} |")
-    return "\n".join([*lines, ""])
+    pins = read_macro(lef).pins.values()
+    rows = ((p.name, p.direction.lower(), p.use.lower(), p.layer, p.x_um, p.y_um) for p in pins)
+    return f"# Pinout\n\n{markdown_table(('pin', 'direction', 'use', 'layer', 'x um', 'y um'), rows, 4)}\n"
 
 
 def datasheet(design: Design, summary: Mapping[str, Any], lef: str, waivers: Sequence[Mapping[str, str]]) -> str:

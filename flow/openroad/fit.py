@@ -14,6 +14,7 @@ from talbot.base import tools
 from talbot.base.command import failures
 from talbot.base.files import insert, marked
 from talbot.base.progress import each
+from talbot.base.table import markdown_table
 from talbot.flow.layout.design import design
 from talbot.flow.openroad.stat import counted
 from talbot.flow.openroad.tinytapeout import PROJECTS
@@ -77,14 +78,13 @@ def fit(name: str, folder: Path) -> tuple[Fit, Path]:
 
 def table(fits: Sequence[Fit]) -> str:
     """Return the table in Markdown."""
-    lines = [
-        "| project | tiles | cells | flip-flops | cells' area, um2 | tiles' core, um2 | full |",
-        "|---|---|---:|---:|---:|---:|---:|",
-    ]
-    for f in fits:
-        sizes = f"{f.cells:,} | {f.flip_flops:,} | {f.area_um2:,.0f} | {f.room_um2:,.0f} | {f.share:.0%}"
-        lines.append(f"| {f.project} | {f.tiles} | {sizes} |")
-    return "\n".join(lines)
+    head = "project", "tiles", "cells", "flip-flops", "cells' area, um2", "tiles' core, um2", "full"
+    rows = (
+        (f.project, f.tiles, f"{f.cells:,}", f"{f.flip_flops:,}")
+        + (f"{f.area_um2:,.0f}", f"{f.room_um2:,.0f}", f"{f.share:.0%}")
+        for f in fits
+    )
+    return markdown_table(head, rows, 2)
 
 
 def add_arguments(parser: ArgumentParser) -> None:

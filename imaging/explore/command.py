@@ -60,7 +60,7 @@ def run(options: Namespace) -> int:
     if options.document:
         from talbot.imaging.explore.results import lines
 
-        insert(options.document, mark, "\n".join(lines(findings, plan.objectives)))
+        insert(options.document, mark, lines(findings, plan.objectives))
     _print(summary)
     print(f"  look at {folder / 'explore.html'}")
     return 0

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from talbot.base.cache import digest
-from talbot.base.table import write_csv
+from talbot.base.table import markdown_table, write_csv
 from talbot.base.tools import commit
 from talbot.imaging.explore.search import Findings, Row, considered, dominated_share, importances, oriented
 from talbot.imaging.explore.tasks import figures_of
@@ -143,17 +143,15 @@ def provenance(findings: Findings) -> dict[str, Any]:
     }
 
 
-def lines(findings: Findings, objectives: Sequence[str]) -> list[str]:
+def lines(findings: Findings, objectives: Sequence[str]) -> str:
     """The front as a table of Markdown."""
     names = [name for name in findings.plan.space if len({str(row.values[name]) for row in findings.front}) > 1]
-    head = ["point", *objectives, *names]
-    out = [f"| {' | '.join(head)} |", f"|{'---|' * len(head)}"]
+    rows = []
     for row in [*findings.thesis_in_full, *findings.front]:
         figures = (row.full or {})["figures"]
-        cells = [name_of(row), *(f"{figures[name]:.4g}" for name in objectives)]
-        cells += [short(row.values.get(name)) for name in names]
-        out.append(f"| {' | '.join(cells)} |")
-    return out
+        values = (short(row.values.get(name)) for name in names)
+        rows.append([name_of(row), *(f"{figures[name]:.4g}" for name in objectives), *values])
+    return markdown_table(["point", *objectives, *names], rows)
 
 
 def short(value: Any) -> str:

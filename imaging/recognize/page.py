@@ -12,6 +12,7 @@ from PIL import Image
 from talbot.base.charts import curves as chart
 from talbot.base.charts import svg
 from talbot.base.page import TABLES, Picture, Section, Tile, render
+from talbot.base.table import markdown_table
 from talbot.imaging.frame import report
 from talbot.imaging.recognize import study
 from talbot.imaging.recognize.chip import CHUNK
@@ -72,8 +73,7 @@ def _cells(row: dict[str, Any]) -> tuple[str, ...]:
 
 def lines(s: dict[str, Any]) -> str:
     """Return the table as Markdown."""
-    out = ["| " + " | ".join(HEAD) + " |", "|---|" + "---:|" * (len(HEAD) - 1)]
-    return "\n".join([*out, *("| " + " | ".join(row) + " |" for row in rows(s))]) + "\n"
+    return markdown_table(HEAD, rows(s), 1)
 
 
 def about(s: dict[str, Any]) -> str:

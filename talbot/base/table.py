@@ -1,8 +1,8 @@
-"""Tables in files."""
+"""Tables in files and in documents."""
 
 import contextlib
 import csv
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +19,13 @@ def read_csv(path: Path) -> list[dict[str, Any]]:
     """Return the rows of such a file, numbers as int or float."""
     with path.open(encoding="utf-8", newline="") as file:
         return [{name: _value(text) for name, text in row.items()} for row in csv.DictReader(file)]
+
+
+def markdown_table(head: Sequence[str], rows: Iterable[Sequence[object]], texts: int | None = None) -> str:
+    """Return a table of Markdown. texts: columns of text, before those of numbers; None: all are."""
+    left = len(head) if texts is None else texts
+    lines = [f"| {' | '.join(head)} |", "|" + "---|" * left + "---:|" * (len(head) - left)]
+    return "\n".join(lines + [f"| {' | '.join(map(str, row))} |" for row in rows])
 
 
 def _value(text: str) -> Any:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from functools import cache
 
 from talbot.base.paths import ROOT
+from talbot.base.table import markdown_table
 from talbot.models.parameters import SensorParameters
 from talbot.rtl.sizes import BUILD
 from talbot.rtl.tops import TOPS, build_top
@@ -94,5 +95,6 @@ def problems(proofs: Iterable[Proof]) -> list[str]:
 
 def table(proofs: Iterable[Proof]) -> str:
     """Return the sizes as a Markdown table."""
-    rows = ["| block | parameter | can be built with | proven at | tested |", "|---|---|---|---|---|"]
-    return "\n".join([*rows, *(f"| {' | '.join(size.row)} |" for size in sizes(proofs))])
+    return markdown_table(
+        ("block", "parameter", "can be built with", "proven at", "tested"), (size.row for size in sizes(proofs))
+    )

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from talbot.base.files import insert
 from talbot.base.paths import ROOT
+from talbot.base.table import markdown_table
 from talbot.imaging.frame.job import golden_result
 from talbot.imaging.frame.request import request
 from talbot.models.parameters import STANDARD, ArrayParameters
@@ -77,24 +78,17 @@ def sort_row(length: int, program: bytes) -> Sequence[str]:
     )
 
 
-def table(head: str, rows: Sequence[Sequence[str]], texts: int) -> str:
-    """Return a Markdown table, the first ``texts`` columns of text."""
-    columns = head.split(" | ")
-    rule = ["---" if n < texts else "---:" for n in range(len(columns))]
-    return "\n".join(f"| {' | '.join(cells)} |" for cells in (columns, rule, *rows))
-
-
 def main() -> int:
     """Write the tables of PAGE."""
     edges, quicksort, data = compiled("edges"), compiled("quicksort"), bytes(range(256)) * 4
     frames = [frame_row(*frame, edges) for frame in FRAMES]
-    head = "scene | pixels | bytes | edges | busy cells | wakes the host | cycles | CPI"
-    insert(PAGE, "frames", table(head, frames, 2))
-    head = "words | quicksort, cycles | CPI | sorter, cycles | ratio"
-    insert(PAGE, "sorting", table(head, [sort_row(length, quicksort) for length in LENGTHS], 0))
+    head = "scene", "pixels", "bytes", "edges", "busy cells", "wakes the host", "cycles", "CPI"
+    insert(PAGE, "frames", markdown_table(head, frames, 2))
+    head = "words", "quicksort, cycles", "CPI", "sorter, cycles", "ratio"
+    insert(PAGE, "sorting", markdown_table(head, (sort_row(length, quicksort) for length in LENGTHS), 0))
     cycles, instructions, _ = ran(assembled("crc", address=0x200, length=len(data)), 0x200, data)
     row = f"{len(data):,}", f"{cycles:,}", f"{cycles / len(data):.1f}", f"{cycles / instructions:.2f}"
-    insert(PAGE, "crc", table("bytes | cycles | cycles a byte | CPI", [row], 0))
+    insert(PAGE, "crc", markdown_table(("bytes", "cycles", "cycles a byte", "CPI"), [row], 0))
     print(PAGE)
     return 0
 

@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator
 
+from talbot.base.table import markdown_table
 from talbot.rtl.asp_chip.pins import pins
-from talbot.rtl.host.document.markdown import table
 
 MEANING = {
     "clk": "System clock. All pins except SPI's and `reset` are synchronous to its rising edge.",
@@ -25,7 +25,7 @@ def host_pins() -> str:
     """Return the table of the pins that a host or a board drives or reads. Raises KeyError for one that is no port."""
     ports = {name: (direction, bits) for direction, name, bits in _ports()}
     rows = ((pin, *ports[pin], text) for pin, text in MEANING.items())
-    return table(
+    return markdown_table(
         ["pin", "direction", "meaning"],
         ((f"`{pin}[{bits}]`" if bits > 1 else f"`{pin}`", direction, text) for pin, direction, bits, text in rows),
     )

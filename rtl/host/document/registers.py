@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from talbot.base.page import render
+from talbot.base.table import markdown_table
 from talbot.models.parameters.registers import Field, RegisterMap
-from talbot.rtl.host.document.markdown import table
 
 NOTE = (
     "Generated from models/parameters/registers/asp_chip.rdl by talbot document. Byte addresses; a field of more than "
@@ -52,7 +52,7 @@ def rows(chip: RegisterMap) -> Iterator[Row]:
 def markdown(chip: RegisterMap) -> str:
     """Return the map as a Markdown document."""
     note = f"{NOTE} How a host uses them: [host.md](host.md)."
-    return f"# Registers of AspChip\n\n{note}\n\n{table(COLUMNS, (row.cells for row in rows(chip)))}\n"
+    return f"# Registers of AspChip\n\n{note}\n\n{markdown_table(COLUMNS, (row.cells for row in rows(chip)))}\n"
 
 
 def html(chip: RegisterMap, listed: bool = False) -> str:

@@ -6,13 +6,13 @@ from textwrap import fill
 
 import numpy as np
 
+from talbot.base.table import markdown_table
 from talbot.models.chip import golden_frame
 from talbot.models.digital.host import command, frame_values, read_transfer, write_transfers
 from talbot.models.digital.pattern import PatternEnd, pattern_value
 from talbot.models.digital.phase import phase_samples
 from talbot.models.parameters import NO_DIVIDER, AmpTiming, FrameParameters, SensorParameters, Window
 from talbot.models.parameters.registers import RegisterMap, array_resets, register_map
-from talbot.rtl.host.document.markdown import table
 from talbot.rtl.host.document.pins import host_pins
 
 
@@ -59,7 +59,7 @@ def tile_order(sensor: SensorParameters) -> str:
     """Return the table of the pixel type at each position of a tile."""
     tile = sensor.tile
     rows = ([f"**{r}**", *tile.order[tile.cols * r : tile.cols * (r + 1)]] for r in range(tile.rows))
-    return table(["row in tile \\ k", *map(str, range(tile.cols))], rows)
+    return markdown_table(["row in tile \\ k", *map(str, range(tile.cols))], rows)
 
 
 def pixel_types(sensor: SensorParameters) -> str:
@@ -71,7 +71,7 @@ def pixel_types(sensor: SensorParameters) -> str:
         (", ".join(map(str, alphas)), f"{beta:g}", f"{gamma:g}", ", ".join(f"{alpha:g}" for alpha in alphas.values()))
         for (beta, gamma), alphas in gratings.items()
     )
-    return table(["types", "beta", "gamma, degrees", "alpha, degrees"], rows)
+    return markdown_table(["types", "beta", "gamma, degrees", "alpha, degrees"], rows)
 
 
 def phase_examples(sensor: SensorParameters) -> str:
@@ -81,7 +81,7 @@ def phase_examples(sensor: SensorParameters) -> str:
     taps = [(100, 100, 100, 200), (200, 100, 0, 10), (255, 0, 0, 255), (90, 91, 90, 89), (7, 7, 7, 7)]
     sent = zip(*phase_samples(np.array(taps), sensor.chip, noise_floor=8))
     rows = ((*four, four[0] - four[2], four[3] - four[1], *pair) for four, pair in zip(taps, sent))
-    return table(["i0", "i90", "i180", "i270", "x", "y", "phase sent", "amplitude sent"], rows)
+    return markdown_table(["i0", "i90", "i180", "i270", "x", "y", "phase sent", "amplitude sent"], rows)
 
 
 def pattern_examples(sensor: SensorParameters) -> str:
@@ -90,7 +90,7 @@ def pattern_examples(sensor: SensorParameters) -> str:
     places = [(0, 0, 5, 0), (0, 1, 0, 0), (4, 0, 0, 0), (4, 2, 3, 0), (100, 63, 5, 3)]
     places = [p for p in places if p[0] < array.rows and p[1] * tile.cols + p[2] < array.cols and p[2] < tile.cols]
     places += [(array.rows - 1, *divmod(array.cols - 1, tile.cols), 0)]
-    return table(["row", "tile", "k", "sub", "value"], ((*p, int(pattern_value(*p))) for p in places))
+    return markdown_table(["row", "tile", "k", "sub", "value"], ((*p, int(pattern_value(*p))) for p in places))
 
 
 def session(sensor: SensorParameters) -> str:
