@@ -220,3 +220,30 @@ class Converter:
         levels, low = np.ascontiguousarray(self.levels[int(unsigned)], np.float64), 0 if unsigned else -BIPOLAR
         search(v.ravel(), lane, index, levels, self.offset, scales, np.uint32(self.seed), window, low, codes, converted)
         return codes.reshape(v.shape), converted.reshape(v.shape)
+
+    def window(
+        self, v: npt.NDArray[np.float64], threshold: int, lane: npt.ArrayLike, index: npt.ArrayLike
+    ) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]]:
+        """Hold and compare with both ends of the window alone: `held`, and `compare` twice.
+
+        Parameters
+        ----------
+        v : float64
+            Values in LSB.
+        threshold : int
+            T, 0..127.
+        lane : array of int
+            0..lanes-1, broadcastable to ``v``.
+        index : array of int
+            Sample number, 0..2**28-1, broadcastable to ``v``.
+
+        Returns
+        -------
+        above : bool
+            True where held + noise >= level(T).
+        not_below : bool
+            True where held + noise >= level(1 - T).
+        """
+        held = self.held(v, lane, index)
+        above = self.compare(held, BIPOLAR + threshold, False, lane, index, 0)
+        return above, self.compare(held, BIPOLAR + 1 - threshold, False, lane, index, 1)

@@ -40,17 +40,9 @@ class _Lanes(Protocol):
         self, v: npt.NDArray[np.float64], unsigned: bool, window: int, lane: npt.ArrayLike, index: npt.ArrayLike
     ) -> tuple[npt.NDArray[np.int16], npt.NDArray[np.bool_]]: ...
 
-    def held(self, v: npt.ArrayLike, lane: npt.ArrayLike, index: npt.ArrayLike) -> npt.NDArray[np.float64]: ...
-
-    def compare(
-        self,
-        held: npt.NDArray[np.float64],
-        dac: npt.ArrayLike,
-        unsigned: bool,
-        lane: npt.ArrayLike,
-        index: npt.ArrayLike,
-        decision: int,
-    ) -> npt.NDArray[np.bool_]: ...
+    def window(
+        self, v: npt.NDArray[np.float64], threshold: int, lane: npt.ArrayLike, index: npt.ArrayLike
+    ) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]]: ...
 
 
 def decisions(unsigned: bool, threshold: int, ternary: bool = False) -> Generator[int, bool, tuple[int, bool]]:
@@ -141,7 +133,11 @@ def convert(
         raise ParameterError("v = nan or infinity: must be finite")
     window = 0 if unsigned else threshold
     if ternary:
-        codes = _signs(v, window, converter, lane, index)
+        if converter is None:
+            above, not_below = v >= window - 0.5, v >= 0.5 - window
+        else:
+            above, not_below = converter.window(v, window, lane, index)
+        codes = np.where(above, 1, np.where(not_below, 0, -1)).astype(np.int16)
         return Conversion(codes, np.zeros(v.shape, bool), np.full(v.shape, 2, np.uint8))
     if converter is None:
         codes, converted = _ideal(v, unsigned, window)
@@ -151,19 +147,6 @@ def convert(
     first = 2 if window else 0
     taken = np.where(converted, first + BITS, first).astype(np.uint8)
     return Conversion(codes.reshape(v.shape), converted.reshape(v.shape), taken.reshape(v.shape))
-
-
-def _signs(
-    v: npt.NDArray[np.float64], window: int, converter: _Lanes | None, lane: npt.ArrayLike, index: npt.ArrayLike
-) -> npt.NDArray[np.int16]:
-    """-1, 0 or 1: the first two decisions on each value."""
-    if converter is None:
-        above, not_below = v >= window - 0.5, v >= 0.5 - window
-    else:
-        held = converter.held(v, lane, index)
-        above = converter.compare(held, BIPOLAR + window, False, lane, index, 0)
-        not_below = converter.compare(held, BIPOLAR + 1 - window, False, lane, index, 1)
-    return np.where(above, 1, np.where(not_below, 0, -1)).astype(np.int16)
 
 
 def _ideal(
