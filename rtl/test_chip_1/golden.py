@@ -1,6 +1,7 @@
 """The golden chip: the bytes of the host against memory, the sorter and the golden processor."""
 
 from collections import deque
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from talbot.rtl.proc.golden import Access, Execution, Fetch, Memory, Receive, Send, execution
@@ -16,6 +17,16 @@ SORTER = 0x8000  # addresses of the processor from here on
 def header(address: int, words: int) -> bytes:
     """Return the four bytes ahead of ``words`` words. address: of a word, with the bits WRITE and REGISTER."""
     return address.to_bytes(2, "little") + words.to_bytes(2, "little")
+
+
+def words_of(data: bytes) -> list[int]:
+    """Return the words of ``data``."""
+    return [int.from_bytes(data[i : i + 4], "little") for i in range(0, len(data), 4)]
+
+
+def bytes_of(words: Iterable[int]) -> bytes:
+    """Return the bytes of ``words``."""
+    return b"".join(word.to_bytes(4, "little") for word in words)
 
 
 @dataclass

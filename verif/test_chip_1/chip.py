@@ -1,6 +1,5 @@
 """TestChip1's Verilog in Verilator, with a host at its pins."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 
@@ -20,16 +19,6 @@ def _design() -> tuple[str, tuple]:
     chip = TestChip1()
     chip.elaborate()
     return translate_component(TestChip1(), TOP), ports_of(chip)
-
-
-def words_of(data: bytes) -> list[int]:
-    """Return the words of ``data``."""
-    return [int.from_bytes(data[i : i + 4], "little") for i in range(0, len(data), 4)]
-
-
-def bytes_of(words: Sequence[int]) -> bytes:
-    """Return the bytes of ``words``."""
-    return b"".join(word.to_bytes(4, "little") for word in words)
 
 
 @dataclass

@@ -12,9 +12,9 @@ from talbot.imaging.frame.job import golden_result
 from talbot.imaging.frame.request import request
 from talbot.models.parameters import STANDARD, ArrayParameters
 from talbot.rtl.proc.isa import signed
-from talbot.rtl.test_chip_1.golden import CONTROL, WRITE, GoldenChip, header
+from talbot.rtl.test_chip_1.golden import CONTROL, WRITE, GoldenChip, bytes_of, header, words_of
 from talbot.rtl.test_chip_1.programs import JOB, assembled, compiled
-from talbot.verif.test_chip_1.chip import Chip, bytes_of, words_of
+from talbot.verif.test_chip_1.chip import Chip
 from talbot.verif.test_chip_1.programs import RIGHT, Wake, edges_of, host_edges, memory_of
 
 PAGE = ROOT / "docs" / "results" / "test_chip_1.md"

@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from talbot.models.digital.stream import decode_stream
 from talbot.models.parameters import ParameterError, TileParameters
-from talbot.rtl.test_chip_1.golden import WORDS
+from talbot.rtl.test_chip_1.golden import WORDS, bytes_of, words_of
 from talbot.rtl.test_chip_1.programs import JOB
 
 COUNTS = JOB + 32  # address of the cells' counts, ahead of the stream
@@ -46,13 +46,13 @@ def memory_of(stream: bytes, wake: Wake) -> bytes:
     if start + len(stream) > 4 * WORDS:
         raise ParameterError(f"stream = {len(stream)} bytes: must be at most {4 * WORDS - start} with these cells")
     words = start, COUNTS, wake.shift, wake.least_edges, wake.least_cells, 0, 0, 0
-    return b"".join(word.to_bytes(4, "little") for word in words) + bytes(start - COUNTS) + stream
+    return bytes_of(words) + bytes(start - COUNTS) + stream
 
 
 def edges_of(memory: bytes, stream: bytes, wake: Wake) -> Edges:
     """Return the results in the ``memory`` from JOB on."""
     rows, cols = cells_of(stream, wake.shift)
-    status, edges, busy = (int.from_bytes(memory[at : at + 4], "little") for at in (20, 24, 28))
+    status, edges, busy = words_of(memory[20:32])
     counts = np.frombuffer(memory[32 : 32 + rows * cols], np.uint8).reshape(rows, cols)
     return Edges(status, edges, busy, counts)
 

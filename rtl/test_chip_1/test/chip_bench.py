@@ -4,7 +4,7 @@ from functools import cache
 from itertools import cycle
 
 from talbot.rtl.harness.testbench import build
-from talbot.rtl.test_chip_1.golden import CHANNEL, CONTROL, HALTED, RUNS, WORD_WAITS, WRITE, header
+from talbot.rtl.test_chip_1.golden import CHANNEL, CONTROL, HALTED, RUNS, WORD_WAITS, WRITE, bytes_of, header, words_of
 
 ALWAYS = (True,)
 SMALL = 32  # words of a bank: 1 KB of memory, so that PyMTL simulates it
@@ -57,8 +57,7 @@ class Host:
 
     def read(self, address, words):
         """Return words of memory, from the byte ``address`` on."""
-        data = self.transfer(header(address // 4, words), 4 * words)
-        return [int.from_bytes(data[i : i + 4], "little") for i in range(0, len(data), 4)]
+        return words_of(self.transfer(header(address // 4, words), 4 * words))
 
     def control(self, runs):
         self.transfer(header(CONTROL | WRITE, 1) + bytes([runs, 0, 0, 0]))
@@ -67,11 +66,10 @@ class Host:
         return int.from_bytes(self.transfer(header(CONTROL, 1), 4), "little")
 
     def send(self, *words):
-        self.transfer(header(CHANNEL | WRITE, len(words)) + b"".join(word.to_bytes(4, "little") for word in words))
+        self.transfer(header(CHANNEL | WRITE, len(words)) + bytes_of(words))
 
     def receive(self, words=1):
-        data = self.transfer(header(CHANNEL, words), 4 * words)
-        return [int.from_bytes(data[i : i + 4], "little") for i in range(0, len(data), 4)]
+        return words_of(self.transfer(header(CHANNEL, words), 4 * words))
 
     def run(self, limit=20_000):
         """Let the processor run until it stops or has a word; returns the cycles to that."""

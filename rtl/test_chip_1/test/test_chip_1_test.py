@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from talbot.rtl.proc.assembler import assemble
 from talbot.rtl.proc.isa import signed
 from talbot.rtl.test_chip_1 import TestChip1, TestChip1FL
-from talbot.rtl.test_chip_1.golden import HALTED, PROC_WAITS, RUNS
+from talbot.rtl.test_chip_1.golden import HALTED, PROC_WAITS, RUNS, bytes_of
 from talbot.rtl.test_chip_1.test.chip_bench import ALWAYS, SMALL, Host
 
 SETTINGS = settings(
@@ -30,7 +30,7 @@ class TestFL:
     def test_memory(self, words, place, willing):
         host = self.host(willing)
         host.write(0, bytes(BYTES))
-        host.write(4 * place, b"".join(word.to_bytes(4, "little") for word in words))
+        host.write(4 * place, bytes_of(words))
         assert host.read(0, BYTES // 4) == [0] * place + words + [0] * (BYTES // 4 - place - len(words))
         assert host.status() == 0
 
@@ -74,7 +74,7 @@ class TestFL:
         l: sw a2, 0(a0)\nlbu a3, 0(a0)\nsub a2, a2, a3\nxor a4, a4, a2\naddi a2, a3, 3\naddi a0, a0, 4\nbne a0, a1, l
         lw a5, 0(t0)\nsw a4, 0x1c0(x0)\nsw a5, 0x1c4(x0)\nebreak"""
         host.write(0, assemble(text))
-        host.write(0x200, b"".join(word.to_bytes(4, "little") for word in words))
+        host.write(0x200, bytes_of(words))
         host.control(True)
         for _ in range(4):
             host.read(0, 3)

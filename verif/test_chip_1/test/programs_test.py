@@ -8,9 +8,9 @@ import pytest
 from talbot.models.digital.stream import StreamHeader, encode_frame
 from talbot.models.parameters import ArrayParameters, FrameParameters, ParameterError, SensorParameters, Window
 from talbot.rtl.proc.isa import signed
-from talbot.rtl.test_chip_1.golden import CHANNEL, CONTROL, WRITE, GoldenChip, header
+from talbot.rtl.test_chip_1.golden import CHANNEL, CONTROL, WRITE, GoldenChip, bytes_of, header, words_of
 from talbot.rtl.test_chip_1.programs import JOB, assembled, compiled
-from talbot.verif.test_chip_1.chip import Chip, bytes_of, words_of
+from talbot.verif.test_chip_1.chip import Chip
 from talbot.verif.test_chip_1.programs import DAMAGED, OTHER_KIND, RIGHT, Wake, edges_of, host_edges, memory_of
 
 needs_gcc = pytest.mark.needs("riscv64-unknown-elf-gcc")
