@@ -2,7 +2,6 @@
 
 from talbot.base.sensor import Varied
 
-DRAWN_PITCH_UM = 10.0  # of rows and columns
 PIXEL_PITCHES_UM = 10.0, 15.0  # at which pixels are drawn: at 9 um metal 1 breaks its rules, at 8 um implants too
 DUMMIES = 2  # rows and columns on each side of a drawn array
 DRAWN_PITCH = {"array.pitch": "the masks of pixels, rows and columns are drawn for this pitch"}

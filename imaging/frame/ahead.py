@@ -38,14 +38,14 @@ def _compile(_: Path) -> None:
 
 def main() -> None:
     """Convert, encode, decode and rebuild a frame of a few tiles."""
-    asked = request(scene="flat:50", rows=4 * STANDARD.tile.rows, cols=4 * STANDARD.tile.cols)
-    scene, plan = see(asked)
-    front_end = front_end_of(asked.lit, [0] * STANDARD.tile.n_types)
+    frame_request = request(scene="flat:50", rows=4 * STANDARD.tile.rows, cols=4 * STANDARD.tile.cols)
+    scene, plan = see(frame_request)
+    front_end = front_end_of(frame_request.lit, [0] * STANDARD.tile.n_types)
     samples, none = np.random.default_rng(1).uniform(30, 80, (1, *scene.shape, 2)), np.zeros(scene.shape, bool)
     views = Views((Region(1, ~none),), 1, None)
-    ideal = np.moveaxis(front_end.values(samples, asked.frame.mode), 0, 2)
+    ideal = np.moveaxis(front_end.values(samples, frame_request.frame.mode), 0, 2)
     with afresh():
-        _ = read_golden(asked, Exposed(scene, plan, views, front_end, samples, samples, ideal, none)).rebuilt
+        _ = read_golden(frame_request, Exposed(scene, plan, views, front_end, samples, samples, ideal, none)).rebuilt
 
 
 if __name__ == "__main__":

@@ -28,13 +28,7 @@ from talbot.imaging.sequence.job import results
 from talbot.models.parameters import SIGNED, sensor_text
 from talbot.models.scene import Clip
 
-ANIMATIONS = {
-    "edge": "edges.webp",
-    "ternary": "edges.webp",
-    "raw": "edges.webp",
-    "image": "image.webp",
-    "tof": "image.webp",
-}
+ANIMATIONS = dict.fromkeys((*SIGNED, "raw"), "edges.webp") | dict.fromkeys(("image", "tof"), "image.webp")
 NAMES = ("stream.bin", "sensor.toml", "scene.png", "report.html", "summary.json", *ANIMATIONS.values())
 SCALE = 64.0  # codes of full colour: the same in all frames
 WIDTH = 384  # px of the animation at least

@@ -230,9 +230,8 @@ def bank(sizes: ColumnSizes) -> Circuit:
     gate(nand(2), gate(inverter(), "now1", "now1_n"), gate(nand(), "now0", "raw", "now1_r"), "now1_a")
     nows = {"0": "now0", "0_a": "now0_a", "1": "now1_a", "2": "now2", "3": "now3"}
     for name, now in nows.items():
-        asked = f"asked{name[0]}"
         gate(inverter(6), gate(nand(), "read", now, f"wn{name}"), f"w{name}")
-        ends = gate(nand(), "sig", now, f"fr{name}"), gate(nand(), "turned", asked, f"fs{name}")
+        ends = gate(nand(), "sig", now, f"fr{name}"), gate(nand(), "turned", f"asked{name[0]}", f"fs{name}")
         gate(inverter(6), gate(inverter(2), gate(nand(), *ends, f"fp{name}"), f"fq{name}"), f"f{name}")
         # In the reference half too: f is at start then, or what it had in the turn before were in the sample
         gate(inverter(6), gate(nand(2), f"fq{name}", f"wn{name}", f"fo{name}"), f"fn{name}")

@@ -261,9 +261,9 @@ def sample(
     the sub-sample; the columns begin half a full well below their reset level.
     """
     begin = HOLD * spec.hold
-    rest = spec.reset_level - (0.0 if sub is None else spec.swing / 2)
+    dark = spec.reset_level - (0.0 if sub is None else spec.swing / 2)
     stimulus: dict[str, Points] = {
-        f"column_{name}": [(0.0, rest), (begin + COLUMNS, rest), (begin + COLUMNS + 1e-9, spec.reset_level - value)]
+        f"column_{name}": [(0.0, dark), (begin + COLUMNS, dark), (begin + COLUMNS + 1e-9, spec.reset_level - value)]
         for name, value in (("a", a), ("b", b))
     }
     stimulus |= clocked(spec, corner, begin, code, before, (END * spec.hold + COLUMNS,) if ends else ())

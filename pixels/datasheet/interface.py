@@ -22,7 +22,7 @@ class InterfaceResult:
 
     first, last: s from a cycle's begin to the strobe, the least and the most. sample: s from the begin of hold's cycle
     until the lane samples, the most. decided: s from the strobe until then, the least. over: s by which the sample ends
-    before the reset begins, the least. energy: J of a cycle with a strobe; rest: J of one without `convert`.
+    before the reset begins, the least. energy: J of a cycle with a strobe; idle: J of one without `convert`.
     """
 
     first: float
@@ -31,7 +31,7 @@ class InterfaceResult:
     decided: float
     over: float
     energy: float
-    rest: float
+    idle: float
     runs: int
     repeated: int
 
@@ -65,11 +65,11 @@ def measure(setup: Setup, corner: Corner) -> InterfaceResult:
                 decided.append(begin - max(at for at in _rises(wave, "strobe", high) if at < begin))
                 over.append(min(at for at in _rises(wave, "reset", high) if at > begin) - end)
         runs, repeated = spice.runs, spice.repeated
-    energy, rest = (
+    energy, idle = (
         max(wave.charge("vdd", at * cycle, (at + 1) * cycle) for wave in waves) * high for at in (HOLDS[0] + 2, 0)
     )
     ends = min(strobes), max(strobes), max(samples), min(decided), min(over)
-    return InterfaceResult(*ends, energy, rest, runs, repeated)
+    return InterfaceResult(*ends, energy, idle, runs, repeated)
 
 
 def _rises(wave: Wave, net: str, high: float, up: bool = True) -> list[float]:

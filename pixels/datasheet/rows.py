@@ -98,7 +98,7 @@ def _timing(found: Found, spec: LaneSpec, amplifier: AmplifierSpec) -> list[Row]
         row("interface", "sample after the last decision", "ns", decided, least=0.0),
         row("interface", "sample after the clock's rise", "ns", of("sample", 1e9), most=1e9 * amplifier.track),
         row("interface", "energy of a strobe", "pJ", of("energy", 1e12)),
-        row("interface", "energy of a cycle without convert", "pJ", of("rest", 1e12)),
+        row("interface", "energy of a cycle without convert", "pJ", of("idle", 1e12)),
         row("references", "levels of eight lanes, off by", "LSB", shared("off"), most=spec.settling),
         row("references", "settling of eight lanes to half an LSB", "ns", shared("settling", 1e9)),
         row("references", "refp less refn, end to end", "mV", shared("ripple", 1e3)),

@@ -18,8 +18,8 @@ proc place_and_reroute {args} {
   return $helped
 }
 
-# repair_design takes the shortest wires for its own: where a global route goes around what is full, a load stays beyond
-# the driver's limit. Such a driver becomes the next larger of its kind; without one, a buffer halves the way.
+# repair_design estimates loads from the shortest wires: where a global route is longer, around congestion, a load stays
+# beyond the driver's limit. Such a driver becomes the next larger of its kind; without one, a buffer halves the way.
 proc help_drivers {} {
   set beyond [beyond_limits]
   set helped 0

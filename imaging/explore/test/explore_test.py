@@ -149,8 +149,8 @@ def test_keys():
     ],
 )
 def test_refused_in_one_line_before_anything_is_written(words, said, tmp_path, capsys):
-    given = [OWN if word == "OWN" else word for word in words.split()]  # the checkout's path may hold a space
-    assert main(["explore", *given, "--out", str(tmp_path / "out")]) == 2
+    arguments = [OWN if word == "OWN" else word for word in words.split()]  # the checkout's path may hold a space
+    assert main(["explore", *arguments, "--out", str(tmp_path / "out")]) == 2
     lines = capsys.readouterr().err.splitlines()
     assert len(lines) == 1 and said in lines[0] and not (tmp_path / "out").exists()
 

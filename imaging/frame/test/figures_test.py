@@ -62,7 +62,7 @@ def test_trims_are_from_a_flat_field_of_its_own_light(name):
     usual, dim = (replace(f, sensor=replace(f.sensor, electrical=replace(f.sensor.electrical, **part)))
                   for f, part in zip(frames, ({}, electrical), strict=True))  # fmt: skip
     trims = [trimmed(asked).trim for asked in (usual, dim)]
-    # Dark current has noise and, through unequal gains, a fixed pattern of its own
+    # Dark current has noise and, through unequal gains, a fixed pattern
     assert np.abs(np.subtract(*trims)).max() <= (12 if "dark current" in name else 2)
     result = golden_result(dim)
     assert summarize_golden(result)["stream_bytes"] == len(result.stream)

@@ -22,4 +22,4 @@ def test_a_lane_samples_after_its_last_decision_and_between_two_resets_whatever_
     assert 4e-9 < found.first < found.last < STROBE
     assert found.last - found.first < 3e-9  # the first strobe after a rest is as late as `convert`
     assert found.decided > DECISION[name] and found.sample < SPEC.track and found.over > KEPT
-    assert abs(found.rest) < 0.05e-12 < found.energy < 1e-12
+    assert abs(found.idle) < 0.05e-12 < found.energy < 1e-12

@@ -433,7 +433,7 @@ class TestRunLength(TestRunLengthCL):
                 ones = (1 << port.nbits) - 1
                 value = (0, ones)[turn] if turn < 2 else pick.randint(0, ones)
                 port @= value
-                if name == "mode":  # its third bit is one of its own, and of ternary mode alone
+                if name == "mode":  # its third bit is apart, and set in ternary mode alone
                     value, ones = value & 3 | (value == 4) << 3, 0b1011
                 expected = expected & ~(ones << low) | value << low
             got = bench.run([ScanMsg(FRAME, 0), ScanMsg(END, 0)], rest=1)
