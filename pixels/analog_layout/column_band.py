@@ -80,7 +80,7 @@ class Group:
 
     left: float
     right: float
-    rows: list[tuple[Sequence[Placed], Sequence[Placed], float]]
+    rows: Sequence[tuple[Sequence[Placed], Sequence[Placed], float]]
     ways: dict[str, list[float]] = field(default_factory=dict)
     pins: dict[str, float] = field(default_factory=dict)
     inner: dict[str, float] = field(default_factory=dict)
@@ -176,18 +176,17 @@ def draw_band(
     """
     d = {t.name: _device(t) for t in flat.transistors(band(sizes, lanes))}
     canvas = Canvas(layout, "column_band", masks.base)
-    rows = bank_rows(sizes, d)
-    of_bank = {net for row in rows for net in _nets(in_columns(row, WEST, ROOM))} & set(outward)
-    bank_east = snap(max(BANK, (len(of_bank) + SPARE_WAYS) * pitch))
-    bank = Group(WEST, bank_east, [in_columns(row, WEST, ROOM) for row in rows])
+    rows = [in_columns(row, WEST, ROOM) for row in bank_rows(sizes, d)]
+    of_bank = set.union(*map(_nets, rows)).intersection(outward)
+    bank = Group(WEST, snap(max(BANK, (len(of_bank) + SPARE_WAYS) * pitch)), rows)
     bank.inner[RAMP] = RAMP_COLUMNS * pitch
     first = snap(min(x for net, x in pins.items() if net.startswith("lane_")) - ENDS_ROOM)
     plate_pitch = ceil((PLATE + PLATE_SPACE) / pitch) * pitch
-    plate_west = ceil((bank_east + PLATES_OFFSET) / plate_pitch) * plate_pitch
+    plate_west = ceil((bank.right + PLATES_OFFSET) / plate_pitch) * plate_pitch
     parts = min(PARTS_OF, int((first - PLATES_SPACE - plate_west) / plate_pitch / len(BIASES)))
     if parts < 1:
         raise ParameterError(f"array.pitch = {1e-6 * pitch:g}: must be less, for the bias west of the lanes")
-    bias_west = bank_east + BIAS_OFFSET
+    bias_west = bank.right + BIAS_OFFSET
     bias_east = plate_west + plate_pitch * parts * len(BIASES) + PLATES_SPACE
     bias = Group(bias_west, bias_east, [_bias(d, bias_west)])
     for k, net in enumerate(net for net in BIASES for _ in range(parts)):
@@ -201,14 +200,14 @@ def draw_band(
         nets_by_x = sorted((net for net in outward if net in middles), key=lambda net: middles[net])
         for k, net in enumerate(nets_by_x):
             for _ in range(2 if net.startswith("lane_") else 1):
-                near = middles[net] if group is not bank else WEST + (k + 0.5) / len(nets_by_x) * (bank_east - WEST)
+                near = middles[net] if group is not bank else WEST + (k + 0.5) / len(nets_by_x) * (bank.right - WEST)
                 group.ways.setdefault(net, []).append(group.free(near, plate_pitch if group is bias else pitch))
         for net, x in middles.items():
             if sum(net in _nets(row) for row in group.rows) > 1 and not group.of(net):
                 group.inner[net] = group.free(x, 0.5, 0.25)
     tops = [group.place(canvas, masks) for group in groups]
     ramp = _ramp(canvas, masks, sizes, bank, tops[0])
-    decoupling, top = _decoupling(canvas, masks, sizes, bias, tops[1], parts, plate_west, plate_pitch)
+    decoupling, top = _decoupling(canvas, masks, sizes, bias, tops[1])
     plates = ramp, *decoupling
     height = snap(max(tops[0] + RAMP_RISE + ramp.area / RAMP_WIDTH, top) + NORTH)
     joints: dict[str, list[tuple[float, float, float]]] = {"vss": [], "vdd": []}
@@ -297,27 +296,20 @@ def _ramp(canvas: Canvas, masks: AnalogMasks, sizes: ColumnSizes, bank: Group, t
 
 
 def _decoupling(
-    canvas: Canvas,
-    masks: AnalogMasks,
-    sizes: ColumnSizes,
-    bias: Group,
-    top: float,
-    parts: int,
-    west: float,
-    pitch: float,
+    canvas: Canvas, masks: AnalogMasks, sizes: ColumnSizes, bias: Group, top: float
 ) -> tuple[list[flat.Plate], float]:
-    """Return the capacitors of the bias's lines, each in ``parts`` from ``west`` on between ways, and their top."""
-    strip, plates, x, highest = bias.strips[0], list[flat.Plate](), west, top
+    """Return the capacitors of the bias's lines, between the places of ways above its strip, and their top."""
+    strip, plates, highest = bias.strips[0], list[flat.Plate](), top
     tracks = {track.net: track.y for track in strip.tracks}
     for c in (c for c in flat.capacitors(band(sizes, 1)) if c.name.startswith("bias.c_")):
-        wide, low = PLATE, top + PLATE_RISE
+        wide, low, parts = PLATE, top + PLATE_RISE, len(bias.plates[c.a])
         whole = length_um(c.value / parts, masks, wide)
         rows = ceil(whole / PLATE_LENGTH)
         piece = length_um(c.value / parts / rows, masks, wide)
         high = snap(low + rows * piece + (rows - 1) * ROW_SPACE)
         highest = max(highest, high)
-        for _ in range(parts):
-            left, middle = x + (pitch - PLATE) / 2, x + pitch / 2
+        for middle in bias.plates[c.a]:
+            left = middle - wide / 2
             canvas.wire(
                 THIRD, left - LOWER_ENCLOSURE, low - LOWER_TAB, left + wide + LOWER_ENCLOSURE, high + LOWER_ENCLOSURE
             )
@@ -331,7 +323,6 @@ def _decoupling(
             canvas.stack(at, low - VIA_INSET, SECOND, THIRD)
             canvas.wire(SECOND, at - 0.19, rail - 0.19, at + 0.19, low - VIA_INSET + 0.19)
             canvas.stack(at, rail, 1, SECOND)
-            x += pitch
         count = parts * rows
         plates.append(flat.Plate(c.name, c.a, c.b, count * wide * piece, count * 2 * (wide + piece)))
     return plates, highest

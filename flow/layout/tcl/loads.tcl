@@ -7,7 +7,7 @@ set_propagated_clock [all_clocks]
 routing_layers
 
 # Legal places, and routes of the cells that are new or moved; first a larger cell or a buffer for each driver that is
-# beyond a limit on the routes of now. The number of these. args: of estimate_parasitics
+# beyond a limit on the present routes. Returns how many. args: of estimate_parasitics
 proc place_and_reroute {args} {
   global_route -start_incremental -allow_congestion
   set helped [help_drivers]
@@ -30,7 +30,7 @@ proc help_drivers {} {
       if {$larger ne "NULL"} {
         $driver swapMaster $larger
       } elseif {[$net getSigType] eq "SIGNAL"} {
-        buffer_halfway $net $driver
+        buffer_halfway $net
       } else { continue }
       incr helped
     }
@@ -44,7 +44,7 @@ proc larger_cell {inst} {
   return [[ord::get_db] findMaster $kind[expr {2 * $strength}]]
 }
 
-proc buffer_halfway {net driver} {
+proc buffer_halfway {net} {
   global clock_buffers
   set block [ord::get_db_block]
   set name halfway_[$net getName]
