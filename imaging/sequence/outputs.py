@@ -25,10 +25,10 @@ from talbot.imaging.frame.request import FrameRequest
 from talbot.imaging.frame.result import FrameResult, in_codes
 from talbot.imaging.sequence.figures import of_all, of_frame
 from talbot.imaging.sequence.job import results
-from talbot.models.parameters import SIGNED, sensor_text
+from talbot.models.parameters import MODES, SIGNED, sensor_text
 from talbot.models.scene import Clip
 
-ANIMATIONS = dict.fromkeys((*SIGNED, "raw"), "edges.webp") | dict.fromkeys(("image", "tof"), "image.webp")
+ANIMATIONS = {str(mode): "edges.webp" if mode in (*SIGNED, "raw") else "image.webp" for mode in MODES}
 NAMES = ("stream.bin", "sensor.toml", "scene.png", "report.html", "summary.json", *ANIMATIONS.values())
 SCALE = 64.0  # codes of full colour: the same in all frames
 WIDTH = 384  # px of the animation at least
