@@ -101,7 +101,7 @@ def tiles(s: dict[str, Any], broken: Sequence[str]) -> list[Tile]:
 
     tests = s["gate_tests"] or {}
     return [
-        tile(f"{s['area_um2']:,.0f} um2", "area"),
+        tile(s["area_um2"] and f"{s['area_um2']:,.0f} um2", "area"),
         tile(s["utilization"] and f"{100 * s['utilization']:.0f} %", "utilization"),
         tile(s["cells"] and f"{s['cells']:,}", "cells"),
         tile(s["open_nets"], "open nets", "open_nets"),

@@ -48,6 +48,15 @@ proc repair_loads {} {
   repair_design -slew_margin $load_margin -cap_margin $load_margin
 }
 
+# Hold, with as many buffers as it takes: repair_timing ends at one buffer a cell, and inputs that go straight into
+# registers need more. It ends by itself where the core is full.
+proc repair_hold {} {
+  global hold_margin
+  while {[catch {repair_timing -hold -hold_margin $hold_margin -max_buffer_percent 100} why]} {
+    if {![string match *RSZ-0060* $why]} { error $why $::errorInfo }
+  }
+}
+
 # A buffer at each output port that its driver alone moves too slowly: repair_design leaves a load that is the port's.
 # With placement's estimates: the wheel crashes here when global routes are present.
 proc buffer_slow_ports {} {

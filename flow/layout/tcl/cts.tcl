@@ -16,7 +16,7 @@ legalize
 estimate_parasitics -placement
 repair_timing -setup -setup_margin $setup_margin
 repair_loads
-repair_timing -hold -hold_margin $hold_margin
+repair_hold
 legalize
 shorten
 write_db cts.odb

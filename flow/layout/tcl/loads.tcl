@@ -182,7 +182,7 @@ estimate_parasitics -global_routing
 set load_margin [expr {2 * $load_margin}]
 repair_loads
 for {set turn 0} {[place_and_reroute] && $turn < 3} {incr turn} {}
-repair_timing -hold -hold_margin $hold_margin
+repair_hold
 place_and_reroute -spef_file global.spef
 raise_thresholds $setup_margin
 measured estimated_beyond [dict size [beyond_limits]]

@@ -11,7 +11,7 @@ repair_loads
 repair_timing -setup -setup_margin $setup_margin
 # Setup takes buffers away and makes gates larger: their drivers have to bear it
 repair_loads
-repair_timing -hold -hold_margin $hold_margin
+repair_hold
 legalize
 optimize_mirroring
 write_db repair.odb

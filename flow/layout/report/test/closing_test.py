@@ -19,3 +19,8 @@ def test_closing():
     assert found["leakage, ss"] == "4,800.0 uW"
     assert (found["area"], found["LVS"], found["DRC violations"]) == ("1,234 um2", "match", "2")
     assert (found["limits"], found["look at"]) == ("2 broken", "out/report.html")
+
+
+def test_closing_without_a_layout():
+    lines = closing(SUMMARY | {"area_um2": None}, ["open_nets = None: must be 0"], Path("report.html")).splitlines()
+    assert lines[0].split() == ["area", "not", "run"]
