@@ -82,7 +82,7 @@ def main() -> int:
     """Write the tables of PAGE."""
     edges, quicksort, data = compiled("edges"), compiled("quicksort"), bytes(range(256)) * 4
     frames = [frame_row(*frame, edges) for frame in FRAMES]
-    head = "scene", "pixels", "bytes", "edges", "busy cells", "wakes the host", "cycles", "CPI"
+    head = "scene", "pixels", "bytes", "edges", "busy regions", "wakes the host", "cycles", "CPI"
     insert(PAGE, "frames", markdown_table(head, frames, 2))
     head = "words", "quicksort, cycles", "CPI", "sorter, cycles", "ratio"
     insert(PAGE, "sorting", markdown_table(head, (sort_row(length, quicksort) for length in LENGTHS), 0))
