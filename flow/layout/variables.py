@@ -59,6 +59,7 @@ def variables(
         "high": tech.high.split("/") if tech.high else (),
         "low": tech.low.split("/") if tech.low else (),
         "load_margin": round(100 * tech.load_margin),
+        "fullest": tech.fullest,
         "setup_margin": tech.setup_margin_ns,
         "twin": TWIN,
         "hold_margin": tech.hold_margin_ns,

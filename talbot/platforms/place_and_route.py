@@ -40,7 +40,8 @@ class PlaceAndRoute:
     outline: GDS layer of the die's. pin_datatype, label_datatype: of GDS. pitch_um: of a layer's tracks, for a LEF that
     is written here. density_addon: share of the way from the least feasible density of placement to 1. padding: sites
     kept free on both sides of a cell in placement. setup_margin_ns, hold_margin_ns: slack that repair leaves at
-    estimated parasitics. load_margin: share of a slew's or load's limit that it leaves.
+    estimated parasitics. load_margin: share of a slew's or load's limit that it leaves. fullest: largest share of the
+    core that cells may fill after repair.
     """
 
     new_buffers: bool = True
@@ -84,6 +85,7 @@ class PlaceAndRoute:
     setup_margin_ns: float = field(default=0.4, metadata={"unit": "ns"})
     hold_margin_ns: float = field(default=0.05, metadata={"unit": "ns"})
     load_margin: float = 0.2
+    fullest: float = 0.9
 
 
 def place_and_route(pdk: str) -> PlaceAndRoute:

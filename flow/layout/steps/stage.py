@@ -43,10 +43,12 @@ STAGES: dict[str, dict[str, str]] = {
 ENVIRONMENT = {"OMP_WAIT_POLICY": "passive"}
 LOOK_S = 2.0  # how often a stage's log is looked at
 SILENT_S = 1200.0  # without a line in its log a stage hangs
-ERROR = re.compile(r"(?m)^(?:\[ERROR |setup slack |hold slack ).*")  # a message that the design is the cause of
+ERROR = re.compile(
+    r"(?m)^(?:\[ERROR |setup slack |hold slack |cells fill ).*"
+)  # a message that the design is the cause of
 FROM_OUTSIDE = signal.SIGKILL, signal.SIGTERM
 PATIENCE = 10  # iterations of detailed routing without fewer violations, after which it does not converge
-HOPELESS = 8, 0.3  # after so many iterations, more than this share of the first violations
+HOPELESS = (4, 0.5), (8, 0.3)  # after so many iterations, more than this share of the first violations
 ROUTING = "[INFO DRT-0187]"  # the line with which detailed routing begins
 # An iteration that takes so many times as long as the longest of the first ones, and as LEAST_S, is about a few
 # violations that no route of their tiles mends
@@ -221,9 +223,8 @@ def diverges(counts: Sequence[int], seconds: Sequence[float] = ()) -> bool:
 
     counts: violations after each iteration. seconds: of processors, of each iteration and of the next by now.
     """
-    number, share = HOPELESS
     if len(seconds) > STUBBORN and seconds[-1] > SLOW * max(*seconds[:STUBBORN], LEAST_S):
         return True
-    if len(counts) > number and counts[-1] > share * counts[0]:
+    if any(len(counts) > number and counts[-1] > share * counts[0] for number, share in HOPELESS):
         return True
     return len(counts) > PATIENCE and min(counts[-PATIENCE:]) >= min(counts[:-PATIENCE])

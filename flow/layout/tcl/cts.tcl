@@ -19,4 +19,5 @@ repair_loads
 repair_hold
 legalize
 shorten
+check_room
 write_db cts.odb

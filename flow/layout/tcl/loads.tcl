@@ -195,4 +195,5 @@ foreach {name path} {setup max hold min} {
     error "$name slack is $slack ns after repair, with estimated parasitics: must be at least 0"
   }
 }
+check_room
 write_db loads.odb
