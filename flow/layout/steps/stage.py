@@ -43,9 +43,8 @@ STAGES: dict[str, dict[str, str]] = {
 ENVIRONMENT = {"OMP_WAIT_POLICY": "passive"}
 LOOK_S = 2.0  # how often a stage's log is looked at
 SILENT_S = 1200.0  # without a line in its log a stage hangs
-ERROR = re.compile(
-    r"(?m)^(?:\[ERROR |setup slack |hold slack |cells fill ).*"
-)  # a message that the design is the cause of
+# A message that the design is the cause of
+ERROR = re.compile(r"(?m)^(?:\[ERROR |setup slack |hold slack |cells fill ).*")
 FROM_OUTSIDE = signal.SIGKILL, signal.SIGTERM
 PATIENCE = 10  # iterations of detailed routing without fewer violations, after which it does not converge
 HOPELESS = (4, 0.5), (8, 0.3)  # after so many iterations, more than this share of the first violations
