@@ -47,7 +47,7 @@ SILENT_S = 1200.0  # without a line in its log a stage hangs
 ERROR = re.compile(r"(?m)^(?:\[ERROR |setup slack |hold slack |cells fill ).*")
 FROM_OUTSIDE = signal.SIGKILL, signal.SIGTERM
 PATIENCE = 10  # iterations of detailed routing without fewer violations, after which it does not converge
-HOPELESS = (4, 0.5), (8, 0.3)  # after so many iterations, more than this share of the first violations
+HOPELESS = 8, 0.3  # after so many iterations, more than this share of the first violations
 ROUTING = "[INFO DRT-0187]"  # the line with which detailed routing begins
 # An iteration that takes so many times as long as the longest of the first ones, and as LEAST_S, is about a few
 # violations that no route of their tiles mends
@@ -222,8 +222,9 @@ def diverges(counts: Sequence[int], seconds: Sequence[float] = ()) -> bool:
 
     counts: violations after each iteration. seconds: of processors, of each iteration and of the next by now.
     """
+    number, share = HOPELESS
     if len(seconds) > STUBBORN and seconds[-1] > SLOW * max(*seconds[:STUBBORN], LEAST_S):
         return True
-    if any(len(counts) > number and counts[-1] > share * counts[0] for number, share in HOPELESS):
+    if len(counts) > number and counts[-1] > share * counts[0]:
         return True
     return len(counts) > PATIENCE and min(counts[-PATIENCE:]) >= min(counts[:-PATIENCE])

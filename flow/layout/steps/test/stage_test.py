@@ -28,8 +28,7 @@ open("place.odb", "w").write("placed")
 CONVERGED = ([1047, 580, 586, 193, 47, 14, 0], [1131, 618, 707, 202, 45, 3, 0])
 CONVERGED += ([22809, 15342, 14536, 5175, 2793, 1832, 1143, 826, 672, 550, 224, 110, 100, 75, 68, 56, 40, 40, 22, 16],)
 STALLED = [712, 487, 505, 103, 48, *[13] * 12]
-HOPELESS = [3000, 2400, 2500, 2100, 1700]
-SLOW = [3000, 1500, 1400, 1300, 1200, 1100, 1050, 1000, 950]
+HOPELESS = [3000, 2400, 2500, 2100, 2000, 1900, 1800, 1700, 1650]
 
 
 @pytest.mark.parametrize("counts", CONVERGED)
@@ -37,9 +36,9 @@ def test_routing_that_converges_goes_on(counts):
     assert not any(diverges(counts[:k]) for k in range(len(counts) + 1))
 
 
-@pytest.mark.parametrize("counts", [STALLED, HOPELESS, SLOW])
+@pytest.mark.parametrize("counts", [STALLED, HOPELESS])
 def test_routing_that_does_not_converge_is_stopped(counts):
-    assert diverges(counts) and not diverges(counts[:-1][:8])
+    assert diverges(counts) and not diverges(counts[:8])
 
 
 def test_violations_are_those_of_the_last_routing():
@@ -92,8 +91,8 @@ def test_what_is_not_the_designs_fault_is_no_result(place, word, message):
 
 
 def test_an_iteration_that_takes_far_longer_than_the_first_ones_is_stopped():
-    assert not diverges([9, 4, 3, 2, 1], [100] * 5 + [299]) and diverges([9, 4, 3, 2, 1], [100] * 5 + [301])
-    assert not diverges([9, 4, 3, 2, 1], [1] * 5 + [179])
+    assert not diverges([9] * 5, [100] * 5 + [299]) and diverges([9] * 5, [100] * 5 + [301])
+    assert not diverges([9] * 5, [1] * 5 + [179])
 
 
 def test_a_process_is_timed_by_its_processors():
