@@ -1,6 +1,7 @@
 """The timing of a netlist at its ports: which input reaches what, and delays and constraints measured with OpenSTA.
 
 OpenSTA's slacks at a grid of slews and loads are the model (2.0.17 had no `write_timing_model`).
+OpenSTA 2.7.0 does not update a net when a port's load changes, so the SPEF is read again for each load.
 """
 
 import re
