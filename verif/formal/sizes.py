@@ -94,7 +94,10 @@ def problems(proofs: Iterable[Proof]) -> list[str]:
 
 
 def table(proofs: Iterable[Proof]) -> str:
-    """Return the sizes as a Markdown table."""
-    return markdown_table(
-        ("block", "parameter", "can be built with", "proven at", "tested"), (size.row for size in sizes(proofs))
-    )
+    """Return the sizes as a Markdown table, blocks with the same values in one row."""
+    blocks: dict[tuple[str, ...], list[str]] = {}
+    for size in sizes(proofs):
+        block, *values = size.row
+        blocks.setdefault(tuple(values), []).append(block)
+    rows = ((", ".join(names), *values) for values, names in blocks.items())
+    return markdown_table(("blocks", "parameter", "can be built with", "proven at", "tested"), rows)
