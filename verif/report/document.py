@@ -16,7 +16,6 @@ from talbot.verif.report.steps import Outcome
 from talbot.verif.results import BlockResults
 
 FILE = "runs.json"
-NOT_RUN = "not run"
 
 
 @dataclass(frozen=True)
@@ -64,16 +63,18 @@ def figures(by_block: Mapping[str, BlockResults]) -> str:
 
 
 def table(done: Sequence[Outcome], runs: Mapping[str, Run]) -> str:
-    """Return the steps as a Markdown table."""
+    """Return the steps that ran as a Markdown table, and a line with the others."""
     rows = ["| step | found | s | date (UTC) | commit | load before |", "|---|---|---:|---|---|---:|"]
+    absent: list[str] = []
     for outcome in done:
-        name, run = outcome.step.name, runs.get(outcome.step.name)
-        if run and not outcome.problem:
-            cells = figures(outcome.by_block), f"{run.seconds:,.0f}", run.date, run.commit, f"{run.load:.1f}"
-        else:
-            cells = outcome.problem if run else NOT_RUN, "", "", "", ""
+        name = outcome.step.name
+        if (run := runs.get(name)) is None:
+            absent.append(name)
+            continue
+        done_at = f"{run.seconds:,.0f}", run.date, run.commit, f"{run.load:.1f}"
+        cells = (outcome.problem, "", "", "", "") if outcome.problem else (figures(outcome.by_block), *done_at)
         rows.append(f"| {' | '.join((name, *cells))} |")
-    return "\n".join(rows)
+    return "\n".join([*rows, *(["", f"Not run: {', '.join(absent)}."] if absent else [])])
 
 
 def put(document: Path, done: Sequence[Outcome], runs: Mapping[str, Run]) -> None:
