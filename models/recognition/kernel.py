@@ -153,20 +153,49 @@ def train(
     ParameterError
         For no picture.
     """
+    return regress(x, np.eye(classes)[labels], seed, landmarks)
+
+
+def regress(
+    x: Floats, targets: npt.NDArray[np.floating], seed: int = 1, landmarks: int = LANDMARKS, ridge: float = RIDGE
+) -> KernelClassifier:
+    """Learn the targets of pictures.
+
+    Parameters
+    ----------
+    x : float32 (n, features)
+        As of `features`.
+    targets : float (n, outputs)
+        What `KernelClassifier.scores` is to return.
+    seed, landmarks : int
+        As of `train`.
+    ridge : float
+        Of the kernel's value at distance 0.
+
+    Returns
+    -------
+    KernelClassifier
+        As of `train`.
+
+    Raises
+    ------
+    ParameterError
+        For no picture.
+    """
     if not len(x):
         raise ParameterError("pictures = 0: must be 1 or more, to train")
     spread = float(x.var(0, dtype=np.float64).sum())
     width = 1 / spread if spread else 1.0
     if len(x) <= landmarks:
-        gram = gaussian(x, x, width) + RIDGE * np.eye(len(x))
-        return KernelClassifier(x, solve(gram, np.eye(classes)[labels], assume_a="pos"), width)
+        gram = gaussian(x, x, width) + ridge * np.eye(len(x))
+        return KernelClassifier(x, solve(gram, targets, assume_a="pos"), width)
     centres = x[np.sort(np.random.default_rng([seed, 54]).choice(len(x), landmarks, replace=False))]
-    gram = RIDGE * gaussian(centres, centres, width)
-    right = np.zeros((landmarks, classes))
+    gram = ridge * gaussian(centres, centres, width)
+    right = np.zeros((landmarks, targets.shape[1]))
     for i in range(0, len(x), CHUNK):
         part = gaussian(x[i : i + CHUNK], centres, width)
         gram += part.T @ part
-        right += part.T @ np.eye(classes)[labels[i : i + CHUNK]]
+        right += part.T @ targets[i : i + CHUNK]
     try:
         weights = solve(gram, right, assume_a="pos")
     except LinAlgError:  # two equal landmarks
