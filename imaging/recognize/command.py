@@ -14,7 +14,8 @@ from talbot.imaging.frame.arguments import named
 from talbot.imaging.frame.command import typed_of
 from talbot.imaging.frame.sensor import add_pixel, asked_sensor
 
-DEFAULT_FRONTS, DEFAULT_CURVES = "asp,ternary,gradient", "threshold,bits,snr,blur,wake"
+DEFAULT_FRONTS, DEFAULT_CURVES = "asp,ternary,gradient", "threshold,bits,snr,blur,wake,gestures,intensity"
+CURVES_HELP = "of threshold, bits, snr, blur, draws, wake, gestures, intensity, with commas; or none"
 SCALE = Number("scale", "sensor px along an edge of a picture px", 1, 32, "6")
 BLUR = Number("blur", "blur of a point in picture px, positive behind the focal plane", -16, 16, "4", kind=float)
 THRESHOLD = Number("threshold", "|code| below it is left out", 0, 127, "10")
@@ -23,7 +24,7 @@ SEED = Number("seed", "of splits and of every random draw", 0, 2**31, "1")
 SEEDS = Number("seeds", "splits and draws, from the seed on", 1, 100, "3")
 EPOCHS = Number("epochs", "of the classifier lenet", 1, 1000, "20")
 COUNT = Number("count", "pictures at most", 10, 10**7, word="all", note="all")
-SOME = Number("some", "pictures of a curve's point at most", 10, 10**7, "600")
+SOME = Number("some", "pictures of a curve's point, or clips, at most", 10, 10**7, "600")
 DRAWS = Number("draws", "of six random pixel types, for the curve draws", 1, 1000, "100")
 NUMBERS = (SCALE, BLUR, THRESHOLD, NOISE, SEED, SEEDS, EPOCHS, COUNT, SOME, DRAWS)
 
@@ -34,7 +35,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     add("--data", default="digits", help="digits, an .npz, or a folder (imaging/recognize/README.md)")
     add("--front", default=DEFAULT_FRONTS, help="asp, ternary, gradient, image, with commas; the first leads")
     add("--classifier", default="kernel", help="kernel, in closed form, or lenet, trained by Adam")
-    add("--curves", default=DEFAULT_CURVES, help="of threshold, bits, snr, blur, draws, wake, with commas; or none")
+    add("--curves", default=DEFAULT_CURVES, help=CURVES_HELP)
     for number in NUMBERS:
         number.add(parser)
     add("--sensor", type=Path, help=HELP)
@@ -42,12 +43,13 @@ def add_arguments(parser: ArgumentParser) -> None:
     add("--golden", action="store_true", help="by the golden chip alone, without its Verilog")
     add("--workers", type=worker_count, default=-1, help="processes, -1: all cores")
     add("--weights", type=Path, help="also write the lenet of the first front and seed as .npz, at most 100 kB")
-    add("--document", type=Path, help="also put the table between the marks of this file")
+    add("--document", type=Path, help="also put the tables between the marks of this file")
     add("--out", type=Path, help="folder for the results (default: build/recognize/<data>)")
 
 
 def run(options: Namespace) -> int:
     """Measure, write page and summary.json, print the table; 1 where the Verilog and the golden chip differ."""
+    from talbot.base.table import markdown_table
     from talbot.imaging.recognize import page  # Matplotlib: not before it is needed
     from talbot.imaging.recognize.data import load
     from talbot.imaging.recognize.job import STORE, Study, measure, write_weights
@@ -77,6 +79,10 @@ def run(options: Namespace) -> int:
         write_weights(study, options.weights)
     if options.document:
         insert(options.document, data.name, page.lines(summary))
+        text = options.document.read_text(encoding="utf-8")
+        for name, (head, rows, texts) in page.TABLES_OF.items():
+            if name in curves and f"<!-- {name} -->" in text:
+                insert(options.document, name, markdown_table(head, rows(summary), texts))
     _print(summary, folder)
     return int(bool(summary["stream_mismatches"]))
 

@@ -1,6 +1,7 @@
 """Labelled pictures: the shipped digits, IDX files, CIFAR's binary batches, .npz, a folder with a folder a class."""
 
 import gzip
+import hashlib
 import zlib
 from dataclasses import dataclass
 from functools import cached_property
@@ -41,6 +42,12 @@ class Pictures:
     def radiance(self) -> npt.NDArray[np.float32]:
         """Linear radiance, 1 = white, (n, height, width)."""
         return linear(self.images.reshape(len(self.images), -1)).reshape(self.images.shape)
+
+    @property
+    def digest(self) -> str:
+        """Of the pictures, the labels and the test set."""
+        test = b"" if self.test is None else self.test.tobytes()
+        return hashlib.sha256(self.images.tobytes() + self.labels.tobytes() + test).hexdigest()
 
     def part(self, most: int | None) -> "Pictures":
         """At most ``most`` pictures, drawn at random, always the same. Raises ParameterError as `checked`."""

@@ -1,7 +1,7 @@
 """One run of `talbot recognize`: settings of its table and curves, evaluated, and the summary."""
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from time import perf_counter
@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 
 from talbot.base.files import atomic
-from talbot.base.progress import each
-from talbot.imaging.recognize import chip, study, wake
+from talbot.base.jobs import Job
+from talbot.base.jobs import run as run_jobs
+from talbot.imaging.recognize import chip, gestures, intensity, study, wake
 from talbot.imaging.recognize.data import Pictures, load
 from talbot.imaging.recognize.study import CURVES, FREE, FRONTS, WHOLE, Point, Setting
 from talbot.models.parameters import ParameterError, check_choice
@@ -19,7 +20,7 @@ from talbot.models.recognition.optics import Display, phase_types
 
 STORE = Path("parts")  # of the results' folder: kept parts of a run
 SAMPLE = 2  # pictures that the Verilog reads
-WAKE = "wake"
+WAKE, GESTURES, INTENSITY = TASKS = "wake", "gestures", "intensity"  # with pictures of their own
 SOME = 600  # pictures of a curve's point
 
 
@@ -27,8 +28,8 @@ SOME = 600  # pictures of a curve's point
 class Study:
     """Settings of a run.
 
-    fronts: of the table, the first is the headline's. base: of all settings. curves: names, of `study.CURVES` and wake.
-    some: pictures of a curve's point. draws: of random types. verilog: whether the chip's Verilog reads a sample.
+    fronts: of the table, the first is the headline's. base: of all settings. curves: of `study.CURVES` and TASKS. some:
+    pictures of a curve's point. draws: of random types. verilog: whether the chip's Verilog reads a sample.
     """
 
     data: Pictures
@@ -44,7 +45,7 @@ class Study:
         for front in self.fronts:
             check_choice("front", front, FRONTS)
         for name in self.curves:
-            check_choice("curves", name, (*CURVES, WAKE))
+            check_choice("curves", name, (*CURVES, *TASKS))
         if self.base.classifier == "shipped":
             raise ParameterError("classifier = 'shipped': must be kernel or lenet")
         if not self.fronts or len(set(self.fronts)) != len(self.fronts):
@@ -54,12 +55,17 @@ class Study:
 
 @dataclass(frozen=True, eq=False)
 class Recognition:
-    """Measurements. rows: of the table by name. lines: of each curve, (point, result). alarms: by contrast."""
+    """Measurements. rows: of the table by name. lines: of each curve, (point, result). alarms: by contrast.
+
+    gestures: rows by name. intensity: by collection of pictures.
+    """
 
     study: Study
     rows: Mapping[str, dict[str, Any]]
     lines: Mapping[str, Mapping[str, list[tuple[Point, dict[str, Any]]]]]
-    alarms: Mapping[float, dict[str, Any]]
+    alarms: Mapping[str, dict[str, Any]]
+    gestures: Mapping[str, dict[str, Any]]
+    intensity: Mapping[str, dict[str, Any]]
     summary: dict[str, Any]
 
 
@@ -82,10 +88,8 @@ def measure(task: Study, folder: Path) -> Recognition:
     rows |= study.run(free, data, folder, "baseline", task.workers)
     rows = {name: study.figures(row) for name, row in rows.items()}
     lines = _curves(task, folder)
-    alarms = {}
-    if WAKE in task.curves:
-        for contrast in each(wake.CONTRASTS, "wake-up"):
-            alarms[contrast] = wake.detect(base.sensor, contrast, base.seed)
+    tasks = _tasks(task, folder)
+    alarms, moves, recovered = tasks[WAKE], tasks[GESTURES].get(GESTURES, {}), tasks[INTENSITY]
     sample = _sample(task) if task.verilog else None
     summary = _summary(task, rows, sample) | {
         "curves": {
@@ -96,11 +100,13 @@ def measure(task: Study, folder: Path) -> Recognition:
             for name, by_label in lines.items()
         },
         "wake_auc": {
-            f"{c:g}": {name: row["auc"] for name, row in detectors.items()} for c, detectors in alarms.items()
+            contrast: {name: row["auc"] for name, row in detectors.items()} for contrast, detectors in alarms.items()
         },
+        "gestures": moves,
+        "intensity": {name: result["rows"] for name, result in recovered.items()},
         "seconds": perf_counter() - start,
     }
-    return Recognition(task, rows, lines, alarms, summary)
+    return Recognition(task, rows, lines, alarms, moves, recovered, summary)
 
 
 def as_trained(task: Study) -> bool:
@@ -126,6 +132,25 @@ def _curves(task: Study, folder: Path) -> dict[str, dict[str, list[tuple[Point, 
     out: dict[str, dict[str, list[tuple[Point, dict[str, Any]]]]] = {}
     for key, (name, label, point) in places.items():
         out.setdefault(name, {}).setdefault(label, []).append((point, study.figures(results[key])))
+    return out
+
+
+def _tasks(task: Study, folder: Path) -> dict[str, dict[str, Any]]:
+    """Results of the tasks: of each, by contrast or by collection of pictures."""
+    base, seed = task.base, task.base.seed
+    calls: dict[tuple[str, str], tuple[Callable[..., Any], tuple[Any, ...], str]] = {}
+    if GESTURES in task.curves:
+        calls[GESTURES, GESTURES] = gestures.classify, (base, min(task.some, gestures.CLIPS)), str(task.some)
+    if INTENSITY in task.curves:
+        for pictures in intensity.collections(task.data.part(task.some)):
+            calls[INTENSITY, pictures.name] = intensity.recover, (base, pictures), pictures.digest
+    if WAKE in task.curves:
+        for contrast in wake.CONTRASTS:
+            calls[WAKE, f"{contrast:g}"] = wake.detect, (base.sensor, contrast, seed), ""
+    jobs = [Job("-".join(name), call, arguments, (base.text, key)) for name, (call, arguments, key) in calls.items()]
+    out: dict[str, dict[str, Any]] = {name: {} for name in TASKS}
+    for (name, part), result in zip(calls, run_jobs(jobs, folder, "task", task.workers), strict=True):
+        out[name][part] = result
     return out
 
 

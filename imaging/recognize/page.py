@@ -16,6 +16,8 @@ from talbot.base.table import markdown_table
 from talbot.imaging.frame import report
 from talbot.imaging.recognize import study
 from talbot.imaging.recognize.chip import CHUNK
+from talbot.imaging.recognize.gestures import FRAMES, MOVES
+from talbot.imaging.recognize.intensity import ACTIVE
 from talbot.imaging.recognize.job import Recognition
 
 NAMES = ("recognize.html", "summary.json", "features.npz")
@@ -63,12 +65,39 @@ def _text(name: str, s: dict[str, Any]) -> str:
 
 
 def _cells(row: dict[str, Any]) -> tuple[str, ...]:
-    low, high = row["energy_uj"]
-    energy = "-" if not high else f"{low:.3g}" if low == high else f"{low:.3g} to {high:.3g}"
-    size = f"{row['bytes']:.0f}" if row["bytes"] else "-"
     spread = f"{100 * row['accuracy_std']:.2f}"
     numbers = (f"{row['flops_first_layer']:,}", f"{row['flops_total']:,}", f"{row['network_uj']:.3g}")
-    return f"{100 * row['accuracy']:.2f} %", spread, size, energy, *numbers
+    return f"{100 * row['accuracy']:.2f} %", spread, *_cost(row), *numbers
+
+
+def _cost(row: dict[str, Any]) -> tuple[str, str]:
+    low, high = row["energy_uj"]
+    energy = "-" if not high else f"{low:.3g}" if low == high else f"{low:.3g} to {high:.3g}"
+    return f"{row['bytes']:.0f}" if row["bytes"] else "-", energy
+
+
+def gesture_rows(s: dict[str, Any]) -> list[tuple[str, ...]]:
+    """Rows of the table of gestures."""
+    return [(name, *_cells(row)) for name, row in s["gestures"].items()]
+
+
+def intensity_rows(s: dict[str, Any]) -> list[tuple[str, ...]]:
+    """Rows of the table of recovered intensity: the collection, the method, and its figures."""
+    return [
+        (name, method, *_quality(row), *_cost(row))
+        for name, by_method in s["intensity"].items()
+        for method, row in by_method.items()
+    ]
+
+
+def _quality(row: dict[str, Any]) -> tuple[str, ...]:
+    places = {"psnr_db": 2, "psnr_db_std": 2, "ssim": 3, "ssim_std": 3}
+    return tuple("-" if row[key] is None else f"{row[key]:.{n}f}" for key, n in places.items())
+
+
+INTENSITY_HEAD = ("", "from", "PSNR, dB", "spread of seeds", "SSIM", "spread of seeds", "bytes", "sensor, uJ")
+# Head, rows, and columns of text, by curve
+TABLES_OF = {"gestures": (HEAD, gesture_rows, 1), "intensity": (INTENSITY_HEAD, intensity_rows, 2)}
 
 
 def lines(s: dict[str, Any]) -> str:
@@ -105,6 +134,8 @@ def write(folder: Path, result: Recognition) -> None:
             Section("Pictures, and what is sent of them", pictures=shown),
             *_curves(result),
             *_alarms(result),
+            *_gestures(result),
+            *_intensity(result),
         ],
     )
     (folder / "recognize.html").write_text(text, encoding="utf-8")
@@ -174,14 +205,46 @@ def _alarms(result: Recognition) -> list[Section]:
     charts: list[Markup] = []
     table = []
     for contrast, by_label in result.alarms.items():
+        percent = f"{100 * float(contrast):g} %"
         series = {name: list(zip(row["false"], row["true"], [""] * len(row["true"]))) for name, row in by_label.items()}
         styles = {name: {"marker": "", "linewidth": 1.6} for name in series}
-        title = f"Wake-up at a contrast of {100 * contrast:g} %"
+        title = f"Wake-up at a contrast of {percent}"
         charts.append(svg(chart(series, "false alarms", "detections", title, styles=styles)))
         table += [
-            (name, f"{100 * contrast:g} %", f"{row['auc']:.3f}", f"{row['energy_uj'][0]:.3g}", f"{row['bytes']:.0f}")
+            (name, percent, f"{row['auc']:.3f}", f"{row['energy_uj'][0]:.3g}", f"{row['bytes']:.0f}")
             for name, row in by_label.items()
         ]
     head = ("", "contrast", "area below the curve", "sensor, uJ", "bytes")
     text = "Is anything there? A disc enters a smooth background while the light drifts by 10 % from frame to frame."
     return [Section("Wake-up", text, charts=charts, head=head, rows=table)]
+
+
+def _gestures(result: Recognition) -> list[Section]:
+    if not result.gestures:
+        return []
+    text = (
+        f"{', '.join(MOVES)}: which movement? {FRAMES} frames of a bar or square on a smooth background, under light "
+        "that drifts by 10 % from frame to frame."
+    )
+    return [Section("Gestures", text, head=HEAD, rows=gesture_rows(result.summary))]
+
+
+def _intensity(result: Recognition) -> list[Section]:
+    if not result.intensity:
+        return []
+    text = (
+        f"Held-out pictures from frames of which a pixel in {1 / ACTIVE:.0f} is active. The mean is the truth's; one "
+        "factor for the contrast, and the regressions, are learned from other pictures."
+    )
+    pictures = [
+        Picture(f"intensity_{name}", "", f"{name}: {', '.join(found['methods'])}", _large(_pixels(found)))
+        for name, found in result.intensity.items()
+    ]
+    rows = intensity_rows(result.summary)
+    return [
+        Section("Intensity from one binary frame (Sec. A.5)", text, pictures=pictures, head=INTENSITY_HEAD, rows=rows)
+    ]
+
+
+def _pixels(recovered: dict[str, Any]) -> Array:
+    return np.frombuffer(bytes.fromhex(recovered["pixels"]), np.uint8).reshape(recovered["size"])

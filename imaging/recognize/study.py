@@ -1,6 +1,5 @@
 """Accuracy of one way to see and to classify, from pictures to figures; a table and curves are lists of these."""
 
-import hashlib
 import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
@@ -87,6 +86,16 @@ class Setting:
             raise ParameterError("classifier = 'shipped': must be with front asp, seed 1 and one seed: of its training")
         if self.front == "learned" and self.classifier == "kernel":
             raise ParameterError("front = 'learned': must be with classifier lenet, which learns it")
+
+    @property
+    def text(self) -> str:
+        """All values, for the key of a result."""
+        return json.dumps(asdict(self), default=str)
+
+    @property
+    def draws(self) -> range:
+        """Seeds of the splits and draws."""
+        return range(self.seed, self.seed + self.seeds)
 
     @property
     def by_optics(self) -> bool:
@@ -213,7 +222,7 @@ def filtered(images: npt.NDArray[np.float32], seed: int) -> npt.NDArray[np.float
 def evaluate(setting: Setting, data: Pictures) -> dict[str, Any]:
     """Train and test for every seed: accuracies, bytes, energies and operations. Raises ParameterError."""
     if setting.front == "chance":
-        tests = [data.labels[data.split(seed)[1]] for seed in _seeds(setting)]
+        tests = [data.labels[data.split(seed)[1]] for seed in setting.draws]
         most = [float(np.bincount(labels).max() / len(labels)) for labels in tests]  # the most frequent class
         return {"accuracies": most, "bytes": 0.0, "energy_uj": [0.0, 0.0], "share": 0.0} | _flops(0, 0)
     with threadpool_limits(1):
@@ -221,13 +230,18 @@ def evaluate(setting: Setting, data: Pictures) -> dict[str, Any]:
         train = test
         if setting.snr_train_db != setting.snr_db:
             train = see(setting, noisy(data.radiance, setting.snr_train_db, setting.seed + 1))
-        right, flops, seconds = [], 0, 0.0
-        for seed in _seeds(setting):
-            start = perf_counter()
-            classify, flops = trained(setting, train.channels, data, seed)
-            seconds += perf_counter() - start
-            chosen = data.split(seed)[1]
-            right.append(float((classify(test.channels[chosen]) == data.labels[chosen]).mean()))
+        return scored(setting, data, train, test)
+
+
+def scored(setting: Setting, data: Pictures, train: Seen, test: Seen) -> dict[str, Any]:
+    """Train on ``train`` and test on ``test``, which hold all pictures of ``data``, for every seed."""
+    right, flops, seconds = [], 0, 0.0
+    for seed in setting.draws:
+        start = perf_counter()
+        classify, flops = trained(setting, train.channels, data, seed)
+        seconds += perf_counter() - start
+        chosen = data.split(seed)[1]
+        right.append(float((classify(test.channels[chosen]) == data.labels[chosen]).mean()))
     out = {"accuracies": right, "bytes": test.bytes, "energy_uj": [1e6 * e for e in test.energy], "share": test.share}
     if test.image_energy:
         out["image_mode_uj"] = [1e6 * e for e in test.image_energy]
@@ -236,10 +250,6 @@ def evaluate(setting: Setting, data: Pictures) -> dict[str, Any]:
 
 def _flops(first: int, behind: int) -> dict[str, Any]:
     return {"flops_first_layer": first, "flops_total": first + behind, "network_uj": 1e6 * MAC * (first + behind)}
-
-
-def _seeds(setting: Setting) -> range:
-    return range(setting.seed, setting.seed + setting.seeds)
 
 
 def trained(
@@ -319,12 +329,8 @@ def run(
     settings: Mapping[str, Setting], data: Pictures, folder: Path, title: str, workers: int
 ) -> dict[str, dict[str, Any]]:
     """Evaluate settings, each kept in ``folder``; names are of files. Raises ParameterError."""
-    digest = hashlib.sha256(data.images.tobytes() + data.labels.tobytes()).hexdigest()
-    test = "" if data.test is None else hashlib.sha256(data.test.tobytes()).hexdigest()
-    jobs = [
-        Job(name, evaluate, (setting, data), (digest, test, json.dumps(asdict(setting), default=str)))
-        for name, setting in settings.items()
-    ]
+    digest = data.digest
+    jobs = [Job(name, evaluate, (setting, data), (digest, setting.text)) for name, setting in settings.items()]
     return dict(zip(settings, run_jobs(jobs, folder, title, workers), strict=True))
 
 

@@ -29,6 +29,12 @@ class Watch:
     events: npt.NDArray[np.bool_]
 
 
+def background(rng: np.random.Generator) -> npt.NDArray[np.float64]:
+    """Draw a smooth background in linear radiance."""
+    back = gaussian_filter(rng.standard_normal((SIZE, SIZE)), 3, mode="wrap")
+    return 0.4 + 0.05 * back / back.std()
+
+
 def watch(contrast: float, seed: int) -> Watch:
     """Frames of a smooth background under light that drifts; in half of the pairs a disc of the contrast enters."""
     rng = np.random.default_rng([seed, 59])
@@ -36,8 +42,7 @@ def watch(contrast: float, seed: int) -> Watch:
     y, x = np.mgrid[:SIZE, :SIZE]
     pairs = np.empty((FRAMES, 2, SIZE, SIZE), np.float32)
     for i, event in enumerate(events):
-        back = gaussian_filter(rng.standard_normal((SIZE, SIZE)), 3, mode="wrap")
-        back = 0.4 + 0.05 * back / back.std()
+        back = background(rng)
         row, col = rng.uniform(4, SIZE - 4, 2)
         disc = np.hypot(y - row, x - col) < rng.uniform(1.5, 3)
         light = 1 + DRIFT * rng.standard_normal(2)
@@ -59,13 +64,13 @@ def detect(sensor: SensorParameters, contrast: float, seed: int) -> dict[str, An
     signs = edge.codes.reshape(FRAMES, 2, *edge.codes.shape[1:])
     codes = plain.codes.reshape(FRAMES, 2, SIZE, SIZE).astype(float)
     active = gradient.spatial(codes, GRADIENT)
-    share = float(active.mean())
+    changes = gradient.temporal(active[:, 1], active[:, 0])
     level = codes.mean((2, 3), keepdims=True)
     scores = {
         "ternary edges that change": (_densest(signs[:, 1] != signs[:, 0], SCALE), edge.energy, edge.bytes),
         "temporal gradient (Eq. A.2)": (
-            _densest(gradient.temporal(active[:, 1], active[:, 0]), 1),
-            (gradient.power(1, SIZE * SIZE, share) / gradient.RATE,) * 2,
+            _densest(changes, 1),
+            (gradient.power(1, SIZE * SIZE, float(changes.mean())) / gradient.RATE,) * 2,
             gradient.packed_bytes(SIZE * SIZE, 1),
         ),
         "image difference": (np.abs(codes[:, 1] - codes[:, 0]).max((1, 2)), plain.energy, plain.bytes),

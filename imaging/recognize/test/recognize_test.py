@@ -10,7 +10,7 @@ from PIL import Image
 
 from talbot.api.recognize import recognize
 from talbot.commands import main
-from talbot.imaging.recognize import chip, study
+from talbot.imaging.recognize import chip, gestures, intensity, study
 from talbot.imaging.recognize.data import load, picture
 from talbot.imaging.recognize.job import Study, as_trained
 from talbot.imaging.recognize.study import Setting, evaluate, noisy, reduced, see
@@ -130,6 +130,60 @@ def test_a_watch_holds_as_many_events_as_others():
     seen = watch(0.1, 1)
     quiet = np.abs(seen.pairs[~seen.events, 1] / seen.pairs[~seen.events, 0]).std((1, 2))
     assert seen.events.mean() == 0.5 and quiet.max() < 1e-5  # light alone drifts
+
+
+def test_gestures_are_those_of_their_seed_and_move_as_they_are_named(monkeypatch):
+    shown, labels = gestures.clips(16, 1)
+    assert np.array_equal(gestures.clips(16, 1)[0], shown) and not np.array_equal(gestures.clips(16, 2)[0], shown)
+    monkeypatch.setattr(gestures, "DRIFT", 0)
+    monkeypatch.setattr(gestures, "background", lambda rng: np.full((16, 16), 0.4))
+    y, x = np.mgrid[:16, :16]
+    for frames, label in zip(*gestures.clips(16, 1)):
+        shape = np.abs(frames - 0.4)
+        area = shape.sum((1, 2))
+        measured = {"right": (shape * x).sum((1, 2)) / area, "down": (shape * y).sum((1, 2)) / area, "growing": area}
+        move, back = gestures.MOVES[label], {"left": "right", "up": "down", "shrinking": "growing"}
+        if (of := back.get(move, move)) in measured:
+            steps = np.diff(measured[of])
+            assert ((steps > 0) if of == move else (steps < 0)).all()
+        else:
+            assert np.ptp(area) < 0.1 * area.mean()
+    assert np.bincount(labels).tolist() == [2] * 8
+
+
+def test_temporal_gradients_of_gestures_are_equation_a2(monkeypatch):
+    seen, scored = [], study.scored
+    monkeypatch.setattr(study, "scored", lambda *words: seen.append(words[-1].channels) or scored(*words))
+    rows = gestures.classify(Setting(seeds=2), 24)
+    temporal, active = seen[:2]
+    assert temporal.shape == (24, 16, 16, 7) and active.shape == (24, 16, 16, 8)
+    for n, row, col, t in np.ndindex(2, 16, 16, 7):
+        assert temporal[n, row, col, t] == max(0, abs(active[n, row, col, t + 1] - active[n, row, col, t]))
+    cheap, dear = (rows[name] for name in ("temporal binary gradients (Eq. A.2)", "differences of plain images"))
+    assert cheap["bytes"] == 7 * 32 < dear["bytes"] and 20 * cheap["energy_uj"][1] < dear["energy_uj"][0]
+
+
+def test_intensity_of_held_out_digits_is_better_than_gray(digits):
+    rows = intensity.recover(Setting(seeds=2), digits)["rows"]
+    psnr = {name: row["psnr_db"] for name, row in rows.items()}
+    assert psnr["binary frame, kernel regression"] > psnr["mean of the pictures to learn from"] + 1 > psnr["gray"] + 2
+    assert psnr["ternary differences along x and y, Poisson"] > psnr["gray"] + 3
+    assert psnr[intensity.JPEG] is None and rows["binary frame, Poisson"]["bytes"] == 8
+
+
+def test_tables_of_gestures_and_intensity_enter_a_document(tmp_path, monkeypatch):
+    monkeypatch.setattr(intensity, "SCENE", 16)
+    monkeypatch.setattr(intensity, "FACES", 20)
+    document = tmp_path / "document.md"
+    marks = ("digits", "gestures", "intensity")
+    document.write_text("".join(f"<!-- {mark} -->\n<!-- end of {mark} -->\n" for mark in marks))
+    words = ("--some", "16", "--front", "gradient", "--curves", "gestures,intensity", "--document", str(document))
+    assert main(["recognize", *SMALL, *words, "--out", str(tmp_path / "o")]) == 0
+    s, text = json.loads((tmp_path / "o" / "summary.json").read_text()), document.read_text()
+    assert s["intensity"].keys() == {"digits", "faces", "photographs"} and len(s["gestures"]) == 9
+    faces = s["intensity"]["faces"]
+    assert faces["gray"]["ssim"] < faces["ternary differences along x and y, Poisson"]["ssim"] < 1
+    assert "| temporal binary gradients (Eq. A.2) |" in text and "| photographs | JPEG in as many bytes |" in text
 
 
 def labelled(n=30):
