@@ -22,7 +22,7 @@ FRAMES = (  # scene, pixels of a side, shift of the cells
     ("motorcycle", 96, 0),
     ("motorcycle", 192, 1),
 )
-LENGTHS = 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024
+LENGTHS = 2, 8, 32, 128, 1024
 
 
 def ran(program: bytes, address: int, memory: bytes) -> tuple[int, int, Chip]:
