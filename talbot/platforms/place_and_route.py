@@ -85,7 +85,7 @@ class PlaceAndRoute:
     setup_margin_ns: float = field(default=0.4, metadata={"unit": "ns"})
     hold_margin_ns: float = field(default=0.05, metadata={"unit": "ns"})
     load_margin: float = 0.2
-    fullest: float = 0.9
+    fullest: float = 0.86
 
 
 def place_and_route(pdk: str) -> PlaceAndRoute:

@@ -47,6 +47,7 @@ SILENT_S = 1200.0  # without a line in its log a stage hangs
 ERROR = re.compile(r"(?m)^(?:\[ERROR |setup slack |hold slack |cells fill ).*")
 FROM_OUTSIDE = signal.SIGKILL, signal.SIGTERM
 PATIENCE = 10  # iterations of detailed routing without fewer violations, after which it does not converge
+CROWDED = 2.5  # violations a net after the first iteration: 1.4 to 1.8 ended, 3.2 and 7.6 did not
 HOPELESS = 8, 0.3  # after so many iterations, more than this share of the first violations
 ROUTING = "[INFO DRT-0187]"  # the line with which detailed routing begins
 # An iteration that takes so many times as long as the longest of the first ones, and as LEAST_S, is about a few
@@ -194,7 +195,7 @@ def watch(child: "subprocess.Popen[bytes]", log: Path) -> None:
         iterations = text.rpartition(ROUTING)[2].count("[INFO DRT-0195]")
         marks = marks[:iterations] + [now] * (iterations - len(marks))
         seconds = [after - before for before, after in pairwise([*marks, now])]
-        if diverges(counts := violations(text), seconds):
+        if diverges(counts := violations(text), seconds, net_count(text)):
             raise Stopped(f"detailed routing does not converge: {' '.join(map(str, counts))} violations")
         if len(text) != size:
             size, begin = len(text), time.monotonic()
@@ -217,11 +218,19 @@ def violations(log: str) -> list[int]:
     return [int(number) for number in re.findall(r"\[INFO DRT-0199\]\s+Number of violations = (\d+)", last)]
 
 
-def diverges(counts: Sequence[int], seconds: Sequence[float] = ()) -> bool:
+def net_count(log: str) -> int:
+    """Nets that detailed routing counts in a ``log``; 0 where it has not begun."""
+    return int((re.findall(r"(?m)^Number of nets: +(\d+)", log) or [0])[-1])
+
+
+def diverges(counts: Sequence[int], seconds: Sequence[float] = (), nets: int = 0) -> bool:
     """Whether detailed routing will not end.
 
-    counts: violations after each iteration. seconds: of processors, of each iteration and of the next by now.
+    counts: violations after each iteration. seconds: of processors, of each iteration and of the next by now. nets: of
+    the design, 0 if unknown.
     """
+    if nets and counts and counts[0] > CROWDED * nets:
+        return True
     number, share = HOPELESS
     if len(seconds) > STUBBORN and seconds[-1] > SLOW * max(*seconds[:STUBBORN], LEAST_S):
         return True

@@ -7,7 +7,7 @@ import pytest
 
 from talbot.base import openroad
 from talbot.base.steps import StepError
-from talbot.flow.layout.steps.stage import Stage, StageParameters, diverges, figures, processor_s, violations
+from talbot.flow.layout.steps.stage import Stage, StageParameters, diverges, figures, net_count, processor_s, violations
 
 # Instead of OpenROAD: a crash unless careful; then the figure, and the database
 PROGRAM = """
@@ -45,6 +45,11 @@ def test_violations_are_those_of_the_last_routing():
     line = "[INFO DRT-0199]   Number of violations = {}.\n".format
     log = f"[INFO DRT-0187] Start routing.\n{line(9)}{line(0)}[INFO DRT-0187] Start routing.\n{line(4)}{line(2)}"
     assert violations(log) == [4, 2]
+
+
+def test_a_crowded_core_is_stopped_after_the_first_iteration():
+    assert net_count("Number of snets:          2\nNumber of nets:           2790\n") == 2790 and net_count("") == 0
+    assert diverges([8840], [], 2790) and not diverges([2145], [], 1400) and not diverges([8840], [], 0)
 
 
 def test_counts_are_integers_and_slacks_are_not():
