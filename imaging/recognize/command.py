@@ -14,7 +14,7 @@ from talbot.imaging.frame.arguments import named
 from talbot.imaging.frame.command import typed_of
 from talbot.imaging.frame.sensor import add_pixel, asked_sensor
 
-DEFAULT_FRONTS, DEFAULT_CURVES = "asp,ternary,gradient", "threshold,bits,snr,blur,wake,gestures,intensity"
+DEFAULT_FRONTS, DEFAULT_CURVES = "asp,ternary,gradient", "threshold,bits,snr,blur,wake"
 CURVES_HELP = "of threshold, bits, snr, blur, draws, wake, gestures, intensity, with commas; or none"
 SCALE = Number("scale", "sensor px along an edge of a picture px", 1, 32, "6")
 BLUR = Number("blur", "blur of a point in picture px, positive behind the focal plane", -16, 16, "4", kind=float)
