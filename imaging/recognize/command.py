@@ -10,6 +10,7 @@ from talbot.base.files import check_file, check_folder, insert, marked, staged
 from talbot.base.jobs import worker_count
 from talbot.base.paths import results_of
 from talbot.base.sensor import HELP
+from talbot.base.table import markdown_table
 from talbot.imaging.frame.arguments import named
 from talbot.imaging.frame.command import typed_of
 from talbot.imaging.frame.sensor import add_pixel, asked_sensor
@@ -49,7 +50,6 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Measure, write page and summary.json, print the table; 1 where the Verilog and the golden chip differ."""
-    from talbot.base.table import markdown_table
     from talbot.imaging.recognize import page  # Matplotlib: not before it is needed
     from talbot.imaging.recognize.data import load
     from talbot.imaging.recognize.job import STORE, Study, measure, write_weights

@@ -103,11 +103,11 @@ def _learned(
 ) -> dict[str, npt.NDArray[np.floating]]:
     """All pictures by regression of those to learn from: their mean, and what each kind of frames adds to it."""
     mean = truth[train].mean(0)
-    rest = _level(truth[train] - mean).reshape(len(train), -1)
+    residual = _level(truth[train] - mean).reshape(len(train), -1)
     out = {}
     for name, bits in frames.items():
         x = bits.reshape(len(bits), -1).astype(np.float32)
-        added = kernel.regress(x[train], rest, ridge=RIDGE).scores(x)
+        added = kernel.regress(x[train], residual, ridge=RIDGE).scores(x)
         out[f"{name}, kernel regression"] = mean + added.reshape(truth.shape)
     return out | {"mean of the pictures to learn from": np.broadcast_to(mean, truth.shape)}
 

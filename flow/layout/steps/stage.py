@@ -43,8 +43,8 @@ STAGES: dict[str, dict[str, str]] = {
 ENVIRONMENT = {"OMP_WAIT_POLICY": "passive"}
 LOOK_S = 2.0  # how often a stage's log is looked at
 SILENT_S = 1200.0  # without a line in its log a stage hangs
-# A message that the design is the cause of
-ERROR = re.compile(r"(?m)^(?:\[ERROR |setup slack |hold slack |cells fill ).*")
+# A message that the design is the cause of: of the tool, or of `stop` in flow/layout/tcl/common.tcl
+ERROR = re.compile(r"(?m)^\[ERROR .*|(?<=^TALBOT stopped: ).*")
 FROM_OUTSIDE = signal.SIGKILL, signal.SIGTERM
 PATIENCE = 10  # iterations of detailed routing without fewer violations, after which it does not converge
 CROWDED = 2.5  # violations a net after the first iteration: 1.4 to 1.8 ended, 3.2 and 7.6 did not

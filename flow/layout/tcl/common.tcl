@@ -57,13 +57,19 @@ proc repair_hold {} {
   }
 }
 
+# End the stage for a reason that is the design's: the flow tries another outline.
+proc stop {why} {
+  error "TALBOT stopped: $why"
+}
+
 # A core that repair has filled ends here: its detailed routing does not converge (amp_ctrl at 96 %: 9,910 violations after
 # the first iteration, 10,172 after the second).
 proc check_room {} {
   global fullest
   set share [rsz::utilization]
   if {$share > $fullest} {
-    error [format "cells fill %.1f %% of the core after repair: must be at most %g %%" [expr {100 * $share}] [expr {100 * $fullest}]]
+    set percent [list [expr {100 * $share}] [expr {100 * $fullest}]]
+    stop [format "cells fill %.1f %% of the core after repair: must be at most %g %%" {*}$percent]
   }
 }
 

@@ -192,7 +192,7 @@ foreach {name path} {setup max hold min} {
   set slack [worst_slack -$path]
   measured estimated_${name}_ns $slack
   if {$slack < 0} {
-    error "$name slack is $slack ns after repair, with estimated parasitics: must be at least 0"
+    stop "$name slack is $slack ns after repair, with estimated parasitics: must be at least 0"
   }
 }
 check_room

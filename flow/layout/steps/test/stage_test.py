@@ -16,6 +16,8 @@ print("TALBOT placement_density 0.5")
 if "error" in sys.argv:
     print("[ERROR X-0001] planted")
     sys.exit(1)
+if "stop" in sys.argv:
+    sys.exit("TALBOT stopped: planted by a script")
 if "bug" in sys.argv:
     sys.exit("no such file")
 if "kill" in sys.argv:
@@ -82,9 +84,10 @@ def test_a_stage_that_crashes_runs_again_with_the_careful_setting(place, tmp_pat
     }
 
 
-def test_a_stage_that_fails_says_why_and_does_not_run_again(place):
-    found = place("error")
-    assert found["stopped"] == "[ERROR X-0001] planted" and found["again"] is None and not found["database"]
+@pytest.mark.parametrize("word, message", [("error", "[ERROR X-0001] planted"), ("stop", "planted by a script")])
+def test_a_stage_that_fails_says_why_and_does_not_run_again(place, word, message):
+    found = place(word)
+    assert found["stopped"] == message and found["again"] is None and not found["database"]
 
 
 @pytest.mark.parametrize(
