@@ -146,12 +146,12 @@ def signoff_steps(design: Design, options: Options) -> list[Step]:
 def netlist_tests(design: Design) -> list[Step]:
     """The block's tests on both netlists, in both simulators, a wrapper's in Icarus; of the chip, whole frames.
 
-    None of a user's Verilog.
+    None of a user's Verilog, and of a block in a size that its tests do not have.
     """
-    if design.verilog:
-        return []
-    if not design.netlist_names:
+    if design.is_chip:
         return [GateFrames(GateFramesParameters(design.options))]
+    if not design.netlist_names:
+        return []
     block = design.folder, design.netlist_names, design.top
     runs = ("synthesized", "icarus"), ("final", "icarus"), ("final", "verilator")
     if design.frame:
@@ -175,7 +175,7 @@ def timing_steps(design: Design, options: Options) -> list[Step]:
     for corner in options.corners:
         steps.append(Sta(StaParameters(design.top, corner, clock.period_ns)))
         steps.append(BlockLiberty(BlockLibertyParameters(corner, clock.port)))
-    simulated = () if design.verilog else options.corners if design.netlist_names else options.corners[:1]
+    simulated = () if design.verilog else options.corners[:1] if design.is_chip else options.corners
     for corner in simulated:
         steps += [
             GateDelays(GateDelaysParameters(corner, clock.period_ns, io.input_delay, io.output_delay)),

@@ -6,8 +6,8 @@ from functools import partial
 from pathlib import Path
 
 from talbot.base.sensor import sensor_asked
-from talbot.flow.layout.varied import CHIP, SENSOR, varied
-from talbot.models.parameters import ASYNCHRONOUS, SPI_INPUTS, ParameterError, SensorParameters, check_real
+from talbot.flow.layout.varied import CHIP, SENSOR, WRAPPER, varied
+from talbot.models.parameters import ASYNCHRONOUS, NO_DIVIDER, SPI_INPUTS, ParameterError, SensorParameters, check_real
 from talbot.platforms.processes import PROCESSES
 from talbot.rtl.sensor_options import options_of
 
@@ -58,12 +58,13 @@ class Design:
     """A block that can be laid out.
 
     top: module that rtl.export writes with ``options``. folder: of the block in rtl/. netlist_names: names under which
-    the block's tests build it with these parameters, for `pytest --netlist`; a block whose tests have a size of their
-    own is laid out in that size. utilization: where the search for the smallest area begins. aspect: width by height.
-    divider, n_frac: of the chip in whose frame the block's stimulus is recorded. io: constraints of its ports.
-    asynchronous: inputs that pass synchronizers, a false path. reset: port, active at 0 if it ends in _n. frame: a
-    shuttle's outline, see platforms.frame; '' for the smallest that there is. closed: edges without pins. verilog:
-    files of a user's design, which has no tests, and no frame in which power is measured; () for a block of rtl/.
+    the block's tests build it with these parameters, for `pytest --netlist`; () for the chip, whose test is a frame,
+    and for a block in a size that its tests do not have. utilization: where the search for the smallest area begins.
+    aspect: width by height. divider, n_frac: of the chip in whose frame the block's stimulus is recorded. io:
+    constraints of its ports. asynchronous: inputs that pass synchronizers, a false path. reset: port, active at 0 if it
+    ends in _n. frame: a shuttle's outline, see platforms.frame; '' for the smallest that there is. closed: edges
+    without pins. verilog: files of a user's design, which has no tests, and no frame in which power is measured; () for
+    a block of rtl/.
     label: name of the sensor file that the design follows, part of its folder's name; '' for the standard sensor.
     """
 
@@ -84,6 +85,11 @@ class Design:
     closed: tuple[str, ...] = ()
     verilog: tuple[Path, ...] = ()
     label: str = ""
+
+    @property
+    def is_chip(self) -> bool:
+        """Whether this is the whole chip."""
+        return self.top == "AspChip" and not self.verilog
 
 
 def divider(name: str, variant: str, n_frac: int = 8) -> Design:
@@ -111,6 +117,7 @@ DESIGNS = {
         Design("phase_path", "PhasePath", "phase_path", ("PhasePath_8_radix4",)),
         Design("run_length", "RunLength", "run_length", ("RunLength",), ("--rows=12", "--cols=36", "--lanes=4")),
         Design("reg_file", "RegFile", "reg_file", ("RegFile",), ("--rows=12", "--cols=18"), asynchronous=SPI_INPUTS),
+        Design("proc", "Proc", "proc", ("Proc",)),
         tile("tt_quad_divider", "tt_um_talbot_divider", netlist_names=("tt_um_talbot_divider",), frame="tt_1x1"),
         tile("tt_amp_ctrl", "tt_um_talbot_amp_ctrl", netlist_names=("tt_um_talbot_amp_ctrl",), frame="tt_1x2"),
         tile("tt_asp_chip", "tt_um_talbot_chip", netlist_names=("tt_um_talbot_chip",), frame="tt_4x4"),
@@ -132,14 +139,25 @@ def design_asked(name: str, options: Namespace) -> Design:
     That of the die is its chip's. Raises ParameterError for a field that the design cannot vary.
     """
     chosen, sensor = design(CHIP if name == SENSOR else name), sensor_asked(options, varied(name))
-    return for_sensor(chosen, sensor, options.sensor.stem) if name == CHIP and options.sensor else chosen
+    if not options.sensor or name == SENSOR or name.startswith(WRAPPER):
+        return chosen
+    return for_sensor(chosen, sensor, options.sensor.stem)
 
 
-def for_sensor(chip: Design, sensor: SensorParameters, label: str) -> Design:
-    """Return the chip for ``sensor``: with its sizes and its divider, its clock no slower than the sensor's."""
-    clock = replace(chip.clock, period_ns=min(chip.clock.period_ns, 1e9 / sensor.chip.f_clk))
-    divider, n_frac = sensor.chip.divider, sensor.chip.n_frac
-    return replace(chip, options=options_of(sensor), divider=divider, n_frac=n_frac, clock=clock, label=label)
+def for_sensor(standard: Design, sensor: SensorParameters, label: str) -> Design:
+    """Return the chip or block for ``sensor``: with its sizes and its divider, its clock no slower than the sensor's.
+
+    Raises ParameterError for a block that the sensor does not have.
+    """
+    if standard.name == "phase_path" and sensor.chip.divider == NO_DIVIDER:
+        raise ParameterError("DESIGN = 'phase_path': must be a block of the sensor, whose chip.divider is none")
+    clock = replace(standard.clock, period_ns=min(standard.clock.period_ns, 1e9 / sensor.chip.f_clk))
+    if not varied(standard.name).used[:-1]:  # but the clock
+        return replace(standard, clock=clock, label=label)
+    variant = standard.divider if standard.folder == "quad_divider" else sensor.chip.divider
+    options = options_of(replace(sensor, chip=replace(sensor.chip, divider=variant)))
+    sized = replace(standard, options=options, divider=variant, n_frac=sensor.chip.n_frac, clock=clock, label=label)
+    return sized if standard.is_chip else replace(sized, netlist_names=())
 
 
 def check_flat(design: Design) -> None:

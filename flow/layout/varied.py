@@ -1,18 +1,33 @@
-"""What of a sensor a layout varies: the chip follows it; blocks and the die have the standard sensor's sizes."""
+"""What of a sensor a layout varies: the chip and each block follow it; the die and the wrappers have fixed sizes."""
 
 from talbot.base.sensor import Varied
 from talbot.pixels.drawn import DRAWN_PITCH
 from talbot.rtl.sensor_options import FIELDS
 
-CHIP, SENSOR = "asp_chip", "asp_sensor"
+CHIP, SENSOR, WRAPPER = "asp_chip", "asp_sensor", "tt_"
 SIZES = "tile", "array.rows", "array.cols", "chip"
-VARIED = Varied(used=(*FIELDS.values(), "chip.f_clk"))  # of the chip
-_BLOCK = Varied(
-    fixed=dict.fromkeys(SIZES, f"DESIGN={CHIP} alone is laid out in other sizes than the standard sensor's")
-)
-_DIE = Varied(fixed={**_BLOCK.fixed, **DRAWN_PITCH})
+CLOCK = "chip.f_clk"
+_ARRAY = "array.rows", "array.cols", "chip.lanes", "tile.rows", "tile.cols"
+_PHASE = "chip.divider", "chip.n_frac", "chip.cordic_iterations"
+# Fields that set the size of a block, by design; none of the other blocks
+_BLOCKS = {
+    CHIP: tuple(FIELDS.values()),
+    "readout_seq": (*_ARRAY, "tile.order"),
+    "adc_bank": ("chip.lanes",),
+    "quad_divider": ("chip.n_frac",),
+    "quad_divider_radix2": ("chip.n_frac",),
+    "quad_divider_pipelined": ("chip.n_frac",),
+    "cordic": ("chip.n_frac", "chip.cordic_iterations"),
+    "phase_path": ("chip.lanes", *_PHASE),
+    "run_length": _ARRAY,
+    "reg_file": (*_ARRAY, "chip.divider"),
+}
+_FIXED = Varied(fixed=dict.fromkeys(SIZES, "this design has the sizes of the standard sensor"))
+_DIE = Varied(fixed={**_FIXED.fixed, **DRAWN_PITCH})
 
 
 def varied(design: str) -> Varied:
     """Return what the layout of ``design`` varies."""
-    return {CHIP: VARIED, SENSOR: _DIE}.get(design, _BLOCK)
+    if design == SENSOR:
+        return _DIE
+    return _FIXED if design.startswith(WRAPPER) else Varied(used=(*_BLOCKS.get(design, ()), CLOCK))

@@ -16,7 +16,6 @@ if TYPE_CHECKING:
 
     from talbot.models.parameters import SensorParameters, Window
 
-MODES = (("edge", False), ("image", False), ("tof", True))  # mode, whether the chip computes phases
 SEED, TAPS, TRIM = 1, 4, 7
 FIRST = 3, 5  # row and column of the window's first tile
 TILES = 2, 4  # rows and columns of tiles
@@ -33,7 +32,7 @@ class GateFramesParameters:
 
 
 class GateFrames(Step[GateFramesParameters]):
-    """A window of at most 2 x 4 tiles of the sensor in three modes, configured and read back over SPI. Zero delay."""
+    """A window of at most 2 x 4 tiles of the sensor in every mode, configured and read back over SPI. Zero delay."""
 
     name = "gate_frames"
     inputs = {"verilog": "stream_out.verilog", "cells": "library.verilog"}
@@ -44,14 +43,15 @@ class GateFrames(Step[GateFramesParameters]):
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         from talbot.imaging.frame.hardware import simulate
         from talbot.models.chip import front_end_of, golden_frame
-        from talbot.models.parameters import FrameParameters
+        from talbot.models.parameters import MODES, NO_DIVIDER, FrameParameters
 
         sensor = sensor_with(self.parameters.options)
         front_end, samples = front_end_of(sensor, [TRIM] * sensor.tile.n_types), exposure(sensor)
         lines, cycles, sent = [], 0, 0
         with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
             program = icarus_program(Build.of(sensor), Path(folder), [inputs["verilog"], inputs["cells"]])
-            for mode, phase in MODES:
+            for mode in MODES:
+                phase = mode == "tof" and sensor.chip.divider != NO_DIVIDER
                 frame = FrameParameters(few(sensor.full_window), mode, phase=phase)
                 chip = simulate(program, sensor, frame, samples, front_end)
                 golden = golden_frame(samples, sensor, frame, front_end)

@@ -17,6 +17,7 @@ from talbot.base.steps import Files, Step, StepError
 from talbot.base.tools import ToolError, finish, run
 from talbot.imaging.simulate.build import Build
 from talbot.imaging.simulate.icarus import icarus_program
+from talbot.models.parameters import NO_DIVIDER
 from talbot.rtl.sensor_options import sensor_with
 from talbot.rtl.tinytapeout.golden import EXAMPLES
 from talbot.rtl.tinytapeout.host import simulate as simulate_host
@@ -61,7 +62,7 @@ class StimulusParameters:
 
 
 class Stimulus(Step[StimulusParameters]):
-    """A time-of-flight frame with phases, which uses every block, of the scene of `make sim`.
+    """A time-of-flight frame of the scene of `make sim`, with phases where the chip has them: it uses every block.
 
     The chip has a small array; for AspChip itself a few tiles are read. A block that is not in that chip with the same
     Verilog has the trace of its own tests. A wrapper has that of an example behind its host.
@@ -107,7 +108,9 @@ def in_frame(parameters: StimulusParameters, folder: Path, trace: Path) -> dict[
     ports = ports_of(tree, parameters.top)
     (folder / "tap.v").write_text(tap("Clock.clk", ".".join(("Clock.bench.chip", *path)), ports), encoding="utf-8")
     window = partial(middle, tiles=parameters.tiles) if parameters.tiles else None
-    asked = request(sensor=sensor_with(parameters.options), scene=SCENE, mode="tof", phase=True, window=window)
+    sensor = sensor_with(parameters.options)
+    phase = sensor.chip.divider != NO_DIVIDER
+    asked = request(sensor=sensor, scene=SCENE, mode="tof", phase=phase, window=window)
     exposed = expose(asked, *see(asked))
     program = icarus_program(Build.of(asked.sensor), folder, [folder / f"{CHIP}.sv", folder / "tap.v"], ("Tap",))
     more = (f"+tap={folder / 'tap.trace'}",)

@@ -1,6 +1,7 @@
-"""The chip of a sensor file: sizes, clock, name of the folder, the frames that its netlist must pass."""
+"""Chip and blocks of a sensor file: sizes, clock, name of the folder, the frames that the chip's netlist must pass."""
 
 from argparse import Namespace
+from dataclasses import replace
 
 import pytest
 
@@ -37,16 +38,52 @@ def test_without_a_file_it_is_the_design():
     assert design_asked(CHIP, Namespace(sensor=None)) == design_asked(SENSOR, Namespace(sensor=None)) == design(CHIP)
 
 
-@pytest.mark.parametrize("name", ("readout_seq", "tt_asp_chip", SENSOR))
+BLOCKS = "readout_seq", "adc_bank", "run_length", "reg_file", "phase_path"
+
+
+@pytest.mark.parametrize("name", BLOCKS)
+def test_a_block_follows_the_file(name, small):
+    block = design_asked(name, small)
+    assert block.options == design_asked(CHIP, small).options and folder_name(block, "sky130") == f"{name}-small"
+    stimulus = next(step for step in timing_steps(block, Options()) if step.name == "stimulus")
+    assert netlist_tests(block) == [] and stimulus.parameters.options == block.options
+    assert block.clock.period_ns == 12.5
+
+
+def test_a_divider_is_looked_for_in_a_chip_that_has_it(small):
+    block = design_asked("cordic", small)
+    assert block.divider == "cordic" and block.options[-2:] == ("--divider=cordic", "--n-frac=6")
+
+
+def test_a_block_without_sizes_changes_its_clock_alone(small):
+    block, standard = design_asked("edge_adc", small), design("edge_adc")
+    assert block == replace(standard, clock=replace(standard.clock, period_ns=12.5), label="small")
+
+
+def test_a_block_that_the_sensor_lacks_is_refused(tmp_path):
+    (tmp_path / "none.toml").write_text('chip.divider = "none"')
+    with pytest.raises(ParameterError, match="DESIGN = 'phase_path': must be a block of the sensor"):
+        design_asked("phase_path", Namespace(sensor=tmp_path / "none.toml"))
+
+
+@pytest.mark.parametrize("name", ("tt_asp_chip", SENSOR))
 def test_other_designs_refuse_it(name, small):
-    line = r"tile.rows = 2: must be 4 \(DESIGN=asp_chip alone is laid out in other sizes .* varies nothing\)"
+    line = r"tile.rows = 2: must be 4 \(this design has the sizes of the standard sensor; .* varies nothing\)"
     with pytest.raises(ParameterError, match=line):
         design_asked(name, small)
 
 
-def test_a_field_without_effect_is_taken(tmp_path):
-    (tmp_path / "lens.toml").write_text("optics.camera.focus = 0.3")
-    assert design_asked("edge_adc", Namespace(sensor=tmp_path / "lens.toml")) == design("edge_adc")
+@pytest.mark.needs("iverilog", "yosys")
+@pytest.mark.slow
+@pytest.mark.parametrize("divider", ("none", "cordic"))
+def test_a_block_is_recorded_in_a_frame_of_the_sensors_chip(divider, small, tmp_path):
+    small.sensor.write_text(TEXT.replace("radix2", divider).replace("n_frac = 6,", ""))
+    block = design_asked("run_length", small)
+    files = input_files(block, Options(), tmp_path)
+    stimulus = next(step for step in timing_steps(block, Options()) if step.name == "stimulus")
+    outputs = {"head": tmp_path / "head.json", "trace": tmp_path / "trace"}
+    seen = stimulus.run({"rtl": files["rtl"]}, outputs)
+    assert seen["source"] == "frame" and seen["results"] > 0
 
 
 def test_a_small_array_is_read_whole():
@@ -56,11 +93,13 @@ def test_a_small_array_is_read_whole():
 
 @pytest.mark.needs("iverilog")
 @pytest.mark.slow
-def test_its_frames_are_the_golden_chips(small, tmp_path):
+@pytest.mark.parametrize("divider", ("none", "radix2"))
+def test_its_frames_are_the_golden_chips(divider, small, tmp_path):
+    small.sensor.write_text(TEXT.replace("radix2", divider))
     chip, cells = design_asked(CHIP, small), tmp_path / "cells.v"
     cells.write_text("")  # the RTL stands for the netlist
     files = input_files(chip, Options(), tmp_path)
     (step,) = netlist_tests(chip)
     counts = step.run({"verilog": files["rtl"], "cells": cells}, {"log": tmp_path / "frames.txt"})
-    assert (counts["passed"], counts["failed"]) == (3, 0)
+    assert (counts["passed"], counts["failed"]) == (5, 0)
     assert "create_clock -name clk -period 12.5 " in files["sdc"].read_text()
