@@ -9,14 +9,14 @@ from talbot.models.parameters import ParameterError
 from talbot.rtl.replay.record import record
 from talbot.rtl.replay.replay import replay_files
 from talbot.rtl.replay.trace import load
-from talbot.rtl.tops import TOPS
+from talbot.rtl.tops import TEST_CHIP_1, TOPS
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of `talbot replay`."""
     commands = parser.add_subparsers(dest="action", required=True)
     recording = commands.add_parser("record", help="run a block's tests and save a trace a parameter set")
-    recording.add_argument("block", choices=TOPS)
+    recording.add_argument("block", choices=(*TOPS, *TEST_CHIP_1))
     recording.add_argument("--out", type=Path, required=True, help="folder of the traces")
     replaying = commands.add_parser("replay", help="compare Verilog with traces; status 1 where they differ")
     replaying.add_argument("trace", type=Path, nargs="+", help=".json files of one parameter set")
