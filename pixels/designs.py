@@ -38,13 +38,13 @@ DESIGNS = {
         },
     ),
 }
-IDEAL, ENDLESS = "ideal", "-endless"
+IDEAL, ENDLESS, RAISED = "ideal", "-endless", "-raised"
 DRAWN = ("sky130",)  # whose pixels are drawn and solved as drawn: `models.parameters.drawn_curves`
-PIXELS = IDEAL, *DESIGNS, *(name + ENDLESS for name in DRAWN)
+PIXELS = IDEAL, *DESIGNS, *(name + end for end in (ENDLESS, RAISED) for name in DRAWN)
 
 
 def gratings(process: str) -> Gratings:
-    """Gratings of ``process``, or of a pixel with endless ones. Raises ParameterError."""
-    process = process.removesuffix(ENDLESS)
+    """Gratings of ``process``, or of a pixel with endless ones or other heights. Raises ParameterError."""
+    process = process.removesuffix(ENDLESS).removesuffix(RAISED)
     check_choice("pixel", process, DESIGNS)
     return DESIGNS[process]

@@ -12,36 +12,42 @@ from talbot.base.paths import BUILD
 from talbot.base.sensor import Varied
 from talbot.base.sources import code
 from talbot.models.parameters import ParameterError, PixelType, SensorParameters, check_choice, drawn_curves
+from talbot.models.parameters.drawn import CURVES
+from talbot.models.parameters.drawn import RAISED as CURVES_RAISED
 from talbot.models.pixel import TableResponse
-from talbot.pixels.designs import DRAWN, IDEAL, PIXELS, gratings
+from talbot.pixels.designs import DRAWN, IDEAL, PIXELS, RAISED, gratings
 from talbot.pixels.drawn import DRAWN_PITCH
+from talbot.pixels.measured import SUFFIX, read_responses, sine_of_walk
 from talbot.pixels.optics.design import REACHED, Design, measure
 from talbot.pixels.optics.fit import Fit
 from talbot.pixels.optics.response import bare_share
 from talbot.pixels.optics.solve import Floats
 from talbot.pixels.optics.table import ACROSS_DEGREES, along_degrees, angle_table
-from talbot.platforms.materials import refractive_index
 
 STORE = BUILD / "pixel" / "tables"
 DRAWN_ALONE = Varied(("tile", "optics"), DRAWN_PITCH)
 SOURCE = "PIXEL="  # of a response, and the pixel behind it
+DRAWN_CURVES = dict.fromkeys(DRAWN, CURVES) | {name + RAISED: CURVES_RAISED for name in DRAWN}
 
 
 def tabled(sensor: SensorParameters, pixel: str, note: Callable[[str], None] = lambda text: None) -> SensorParameters:
-    """``sensor`` with the computed responses of ``pixel``, "ideal" (Eq. 3.1 as it is) or a process's.
+    """``sensor`` with the responses of ``pixel``, "ideal" (Eq. 3.1 as it is), a process's, or those of a response.npz.
 
     Pixels that are drawn respond as they are drawn (`layout.section`), others and those named "-endless" as endless
-    gratings: their tables are computed once, then kept. note: called with a line about each part that takes long. Types
-    with a response stay as they are. Raises ParameterError for a beta without gratings, or for an angle at
-    which nothing is drawn.
+    gratings: their tables are computed once, then kept. "-raised" has the process's second table of heights. note:
+    called with a line about each part that takes long. Types with a response stay as they are, except with a
+    response.npz. Raises ParameterError for a beta without gratings, or for an angle at which nothing is drawn.
     """
-    check_choice("pixel", pixel, PIXELS)
+    if pixel.endswith(SUFFIX):
+        types = read_responses(pixel, sensor.tile.types, SOURCE)
+        return replace(sensor, tile=replace(sensor.tile, types=types))
+    check_choice("pixel", pixel, (*PIXELS, "a response.npz"))
     if pixel == IDEAL:
         return sensor
-    if pixel in DRAWN:
+    if pixel in DRAWN_CURVES:
         DRAWN_ALONE.check(sensor)
     for beta in _betas(sensor, pixel):
-        if pixel not in DRAWN:
+        if pixel not in DRAWN_CURVES:
             _table(pixel, beta, note)
     types = tuple(
         kind if kind.response else replace(kind, response=_response(kind, pixel)) for kind in sensor.tile.types
@@ -114,7 +120,7 @@ def _loaded(pixel: str, beta: float) -> tuple[Design, Floats]:
 @lru_cache(maxsize=256)  # sensors of the same pixels are equal
 def _response(kind: PixelType, pixel: str) -> TableResponse:
     along, across = np.deg2rad(along_degrees()), np.deg2rad(ACROSS_DEGREES)
-    if pixel in DRAWN:
+    if pixel in DRAWN_CURVES:
         values = _drawn(kind, pixel, along, across)
     else:
         design, table = _loaded(pixel, _nearest(kind.beta, pixel))
@@ -129,7 +135,7 @@ def _drawn(kind: PixelType, pixel: str, along: Floats, across: Floats) -> Floats
     through the oxide, which is where the phase comes from.
     """
     chosen, beta = gratings(pixel), _nearest(kind.beta, pixel)
-    curves = {(g, a): curve for (b, g, a), curve in drawn_curves().items() if b == beta}
+    curves = {(g, a): curve for (b, g, a), curve in drawn_curves(DRAWN_CURVES[pixel]).items() if b == beta}
     angles = sorted({g for g, _ in curves})
     if abs(kind.gamma_deg) not in angles:
         known = ", ".join(f"{angle:g}" for angle in angles)
@@ -141,12 +147,7 @@ def _drawn(kind: PixelType, pixel: str, along: Floats, across: Floats) -> Floats
     turns = [(a + half, a, half > 0) for g, a in curves if g == abs(kind.gamma_deg) for half in (0.0, np.pi)]
     _, alpha, swapped = max(turns, key=lambda turn: np.cos(turn[0] - kind.alpha))
     sines, *shares = curves[abs(kind.gamma_deg), alpha]
-    index = float(refractive_index("silica", chosen.wavelength_um).real)
-    tangents = np.tan(along)[:, None], np.tan(across)
-    down = 1 / np.sqrt(1 + tangents[0] ** 2 + tangents[1] ** 2)
-    kx, ky = (tangent * down for tangent in tangents)
-    walk = kx / np.sqrt(index**2 - kx**2 - ky**2)
-    at = np.clip(index * walk / np.sqrt(1 + walk**2), sines[0], sines[-1])
+    at = np.clip(sine_of_walk(along, across, chosen.wavelength_um), sines[0], sines[-1])
     stack = chosen.geometries[beta].stack
     from scipy.interpolate import CubicSpline  # imported where it is needed: it is slow
 

@@ -9,7 +9,8 @@ from talbot.pixels.designs import IDEAL, PIXELS
 
 def add_pixel(parser: ArgumentParser) -> None:
     """The option of the pixels' response."""
-    words = f"angular response, one of {', '.join(PIXELS)}: Eq. 3.1, or what the gratings of a process do"
+    names = ", ".join(PIXELS)
+    words = f"angular response, one of {names}: Eq. 3.1, or what the gratings of a process do; or a response.npz"
     parser.add_argument("--pixel", default=IDEAL, help=words)
 
 

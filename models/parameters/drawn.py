@@ -19,6 +19,7 @@ from talbot.models.parameters.electrical import ElectricalParameters
 LINES = Path(__file__).with_name("pixel_lines.json")
 PIXEL = Path(__file__).with_name("pixel.json")
 CURVES = Path(__file__).with_name("pixel_curves.json")
+RAISED = Path(__file__).with_name("pixel_curves_raised.json")  # with SKY130's second table of heights
 
 
 @dataclass(frozen=True)

@@ -21,6 +21,9 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--curves", type=Path, help="also write the drawn types' responses: models/parameters/pixel_curves.json"
     )
+    parser.add_argument(
+        "--heights", help="which published table of heights the responses have, where there are several"
+    )
     parser.add_argument("--out", type=Path, help="folder for the results (default: build/pixel-layout/<pdk>)")
 
 
@@ -31,9 +34,10 @@ def run(options: Namespace) -> int:
     sensor = sensor_asked(options, VARIED, ARRAY_FIELDS)
     from talbot.pixels.pixel_layout.job import STEPS, make
 
-    out = options.out or RESULTS / "pixel-layout" / labelled(options.pdk, options)
+    name = labelled(options.pdk, options) + (f"-{options.heights}" if options.heights else "")
+    out = options.out or RESULTS / "pixel-layout" / name
     with Steps(STEPS, lines=True) as steps:
-        summary = make(options.pdk, sensor, out, options.table, options.curves, steps.note)
+        summary = make(options.pdk, sensor, out, options.table, options.curves, options.heights, steps.note)
     _print(summary, out)
     return 0 if summary["passed"] else 1
 

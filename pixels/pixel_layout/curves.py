@@ -1,7 +1,7 @@
 """Angular responses of all drawn types, for `PIXEL=`: solved, kept, compared with infinite gratings."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -11,6 +11,7 @@ from talbot.base.paths import BUILD
 from talbot.pixels.layout.pixel import PixelLayout
 from talbot.pixels.layout.section import drawn_curves
 from talbot.pixels.optics.response import respond
+from talbot.platforms.optics import tables
 
 STORE = BUILD / "pixel" / "drawn"
 DIGITS = 5
@@ -49,6 +50,11 @@ def curves(pixels: Sequence[PixelLayout], wavelength_um: float) -> list[dict[str
     return [kind | found for kind, found in zip(kinds, run(jobs, STORE, "curves"), strict=True)]
 
 
+def at_heights(pixels: Sequence[PixelLayout], heights: str | None) -> list[PixelLayout]:
+    """Return the same masks where the process has another table of heights; None: its first."""
+    return [replace(pixel, geometry=replace(pixel.geometry, heights=heights)) for pixel in pixels]
+
+
 def kept(curve: dict[str, Any]) -> Kept:
     """Return the share of the differences that the drawn pixel of a curve keeps."""
     near = np.abs(curve["sines"]) <= np.sin(np.deg2rad(DEGREES))
@@ -61,10 +67,13 @@ def kept(curve: dict[str, Any]) -> Kept:
     )
 
 
-def table(pdk: str, wavelength_um: float, found: Sequence[dict[str, Any]]) -> dict[str, Any]:
+def table(pdk: str, wavelength_um: float, found: Sequence[dict[str, Any]], heights: str | None) -> dict[str, Any]:
     """Return the data that `talbot.models.parameters.drawn_curves` reads."""
+    first = heights in (None, tables(pdk)[0])
+    other, of_heights = ("", "") if first else (f"HEIGHTS={heights} ", f"heights {heights}, ")
+    light = f"{pdk}, {of_heights}{1e3 * wavelength_um:g} nm"
     return {
-        "command": "make pixel-layout CURVES=models/parameters/pixel_curves.json",
-        "source": f"{pdk}, {1e3 * wavelength_um:g} nm: cuts through the drawn masks, by rigorous coupled waves",
+        "command": f"make pixel-layout {other}CURVES=models/parameters/pixel_curves{'' if first else '_raised'}.json",
+        "source": f"{light}: cuts through the drawn masks, by rigorous coupled waves",
         "curves": [{name: curve[name] for name in curve if name != "endless"} for curve in found],
     }

@@ -19,13 +19,14 @@ from talbot.pixels.layout.pixel import PixelLayout
 from talbot.pixels.layout.write import array_layout, array_lef, fitted
 from talbot.pixels.pixel_layout import foundry
 from talbot.pixels.pixel_layout.checks import WAIVERS, densities, drc, lvs, placed, unwaived
-from talbot.pixels.pixel_layout.curves import curves, kept
+from talbot.pixels.pixel_layout.curves import at_heights, curves, kept
 from talbot.pixels.pixel_layout.curves import table as curve_table
 from talbot.pixels.pixel_layout.lines import extracted
 from talbot.pixels.pixel_layout.lines import table as line_table
 from talbot.pixels.pixel_layout.made import SMALL, Made
 from talbot.pixels.response.types import name_of
 from talbot.platforms.foundry import installed
+from talbot.platforms.optics import optical_stack
 
 STEPS = "optics", "draw", "count", "drc", "foundry", "lvs", "lines", "curves", "report"
 FILES = "pixel_array.gds", "pixel_array.lef", "tile.gds", "pixel.gds", "small_array.gds", "pixel.spice", "summary.json"
@@ -39,10 +40,12 @@ def make(
     out: Path,
     table: Path | None = None,
     responses: Path | None = None,
+    heights: str | None = None,
     note: Callable[[str], None] = lambda text: None,
 ) -> dict[str, Any]:
     """Draw, check and report into ``out``, the lines into ``table``, curves into ``responses``; returns the summary.
 
+    heights: the table of heights of the curves, None: the process's first.
     Raises ParameterError, StepError.
     """
     from talbot.pixels.pixel_layout import page  # Matplotlib: not before it is needed
@@ -52,6 +55,7 @@ def make(
     for name, file in (("table", table), ("curves", responses)):
         if file:
             check_file(name, file)
+    optical_stack(pdk, heights)
     decks = installed(pdk)
     rows, cols = sensor.shape
     array = array_layout(pdk, rows, cols, sensor.tile, sensor.array.pitch)
@@ -74,7 +78,7 @@ def make(
         note("lines")
         lines = extracted(array)
         note("curves")
-        solved = curves(array.pixels, gratings(pdk).wavelength_um)
+        solved = curves(at_heights(array.pixels, heights), gratings(pdk).wavelength_um)
         share, most = densities(made.path("tile.gds"), pdk), array.pixels[0].process.density_most
         block, size = array.block, made.path("pixel_array.gds").stat().st_size
         summary = {
@@ -96,6 +100,7 @@ def make(
             "waivers": {rule: {"count": found[rule], "reason": WAIVERS[rule]} for rule in found if rule in WAIVERS},
             "foundry": theirs,
             "lines": {name: asdict(line) for name, line in lines.items()},
+            "heights": optical_stack(pdk, heights).heights,
             "curves": solved,
             "response": {_name(curve): asdict(kept(curve)) for curve in solved},
             "density": share,
@@ -113,7 +118,10 @@ def make(
     if table:
         write(table, json.dumps(line_table(pdk, lines), indent=1, allow_nan=False) + "\n")
     if responses:
-        write(responses, json.dumps(curve_table(pdk, gratings(pdk).wavelength_um, solved), allow_nan=False) + "\n")
+        write(
+            responses,
+            json.dumps(curve_table(pdk, gratings(pdk).wavelength_um, solved, heights), allow_nan=False) + "\n",
+        )
     return summary
 
 
