@@ -13,7 +13,7 @@ import numpy.typing as npt
 from talbot.base.progress import each
 from talbot.imaging.frame.request import FrameRequest
 from talbot.models.afe import FrontEnd, trim_gain
-from talbot.models.calibrate import Sweep, block_means
+from talbot.models.calibrate import Sweep, block_means, sunflower
 from talbot.models.capture import Exposure, Region, exposed, integrate
 from talbot.models.chip import front_end_of, golden_frame
 from talbot.models.parameters import ParameterError
@@ -57,15 +57,8 @@ class Bench:
         return Sweep(holes, np.stack(means), block_means(places, tile), measured_gains(white - dark, tile))
 
     def _places(self) -> Values:
-        """Tangents (y, x) of the hole's places: a sunflower in the lens's disc.
-
-        Its density is even, and along every direction no two places are alike: a grating's response is sampled finer
-        than by as many places on a grid [Vogel1979].
-        """
-        count = round(np.pi / 4 * self.holes**2)
-        k = np.arange(count) + 0.5
-        radius, turn = MARGIN * np.sqrt(k / count), k * np.pi * (3 - np.sqrt(5))
-        return radius[:, None] * np.stack([np.sin(turn), np.cos(turn)], 1) * self.request.lit.optics.nu_max
+        """Tangents (y, x) of the hole's places in the lens's disc."""
+        return sunflower(round(np.pi / 4 * self.holes**2), MARGIN * self.request.lit.optics.nu_max)
 
     def _flat(self, light: float) -> Values:
         """Mean of frames of the screen through the whole pupil, (rows, cols, 2) in codes."""

@@ -2,6 +2,16 @@
 
 from talbot.models.calibrate.calibration import Calibration, read_calibration
 from talbot.models.calibrate.fit import TypeFit, calibrated, fit_pupil, fit_types
-from talbot.models.calibrate.sweep import Sweep, block_means
+from talbot.models.calibrate.sweep import Sweep, block_means, sunflower
 
-__all__ = ["Calibration", "Sweep", "TypeFit", "block_means", "calibrated", "fit_pupil", "fit_types", "read_calibration"]
+__all__ = [
+    "Calibration",
+    "Sweep",
+    "TypeFit",
+    "block_means",
+    "calibrated",
+    "fit_pupil",
+    "fit_types",
+    "read_calibration",
+    "sunflower",
+]

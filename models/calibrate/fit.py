@@ -59,6 +59,8 @@ class TypeFit(NamedTuple):
         RMS of q that the fit leaves.
     condition : float
         Of the normal equations, columns of length 1.
+    beta_error, gamma_error : float
+        Standard deviations, gamma's in degrees; BETA_MAX and 180 where no modulation is seen.
     """
 
     kind: PixelType
@@ -66,6 +68,8 @@ class TypeFit(NamedTuple):
     alpha_error: float
     residual: float
     condition: float
+    beta_error: float = BETA_MAX
+    gamma_error: float = 180.0
 
 
 def fit_pupil(sweep: Sweep) -> Pupil:
@@ -132,7 +136,7 @@ def fit_types(sweep: Sweep, pupil: Pupil) -> list[TypeFit]:
     return [_fit_type(sweep, pupil, number) for number in range(sweep.places.shape[1])]
 
 
-def calibrated(sweep: Sweep, pitch: float) -> tuple[Calibration, Pupil, list[TypeFit]]:
+def calibrated(sweep: Sweep, pitch: float, centred: bool = False) -> tuple[Calibration, Pupil, list[TypeFit]]:
     """Quantities fitted to a sweep.
 
     Parameters
@@ -141,6 +145,8 @@ def calibrated(sweep: Sweep, pitch: float) -> tuple[Calibration, Pupil, list[Typ
         Of the bench.
     pitch : float
         Of the pixels in m.
+    centred : bool
+        Whether the angles' zero is that of the holes, not that of the light's sums.
 
     Returns
     -------
@@ -148,14 +154,15 @@ def calibrated(sweep: Sweep, pitch: float) -> tuple[Calibration, Pupil, list[Typ
         What is kept, and what it is from.
     """
     pupil = fit_pupil(sweep)
-    fits = fit_types(sweep, pupil)
+    rays = pupil._replace(axis=np.zeros(2)) if centred else pupil
+    fits = fit_types(sweep, rays)
     centre = None
     if pupil.slope:
         y, x = (float(-tangent / pupil.slope) for tangent in pupil.axis)
         centre = y, x
     kinds = tuple(fit.kind for fit in fits)
     if np.median([fit.residual for fit in fits]) > ROUGH:
-        kinds = tables(kinds, [_plain(sweep, pupil, number) for number in range(len(kinds))], pupil.sigma)
+        kinds = tables(kinds, [_plain(sweep, rays, number) for number in range(len(kinds))], pupil.sigma)
     gains = tuple(float(gain) for gain in sweep.gains)
     return Calibration(kinds, gains, pupil.sigma, pupil.slope / pitch, centre), pupil, fits
 
@@ -169,7 +176,7 @@ def _seen(sweep: Sweep, pupil: Pupil, number: int) -> tuple[Floats, Floats]:
         diodes, places = diodes.mean(1, keepdims=True), places[:1]
     sums = diodes.sum(-1)
     theta = np.arctan(sweep.holes[:, None] + pupil.axis + pupil.slope * places)
-    seen = sums > DARK * sums.max(initial=0)
+    seen = sums > DARK * np.nanmax(sums, initial=0)  # not those that were not measured, NaN
     return theta[seen], diodes[seen]
 
 
@@ -213,13 +220,16 @@ def _fit_type(sweep: Sweep, pupil: Pupil, number: int) -> TypeFit:
     residual = float(np.sqrt(np.mean((fitted.fun / weight) ** 2)))
     y, x, c, s = fitted.x
     m, m_error = float(np.hypot(c, s)), float(max(errors[2:]))
-    if not m > CERTAIN * m_error or not np.hypot(y, x) <= BETA_MAX:
+    if not m > CERTAIN * m_error or not 0 < np.hypot(y, x) <= BETA_MAX:
         return TypeFit(PixelType(0, 0, 0, 0.0), m_error, np.pi, residual, condition)
     alpha = float(np.arctan2(s, c))
     if _unlike(y, x, alpha) > _unlike(-y, -x, -alpha):  # the same wave
         y, x, alpha = -y, -x, -alpha
     kind = PixelType(float(np.hypot(y, x)), float(np.rad2deg(np.arctan2(y, x))), alpha, min(m, 1.0))
-    return TypeFit(kind, m_error, m_error / m, residual, condition)
+    spread = float(max(errors[:2]))
+    return TypeFit(
+        kind, m_error, m_error / m, residual, condition, spread, min(float(np.rad2deg(spread / kind.beta)), 180.0)
+    )
 
 
 def _unlike(y: float, x: float, alpha: float) -> float:

@@ -44,6 +44,32 @@ class Sweep:
             raise ParameterError(f"holes = {n}: must be at least 5")
 
 
+def sunflower(count: int, radius: float) -> Floats:
+    """Return places in a disc, of even density, no two alike along any direction.
+
+    A grating's response is so sampled finer than by as many places on a grid.
+
+    Parameters
+    ----------
+    count : int
+        Places.
+    radius : float
+        Of the disc.
+
+    Returns
+    -------
+    float64 (count, 2)
+        Places (y, x).
+
+    References
+    ----------
+    [Vogel1979].
+    """
+    k = np.arange(count) + 0.5
+    radii, turn = radius * np.sqrt(k / count), k * np.pi * (3 - np.sqrt(5))
+    return radii[:, None] * np.stack([np.sin(turn), np.cos(turn)], 1)
+
+
 def block_means(samples: Floats, tile: TileParameters) -> Floats:
     """Mean of every type in every block of an array.
 

@@ -48,8 +48,33 @@ def test_what_was_put_in():
 
 def test_errors_are_what_they_say():
     many = [fit_types(s := swept(noise=5.0, size=24), fit_pupil(s))]
-    wrong = np.array([[(fit.kind.m - 0.7) / fit.m_error for fit in fits] for fits in many])
-    assert 0.3 < np.sqrt((wrong**2).mean()) < 2
+    wrong = [[(fit.kind.m - 0.7) / fit.m_error for fit in fits] for fits in many]
+    for name in ("beta", "gamma_deg"):
+        error = name.removesuffix("_deg") + "_error"
+        pairs = [zip(fits, TILE.types, strict=True) for fits in many]
+        wrong += [[(getattr(f.kind, name) - getattr(t, name)) / getattr(f, error) for f, t in pair] for pair in pairs]
+    for part in np.array(wrong):
+        assert 0.3 < np.sqrt((part**2).mean()) < 2
+
+
+def test_readings_that_are_missing():
+    """A type that was not read at some of the places, as where it saturates, is fitted to the others."""
+    sweep = swept(size=12)
+    diodes = sweep.diodes.copy()
+    diodes[::3, :, 7] = np.nan
+    fit = calibrated(replace(sweep, diodes=diodes), PITCH, centred=True)[2][7]
+    assert fit.kind.beta == pytest.approx(TILE.types[7].beta, abs=0.05) and fit.kind.m == pytest.approx(0.7, abs=0.01)
+
+
+def test_angles_whose_zero_is_that_of_the_holes():
+    """The sums have their own zero, and it is reported; the waves' is that of the holes where these are trusted."""
+    sweep = swept(size=12)
+    moved = replace(sweep, holes=sweep.holes - [0.0, 0.02])
+    (_, pupil, fits), (_, _, others) = (calibrated(moved, PITCH, centred=centred) for centred in (True, False))
+    assert pupil.axis == pytest.approx([0, 0.02], abs=1e-3)
+    kind = TILE.types[16]  # beta 24 along x
+    assert fits[16].kind.alpha == pytest.approx(kind.alpha + 24 * 0.02, abs=0.03)
+    assert others[16].kind.alpha == pytest.approx(kind.alpha, abs=0.03)
 
 
 def test_chief_ray_and_optical_centre():
