@@ -1,4 +1,7 @@
-"""A calibration on the bench: pixel types, trims, chief ray and optical centre from noisy frames of the chip."""
+"""A calibration on the bench: pixel types, trims, chief ray and optical centre from noisy frames of the chip.
+
+With --bench the pixels' test chip: types, efficiency, dark current and crosstalk from voltmeter readings.
+"""
 
 import json
 from argparse import ArgumentParser, Namespace
@@ -6,16 +9,21 @@ from pathlib import Path
 from typing import Any
 
 from talbot.base.arguments import Number
-from talbot.base.files import check_folder, staged
+from talbot.base.files import check_folder, insert, marked, staged
 from talbot.base.paths import results_of
 from talbot.base.progress import Steps
-from talbot.imaging.frame.command import OF_SENSOR, add_frame_arguments, name_of, request_of, typed_of
+from talbot.imaging.frame.command import NUMBERS, OF_SENSOR, add_frame_arguments, name_of, request_of, typed_of
 from talbot.imaging.frame.reading import WHOLE
+from talbot.imaging.frame.sensor import asked_sensor
+from talbot.models.parameters import ParameterError
 
 SCENE = "motorcycle"
 SIDES = {"rows": "96", "cols": "96"}  # pixels without a sensor file: 16 x 24 of each type
 STEPS = ("bench", "fit", "picture", "report")
-HOLES = Number("holes", "positions of the hole along the pupil's diameter", 5, 31, "13")
+BENCH_STEPS = ("read", "fit", "report")
+HOLES = Number("holes", "positions of the hole along the pupil's diameter, or of a simulated stage", 5, 31, "13")
+OF_BENCH = {"scene", "sensor", "bench"}  # options that a bench of the test chip has; the scene is its default
+OF_SIMULATED = OF_BENCH | {"pixel", "lux", "noise", "seed", "holes", "document"}
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -25,6 +33,15 @@ def add_arguments(parser: ArgumentParser) -> None:
     add_frame_arguments(parser, WHOLE | {"mode": "raw", "calibration": None})
     parser.add_argument("--out", help="folder for the results (default: build/calibrate)")
     HOLES.add(parser)
+    parser.add_argument(
+        "--bench",
+        nargs="+",
+        help="readings of the pixels' test chip, one or more CSV files (pixels/test_chip/bench.md), or simulated: "
+        "writes sensor.toml and response.npz to build/calibrate/<name>, simulated also the readings",
+    )
+    parser.add_argument(
+        "--document", type=Path, help="with --bench simulated: also put expected readings between marks of this file"
+    )
 
 
 def run(options: Namespace) -> int:
@@ -34,6 +51,10 @@ def run(options: Namespace) -> int:
 
     holes = HOLES.value(options)
     typed = typed_of(options, add_arguments, OF_SENSOR | SIDES)
+    if options.bench:
+        return _bench(options, typed, holes)
+    if options.document:
+        raise ParameterError(f"document = {str(options.document)!r}: must be left out without bench = simulated")
     standard = list(typed.items()) == [("scene", SCENE)]
     options.out = options.out or results_of("calibrate") / ("" if standard else name_of(typed))
     if not options.sensor:
@@ -50,6 +71,54 @@ def run(options: Namespace) -> int:
             (part / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n", encoding="utf-8")
     _print(done.summary, frame_request.folder)
     return 0
+
+
+def _bench(options: Namespace, typed: dict[str, Any], holes: int) -> int:
+    """Calibrate from readings of the test chip, print the figures."""
+    from talbot.imaging.bench import job
+
+    simulated = options.bench == [job.SIMULATED]
+    for name in sorted(typed.keys() - (OF_SIMULATED if simulated else OF_BENCH)):
+        which = "simulated" if simulated else "a file"
+        raise ParameterError(f"{name} = {typed[name]!r}: must be left out with bench = {which}")
+    if options.scene != SCENE:
+        raise ParameterError(f"scene = {options.scene!r}: must be left out with bench")
+    sensor = asked_sensor(options)
+    label = "-".join(Path(file).stem for file in options.bench)
+    rest = {name: value for name, value in typed.items() if name not in ("bench", "document")}
+    folder = Path(options.out or results_of("calibrate") / name_of(rest | {"scene": label}))
+    marks = "expected readings", "tables of heights"
+    for mark in marks if options.document else ():
+        marked(options.document, mark)
+    numbers = {number.field: number.value(options) for number in NUMBERS if number.field in ("noise", "seed", "lux")}
+    simulation = job.Simulation(holes, **numbers) if simulated else None
+    files = () if simulated else options.bench
+    typed = {name: str(value) if isinstance(value, Path) else value for name, value in typed.items()}
+    with Steps(BENCH_STEPS, lines=True) as progress:
+        summary = job.make(folder, sensor, files, simulation, progress.note, typed)
+        if options.document:
+            for mark, text in zip(
+                marks, (job.expected(sensor, numbers["lux"], holes), job.heights(holes)), strict=True
+            ):
+                insert(options.document, mark, text)
+    _print_bench(summary, folder)
+    return 0
+
+
+def _print_bench(s: dict[str, Any], folder: Path) -> None:
+    from talbot.imaging.bench.page import PAGE, RESPONSE, SENSOR, rows, type_rows
+
+    print(f"{s['readings']:,} readings, {s['angles']} angles, {s['wavelength_nm']:g} nm, {s['celsius']:.1f} degrees C")
+    for name, beta, gamma, alpha, m, efficiency in ((r[0], *r[2:7]) for r in type_rows(s)):
+        print(
+            f"  type {name:<15} beta {beta:<14} gamma {gamma:<16} alpha {alpha:<16} m {m:<15} efficiency {efficiency}"
+        )
+    for name, value, *true in rows(s):
+        print(f"  {name:<54}{value}" + (f"  true {true[0]}" if true and true[0] else ""))
+    for note in s["notes"]:
+        print(f"  check: {note}")
+    print(f"  make sim SENSOR={folder / SENSOR} PIXEL={folder / RESPONSE}")
+    print(f"  look at {folder / PAGE}")
 
 
 def _print(s: dict[str, Any], folder: Path) -> None:
