@@ -12,6 +12,7 @@ from dataclasses import asdict
 from pathlib import Path
 from time import perf_counter
 
+from talbot.base.check import work_begins
 from talbot.base.command import failures
 from talbot.base.files import marked, staged
 from talbot.verif.report import document, limits
@@ -57,10 +58,11 @@ def run(options: Namespace) -> int:
     """Return 0, 1 where a point is open."""
     start, out = perf_counter(), options.out
     held = limits.read()
-    out.mkdir(parents=True, exist_ok=True)
     if options.document:
         for name in ("steps", "sizes"):
             marked(options.document, name)
+    work_begins()
+    out.mkdir(parents=True, exist_ok=True)
     load = document.load()
     done = outcomes([] if options.read else options.steps or list(BY_NAME), out, options.seed)
     runs = document.record(done, out, load)

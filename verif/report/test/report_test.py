@@ -7,6 +7,7 @@ from dataclasses import is_dataclass, replace
 
 import pytest
 
+from talbot.base.check import ONLY
 from talbot.base.command import main
 from talbot.models.parameters import ParameterError
 from talbot.rtl.tops import TOPS
@@ -202,6 +203,13 @@ def test_the_page_holds_every_block_and_every_fault():
     for text in (*BLOCKS, "&lt;b&gt;a point", "99.9 %", "unbounded", "what one does", "step two = missing", "a.one"):
         assert text in page, text
     assert "<script" not in page and "http" not in page
+
+
+def test_a_check_of_the_arguments_runs_no_step(tmp_path, monkeypatch, capsys):
+    (tmp_path / "bench.json").write_text("{}")
+    monkeypatch.setenv(ONLY, "1")
+    assert main(command, ["--steps", "bench", "--out", str(tmp_path)]) == 0
+    assert (tmp_path / "bench.json").read_text() == "{}" and capsys.readouterr() == ("", "")
 
 
 def test_the_command_reads_what_steps_left(tmp_path, capsys):
