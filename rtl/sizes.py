@@ -1,11 +1,17 @@
-"""The values with which a block can be built: each is proven, or tested for every size (verif.formal.sizes).
-
-The chip and its registers can also be built with NO_DIVIDER, which their tests have.
-"""
+"""The values with which a block can be built: each is proven, or tested for every size (verif.formal.sizes)."""
 
 from collections.abc import Sequence
 
-from talbot.models.parameters import COLS_MAX, DIVIDERS, LANES, ROWS_MAX, TileParameters, check_choice, check_int
+from talbot.models.parameters import (
+    COLS_MAX,
+    DIVIDERS,
+    LANES,
+    NO_DIVIDER,
+    ROWS_MAX,
+    TileParameters,
+    check_choice,
+    check_int,
+)
 from talbot.models.parameters.divider import ITERATIONS_MAX, ITERATIONS_MIN, N_FRAC_MAX, N_FRAC_MIN
 
 BUILD: dict[str, range | tuple[object, ...]] = {
@@ -18,12 +24,15 @@ BUILD: dict[str, range | tuple[object, ...]] = {
     "n_frac": range(N_FRAC_MIN, N_FRAC_MAX + 1),
     "iterations": range(ITERATIONS_MIN, ITERATIONS_MAX + 1),
 }
+# A chip, and its registers, can do without the phase path
+CHIP: dict[str, range | tuple[object, ...]] = BUILD | {"divider": (*DIVIDERS, NO_DIVIDER)}
+BLOCKS = {"AspChip": CHIP, "RegFile": CHIP}  # others: BUILD
 
 
-def check_size(**values: object) -> None:
-    """Check the parameters with which a block is built, by their names in BUILD. Raises ParameterError."""
+def check_size(block: str = "", **values: object) -> None:
+    """Check the parameters with which ``block`` is built, by their names in BUILD. Raises ParameterError."""
     for name, value in values.items():
-        allowed = BUILD[name]
+        allowed = BLOCKS.get(block, BUILD)[name]
         if isinstance(allowed, range):
             check_int(name, value, allowed[0], allowed[-1])
         else:

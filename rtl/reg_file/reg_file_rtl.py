@@ -20,7 +20,6 @@ from pymtl3 import (
 )
 from pymtl3.stdlib.stream.ifcs import SendIfcRTL
 
-from talbot.models.parameters import NO_DIVIDER
 from talbot.models.parameters.registers import array_resets, register_map
 from talbot.rtl.reg_file.config import chip_config, chip_state, chip_status
 from talbot.rtl.reg_file.spi_slave_rtl import SpiSlave
@@ -38,9 +37,8 @@ class RegFile(Component):
     """The register file behind SPI (README.md). The parameters are in the identity, and the window resets to them."""
 
     def construct(s, rows, cols, lanes, tile_rows=4, tile_cols=6, divider="radix4"):
-        check_size(rows=rows, cols=cols, lanes=lanes, tile_rows=tile_rows, tile_cols=tile_cols)
-        if divider != NO_DIVIDER:
-            check_size(divider=divider)
+        check_size("RegFile", rows=rows, cols=cols, lanes=lanes, divider=divider)
+        check_size(tile_rows=tile_rows, tile_cols=tile_cols)
         chip = register_map()
         own = array_resets(rows, cols, lanes, tile_rows, tile_cols, divider)
         resets = chip.image(chip.configuration, own)

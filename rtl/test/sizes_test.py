@@ -24,6 +24,7 @@ from talbot.rtl.sizes import BUILD
         (lambda: Pattern(64), "lanes = 64: must be one of 1, 2, 4, 8, 16, 32"),
         (lambda: PhasePath(0), "lanes = 0: must be one of 1, 2, 4, 8, 16, 32"),
         (lambda: PhasePath(8, "radix8"), "divider = 'radix8': must be one of radix2, radix4, pipelined, cordic"),
+        (lambda: PhasePath(8, "none"), "divider = 'none': must be one of radix2, radix4, pipelined, cordic"),
         (lambda: PhasePath(8, "radix2", 17), "n_frac = 17: must be an integer in 4..16"),
         (lambda: PhasePath(8, "cordic", 8, 3), "iterations = 3: must be an integer in 4..16"),
         (lambda: quad_divider("radix4", 3), "n_frac = 3: must be an integer in 4..16"),
@@ -35,7 +36,7 @@ from talbot.rtl.sizes import BUILD
         (lambda: RunLength(8, 13, 2, 4, 7), "tile_cols = 7: must be an integer in 1..6"),
         (
             lambda: RegFile(8, 13, 2, divider="radix3"),
-            "divider = 'radix3': must be one of radix2, radix4, pipelined, cordic",
+            "divider = 'radix3': must be one of radix2, radix4, pipelined, cordic, none",
         ),
     ],
 )

@@ -8,7 +8,7 @@ from functools import cache
 from talbot.base.paths import ROOT
 from talbot.base.table import markdown_table
 from talbot.models.parameters import SensorParameters
-from talbot.rtl.sizes import BUILD
+from talbot.rtl.sizes import BLOCKS, BUILD
 from talbot.rtl.tops import TOPS, build_top
 from talbot.verif.formal.proof import Proof
 
@@ -63,9 +63,10 @@ def sizes(proofs: Iterable[Proof]) -> list[Size]:
         about = [proof for proof in proofs if proof.block == block or block in proof.modules]
         for name in parameters(block):
             values = {_value(proof.sensor_parameters, name) for proof in about}
-            proven = tuple(value for value in BUILD[name] if value in values)
+            allowed = BLOCKS.get(block, BUILD)[name]
+            proven = tuple(value for value in allowed if value in values)
             tests = [proof.tested[name] for proof in of_block if name in proof.tested]
-            every.append(Size(block, name, BUILD[name], proven, tests[0] if tests else ""))
+            every.append(Size(block, name, allowed, proven, tests[0] if tests else ""))
     return every
 
 
