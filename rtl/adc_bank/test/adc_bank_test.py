@@ -69,9 +69,12 @@ def simulator(cls, verilog, lanes=LANES, rough=True):
 
 
 class Run:
-    """A run of a bank with a list of StepMsg: messages with their cycles; hold, wake, idle in every cycle; counters."""
+    """A run of a bank with a list of StepMsg: messages with their cycles; hold, wake, idle in every cycle; counters.
 
-    def __init__(self, sim, steps, mode, threshold, pattern=ALWAYS, limit=None):
+    counted: made and left_out at its begin, of the RTL in PyMTL.
+    """
+
+    def __init__(self, sim, steps, mode, threshold, pattern=ALWAYS, limit=None, counted=()):
         sim.mode @= MODES.index(mode)
         sim.threshold @= threshold
         sim.step.val @= 0
@@ -79,6 +82,9 @@ class Run:
         sim.reset @= 1
         sim.sim_tick()
         sim.reset @= 0
+        for register, value in zip((sim.dut.made, sim.dut.left_out), counted):
+            register @= value
+            register <<= value
         self.messages, self.sent_at, self.hold, self.idle, self.counts = [], [], [], [], []
         self.wake = []
         self.held = []  # row, group, k, sub, en at each hold
@@ -320,6 +326,8 @@ class TestOtherNumbersOfLanes:
         got = Run(simulator(cls, False, lanes), steps, mode, threshold, pattern)
         assert (got.messages, got.counts) == expected(steps, lanes, mode, threshold)
         assert got.hold == [False, *got.wake[:-1]]  # a cycle ahead
+        if cls is AdcBank:
+            assert vars(got) == vars(Run(simulator(AdcBankCL, False, lanes), steps, mode, threshold, pattern))
 
     def test_each_lane_alone_and_all_others(self, cls, lanes):
         Step, every = step_msg(lanes), (1 << lanes) - 1
@@ -329,3 +337,15 @@ class TestOtherNumbersOfLanes:
         steps = [begin, *steps, end, begin, end]  # the second frame's counts start at 0
         got = Run(simulator(cls, False, lanes), steps, "edge", 3, [(True, True), (True, False), (False, True)])
         assert (got.messages, got.counts) == expected(steps, lanes, "edge", 3)
+
+
+@pytest.mark.parametrize("bit", (8, 16, 24, 31, 32))
+def test_carries_of_the_counters(bit):
+    """Each counter of the RTL passes a power of two, here soon after a reset."""
+    Step = step_msg(LANES)
+    begin, end = Step(FRAME, 0, 0, 0, 0, 0), Step(END, 0, 0, 0, 0, 0)
+    steps = [Step(SAMPLE, row, 0, 1, 0, 0x11) for row in (0, 1) * 3]
+    _, [counts] = expected([begin, *steps, end], LANES, "edge", 10)
+    for counted in ((1 << bit) - 1, 5), (3, (1 << bit) - 2):
+        got = Run(simulator(AdcBank, False), [*steps, end], "edge", 10, counted=counted)
+        assert got.counts == [tuple((a + b) % 2**32 for a, b in zip(counted, counts))]

@@ -154,8 +154,8 @@ class TestAmpCtrlFL:
                 expected = golden.send(True)
 
     def test_every_number_of_common_mode_resets(self, sim):
-        for number in (*(1 << bit for bit in range(8)), 0):
-            self.check_row(self.fresh(sim), AmpTiming(1, 1, 1, 1, 1, 1, n_cm=number), 0, lambda _: True)
+        for four_tap, number in product((0, 1), (*(1 << bit for bit in range(8)), 0)):
+            self.check_row(self.fresh(sim), AmpTiming(1, 1, 1, 1, 1, 1, n_cm=number), four_tap, lambda _: True)
 
     def test_read_waits_for_the_hold(self, sim):
         self.check_row(self.fresh(sim), AmpTiming(1, 2, 3, 2, 1, 2, n_cm=1), 1, lambda cycle: cycle % 50 > 45)

@@ -257,13 +257,22 @@ def test_two_frames_of_any_configuration(cls, chip, data):
     assert run.messages == wanted
 
 
+def extremes(rng, lanes):
+    """Eight steps of all lanes: each lane has every pair of extremes in taps 0 and 2, then in taps 1 and 3."""
+    pairs, steps = np.array([(0, 0), (0, 255), (255, 0), (255, 255)]), rng.integers(0, 256, (8, 4, lanes))
+    for number, step in enumerate(steps):
+        step[number // 4 :: 2] = pairs[(np.arange(lanes) + number) % 4].T
+    return steps.tolist()
+
+
 @pytest.mark.parametrize("cls", [PhasePathCL, PhasePath])
 @pytest.mark.parametrize("chip", CHIPS, ids=lambda c: f"{c.lanes}-{c.divider}")
 def test_other_lanes_and_dividers(cls, chip):
     rng = np.random.default_rng(8)
     count = 2 if chip.lanes < 8 else 1
-    frame = [(row, [rng.integers(0, 256, (4, chip.lanes)).tolist() for _ in range(count)]) for row in (0, 5)]
-    for pattern in (ALWAYS, [(True, False), (True, True), (False, True), (True, False), (True, False)]):
+    any_taps = [(row, [rng.integers(0, 256, (4, chip.lanes)).tolist() for _ in range(count)]) for row in (0, 5)]
+    stalls = [(True, False), (True, True), (False, True), (True, False), (True, False)]
+    for frame, pattern in (([(9, extremes(rng, chip.lanes))], ALWAYS), (any_taps, ALWAYS), (any_taps, stalls)):
         got = Run(simulator(cls, False, chip)).frame(messages(frame), True, 10, pattern)
         assert got.messages == expected(frame, chip, 10)
         reference = Run(simulator(PhasePathCL, False, chip)).frame(messages(frame), True, 10, pattern)

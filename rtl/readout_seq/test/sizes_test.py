@@ -74,6 +74,14 @@ def any_window(size, pick, decimation):
     return ports
 
 
+def any_mode(size, ports, pick):
+    """Return the ports with any mode, overlap and exposure; a pixel of a long frame has a sample or two."""
+    scan = size.scan(ports)
+    modes = range(4) if scan and len(messages(scan)) < 40 else range(2)
+    how = {"mode": pick.choice(modes), "overlap": pick.randint(0, 1), "exposure": pick.choice((0, 0, 1, 2, 9))}
+    return ports | how
+
+
 def types_of(size, rows, cols):
     """Mask of the types at the rows and columns of a tile."""
     return sum(1 << size.order[size.tile_cols * row + k] for row in rows for k in cols)
@@ -156,26 +164,42 @@ class TestReadoutSeqSizes:
         size = Size(4 * 40 + 3, 6 + 5, 1)
         self.run(size, row_choices(size, random.Random(0)))
 
+    @pytest.mark.parametrize("bit", (8, 16, 24, 32, 40, 63))
+    def test_carries_of_the_cycles(self, bit):
+        """The count of the RTL passes a power of two, here soon after the start."""
+        size, begin = Size(7, 31, 2), (1 << bit) - 9
+        bench = Bench(simulator(ReadoutSeq, size, False), *quickly(random.Random(bit))[0])
+        sim, starts = bench.sim, iter([True])
+
+        def count_on():
+            """Set the registers in the first cycle after the start, in which they are 0."""
+            if next(starts, False):
+                for register, value in (sim.count_low, begin & 0xFF), (sim.count_high, begin >> 8):
+                    register @= value
+                    register <<= value
+            return 0
+
+        record = bench.frame(size.whole(mask=types_of(size, [0], [0])), count_on)
+        assert record.pins[-1]["cycles"] == begin + len(record.pins) - 2
+
     def run(self, size, frames):
         """Run frames one after the other in one simulator, some with an event ahead of them."""
         pick, wrong = random.Random(repr(size)), list(refused(size))
         bench = Bench(simulator(ReadoutSeq, size, False), *quickly(pick)[0])
         for ports in frames:
-            scan = size.scan(ports)
-            modes = range(4) if scan and len(messages(scan)) < 40 else range(2)
-            ports |= {
-                "mode": pick.choice(modes),
-                "overlap": pick.randint(0, 1),
-                "exposure": pick.choice((0, 0, 1, 2, 9)),
-            }
-            self.spoil(bench, size, ports, wrong, pick)
+            ports = any_mode(size, ports, pick)
+            other = pick.choice((ports, any_window(size, pick, pick.randint(0, 3))))
+            self.spoil(bench, size, pick.choice((ports, any_mode(size, other, pick))), wrong, pick)
             surroundings, noise = quickly(pick)
             bench.surround(*surroundings)
             before = bench.cycle(Record()) | {"four_tap": ports["mode"] == 3}
             check(bench.frame(ports, noise), size.scan(ports), ports["overlap"], before)
 
     def spoil(self, bench, size, ports, wrong, pick):
-        """Run an event before a frame: none, a refused start, a frame that the amplifiers refuse, a reset in one."""
+        """Run an event before a frame: none, a refused start, a frame that the amplifiers refuse, a reset in one.
+
+        ports: of the frame that does not end.
+        """
         what = pick.choice(("nothing", "nothing", "refused", "aborted", "reset"))
         if what == "refused":
             self.refuse(bench, size, pick.choice(wrong))
