@@ -28,6 +28,12 @@ from talbot.rtl.harness.testbench import build
 
 ROWS, COLS, LANES = 8, 13, 2
 SENSOR = SensorParameters(array=ArrayParameters(ROWS, COLS), chip=ChipParameters(lanes=LANES))
+# Another order of types, and no phase path
+OTHER = replace(
+    SENSOR,
+    tile=replace(SENSOR.tile, order=tuple(np.random.default_rng(24).permutation(24).tolist())),
+    chip=replace(SENSOR.chip, divider=NO_DIVIDER),
+)
 FULL = SENSOR.full_window
 PATTERN = PatternEnd(ROWS, COLS)
 CHIP = register_map()
@@ -52,12 +58,12 @@ PHASE = pattern_frame(Window(1, 1, 0, 2), "tof", mask=0x000F0F, phase=True, nois
 class ChipTests:
     """One chip per class; the tests that are short enough for a simulation in Python."""
 
-    component, verilog, examples, divider = None, False, 5, SENSOR.chip.divider
+    component, verilog, examples, sensor = None, False, 5, SENSOR
 
     def bench(self, **kw):
         cls = type(self)
         if cls.__dict__.get("sim") is None:
-            tile, chip = SENSOR.tile, SENSOR.chip
+            tile, chip = self.sensor.tile, self.sensor.chip
             cls.sim = build(
                 self.component(
                     ROWS,
@@ -66,7 +72,7 @@ class ChipTests:
                     tuple(tile.order),
                     tile.rows,
                     tile.cols,
-                    self.divider,
+                    chip.divider,
                     chip.n_frac,
                     chip.cordic_iterations,
                 ),
@@ -77,7 +83,10 @@ class ChipTests:
 
     @property
     def has_phase(self):
-        return self.divider != NO_DIVIDER
+        return self.sensor.chip.divider != NO_DIVIDER
+
+    def golden(self, frame, end=PATTERN):
+        return golden_frame(None, self.sensor, replace(frame, phase=frame.phase and self.has_phase), end)
 
     def check(self, bench, frame, golden, trims=None):
         """Run one frame and check its bytes, its counters and its end."""
@@ -100,7 +109,7 @@ class ChipTests:
 
     def test_phase_and_loop_back(self):
         bench = self.bench()
-        self.check(bench, PHASE, golden_frame(None, SENSOR, replace(PHASE, phase=self.has_phase), PATTERN))
+        self.check(bench, PHASE, self.golden(PHASE))
         bench.stream.clear()
         options, loop = CHIP["loop_enable"], CHIP["loop_back"].byte
         bench.write([(options.byte, 1 << options.shift)])
@@ -115,7 +124,7 @@ class FrameTests(ChipTests):
     @pytest.mark.parametrize("name", FRAMES)
     def test_pattern(self, name):
         frame = FRAMES[name]
-        self.check(self.bench(), frame, golden_frame(None, SENSOR, frame, PATTERN))
+        self.check(self.bench(), frame, self.golden(frame))
 
     def test_front_end_at_the_pins(self):
         """Random values at the comparators, and a slow link: no sample is lost or repeated."""
@@ -128,8 +137,8 @@ class FrameTests(ChipTests):
         frame = FrameParameters(FULL, threshold=20, timing=SHORT_TIMING)
         trims = [(-1) ** t * (20 * t + 3) for t in range(24)]
         bench = self.bench(held=held, stall=0.7)
-        self.check(bench, frame, golden_frame(None, SENSOR, frame, FrontEnd(ROWS, COLS)), trims)
-        kinds, width = SENSOR.tile.type_map(ROWS, COLS), CHIP.trims[0].width
+        self.check(bench, frame, self.golden(frame, FrontEnd(ROWS, COLS)), trims)
+        kinds, width = self.sensor.tile.type_map(ROWS, COLS), CHIP.trims[0].width
         assert bench.pins == {
             (0, row, col, trims[kinds[row, col]] % (1 << width)) for row in range(ROWS) for col in range(COLS)
         }
@@ -164,7 +173,7 @@ class FrameTests(ChipTests):
             )
             bench = self.bench(stall=stall, seed=mask)
             try:
-                golden = golden_frame(None, SENSOR, replace(frame, phase=frame.phase and self.has_phase), PATTERN)
+                golden = self.golden(frame)
             except ParameterError:
                 bench.write(frame_writes(frame))
                 bench.start()
@@ -180,7 +189,7 @@ class FrameTests(ChipTests):
         writes[CHIP["phase"].byte] |= 1 << CHIP["phase"].shift
         bench.write(sorted(writes.items()))
         bench.start()
-        assert bytes(bench.stream) == golden_frame(None, SENSOR, frame, PATTERN).stream
+        assert bytes(bench.stream) == self.golden(frame).stream
 
     def test_two_frames(self):
         """A frame does not depend on the frame before, after a change of everything."""
@@ -188,7 +197,7 @@ class FrameTests(ChipTests):
         for name in ("raw, a window", "edge"):
             frame = FRAMES[name]
             bench.stream.clear()
-            self.check(bench, frame, golden_frame(None, SENSOR, frame, PATTERN))
+            self.check(bench, frame, self.golden(frame))
 
     def test_one_cycle_of_reset_within_a_frame(self):
         """No `done` for the frame that the reset ended; the next frame is complete."""
@@ -205,7 +214,7 @@ class FrameTests(ChipTests):
         bench.registers = CHIP.image(CHIP.configuration)
         bench.stream.clear()
         bench.sync.clear()
-        self.check(bench, frame, golden_frame(None, SENSOR, frame, PATTERN))
+        self.check(bench, frame, self.golden(frame))
 
     def test_status_within_a_frame(self):
         """Busy and not done while the frame's bytes are sent."""
@@ -218,7 +227,7 @@ class FrameTests(ChipTests):
         assert bench.sim.frame_sync and flags >> CHIP["busy"].shift & 1 and not flags >> CHIP["done"].shift & 1
         while bench.sim.busy:
             bench.tick()
-        assert bytes(bench.stream) == golden_frame(None, SENSOR, frame, PATTERN).stream and bench.status()["done"]
+        assert bytes(bench.stream) == self.golden(frame).stream and bench.status()["done"]
 
     def test_impossible_frames_do_not_start(self):
         """Each is refused, and a valid frame starts after them."""
@@ -233,7 +242,7 @@ class FrameTests(ChipTests):
             assert status["cfg_err"] and status["amp_err"] == amp_err and not status["busy"] | status["done"], name
             assert not bench.stream
             bench.write([(address, good[address]) for address in sorted(wrong)])
-        self.check(bench, FRAMES["edge"], golden_frame(None, SENSOR, FRAMES["edge"], PATTERN))
+        self.check(bench, FRAMES["edge"], self.golden(FRAMES["edge"]))
 
 
 class TestFL(FrameTests):
@@ -241,15 +250,46 @@ class TestFL(FrameTests):
 
 
 class TestFLWithoutPhasePath(ChipTests):
-    component, divider = AspChipFL, NO_DIVIDER
+    component, sensor = AspChipFL, OTHER
 
 
 class TestRTL(ChipTests):
     component = AspChip
 
 
-class TestVerilog(FrameTests):
-    component, verilog, examples = AspChip, True, 15
+class VerilogTests(FrameTests):
+    component, verilog = AspChip, True
+
+    def test_state_while_the_link_stalls(self):
+        """Every stream waits, some results in the converters; after the frame, and after an abort, nothing does."""
+        address, size = CHIP.state[0].address, CHIP.state[0].size
+
+        def state(bench):
+            bits = int.from_bytes(bench.spi.transfer(read_transfer(address, size))[1:], "little")
+            return {f.name for f in CHIP.state if bits >> f.lsb & (1 << f.width) - 1}
+
+        bench, frame = self.bench(stall=1.0), FRAMES["every sample"]
+        bench.write(frame_writes(frame))
+        for ends in (True, False):
+            bench.stall = 1.0
+            bench.spi.transfer(command("start"))
+            while not bench.sim.hold:
+                bench.tick()
+            bench.spi.wait(400)
+            waits = {"hold_taken", "step_waits", "scan_waits", "link_waits"}
+            assert state(bench) - {"converting"} == waits | {"seq_state", "encoder_state"}
+            if ends:
+                bench.stall = 0.0
+                while bench.sim.busy:
+                    bench.tick()
+            else:
+                bench.spi.transfer(command("abort"))
+            assert state(bench) == set()
+        assert bytes(bench.stream) == self.golden(frame).stream
+
+
+class TestVerilog(VerilogTests):
+    examples = 15
 
     def test_every_configuration_bit(self):
         """All bits high, then low, over SPI; the pins follow, and the next frame is complete."""
@@ -263,7 +303,7 @@ class TestVerilog(FrameTests):
             assert int(bench.sim.mode) == mode and bool(bench.sim.unsigned_) == (mode != 0) and not bench.sim.busy
             assert int(bench.sim.balance) == (0x3FF if value else 0)
         bench.registers = dict.fromkeys(writable, 0)
-        self.check(bench, FRAMES["edge"], golden_frame(None, SENSOR, FRAMES["edge"], PATTERN))
+        self.check(bench, FRAMES["edge"], self.golden(FRAMES["edge"]))
 
     def test_reset_pointer_at_the_pins(self):
         """Every row is reset, and integrates from then on, three slots before it is read."""
@@ -296,8 +336,8 @@ class TestVerilog(FrameTests):
         assert streams[0] == streams[1] and cycles[0] < cycles[1]
 
 
-class TestVerilogWithoutPhasePath(FrameTests):
-    component, verilog, divider = AspChip, True, NO_DIVIDER
+class TestVerilogWithoutPhasePath(VerilogTests):
+    sensor = OTHER
 
 
 class TestIcarus(TestVerilog):

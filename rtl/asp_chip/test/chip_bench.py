@@ -25,6 +25,7 @@ class ChipBench:
         self.stream, self.sync, self.taken = [], [], np.zeros(lanes)
         self.registers = CHIP.image(CHIP.configuration)
         self.pins = set()
+        self.before = False, False, False, 0  # busy, wake, convert and dac of the cycle before
         sim.link_rdy @= 0
         sim.comparator @= 0
         sim.reset @= 1
@@ -70,9 +71,17 @@ class ChipBench:
         return int(sum(int(above) << lane for lane, above in enumerate(self.taken >= levels)))
 
     def watch(self):
-        """Check in every cycle: at most one of the amplifier's phases is high."""
-        sim = self.sim
+        """Check in every cycle: at most one of the amplifier's phases is high; what `wake` and `convert` promise.
+
+        In a frame `hold` follows `wake` by a cycle, and the converters' codes change while `convert` is high only.
+        """
+        sim, (busy, woken, converted, dac) = self.sim, self.before
         assert int(sim.pixel_reset) + int(sim.integrate) + int(sim.cm_reset) + int(sim.read) <= 1
+        self.before = bool(sim.busy), bool(sim.wake), bool(sim.convert), int(sim.dac)
+        assert woken if sim.hold else not (woken and sim.busy)
+        assert sim.convert or not sim.hold
+        assert sim.busy or not sim.convert
+        assert converted or not (busy and sim.busy) or self.before[3] == dac
 
     def write(self, writes):
         """Set the registers to ``writes``, (address, byte) pairs, sending only the bytes that differ."""

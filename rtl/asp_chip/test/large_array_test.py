@@ -1,4 +1,4 @@
-"""AspChip with the largest arrays: the bytes of some tiles, so that every bit of an address counts."""
+"""AspChip with the largest arrays: the bytes of some tiles, so that every bit of an address and every lane counts."""
 
 from talbot.models.chip import golden_frame
 from talbot.models.digital.host import frame_writes
@@ -39,9 +39,14 @@ class TestVerilog:
             pattern, types = PatternEnd(array.rows, array.cols, tile), tile.type_map(array.rows, array.cols)
             bench = ChipBench(sim, lanes, tile.cols)
             trims = [(-1) ** t * (20 * t + 3) for t in range(tile.n_types)]
-            for number, (row, col) in enumerate(TILES):
+            for number, (row, last) in enumerate(TILES):
+                col = max(0, last - lanes + 1)
                 frame = FrameParameters(
-                    Window(row, row, col, col), threshold=0, test_pattern=True, frame_number=number, timing=SHORT_TIMING
+                    Window(row, row, col, last),
+                    threshold=0,
+                    test_pattern=True,
+                    frame_number=number,
+                    timing=SHORT_TIMING,
                 )
                 bench.stream.clear()
                 bench.pins.clear()
@@ -51,7 +56,7 @@ class TestVerilog:
                 assert bench.pins == {
                     (0, r, c, trims[types[r, c]] % 1024)
                     for r in range(tile.rows * row, min(tile.rows * (row + 1), array.rows))
-                    for c in range(tile.cols * col, min(tile.cols * (col + 1), array.cols))
+                    for c in range(tile.cols * col, min(tile.cols * (last + 1), array.cols))
                 }
 
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from talbot.models.digital.pattern import PatternEnd, pattern_value
+from talbot.models.parameters import LANES
 from talbot.rtl.asp_chip.pattern_rtl import Pattern
 from talbot.rtl.harness.testbench import build
 
@@ -20,23 +21,26 @@ def test_pattern_makes_every_code_and_runs_of_zeros():
 
 class TestRTL:
     verilog = False
-    lanes = 4
+    many = LANES
 
     @pytest.mark.parametrize("on", (True, False))
     def test_answers_are_comparisons(self, on):
         """A sampled pixel keeps its value until the next hold, whatever the address is; when off, `analog` passes."""
-        sim = build(Pattern(self.lanes), self.verilog, f"Pattern_{self.lanes}")
-        rng = np.random.default_rng(self.lanes)
+        for lanes in self.many:
+            self.check(build(Pattern(lanes), self.verilog, f"Pattern_{lanes}"), lanes, on)
+
+    def check(self, sim, lanes, on):
+        rng = np.random.default_rng(lanes)
         sim.on @= on
-        held = np.zeros(self.lanes, int)
+        held = np.zeros(lanes, int)
         for cycle in range(300):
             if cycle % 100 == 50:
                 sim.hold @= 0
                 sim.sim_reset()
                 held[:] = 0
-            group, k, sub, hold = (int(rng.integers(n)) for n in (256 // self.lanes, 6, 4, 2))
-            row, analog = cycle % 256, rng.integers(0, 2, self.lanes)
-            dac = (held + rng.integers(-1, 2, self.lanes)) % 256 if cycle % 2 else rng.integers(0, 256, self.lanes)
+            group, k, sub, hold = (int(rng.integers(n)) for n in (256 // lanes, 6, 4, 2))
+            row, analog = cycle % 256, rng.integers(0, 2, lanes)
+            dac = (held + rng.integers(-1, 2, lanes)) % 256 if cycle % 2 else rng.integers(0, 256, lanes)
             sim.row @= row
             sim.group @= group
             sim.k @= k
@@ -46,16 +50,16 @@ class TestRTL:
             sim.analog @= int(sum(int(b) << i for i, b in enumerate(analog)))
             sim.sim_eval_combinational()
             want = held >= dac if on else analog
-            assert [int(sim.comparator) >> i & 1 for i in range(self.lanes)] == want.astype(int).tolist()
+            assert [int(sim.comparator) >> i & 1 for i in range(lanes)] == want.astype(int).tolist()
             sim.sim_tick()
             if hold:
-                held = pattern_value(row, group * self.lanes + np.arange(self.lanes), k, sub)
+                held = pattern_value(row, group * lanes + np.arange(lanes), k, sub)
 
 
 class TestVerilog(TestRTL):
     verilog = True
-    lanes = 8
+    many = (8,)
 
 
-class TestIcarus(TestRTL):
+class TestIcarus(TestVerilog):
     verilog = "icarus"
