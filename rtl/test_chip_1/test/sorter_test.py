@@ -28,14 +28,14 @@ def simulator(verilog):
     return build(Sorter(), verilog)
 
 
-def sort(sim, words, address=5, willing=ALWAYS, latencies=(1,)):
+def sort(sim, words, address=5, willing=ALWAYS, latencies=(1,), limit=20_000):
     """Sort ``words`` at word ``address``; returns them, and the cycles from the request to the response."""
     memory = Memory({4 * (address + n): word for n, word in enumerate(words)})
     accepts, takes = cycle(willing), cycle(reversed(willing))
     latencies, waiting, begun = cycle(latencies), deque(), None
     sim.req.val @= 1
     sim.req.msg @= SortReq(len(words), address)
-    for now in range(20_000):
+    for now in range(limit):
         sim.mem_req.rdy @= next(accepts)
         sim.mem_resp.val @= bool(waiting) and waiting[0][0] <= now
         sim.mem_resp.msg @= waiting[0][1] if waiting else 0xDEADBEEF
@@ -110,6 +110,9 @@ class TestRTL:
 
 class TestVerilog(TestRTL):
     verilog = True
+
+    def test_runs_of_more_than_half_the_memory(self):
+        self.sorted([(2654435761 * n) % 2**32 for n in range(1025)], address=0, limit=50_000)
 
 
 class TestIcarus(TestRTL):

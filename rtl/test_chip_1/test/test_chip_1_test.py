@@ -1,15 +1,29 @@
 """TestChip1 at every level: transfers, boot, the channel, and memory under the load of all four requesters."""
 
 import random
+from itertools import cycle
 
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from talbot.rtl.proc.assembler import assemble
+from talbot.rtl.proc.golden import Receive
 from talbot.rtl.proc.isa import signed
+from talbot.rtl.proc.test.programs import ITEMS, NEAR, program
 from talbot.rtl.test_chip_1 import TestChip1, TestChip1FL
-from talbot.rtl.test_chip_1.golden import HALTED, PROC_WAITS, RUNS, bytes_of
+from talbot.rtl.test_chip_1.golden import (
+    CHANNEL,
+    CONTROL,
+    HALTED,
+    PROC_WAITS,
+    RUNS,
+    WRITE,
+    GoldenChip,
+    bytes_of,
+    header,
+    words_of,
+)
 from talbot.rtl.test_chip_1.test.chip_bench import ALWAYS, SMALL, Host
 
 SETTINGS = settings(
@@ -17,6 +31,8 @@ SETTINGS = settings(
 )
 STALLS = st.lists(st.booleans(), min_size=1, max_size=9).map(lambda stalls: (*stalls, True))
 BYTES = 32 * SMALL
+# Half of the items access memory; a program is below 0x200, its data repeat from there on
+PROGRAMS = st.lists(st.sampled_from((ITEMS, NEAR)).flatmap(lambda kind: kind), max_size=20).map(program)
 
 
 class TestFL:
@@ -102,3 +118,37 @@ class TestRTL(TestFL):
 
 class TestVerilog(TestRTL):
     verilog = True
+
+    @settings(SETTINGS, max_examples=15)
+    @given(PROGRAMS, st.lists(st.integers(0, 2**32 - 1), min_size=1, max_size=5), STALLS, st.integers(0, 30))
+    def test_random_programs(self, code, words, willing, wait):
+        """Accesses of every size, as the host reads the program and answers it; the memory is the golden chip's."""
+        host, golden, words = self.host(willing), GoldenChip(BYTES // 4), cycle(words)
+        code += bytes(-len(code) % 4)
+        load = header(WRITE, BYTES // 4) + code + bytes(BYTES - len(code))
+        for send in host.transfer, golden.host:
+            send(load)
+            send(header(CONTROL | WRITE, 1) + bytes_of([1]))
+        while golden.request:
+            assert host.read(0, 2) == words_of(code)[:2]
+            for _ in range(wait):
+                host.tick()
+            if isinstance(golden.request, Receive):
+                host.send(word := next(words))
+                golden.host(header(CHANNEL | WRITE, 1) + bytes_of([word]))
+            else:
+                assert host.receive() == words_of(golden.host(header(CHANNEL, 1)))
+        for _ in range(5000):
+            if host.sim.halted:
+                break
+            host.tick()
+        assert host.status() == golden.read(CONTROL)
+        assert host.read(0, BYTES // 4) == words_of(golden.host(header(0, BYTES // 4)))
+
+    @pytest.mark.parametrize("count", (255, 256, 257, 1030))
+    def test_long_transfers(self, count):
+        """All bits of the number of words count; addresses repeat."""
+        host, words = self.host(), [random.Random(count).getrandbits(32) for _ in range(count)]
+        memory = {n % (BYTES // 4): word for n, word in enumerate(words)}
+        host.write(0, bytes_of(words))
+        assert host.read(0, count) == [memory[n % (BYTES // 4)] for n in range(count)]
