@@ -1,7 +1,9 @@
 """AdcBank at every level, with the analog front end at its pins: steps in, the golden model's codes out, in order."""
 
 import contextlib
+import random
 from functools import cache
+from itertools import combinations
 
 import numpy as np
 import pytest
@@ -337,6 +339,19 @@ class TestOtherNumbersOfLanes:
         steps = [begin, *steps, end, begin, end]  # the second frame's counts start at 0
         got = Run(simulator(cls, False, lanes), steps, "edge", 3, [(True, True), (True, False), (False, True)])
         assert (got.messages, got.counts) == expected(steps, lanes, "edge", 3)
+
+
+@pytest.mark.parametrize("lanes", [2, 4, 16, 32])
+@settings(SETTINGS, max_examples=1)
+@given(seed=st.integers(0, 2**32))
+def test_pairs_of_lanes(lanes, seed):
+    """Any two lanes of the RTL, of 32 lanes some: both signs are sent, in order."""
+    Step, pick = step_msg(lanes), random.Random(seed)
+    pairs = [1 << a | 1 << b for a, b in combinations(range(lanes), 2)]
+    steps = [Step(SAMPLE, 0, 0, pick.randrange(6), 0, en) for en in pick.sample(pairs, min(len(pairs), 120))]
+    steps = [Step(FRAME, 0, 0, 0, 0, 0), *steps, Step(END, 0, 0, 0, 0, 0)]
+    got = Run(simulator(AdcBank, False, lanes), steps, "ternary", 3)
+    assert (got.messages, got.counts) == expected(steps, lanes, "ternary", 3)
 
 
 @pytest.mark.parametrize("bit", (8, 16, 24, 31, 32))
