@@ -96,13 +96,14 @@ class TestFL:
 
     @pytest.mark.parametrize("distance", range(4))
     def test_an_operand_from_any_stage(self, distance):
-        """Every kind of producer, `distance` instructions ahead of every kind of consumer."""
+        """Every kind of producer, `distance` instructions ahead of every kind of consumer, and of other registers."""
         producers = "add x5, x6, x7", "addi x5, x6, 12", "lui x5, 0x80001", "lw x5, 0x700(x0)", "csrr x5, 0xfc0"
         producers += "auipc x5, 1", "jal x5, 4", "csrr x5, 0xf14", "lbu x5, 0x701(x0)"
         consumers = "add x8, x5, x6", "sub x8, x6, x5", "andi x8, x5, -2", "sw x5, 0x704(x0)", "csrw 0x7c0, x5"
         consumers += ("beq x5, x6, 8",)
         text = "li x6, 0x1230\nli x7, 0x770\nsw x7, 0x700(x0)\n"
-        for producer, consumer in product(producers, consumers):
+        others = [f"add x8, x{5 ^ 1 << bit}, x{5 ^ 1 << bit}" for bit in range(5)]
+        for producer, consumer in [*product(producers, consumers), *product(producers[::3], others)]:
             text += f"{producer}\n{'addi x9, x9, 1' + chr(10) if distance else ''}" + "nop\n" * (distance - 1)
             text += f"{consumer}\nadd x10, x10, x8\n"
         self.of(f"j start\n.zero 0x800\nstart: {text}{STORED}", words=[0x1230, 7] * 9)

@@ -92,7 +92,8 @@ def _jump(item, place, starts, end):
 def program(items, loops=3):
     """Return the program of ``items``: registers set, the items, registers stored, stop. loops: in all of them."""
     words = [encode("addi", BASE, imm=DATA), encode("addi", COUNT, imm=loops)]
-    words += [encode("lui", n, imm=0x12345 * n & 0xFFFFF) for n in USED]
+    for n in USED:  # no part of a register is 0
+        words += [encode("lui", n, imm=0x12345 * n & 0xFFFFF), encode("addi", n, n, imm=(0x4D3 * n & 0xFFF) - 2048)]
     lengths = [len(item) if isinstance(item, list) else 1 + (item[0] in ("jalr", "loop")) for item in items]
     starts = [len(words) + sum(lengths[:n]) for n in range(len(items))]
     end = len(words) + sum(lengths)

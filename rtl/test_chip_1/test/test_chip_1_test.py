@@ -125,7 +125,7 @@ class TestVerilog(TestRTL):
         """Accesses of every size, as the host reads the program and answers it; the memory is the golden chip's."""
         host, golden, words = self.host(willing), GoldenChip(BYTES // 4), cycle(words)
         code += bytes(-len(code) % 4)
-        load = header(WRITE, BYTES // 4) + code + bytes(BYTES - len(code))
+        load = header(WRITE, BYTES // 4) + code + random.Random(wait).randbytes(BYTES - len(code))
         for send in host.transfer, golden.host:
             send(load)
             send(header(CONTROL | WRITE, 1) + bytes_of([1]))
