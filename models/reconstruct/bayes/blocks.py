@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from numpy.lib.stride_tricks import sliding_window_view
 
-from talbot.models.parameters import TileParameters
+from talbot.models.capture.projection import Projection
 from talbot.models.reconstruct.bayes.windows import Axis, Group, even
 
 Floats = npt.NDArray[np.floating]
@@ -20,27 +20,32 @@ Kind = tuple[int, int, int, int]
 
 @dataclass(frozen=True, eq=False)
 class Blocks:
-    """A tile's pixels are a block.
+    """A period of a camera's pixels, of the sensor's a tile, is a block.
 
     Attributes
     ----------
     y, x : Axis
         Blocks down and across.
-    tile : TileParameters
-        Pixel types.
-    measured : bool (types,)
-        Types that are read.
+    camera : Projection
+        Its samples are the array's.
+    measured : bool (responses,)
+        Responses of the camera that are read.
     """
 
     y: Axis
     x: Axis
-    tile: TileParameters
+    camera: Projection
     measured: npt.NDArray[np.bool_]
 
     @property
     def shape(self) -> tuple[int, int]:
         """The shape of the array."""
         return self.y.length, self.x.length
+
+    @property
+    def told(self) -> float:
+        """Samples of a pixel that tell a disparity, in the mean over a period."""
+        return float(self.camera.telling[self.camera.order].sum(0).mean())
 
     @cached_property
     def groups(self) -> list[Pair]:
@@ -63,7 +68,7 @@ class Blocks:
         return len(self.y.blocks[down.blocks]), len(self.x.blocks[across.blocks])
 
     def diodes(self, down: Group, across: Group) -> tuple[Ints, Ints, Ints]:
-        """Row, column and number (2 type + 0 for sums, 1 for differences) of every sample of a window, sums first.
+        """Row, column and response of every sample of a window, channel after channel: sums before differences.
 
         Parameters
         ----------
@@ -75,17 +80,35 @@ class Blocks:
         tuple of int64 (samples,)
             Those three.
         """
-        high, wide = self.y.window, self.x.window
-        period = self.tile.type_map(self.tile.rows, self.tile.cols)
-        lines = (down.phase + np.arange(high)) % self.tile.rows
-        kinds = period[np.ix_(lines, (across.phase + np.arange(wide)) % self.tile.cols)]
-        diode = (2 * kinds + np.arange(2)[:, None, None]).ravel()
-        y, x = (np.tile(p.ravel(), 2) for p in np.indices((high, wide)))
-        used = self.measured[diode // 2]
-        return y[used], x[used], diode[used]
+        diode = self._responses(down, across)
+        y, x = (np.tile(p.ravel(), len(diode)) for p in np.indices(diode.shape[1:]))
+        used = self.measured[diode].ravel()
+        return y[used], x[used], diode.ravel()[used]
+
+    def _responses(self, down: Group, across: Group) -> Ints:
+        """Response of all samples of a window, those that are not read, too, (channels, height, width)."""
+        high, wide = self.camera.period
+        lines = (down.phase + np.arange(self.y.window)) % high
+        return self.camera.order[:, lines[:, None], (across.phase + np.arange(self.x.window)) % wide]
+
+    def aims(self, down: Group, across: Group) -> tuple[Ints, Ints]:
+        """Row and column, in the window, of the middle of what every sample of `diodes` sees.
+
+        Parameters
+        ----------
+        down, across : Group
+            The group, of windows of whole squares of the camera.
+
+        Returns
+        -------
+        tuple of int64 (samples,)
+            Pixels, those of the samples where a pixel sees itself alone.
+        """
+        (y, x, _), side = self.diodes(down, across), self.camera.side
+        return y // side * side + side // 2, x // side * side + side // 2
 
     def own(self, down: Group, across: Group) -> tuple[Ints, Ints, int]:
-        """Return samples that are differences of the block's pixels, these pixels' numbers in it, and their count.
+        """Return samples of the block's pixels that tell a disparity, these pixels' numbers in it, and their count.
 
         Parameters
         ----------
@@ -99,7 +122,7 @@ class Blocks:
         """
         y, x, diode = self.diodes(down, across)
         y, x = y - down.offset, x - across.offset
-        inside = (diode % 2 == 1) & (y >= 0) & (y < self.y.block) & (x >= 0) & (x < self.x.block)
+        inside = self.camera.telling[diode] & (y >= 0) & (y < self.y.block) & (x >= 0) & (x < self.x.block)
         return np.flatnonzero(inside), (y * self.x.block + x)[inside], self.y.block * self.x.block
 
     def samples(self, pair: Floats, down: Group, across: Group) -> Floats:
@@ -107,8 +130,8 @@ class Blocks:
 
         Parameters
         ----------
-        pair : array (2, rows, cols)
-            Sums and differences.
+        pair : array (channels, rows, cols)
+            Samples of the camera.
         down, across : Group
             The group.
 
@@ -122,8 +145,7 @@ class Blocks:
         out = np.ascontiguousarray(windows, np.float32).reshape(-1, windows.shape[3] * windows.shape[4])
         if self.measured.all():
             return out
-        y, x, diode = self.diodes(down, across)
-        return out[((diode % 2) * self.y.window + y) * self.x.window + x]
+        return out[self.measured[self._responses(down, across)].ravel()]
 
     def map(self, values: Iterable[Floats]) -> Floats:
         """Put the values of every group's blocks into place.

@@ -3,6 +3,7 @@
 A sample i at pixel x is the sum of W[i, v] I(x + v d) over the pupil, with I a plane of texture whose covariance is the
 prior's. Two samples at a distance D then have the covariance  sum over s of G[s, i, j] C(D + s d),  with G the
 correlation of their weights over the pupil: a table over distances and pairs of diodes is all that every window needs.
+Where a sample is the mean of a square of pixels, C is that of such means.
 """
 
 from dataclasses import dataclass
@@ -11,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+from numpy.lib.stride_tricks import sliding_window_view
 
 from talbot.models.reconstruct.bayes.prior import FieldPrior
 
@@ -47,6 +49,8 @@ class Covariances:
         Window in px.
     prior : FieldPrior
         The prior.
+    side : int
+        Side in px of the square that every sample is the mean of.
     """
 
     weights: Floats
@@ -54,6 +58,7 @@ class Covariances:
     height: int
     width: int
     prior: FieldPrior
+    side: int = 1
 
     @cached_property
     def _correlations(self) -> Floats:
@@ -79,17 +84,31 @@ class Covariances:
         """
         diodes, pupil, _ = self.weights.shape
         step = disparity * self.views / pupil
-        dy, dx = (np.arange(1 - n, n, dtype=float) for n in (self.height, self.width))
         shift = np.arange(1 - pupil, pupil) * step
-        samples = self._planes(dy[:, None] + shift, dx[:, None] + shift) @ self._correlations
+        samples = self._squares(shift, 2) @ self._correlations
         seen = (np.arange(pupil) - (pupil - 1) / 2) * step
         shifts = (np.arange(self.views) - (self.views - 1) / 2) * disparity
         ahead = (seen - shifts[:, None]).ravel()
-        field = self._planes(dy[:, None] + ahead, dx[:, None] + ahead)
+        field = self._squares(ahead, 1)
         field = field.reshape(-1, self.views, pupil, self.views, pupil).transpose(0, 1, 3, 2, 4).reshape(-1, pupil**2)
         field = field @ self.weights.reshape(diodes, -1).T
-        shape = len(dy), len(dx)
+        shape = 2 * self.height - 1, 2 * self.width - 1
         return Tables(samples.reshape(*shape, diodes, diodes), field.reshape(*shape, self.views**2, diodes))
+
+    def _squares(self, shift: Floats, squares: int) -> Floats:
+        """Covariance at all distances in a window plus all shifts (n,), (distances, n**2), of means over squares.
+
+        squares: 1 where one of two points is such a mean, 2 where both are.
+        """
+        more = squares * (self.side - 1) // 2
+        dy, dx = (np.arange(1 - n - more, n + more, dtype=float)[:, None] for n in (self.height, self.width))
+        out = self._planes(dy + shift, dx + shift)
+        if not more:
+            return out
+        out = out.reshape(len(dy), len(dx), -1)
+        for _ in range(squares):
+            out = sliding_window_view(out, (self.side, self.side), (0, 1)).mean((-2, -1))
+        return out.reshape(-1, len(shift) ** 2)
 
     def _planes(self, y: Floats, x: Floats) -> Floats:
         """Covariance at all places y (n, a) by x (m, b): (n * m, a * b); equal distances are computed together."""

@@ -16,6 +16,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from scipy.ndimage import maximum_filter
 from threadpoolctl import threadpool_limits
 
+from talbot.models.capture.projection import Projection
 from talbot.models.parameters import ParameterError, SensorParameters
 from talbot.models.pixel.weights import view_weights
 from talbot.models.reconstruct.bayes.blocks import Blocks, Kind, Pair, kind
@@ -59,41 +60,45 @@ class Estimate(NamedTuple):
 
 
 class FieldEstimator:
-    """Estimates light fields from frames of one sensor.
+    """Estimates light fields from frames of one sensor, or of another camera.
 
     Parameters
     ----------
-    sensor : SensorParameters
-        The sensor; its lens counts as telecentric.
+    sensor : SensorParameters or Projection
+        The sensor; its lens counts as telecentric. Samples of a camera stand for the pair of diodes in what follows.
     views : int
         Of the light field along the pupil's diameter.
     prior : FieldPrior
         What is known before.
     pupil : int, optional
-        Points of the pupil at which the samples are taken to see the scene, along its diameter; None is as the views.
+        Points of the pupil at which the samples are taken to see the scene, along its diameter; None is as the views,
+        or the camera's own.
     measured : bool (types,), optional
-        Pixel types that are read; None is all.
+        Pixel types that are read, or responses of a camera; None is all.
     """
 
     def __init__(
         self,
-        sensor: SensorParameters,
+        sensor: SensorParameters | Projection,
         views: int,
         prior: FieldPrior = FieldPrior(),
         pupil: int | None = None,
         measured: npt.NDArray[np.bool_] | None = None,
     ) -> None:
-        tile = sensor.tile
-        self.prior, self.views, self.shape, self.pupil = prior, views, sensor.shape, pupil or views
-        y, x = (Axis.of(*ends, prior.margin) for ends in zip(sensor.shape, (tile.rows, tile.cols)))
-        weights = view_weights(tile, replace(sensor.optics, views=self.pupil))
-        read = np.ones(tile.n_types, bool) if measured is None else np.asarray(measured, bool)
+        self._pairs = isinstance(sensor, SensorParameters)
+        camera = sums_and_differences(sensor, pupil or views) if isinstance(sensor, SensorParameters) else sensor
+        if prior.margin % camera.side:
+            raise ParameterError(f"margin = {prior.margin}: must be whole squares of {camera.side} px")
+        self.prior, self.views, self.shape, self.pupil = prior, views, camera.shape, camera.pupil
+        sides = zip(camera.shape, camera.period, camera.block or camera.period, strict=True)
+        y, x = (Axis.of(length, period, prior.margin, block) for length, period, block in sides)
+        count = len(camera.weights) // (2 if self._pairs else 1)
+        read = np.ones(count, bool) if measured is None else np.asarray(measured, bool)
         if not read.any():
             raise ParameterError("measured = no pixel type: must be at least one")
-        self.blocks, self._slants = Blocks(y, x, tile, read), dict[Slant, Hypotheses]()
-        weights = np.stack([weights[:, 0] + weights[:, 1], weights[:, 0] - weights[:, 1]], 1) / np.sqrt(2)
-        weights = weights.reshape(-1, *weights.shape[2:])
-        self.covariances = Covariances(weights, views, y.window, x.window, prior)
+        read = np.repeat(read, len(camera.weights) // count)
+        self.blocks, self._slants = Blocks(y, x, camera, read), dict[Slant, Hypotheses]()
+        self.covariances = Covariances(camera.weights, views, y.window, x.window, prior, camera.side)
 
     def linear(self, pair: Floats) -> Floats:
         """Best linear estimate.
@@ -131,20 +136,21 @@ class FieldEstimator:
 
     def _shares(self, groups: Windows) -> Floats:
         """Shares of the disparities in every window, (disparities, block rows, block cols)."""
-        blocks = len(self.blocks.y.blocks), len(self.blocks.x.blocks)
-        count, pool = self.prior.disparities, self.prior.width
-        squares, certain = np.zeros((2, count, *blocks), np.float32)
+        blocks, pool = (len(self.blocks.y.blocks), len(self.blocks.x.blocks)), self.prior.width
+        squares, certain = np.zeros((2, self.prior.disparities, *blocks), np.float32)
         contrast = np.zeros(blocks)
         for (down, across, samples), ways in zip(groups, self._ways, strict=True):
             shape = self.blocks.count(down, across)
             at = down.blocks, across.blocks
-            contrast[at] = samples[: len(samples) // 2].var(0).reshape(shape)
+            told = self.blocks.camera.telling[self.blocks.diodes(down, across)[2]]
+            contrast[at] = samples[~told if not told.all() else told].var(0).reshape(shape)
             for number, residual in enumerate(ways.residuals):
                 errors = np.square(residual.matrix @ samples).sum(0) / ways.read
                 squares[number][at] = errors.reshape(shape)
                 certain[number][at] = residual.certain.sum() / ways.read
         near = pool / (self.blocks.y.block * self.blocks.x.block) ** 0.5  # in blocks
-        scores = [badness(pooled(s, near), c, 4 * np.pi * pool**2) for s, c in zip(squares, certain, strict=True)]
+        count = 4 * np.pi * pool**2 * self.blocks.told
+        scores = [badness(pooled(s, near), c, count) for s, c in zip(squares, certain, strict=True)]
         return shares_of(probability(self.prior.trust * np.stack(scores), 0.0), contrast)
 
     def _windows(self, pair: Floats) -> Windows:
@@ -234,9 +240,10 @@ class FieldEstimator:
 
         def covariances(number: int, group: Pair, views: bool) -> tuple[npt.NDArray[np.float64], Floats | None]:
             (down, across), high, wide = group, self.blocks.y, self.blocks.x
-            y, x, diode = self.blocks.diodes(*group)
+            (y, x), diode = self.blocks.aims(*group), self.blocks.diodes(*group)[2]
             block = down.offset, across.offset, high.block, wide.block
-            window = Window((high.window, wide.window), y, x, self.covariances.weights[diode], block, self.views)
+            weights, side = self.covariances.weights[diode], self.covariances.side
+            window = Window((high.window, wide.window), y, x, weights, block, self.views, side)
             shared, field = window.covariances(Plane(float(self.prior.fine[number]), slant), self.prior, views)
             return self._noisy(shared), field
 
@@ -276,9 +283,10 @@ class FieldEstimator:
 
     @cached_property
     def _read(self) -> Floats:
-        """Share of the pixels around each that are read."""
-        kinds = self.blocks.tile.type_map(*self.shape)
-        return np.maximum(pooled(self.blocks.measured[kinds].astype(np.float32), self.prior.width), np.float32(1e-6))
+        """Telling samples that are read, a pixel around each."""
+        camera = self.blocks.camera
+        read = (self.blocks.measured & camera.telling)[camera.responses].sum(0, dtype=np.float32)
+        return np.maximum(pooled(read, self.prior.width), np.float32(1e-6))
 
     def told_by(self, pixels: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
         """Return where the mixture's disparity depends on any of some pixels.
@@ -388,9 +396,10 @@ class FieldEstimator:
     def _score(self, groups: Windows) -> Floats:
         """Return -2 log p of any disparity, times trust, float32 (rows, cols)."""
         (residuals, certain), pool = self._any, self.prior.width
-        errors = (residual.matrix @ samples for (*_, samples), residual in zip(groups, residuals, strict=True))
-        squares = pooled(self.blocks.map(np.square(e) for e in errors), pool) / self._read
-        return np.asarray(self.prior.trust * badness(squares, certain, 4 * np.pi * pool**2), np.float32)
+        errors = (residual.squares(samples) for (*_, samples), residual in zip(groups, residuals, strict=True))
+        squares = pooled(self.blocks.map(errors), pool) / self._read
+        count = 4 * np.pi * pool**2 * self.blocks.told
+        return np.asarray(self.prior.trust * badness(squares, certain, count), np.float32)
 
     def _weighted(self, sets: list[Hypotheses], weights: list[Floats], groups: Windows) -> Floats:
         """Sum of the light fields by all disparities of the ``sets``, by their weights at the pixels."""
@@ -408,14 +417,16 @@ class FieldEstimator:
         return out
 
     def _turned(self, pair: Floats) -> Floats:
-        """Sum and difference of each pair, scaled so that the noise of both is that of a diode."""
-        if pair.shape != (2, *self.shape):
-            raise ParameterError(f"pair shape = {pair.shape}: must be {(2, *self.shape)}")
+        """Samples of the camera: of a sensor sum and difference of each pair, of the noise of a diode."""
+        if pair.shape != (shape := (self.blocks.camera.channels, *self.shape)):
+            raise ParameterError(f"pair shape = {pair.shape}: must be {shape}")
+        if not self._pairs:
+            return pair.astype(np.float32)
         return np.stack([pair[0] + pair[1], pair[0] - pair[1]]).astype(np.float32) / np.float32(np.sqrt(2))
 
     def _shared(self, tables: Tables, down: Group, across: Group) -> npt.NDArray[np.float64]:
         """Covariance of the samples of a window, noise included."""
-        y, x, diode = self.blocks.diodes(down, across)
+        (y, x), diode = self.blocks.aims(down, across), self.blocks.diodes(down, across)[2]
         places = y - y[:, None] + self.blocks.y.window - 1, x - x[:, None] + self.blocks.x.window - 1
         return self._noisy(tables.samples[*places, diode[:, None], diode])
 
@@ -425,9 +436,31 @@ class FieldEstimator:
 
     def _field(self, tables: Tables, down: Group, across: Group) -> npt.NDArray[np.float64]:
         """Covariance of the views of a block with the samples of its window, (pixels * views**2, samples)."""
-        y, x, diode = self.blocks.diodes(down, across)
+        (y, x), diode = self.blocks.aims(down, across), self.blocks.diodes(down, across)[2]
         high, wide = self.blocks.y, self.blocks.x
         places = np.indices((high.block, wide.block)).reshape(2, -1, 1)
         dy, dx = y - places[0] - down.offset, x - places[1] - across.offset
         out = tables.field[dy + high.window - 1, dx + wide.window - 1, :, diode]  # (pixels, samples, views)
         return out.transpose(0, 2, 1).reshape(-1, len(diode))
+
+
+def sums_and_differences(sensor: SensorParameters, pupil: int) -> Projection:
+    """Sum and difference of each pair of diodes, over the square root of 2, as a camera.
+
+    Parameters
+    ----------
+    sensor : SensorParameters
+        The sensor.
+    pupil : int
+        Cells along the pupil's diameter.
+
+    Returns
+    -------
+    Projection
+        Of two channels: response 2 t is the sum of type t, which tells no disparity, 2 t + 1 its difference.
+    """
+    tile = sensor.tile
+    a, b = view_weights(tile, replace(sensor.optics, views=pupil)).transpose(1, 0, 2, 3)
+    weights = (np.stack([a + b, a - b], 1) / np.sqrt(2)).reshape(-1, pupil, pupil)
+    order = 2 * tile.type_map(tile.rows, tile.cols) + np.arange(2)[:, None, None]
+    return Projection(sensor.shape, weights, order, np.arange(len(weights)) % 2 == 1)

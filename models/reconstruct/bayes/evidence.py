@@ -22,10 +22,10 @@ class Residuals(NamedTuple):
 
     Attributes
     ----------
-    matrix : float32 (pixels, samples)
-        Of the pixels of a block; 0 for a pixel that is not read.
+    matrix : float32 (pixels * samples of each, samples)
+        Of the telling samples of a block's pixels, first of all pixels; 0 for one that is not read.
     certain : float32 (pixels,)
-        Logarithm of 1 over each error's variance.
+        Logarithm of 1 over each error's variance, sum over a pixel.
     """
 
     matrix: Floats
@@ -53,10 +53,27 @@ class Residuals(NamedTuple):
         """
         precision = inverse[:, rows].T @ inverse
         diagonal = precision[np.arange(len(rows)), rows]
-        matrix, certain = np.zeros((pixels, len(inverse)), np.float32), np.zeros(pixels, np.float32)
-        matrix[places] = precision / np.sqrt(diagonal)[:, None]
-        certain[places] = np.log(diagonal)
-        return cls(matrix, certain)
+        earlier = np.array([np.count_nonzero(places[:i] == place) for i, place in enumerate(places)], int)
+        matrix = np.zeros((max(earlier.max(initial=0) + 1, 1), pixels, len(inverse)), np.float32)
+        certain = np.zeros(pixels, np.float32)
+        matrix[earlier, places] = precision / np.sqrt(diagonal)[:, None]
+        np.add.at(certain, places, np.log(diagonal))
+        return cls(matrix.reshape(-1, len(inverse)), certain)
+
+    def squares(self, samples: Floats) -> Floats:
+        """Return the squares of the errors, sum over each pixel.
+
+        Parameters
+        ----------
+        samples : float32 (samples, windows)
+            Of the windows.
+
+        Returns
+        -------
+        float32 (pixels, windows)
+            The squares.
+        """
+        return np.square(self.matrix @ samples).reshape(-1, len(self.certain), samples.shape[1]).sum(0)
 
 
 def whitener(shared: Floats) -> Floats:

@@ -69,13 +69,12 @@ class Hypotheses:
         errors = np.stack(
             [
                 self.blocks.map(
-                    np.square(residual.matrix @ samples)
-                    for (*_, samples), residual in zip(groups, residuals, strict=True)
+                    residual.squares(samples) for (*_, samples), residual in zip(groups, residuals, strict=True)
                 )
                 for residuals in self._residuals
             ]
         )
-        errors = badness(self._around(errors), self._certain, 4 * np.pi * self.prior.width**2)
+        errors = badness(self._around(errors), self._certain, 4 * np.pi * self.prior.width**2 * self.blocks.told)
         return np.asarray(self.prior.trust * errors, np.float32)
 
     def solver(self, number: int, group: Pair) -> Solver:

@@ -71,6 +71,8 @@ class Window:
         First pixel of the block in it, down and across, then the block's pixels.
     views : int
         That are to be given back along the pupil's diameter.
+    side : int
+        Side in px of the square around y, x that every sample is the mean of; odd.
     """
 
     size: tuple[int, int]
@@ -79,6 +81,7 @@ class Window:
     weights: Floats
     block: tuple[int, int, int, int]
     views: int
+    side: int = 1
 
     def covariances(
         self, plane: Plane, prior: FieldPrior, views: bool = True
@@ -101,7 +104,7 @@ class Window:
         """
         seen, view_points, index, first, size = self.texture(plane)
         root = _root(size[0], size[1], prior)
-        down, across = (_taps(s - f, n) for s, f, n in zip(seen, first, size, strict=True))
+        down, across = (self._taps(s - f, n) for s, f, n in zip(seen, first, size, strict=True))
         weights = self.weights.reshape(len(index), 1, -1).astype(np.float32)
         samples = np.matmul(weights * down.transpose(0, 2, 1)[index], across[index]).reshape(len(index), -1) @ root
         exact = samples.astype(float)  # float32 would leave variances below 0 where noise is little
@@ -111,6 +114,11 @@ class Window:
         down, across = (_taps(w - f, n) for w, f, n in zip(view_points, first, size, strict=True))
         taps = (down[..., :, None] * across[..., None, :]).reshape(-1, size[0] * size[1])
         return shared, taps @ (root @ samples.T)
+
+    def _taps(self, places: Floats, count: int) -> npt.NDArray[np.float32]:
+        """Weights as of `_taps`, mean over the square: the plane counts as even within it."""
+        more = self.side // 2
+        return np.mean([_taps(places + step, count) for step in range(-more, more + 1)], 0)
 
     def texture(self, plane: Plane) -> tuple[Floats, Floats, Ints, list[int], list[int]]:
         """Find the part of the texture that a plane is seen in.
@@ -134,8 +142,9 @@ class Window:
         seen = plane.seen(*(places[..., None] - middle), *_steps(pupil, self.views / pupil)) + middle
         block = np.indices((high, wide)).reshape(2, -1, 1) + np.array([top, left])[:, None, None]
         view_points = plane.seen(*(block - middle), *_steps(self.views, 1.0)) + middle
-        first = [math.floor(min(s.min(), w.min())) - 1 for s, w in zip(seen, view_points, strict=True)]
-        last = [math.floor(max(s.max(), w.max())) + 3 for s, w in zip(seen, view_points, strict=True)]
+        more = self.side // 2
+        first = [math.floor(min(s.min() - more, w.min())) - 1 for s, w in zip(seen, view_points, strict=True)]
+        last = [math.floor(max(s.max() + more, w.max())) + 3 for s, w in zip(seen, view_points, strict=True)]
         size = [math.ceil((end - begin + 1) / ROUNDED) * ROUNDED for begin, end in zip(first, last, strict=True)]
         return seen, view_points, index, first, size
 

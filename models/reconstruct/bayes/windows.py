@@ -53,8 +53,8 @@ class Axis:
     window: int
 
     @classmethod
-    def of(cls, length: int, period: int, margin: int) -> "Axis":
-        """Blocks of a tile.
+    def of(cls, length: int, period: int, margin: int, block: int | None = None) -> "Axis":
+        """Blocks of a tile, or of a part of one.
 
         Parameters
         ----------
@@ -62,13 +62,15 @@ class Axis:
             Pixels of the array and of a tile.
         margin : int
             Pixels of a window on each side of its block.
+        block : int, optional
+            Pixels of a block; None is a tile.
 
         Returns
         -------
         Axis
             No window is longer than the array.
         """
-        block = min(period, length)
+        block = min(block or period, length)
         return cls(length, period, block, min(block + 2 * margin, length))
 
     @property
