@@ -31,6 +31,7 @@ GROUPS: dict[str, dict[str, Command]] = {
     },
     "Pictures": {
         "lightfield": Command("light field, refocused pictures and depth of a frame", "imaging.lightfield.command"),
+        "cameras": Command("the same scenes by lenslets, a coded mask and other cameras", "imaging.cameras.command"),
         "depth": Command("time of flight: a depth map, unwrapped by the light field", "imaging.depth.command"),
         "polar": Command("angle and degree of polarization, highlights separated", "imaging.polar.command"),
         "recognize": Command("digits or your pictures classified from the chip's bytes", "imaging.recognize.command"),

@@ -19,6 +19,7 @@ FRAME = "--rows 24 --cols 36 --golden"
 TARGETS = {  # command -> its smallest run
     "lightfield": f"--scene coins --disparities 3 {FRAME}",
     "polar": FRAME,
+    "cameras": "--scenes coins --size 60 --lux 500 --seeds 1",
     "recognize": "--count 40 --curves none --golden --workers 1",
     "depth": f"--scene tilted --disparities 3 {FRAME}",
     "pixel": "--kind amplitude --period-um 1",

@@ -1,0 +1,1 @@
+"""Other cameras on the same scenes, pixels, lens, light and noise: `talbot cameras`."""
