@@ -87,8 +87,9 @@ class Sensor:
     in rad, that gives the response of both diodes, (2, n), 0 or more.
     converter: 'circuit' (as ngspice has it), 'ideal', or a dict of inl, dnl, offset, noise, ktc (LSB),
     unit_mismatch (relative) and seed.
-    pixel: 'ideal' (Eq. 3.1), 'sky130' or 'ihp-sg13g2': what the process's gratings do, as `make sim PIXEL=sky130`;
-    types with a response keep it. Tables are computed once, in half a minute.
+    pixel: 'ideal' (Eq. 3.1), 'sky130' or 'ihp-sg13g2': what the process's gratings do, as `make sim PIXEL=sky130`, or
+    the path of a response.npz; types with a response keep it, except with a file. Tables are computed once, in half a
+    minute.
 
     Raises ParameterError for an unknown name or a value out of range.
     """
