@@ -2,7 +2,7 @@
 
 import numpy as np
 
-# V at the pads, under reset, for these at a diode
+# V at the pads under reset, for these reset levels; a diode is 5 mV below
 DIODE_V = np.linspace(1.0, 2.2, 13)
 PAD_V = np.array(
     [1.3984, 1.4418, 1.4966, 1.5597, 1.6264, 1.6945, 1.7633, 1.8324, 1.9018, 1.9714, 2.0411, 2.1108, 2.1804]

@@ -30,6 +30,6 @@ def test_a_read_follows_the_light_and_the_reset_level():
     assert shaded.gain[1] == pytest.approx(lit.gain[1], rel=0.02)
     levels = np.array(transfer(chip, circuit, corner, Exposure(), list(np.linspace(1.4, 2.2, 9))))
     assert np.abs(levels[:, 1] - levels[:, 0]).max() < 0.01  # a complete reset
-    assert np.interp(levels[:, 1], levels_of.DIODE_V, levels_of.PAD_V) == pytest.approx(levels[:, 2], abs=2e-3)
+    assert np.interp(levels[:, 0], levels_of.DIODE_V, levels_of.PAD_V) == pytest.approx(levels[:, 2], abs=2e-3)
     slopes = np.diff(levels[:, 2]) / np.diff(levels[:, 1])
     assert slopes == pytest.approx(np.full(8, lit.gain[0]), rel=0.06)
