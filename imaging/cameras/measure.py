@@ -98,7 +98,7 @@ def measured(
 
 
 def _estimator(sensor: SensorParameters, name: str, noise: float, disparity: float) -> FieldEstimator:
-    every = DISPARITIES | tried(sensor.optics.views, None, None)
+    every: dict[str, Any] = {**DISPARITIES, **tried(sensor.optics.views, None, None)}
     prior = FieldPrior(noise=min(max(noise, FieldPrior.noise), NOISE_MAX), margin=MARGIN[name], **every)
     views, pupil = sensor.optics.views, PUPIL[name]
     if name == ASP:
