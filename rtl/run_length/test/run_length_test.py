@@ -299,9 +299,13 @@ class TestRunLengthFL:
         """Rows up to a mark: none, some and all of them, ends on a byte and in one, in runs and between them."""
         pick = random.Random(5)
         for resync, mode in product(range(4), ("edge", "raw")):
+            sizes = [pick.choice((0, 1, 5, 30, 63, 64, 65, 100)) for _ in range(16)]
+            sizes += [
+                64 * resync + by for by in range(-1, 3)
+            ]  # raw: the last bytes that count go as the next row comes
             rows = [
                 (row, [pick.choice((0, 0, 0, 9, -40)) & (0xFF if mode == "raw" else -1) for _ in range(size)])
-                for row, size in enumerate(pick.choice((0, 1, 5, 30, 63, 64, 65, 100)) for _ in range(16))
+                for row, size in enumerate(sizes)
             ]
             header = header_of(mode, threshold=1, resync=resync)
             marks = [first for first, _, _ in segments(header, rows)]
