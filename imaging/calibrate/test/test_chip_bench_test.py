@@ -6,10 +6,12 @@ from argparse import Namespace
 import numpy as np
 import pytest
 
-from talbot.commands import main
+from talbot.base.command import main
 from talbot.imaging.bench.job import expected
 from talbot.imaging.bench.page import NAMES
+from talbot.imaging.bench.readings import HEAD
 from talbot.imaging.bench.simulated import OPENING_UM
+from talbot.imaging.calibrate import command
 from talbot.imaging.frame.sensor import asked_sensor
 from talbot.models.parameters import STANDARD, ParameterError, read_sensor
 from talbot.models.pixel import optical_gains
@@ -18,7 +20,7 @@ from talbot.models.pixel import optical_gains
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     out = tmp_path_factory.mktemp("bench") / "first"
-    assert main(["calibrate", "--bench", "simulated", "--holes=7", "--seed=5", f"--out={out}"]) == 0
+    assert main(command, ["--bench", "simulated", "--holes=7", "--seed=5", f"--out={out}"]) == 0
     return out
 
 
@@ -43,7 +45,7 @@ def test_a_sensor_that_other_commands_read(folder):
 
 def test_the_simulated_file_is_a_file_like_any_other(folder, tmp_path):
     words = f"--bench {folder / 'measurements.csv'} --out {tmp_path / 'second'}".split()
-    assert main(["calibrate", *words]) == 0
+    assert main(command, [*words]) == 0
     first, second = (json.loads((path / "summary.json").read_text()) for path in (folder, tmp_path / "second"))
     assert "truth" not in second and not (tmp_path / "second" / "measurements.csv").exists()
     for a, b in zip(first["types"], second["types"], strict=True):
@@ -63,15 +65,23 @@ def test_the_simulated_file_is_a_file_like_any_other(folder, tmp_path):
     ],
 )
 def test_refused(words, said, capsys, tmp_path):
-    assert main(["calibrate", *words.split(), f"--out={tmp_path / 'out'}"]) == 2
+    assert main(command, [*words.split(), f"--out={tmp_path / 'out'}"]) == 2
     error = capsys.readouterr().err
     assert said in error and error.count("\n") == 1 and not (tmp_path / "out").exists()
 
 
+def test_a_wrong_line_is_refused_and_nothing_written(tmp_path, capsys):
+    path = tmp_path / "m.csv"
+    path.write_text(f"{','.join(HEAD)}\ndark,9,1,,,,25,2,3,1.9,1.9,1.8,1.8\n")
+    assert main(command, ["--bench", str(path), "--out", str(tmp_path / "out")]) == 2
+    error = capsys.readouterr().err
+    assert "row = '9' (line 2" in error and error.count("\n") == 1 and not (tmp_path / "out").exists()
+
+
 def test_another_tile_than_the_chips_is_refused(tmp_path, capsys):
     (tmp_path / "small.toml").write_text("tile.rows = 2\ntile.cols = 2\n")
-    words = ["calibrate", "--bench", "simulated", f"--sensor={tmp_path / 'small.toml'}", f"--out={tmp_path / 'out'}"]
-    assert main(words) == 2
+    words = ["--bench", "simulated", f"--sensor={tmp_path / 'small.toml'}", f"--out={tmp_path / 'out'}"]
+    assert main(command, words) == 2
     assert "tile = 2 x 2: must be the standard's 4 x 6 in its order" in capsys.readouterr().err
 
 
