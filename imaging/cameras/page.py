@@ -136,16 +136,17 @@ def tables(swept: bool) -> dict[str, Callable[[Row], Table]]:
 
 def line(s: Row) -> str:
     """Return what was compared, in a line."""
-    exposure = f"{1e3 * s['exposure_s']:.2f} ms"
+    exposure, seeds = f"{1e3 * s['exposure_s']:.2f} ms", f"{s['seeds']} seed{'s' * (s['seeds'] > 1)}"
     return (
-        f"{len(s['scenes'])} scenes of {s['size']} x {s['size']} pixels, {s['seeds']} seeds, {exposure} of "
+        f"{len(s['scenes'])} scenes of {s['size']} x {s['size']} pixels, {seeds}, {exposure} of "
         f"{', '.join(f'{lux:g}' for lux in s['lux'])} lux; plain camera: {s['plain']['disparity']:+g} px a view step"
     )
 
 
 def write(folder: Path, s: Row) -> None:
     """Write everything but summary.json into ``folder``, which exists."""
-    about = f"Means over scenes and seeds in {s['lux'][0]:g} lux; seeds differ by {spread(s):.2f} dB RMS at most."
+    about = f"Means over scenes and seeds in {s['lux'][0]:g} lux"
+    about += f"; seeds differ by {spread(s):.2f} dB RMS at most." if s["seeds"] > 1 else "."
     parts = [
         Section("Cameras", about, head=overview(s)[0], rows=overview(s)[1]),
         Section(
@@ -169,7 +170,7 @@ def _tiles(s: Row) -> list[Tile]:
     return [
         Tile(f"{bright[ASP]:.1f} dB", "PSNR of the views by ASP"),
         Tile(f"{bright[first]:.1f} dB", f"by the best camera: {TEXTS[first]}"),
-        Tile(f"{bright[COPIED]:.1f} dB", f"by the {TEXTS[COPIED].removeprefix('plain, ')}"),
+        Tile(f"{bright[COPIED]:.1f} dB", f"by {TEXTS[COPIED].removeprefix('plain, ')}"),
     ]
 
 
