@@ -43,6 +43,7 @@ def test_a_sensor_that_other_commands_read(folder):
     np.testing.assert_allclose(*gains, atol=0.03)
 
 
+@pytest.mark.slow
 def test_the_simulated_file_is_a_file_like_any_other(folder, tmp_path):
     words = f"--bench {folder / 'measurements.csv'} --out {tmp_path / 'second'}".split()
     assert main(command, [*words]) == 0
