@@ -6,7 +6,7 @@ A block is imported when it is built: listing the names needs no PyMTL, and an e
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from talbot.models.parameters import NO_DIVIDER, ParameterError, SensorParameters
+from talbot.models.parameters import ParameterError, SensorParameters
 from talbot.models.parameters.registers import register_map
 
 if TYPE_CHECKING:
@@ -62,8 +62,7 @@ def divider(variant: str) -> Build:
 
 def phase_path(sensor: SensorParameters) -> "Component":
     """Return the phase path. Raises ParameterError for a sensor without."""
-    if sensor.chip.divider == NO_DIVIDER:
-        raise ParameterError("top = 'PhasePath': must be a block of the sensor, whose chip.divider is none")
+    check_block("top = 'PhasePath'", "PhasePath", sensor)
     from talbot.rtl.phase_path import PhasePath
 
     return PhasePath(sensor.chip.lanes, sensor.chip.divider, sensor.chip.n_frac, sensor.chip.cordic_iterations)
@@ -154,7 +153,13 @@ WRAPPERS = {
 
 def tops_of(sensor: SensorParameters) -> list[str]:
     """Return the names of the TOPS that ``sensor`` has."""
-    return [name for name in TOPS if name != "PhasePath" or sensor.chip.divider != NO_DIVIDER]
+    return [name for name in TOPS if name != "PhasePath" or sensor.chip.has_phase_path]
+
+
+def check_block(field: str, name: str, sensor: SensorParameters) -> None:
+    """Check that ``sensor`` has the top ``name``. field: with its value, for the error. Raises ParameterError."""
+    if name in TOPS and name not in tops_of(sensor):
+        raise ParameterError(f"{field}: must be a block of the sensor, whose chip.divider is none")
 
 
 def build_top(name: str, sensor: SensorParameters) -> "Component":

@@ -6,10 +6,11 @@ from functools import partial
 from pathlib import Path
 
 from talbot.base.sensor import sensor_asked
-from talbot.flow.layout.varied import CHIP, SENSOR, WRAPPER, varied
-from talbot.models.parameters import ASYNCHRONOUS, NO_DIVIDER, SPI_INPUTS, ParameterError, SensorParameters, check_real
+from talbot.flow.layout.varied import CHIP, SENSOR, SIZED, varied
+from talbot.models.parameters import ASYNCHRONOUS, SPI_INPUTS, ParameterError, SensorParameters, check_real
 from talbot.platforms.processes import PROCESSES
 from talbot.rtl.sensor_options import options_of
+from talbot.rtl.tops import check_block
 
 
 @dataclass(frozen=True)
@@ -138,10 +139,9 @@ def design_asked(name: str, options: Namespace) -> Design:
 
     That of the die is its chip's. Raises ParameterError for a field that the design cannot vary.
     """
-    chosen, sensor = design(CHIP if name == SENSOR else name), sensor_asked(options, varied(name))
-    if not options.sensor or name == SENSOR or name.startswith(WRAPPER):
-        return chosen
-    return for_sensor(chosen, sensor, options.sensor.stem)
+    chosen, follows = design(CHIP if name == SENSOR else name), varied(name)
+    sensor = sensor_asked(options, follows)
+    return for_sensor(chosen, sensor, options.sensor.stem) if options.sensor and follows.used else chosen
 
 
 def for_sensor(standard: Design, sensor: SensorParameters, label: str) -> Design:
@@ -149,10 +149,9 @@ def for_sensor(standard: Design, sensor: SensorParameters, label: str) -> Design
 
     Raises ParameterError for a block that the sensor does not have.
     """
-    if standard.name == "phase_path" and sensor.chip.divider == NO_DIVIDER:
-        raise ParameterError("DESIGN = 'phase_path': must be a block of the sensor, whose chip.divider is none")
+    check_block(f"DESIGN = {standard.name!r}", standard.top, sensor)
     clock = replace(standard.clock, period_ns=min(standard.clock.period_ns, 1e9 / sensor.chip.f_clk))
-    if not varied(standard.name).used[:-1]:  # but the clock
+    if standard.name not in SIZED:
         return replace(standard, clock=clock, label=label)
     variant = standard.divider if standard.folder == "quad_divider" else sensor.chip.divider
     options = options_of(replace(sensor, chip=replace(sensor.chip, divider=variant)))

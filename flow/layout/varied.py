@@ -4,13 +4,13 @@ from talbot.base.sensor import Varied
 from talbot.pixels.drawn import DRAWN_PITCH
 from talbot.rtl.sensor_options import FIELDS
 
-CHIP, SENSOR, WRAPPER = "asp_chip", "asp_sensor", "tt_"
+CHIP, SENSOR, WRAPPERS = "asp_chip", "asp_sensor", "tt_"
 SIZES = "tile", "array.rows", "array.cols", "chip"
 CLOCK = "chip.f_clk"
 _ARRAY = "array.rows", "array.cols", "chip.lanes", "tile.rows", "tile.cols"
 _PHASE = "chip.divider", "chip.n_frac", "chip.cordic_iterations"
 # Fields that set the size of a block, by design; none of the other blocks
-_BLOCKS = {
+SIZED = {
     CHIP: tuple(FIELDS.values()),
     "readout_seq": (*_ARRAY, "tile.order"),
     "adc_bank": ("chip.lanes",),
@@ -27,7 +27,7 @@ _DIE = Varied(fixed={**_FIXED.fixed, **DRAWN_PITCH})
 
 
 def varied(design: str) -> Varied:
-    """Return what the layout of ``design`` varies."""
+    """Return what the layout of ``design`` varies; nothing of the die and of wrappers."""
     if design == SENSOR:
         return _DIE
-    return _FIXED if design.startswith(WRAPPER) else Varied(used=(*_BLOCKS.get(design, ()), CLOCK))
+    return _FIXED if design.startswith(WRAPPERS) else Varied(used=(*SIZED.get(design, ()), CLOCK))

@@ -14,7 +14,7 @@ from talbot.imaging.frame.reading import about
 from talbot.imaging.frame.request import FrameRequest
 from talbot.imaging.frame.result import Exposed, GoldenResult
 from talbot.models.capture import Region, Views
-from talbot.models.parameters import NO_DIVIDER, ElectricalParameters, ParameterError
+from talbot.models.parameters import ElectricalParameters, ParameterError
 from talbot.models.plan import plan
 from talbot.models.scene.rendered import RENDERED
 
@@ -90,7 +90,7 @@ def capture(
     count = len(exposures)
     if by_code is not None:
         exposures += [by_code, *_raw(*by_code)]
-    if has_divider := request.sensor.chip.divider != NO_DIVIDER:
+    if has_divider := request.sensor.chip.has_phase_path:
         exposures.append((replace(request, frame=replace(request.frame, phase=True)), exposed))
     if golden:
         with clock.step("frames"):

@@ -59,7 +59,7 @@ class FrameRequest:
 
     def __post_init__(self) -> None:
         self.sensor.check_window(self.frame.window)
-        if self.frame.phase and self.sensor.chip.divider == parameters.NO_DIVIDER:
+        if self.frame.phase and not self.sensor.chip.has_phase_path:
             raise ParameterError("phase = True: must be False, the sensor has no phase path (chip.divider = none)")
         if self.calibration is not None:
             self.calibration.applied(self.sensor)  # fits

@@ -47,3 +47,8 @@ class ChipParameters:
         check_int("n_frac", self.n_frac, N_FRAC_MIN, N_FRAC_MAX)
         check_int("cordic_iterations", self.cordic_iterations, ITERATIONS_MIN, ITERATIONS_MAX)
         check_real("f_clk", self.f_clk, 1e3, 1e9)
+
+    @property
+    def has_phase_path(self) -> bool:
+        """Whether the chip computes phases."""
+        return self.divider != NO_DIVIDER

@@ -11,7 +11,6 @@ from talbot.flow.layout.design import Design
 from talbot.flow.layout.options import Options
 from talbot.models.parameters import ChipParameters, EnergyParameters
 
-CHIP = "AspChip"
 BOUNDS = {"is": "", "least": "at least", "most": "at most"}  # of a rule, as words
 # Parts of the power in [Jayasuriya2017, Table 6.1] and the blocks of AspChip that do their digital work; pixels,
 # amplifiers and the converters' comparators are analog. What the sensor of Table 6.1 did not have is in none of them
@@ -87,7 +86,7 @@ def summarize(design: Design, options: Options, runner: Runner, attempts: Sequen
         **{name: by_corner(name, "power") for name in ("power_uw", "energy_pj_cycle")},
         "leakage_uw": metric("leakage", "leakage_uw"),
         "power_at_chip_clock_uw": at_chip_clock(by_corner("energy_pj_cycle", "power")),
-        "table_6_1": table_6_1(metric(f"power_{first}", "by_block"), slowed) if design.top == CHIP else None,
+        "table_6_1": table_6_1(metric(f"power_{first}", "by_block"), slowed) if design.is_chip else None,
         "power_by_block_uw": metric(f"power_{first}", "by_block"),
         "power_by_kind_uw": metric(f"power_{first}", "by_kind"),
         **{name: by_corner(name, "ir_drop") for name in ("supply_drop_mv", "ground_rise_mv", "ir_drop_percent")},

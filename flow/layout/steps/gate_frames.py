@@ -43,7 +43,7 @@ class GateFrames(Step[GateFramesParameters]):
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         from talbot.imaging.frame.hardware import simulate
         from talbot.models.chip import front_end_of, golden_frame
-        from talbot.models.parameters import MODES, NO_DIVIDER, FrameParameters
+        from talbot.models.parameters import MODES, FrameParameters
 
         sensor = sensor_with(self.parameters.options)
         front_end, samples = front_end_of(sensor, [TRIM] * sensor.tile.n_types), exposure(sensor)
@@ -51,7 +51,7 @@ class GateFrames(Step[GateFramesParameters]):
         with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
             program = icarus_program(Build.of(sensor), Path(folder), [inputs["verilog"], inputs["cells"]])
             for mode in MODES:
-                phase = mode == "tof" and sensor.chip.divider != NO_DIVIDER
+                phase = mode == "tof" and sensor.chip.has_phase_path
                 frame = FrameParameters(few(sensor.full_window), mode, phase=phase)
                 chip = simulate(program, sensor, frame, samples, front_end)
                 golden = golden_frame(samples, sensor, frame, front_end)

@@ -17,7 +17,6 @@ from talbot.base.steps import Files, Step, StepError
 from talbot.base.tools import ToolError, finish, run
 from talbot.imaging.simulate.build import Build
 from talbot.imaging.simulate.icarus import icarus_program
-from talbot.models.parameters import NO_DIVIDER
 from talbot.rtl.sensor_options import sensor_with
 from talbot.rtl.tinytapeout.golden import EXAMPLES
 from talbot.rtl.tinytapeout.host import simulate as simulate_host
@@ -109,8 +108,7 @@ def in_frame(parameters: StimulusParameters, folder: Path, trace: Path) -> dict[
     (folder / "tap.v").write_text(tap("Clock.clk", ".".join(("Clock.bench.chip", *path)), ports), encoding="utf-8")
     window = partial(middle, tiles=parameters.tiles) if parameters.tiles else None
     sensor = sensor_with(parameters.options)
-    phase = sensor.chip.divider != NO_DIVIDER
-    asked = request(sensor=sensor, scene=SCENE, mode="tof", phase=phase, window=window)
+    asked = request(sensor=sensor, scene=SCENE, mode="tof", phase=sensor.chip.has_phase_path, window=window)
     exposed = expose(asked, *see(asked))
     program = icarus_program(Build.of(asked.sensor), folder, [folder / f"{CHIP}.sv", folder / "tap.v"], ("Tap",))
     more = (f"+tap={folder / 'tap.trace'}",)

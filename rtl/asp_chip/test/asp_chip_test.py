@@ -83,7 +83,7 @@ class ChipTests:
 
     @property
     def has_phase(self):
-        return self.sensor.chip.divider != NO_DIVIDER
+        return self.sensor.chip.has_phase_path
 
     def golden(self, frame, end=PATTERN):
         return golden_frame(None, self.sensor, replace(frame, phase=frame.phase and self.has_phase), end)

@@ -11,7 +11,7 @@ from talbot.models.chip import golden_frame
 from talbot.models.digital.host import command, frame_values, read_transfer, write_transfers
 from talbot.models.digital.pattern import PatternEnd, pattern_value
 from talbot.models.digital.phase import phase_samples
-from talbot.models.parameters import NO_DIVIDER, AmpTiming, FrameParameters, SensorParameters, Window
+from talbot.models.parameters import AmpTiming, FrameParameters, SensorParameters, Window
 from talbot.models.parameters.registers import RegisterMap, array_resets, register_map
 from talbot.rtl.host.document.pins import host_pins
 
@@ -76,7 +76,7 @@ def pixel_types(sensor: SensorParameters) -> str:
 
 def phase_examples(sensor: SensorParameters) -> str:
     """Return the table of taps, their differences, and the phase and amplitude that the chip sends."""
-    if sensor.chip.divider == NO_DIVIDER:
+    if not sensor.chip.has_phase_path:
         return "This chip has no phase path: `phase` has no effect."
     taps = [(100, 100, 100, 200), (200, 100, 0, 10), (255, 0, 0, 255), (90, 91, 90, 89), (7, 7, 7, 7)]
     sent = zip(*phase_samples(np.array(taps), sensor.chip, noise_floor=8))
