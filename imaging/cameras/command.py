@@ -9,7 +9,7 @@ from talbot.base.arguments import Number, real
 from talbot.base.files import check_folder, insert, marked, staged
 from talbot.base.jobs import worker_count
 from talbot.base.paths import results_of
-from talbot.base.sensor import Varied, add_sensor, sensor_asked
+from talbot.base.sensor import add_sensor, sensor_asked, standard_alone
 from talbot.base.table import markdown_table
 from talbot.imaging.frame.command import typed_of
 from talbot.models.parameters import ParameterError
@@ -18,8 +18,7 @@ STEP = 60  # px: whole lenslets of 5 x 5 views, and whole tiles
 SIZE = Number("size", f"pixels of each side, a multiple of {STEP}", STEP, 360, "120")
 SEEDS = Number("seeds", "fixed patterns and noises, from seed 1 on", 1, 100, "3")
 LUX_ENDS = 1e-3, 1e6
-PARTS = "tile", "array", "optics", "electrical", "converter", "chip"
-VARIED = Varied(fixed=dict.fromkeys(PARTS, "cameras are compared with the standard sensor"))
+VARIED = standard_alone("cameras are compared with the standard sensor")
 
 
 def add_arguments(parser: ArgumentParser) -> None:

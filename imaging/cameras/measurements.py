@@ -94,16 +94,16 @@ def measured(point: tuple[str, str, float], names: Sequence[str]) -> dict[str, A
     prior = replace(prior, disparities=(prior.disparities + 1) // 2)
     read = np.asarray(camera.weights.any((1, 2)), bool)
     estimator = FieldEstimator(camera, sensor.optics.views, prior, measured=read)
-    found = []
+    every_psnr = []
     for scene in scenes_of(names, sensor).values():
         truth = np.asarray(scene.full_light_field)
         samples = camera.forward(truth)
         samples += prior.noise * np.random.default_rng(SEED).standard_normal(samples.shape)
-        found.append(psnr_db(estimator.mixture(samples).light_field, truth))
+        every_psnr.append(psnr_db(estimator.mixture(samples).light_field, truth))
     return {
         "camera": kind,
         "tile": tile,
         "measurements": count,
         "share": count / VIEWS,
-        "psnr_db": float(np.mean([psnr for psnr in found if psnr is not None])),
+        "psnr_db": float(np.mean([psnr for psnr in every_psnr if psnr is not None])),
     }

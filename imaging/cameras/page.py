@@ -12,6 +12,8 @@ from PIL import Image
 from talbot.base.charts import curves, save, svg
 from talbot.base.page import TABLES, Section, Tile, render
 from talbot.imaging.cameras.measure import ASP, COPIED, PLAIN
+from talbot.imaging.frame.reading import number
+from talbot.models.reconstruct.bayes import FieldPrior
 
 NAMES = ("cameras.html", "summary.json")
 TEXTS = {
@@ -50,10 +52,6 @@ def best(s: Row, camera: str, lux: float) -> list[Row]:
     return max(methods.values(), key=lambda rows: mean(rows, "psnr_db") or 0.0)
 
 
-def _number(value: float | None, digits: int = 1) -> str:
-    return "-" if value is None else f"{value:.{digits}f}"
-
-
 def overview(s: Row) -> Table:
     """Return the table of all figures in the brightest light, means over scenes and seeds."""
     head = (
@@ -72,20 +70,20 @@ def overview(s: Row) -> Table:
     rows = []
     for name, text in TEXTS.items():
         some = best(s, name, s["lux"][0])
-        told = name not in (PLAIN, COPIED)
+        spread_known = name not in (PLAIN, COPIED)
         rows.append(
             (
                 text,
                 f"{s['light'][PLAIN if name == COPIED else name]:g}",
                 some[0]["method"],
-                _number(mean(some, "psnr_db")),
-                _number(mean(some, "ssim"), 3),
-                "-" if name == COPIED else _number(mean(some, "disparity_rms_px"), 2),
-                f"{100 * (mean(some, 'sure') or 0):.0f} %" if told else "-",
-                _number(mean(some, "disparity_sure_rms_px"), 2) if told else "-",
-                _number(mean(some, "snr_db")),
+                number(mean(some, "psnr_db"), 1),
+                number(mean(some, "ssim"), 3),
+                "-" if name == COPIED else number(mean(some, "disparity_rms_px"), 2),
+                f"{100 * (mean(some, 'sure') or 0):.0f} %" if spread_known else "-",
+                number(mean(some, "disparity_sure_rms_px"), 2) if spread_known else "-",
+                number(mean(some, "snr_db"), 1),
                 f"{mean(some, 'bytes') or 0:.0f}",
-                _number(mean(some, "energy_uj"), 2),
+                number(mean(some, "energy_uj"), 2),
             )
         )
     return head, rows
@@ -98,7 +96,7 @@ def light(s: Row) -> Table:
     rows = []
     for name, text in TEXTS.items():
         cells = [
-            "-" if name == COPIED and "disparity" in key else _number(mean(best(s, name, lux), key), digits)
+            "-" if name == COPIED and "disparity" in key else number(mean(best(s, name, lux), key), digits)
             for _, key, digits in columns
             for lux in s["lux"]
         ]
@@ -113,18 +111,18 @@ def by_scene(s: Row) -> Table:
         cells = []
         for scene in s["scenes"]:
             some = [row for row in best(s, name, s["lux"][0]) if row["scene"] == scene]
-            error = "" if name == COPIED else f" ({_number(mean(some, 'disparity_rms_px'), 2)})"
-            cells.append(_number(mean(some, "psnr_db")) + error)
+            error = "" if name == COPIED else f" ({number(mean(some, 'disparity_rms_px'), 2)})"
+            cells.append(number(mean(some, "psnr_db"), 1) + error)
         rows.append((text, *cells))
     return ["camera", *(f"`{scene}`" for scene in s["scenes"])], rows
 
 
 def measurements(s: Row) -> Table:
     """Return the table of the PSNR over the number of measurements a pixel."""
-    found = {(p["camera"], p["tile"], p["measurements"]): p["psnr_db"] for p in s["measurements"]}
-    counts = sorted({count for *_, count in found})
-    head = ["measurements a pixel", *(f"{count:g} ({100 * count / 25:.0f} %)" for count in counts)]
-    rows = [(text, *(_number(found.get((*key, count))) for count in counts)) for key, text in SERIES.items()]
+    psnr = {(p["camera"], p["tile"], p["measurements"]): p["psnr_db"] for p in s["measurements"]}
+    shares = dict(sorted((p["measurements"], p["share"]) for p in s["measurements"]))
+    head = ["measurements a pixel", *(f"{count:g} ({100 * share:.0f} %)" for count, share in shares.items())]
+    rows = [(text, *(number(psnr.get((*key, count)), 1) for count in shares)) for key, text in SERIES.items()]
     return head, rows
 
 
@@ -147,21 +145,25 @@ def write(folder: Path, s: Row) -> None:
     """Write everything but summary.json into ``folder``, which exists."""
     about = f"Means over scenes and seeds in {s['lux'][0]:g} lux"
     about += f"; seeds differ by {spread(s):.2f} dB RMS at most." if s["seeds"] > 1 else "."
+    charts = _charts(s)
     parts = [
-        Section("Cameras", about, head=overview(s)[0], rows=overview(s)[1]),
-        Section(
-            "Light", "One exposure for all.", [svg(chart) for chart in _charts(s)], head=light(s)[0], rows=light(s)[1]
-        ),
-        Section("Scenes", "PSNR in dB (RMS error of disparity in px).", head=by_scene(s)[0], rows=by_scene(s)[1]),
+        _section("Cameras", about, overview(s)),
+        _section("Light", "One exposure for all.", light(s), charts),
+        _section("Scenes", "PSNR in dB (RMS error of disparity in px).", by_scene(s)),
     ]
     if s["measurements"]:
-        head, rows = measurements(s)
         size = f"{s['swept_size']} x {s['swept_size']} pixels"
-        text = f"PSNR in dB, mean of {', '.join(s['swept_scenes'])}, {size}; noise 0.006 of white in every sample."
-        parts.append(Section("Measurements a pixel", text, [svg(_swept(s))], head=head, rows=rows))
-    picture = _picture(s)
+        noise = f"noise {FieldPrior.noise:g} of white in every sample"
+        text = f"PSNR in dB, mean of {', '.join(s['swept_scenes'])}, {size}; {noise}."
+        parts.append(_section("Measurements a pixel", text, measurements(s), [_swept(s)]))
+    picture = _picture(charts[0])
     text = render(TABLES, "Cameras for light fields", picture=picture, about=line(s), tiles=_tiles(s), sections=parts)
     (folder / "cameras.html").write_text(text, encoding="utf-8")
+
+
+def _section(title: str, text: str, table: Table, charts: Sequence[Any] = ()) -> Section:
+    head, rows = table
+    return Section(title, text, [svg(chart) for chart in charts], head=head, rows=rows)
 
 
 def _tiles(s: Row) -> list[Tile]:
@@ -200,7 +202,7 @@ def _swept(s: Row) -> Any:
     return curves(series, "measurements over views (%)", "PSNR of the views (dB)", "Measurements a pixel", log_x=True)
 
 
-def _picture(s: Row) -> Image.Image:
+def _picture(chart: Any) -> Image.Image:
     out = io.BytesIO()
-    save(_charts(s)[0], out)
+    save(chart, out)
     return Image.open(out).convert("RGB")

@@ -5,11 +5,10 @@ from pathlib import Path
 
 from talbot.base.files import insert, marked
 from talbot.base.jobs import worker_count
-from talbot.base.sensor import Varied, add_sensor, sensor_asked
+from talbot.base.sensor import add_sensor, sensor_asked, standard_alone
 from talbot.imaging.tradeoff.sweeps import SWEEPS, lines, run_sweeps
 
-PARTS = "tile", "array", "optics", "electrical", "converter", "chip"
-VARIED = Varied(fixed=dict.fromkeys(PARTS, "each sweep varies one field of the standard sensor"))
+VARIED = standard_alone("each sweep varies one field of the standard sensor")
 
 
 def add_arguments(parser: ArgumentParser) -> None:

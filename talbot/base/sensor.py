@@ -2,7 +2,7 @@
 
 from argparse import ArgumentParser, Namespace
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -47,6 +47,11 @@ class Varied:
             if name in self.limits and not self.limits[name][0] <= value <= self.limits[name][1]:
                 low, high = self.limits[name]
                 raise ParameterError(f"{name} = {_text(value)}: must be in {low:g}..{high:g} ({varied})")
+
+
+def standard_alone(reason: str) -> Varied:
+    """Return what a command varies that takes the standard sensor alone: nothing, for ``reason``."""
+    return Varied(fixed=dict.fromkeys((part.name for part in fields(SensorParameters)), reason))
 
 
 def add_sensor(parser: ArgumentParser, replaced: Mapping[str, str] | None = None) -> None:
