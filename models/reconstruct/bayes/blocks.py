@@ -42,10 +42,21 @@ class Blocks:
         """The shape of the array."""
         return self.y.length, self.x.length
 
-    @property
-    def told(self) -> float:
-        """Samples of a pixel that tell a disparity, in the mean over a period."""
-        return float(self.camera.telling[self.camera.order].sum(0).mean())
+    def pooled_errors(self, width: float) -> float:
+        """Errors that count where those of pixels around are pooled.
+
+        Parameters
+        ----------
+        width : float
+            Standard deviation of the pool, px.
+
+        Returns
+        -------
+        float
+            One for each sample that tells a disparity, of as many pixels as a pool of equal weights has.
+        """
+        telling = float(self.camera.telling[self.camera.order].sum(0).mean())
+        return 4 * math.pi * width**2 * telling
 
     @cached_property
     def groups(self) -> list[Pair]:

@@ -16,9 +16,9 @@ from numpy.lib.stride_tricks import sliding_window_view
 from scipy.ndimage import maximum_filter
 from threadpoolctl import threadpool_limits
 
+from talbot.models.capture.cameras import asp
 from talbot.models.capture.projection import Projection
 from talbot.models.parameters import ParameterError, SensorParameters
-from talbot.models.pixel.weights import view_weights
 from talbot.models.reconstruct.bayes.blocks import Blocks, Kind, Pair, kind
 from talbot.models.reconstruct.bayes.covariance import Covariances, Tables
 from talbot.models.reconstruct.bayes.evidence import REACH, Residuals, badness, pooled, probability, whitener
@@ -142,14 +142,14 @@ class FieldEstimator:
         for (down, across, samples), ways in zip(groups, self._ways, strict=True):
             shape = self.blocks.count(down, across)
             at = down.blocks, across.blocks
-            told = self.blocks.camera.telling[self.blocks.diodes(down, across)[2]]
-            contrast[at] = samples[~told if not told.all() else told].var(0).reshape(shape)
+            telling = self.blocks.camera.telling[self.blocks.diodes(down, across)[2]]
+            contrast[at] = samples[telling if telling.all() else ~telling].var(0).reshape(shape)
             for number, residual in enumerate(ways.residuals):
                 errors = np.square(residual.matrix @ samples).sum(0) / ways.read
                 squares[number][at] = errors.reshape(shape)
                 certain[number][at] = residual.certain.sum() / ways.read
         near = pool / (self.blocks.y.block * self.blocks.x.block) ** 0.5  # in blocks
-        count = 4 * np.pi * pool**2 * self.blocks.told
+        count = self.blocks.pooled_errors(pool)
         scores = [badness(pooled(s, near), c, count) for s, c in zip(squares, certain, strict=True)]
         return shares_of(probability(self.prior.trust * np.stack(scores), 0.0), contrast)
 
@@ -398,8 +398,8 @@ class FieldEstimator:
         (residuals, certain), pool = self._any, self.prior.width
         errors = (residual.squares(samples) for (*_, samples), residual in zip(groups, residuals, strict=True))
         squares = pooled(self.blocks.map(errors), pool) / self._read
-        count = 4 * np.pi * pool**2 * self.blocks.told
-        return np.asarray(self.prior.trust * badness(squares, certain, count), np.float32)
+        errors_pooled = self.blocks.pooled_errors(pool)
+        return np.asarray(self.prior.trust * badness(squares, certain, errors_pooled), np.float32)
 
     def _weighted(self, sets: list[Hypotheses], weights: list[Floats], groups: Windows) -> Floats:
         """Sum of the light fields by all disparities of the ``sets``, by their weights at the pixels."""
@@ -459,8 +459,7 @@ def sums_and_differences(sensor: SensorParameters, pupil: int) -> Projection:
     Projection
         Of two channels: response 2 t is the sum of type t, which tells no disparity, 2 t + 1 its difference.
     """
-    tile = sensor.tile
-    a, b = view_weights(tile, replace(sensor.optics, views=pupil)).transpose(1, 0, 2, 3)
+    diodes = asp(sensor, pupil)
+    a, b = diodes.weights[::2], diodes.weights[1::2]
     weights = (np.stack([a + b, a - b], 1) / np.sqrt(2)).reshape(-1, pupil, pupil)
-    order = 2 * tile.type_map(tile.rows, tile.cols) + np.arange(2)[:, None, None]
-    return Projection(sensor.shape, weights, order, np.arange(len(weights)) % 2 == 1)
+    return replace(diodes, weights=weights, telling=np.arange(len(weights)) % 2 == 1)

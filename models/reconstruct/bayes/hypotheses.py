@@ -74,7 +74,7 @@ class Hypotheses:
                 for residuals in self._residuals
             ]
         )
-        errors = badness(self._around(errors), self._certain, 4 * np.pi * self.prior.width**2 * self.blocks.told)
+        errors = badness(self._around(errors), self._certain, self.blocks.pooled_errors(self.prior.width))
         return np.asarray(self.prior.trust * errors, np.float32)
 
     def solver(self, number: int, group: Pair) -> Solver:
