@@ -18,7 +18,7 @@ from talbot.imaging.bench.pads import (
     lost,
     mean_over,
 )
-from talbot.imaging.bench.readings import COLS, ROWS, Floats, Readings
+from talbot.imaging.bench.readings import Floats, Readings
 from talbot.imaging.bench.simulated import tangents_of
 from talbot.models.calibrate import Sweep, TypeFit, calibrated
 from talbot.models.calibrate.calibration import VIGNETTING
@@ -32,6 +32,7 @@ from talbot.models.parameters import (
 )
 from talbot.models.pixel import TableResponse
 from talbot.models.pixel.response import response
+from talbot.pixels.test_chip.places import COLS, COVERED, PLAIN, REFERENCE, ROWS, by_type
 
 WEAK = 0.02  # of the usual signal of a type: what is below is dead
 GRID = 121, 13  # angles of a response that Eq. 3.1 explains
@@ -104,7 +105,7 @@ def measured(readings: Readings, sensor: SensorParameters = STANDARD) -> Measure
         for k, kind in enumerate(types)
     ]
     near = int(np.abs(dark.celsius - _mean_celsius(readings)).argmin())
-    covered = dark.rates[near, ROWS - 1, 1::2]
+    covered = dark.rates[near, REFERENCE, COVERED]
     dark_rate = Figure.mean(covered if np.isfinite(covered).any() else dark.rates[near])
     electrical = drawn_electrical(STANDARD.electrical)
     farad = electrical.full_well * ELEMENTARY_CHARGE / electrical.swing
@@ -155,9 +156,9 @@ def measured(readings: Readings, sensor: SensorParameters = STANDARD) -> Measure
 
 def check_tile(tile: TileParameters) -> None:
     """Raise ParameterError unless a tile has the places of the test chip's."""
-    if (tile.rows, tile.cols, tile.order) != (ROWS - 1, COLS, TileParameters().order):
+    if (tile.rows, tile.cols, tile.order) != (REFERENCE, COLS, TileParameters().order):
         raise ParameterError(
-            f"tile = {tile.rows} x {tile.cols}: must be the standard's {ROWS - 1} x {COLS} in its order, "
+            f"tile = {tile.rows} x {tile.cols}: must be the standard's {REFERENCE} x {COLS} in its order, "
             "which the test chip has"
         )
 
@@ -198,10 +199,11 @@ def _dead(angles: Angles, followers: Followers) -> list[tuple[int, int]]:
     with_light = np.isfinite(angles.rates).any((0, 3))
     means = mean_over(angles.rates, (0, 3))
     dead = set(followers.broken)
-    covered = np.zeros((ROWS, COLS), bool)
-    covered[ROWS - 1, 1::2] = True
-    for group in (np.arange(ROWS)[:, None] < ROWS - 1, (np.arange(ROWS)[:, None] == ROWS - 1) & ~covered):
-        chosen = np.broadcast_to(group, means.shape) & with_light
+    lit = np.zeros((2, ROWS, COLS), bool)  # those with gratings, and the plain ones
+    lit[0, :REFERENCE] = True
+    lit[1, REFERENCE, PLAIN] = True
+    for group in lit:
+        chosen = group & with_light
         if chosen.any():
             weak = chosen & (means < WEAK * np.nanmedian(means[chosen]))
             dead |= {(int(row), int(col)) for row, col in np.argwhere(weak)}
@@ -216,22 +218,17 @@ class Plain(NamedTuple):
     lamp_rms: float
 
 
-def types_of(rates: Floats) -> Floats:
-    """Return the rates (angles, types, 2) of the tile's types from those of the chip's places."""
-    return rates[:, : ROWS - 1].reshape(len(rates), -1, 2)[:, np.argsort(TileParameters().order)]
-
-
 def _relative(tangents: Floats, rates: Floats, notes: list[str]) -> tuple[Floats, Plain]:
     """Return the types' signals (angles, types, 2) over a plain pixel's on the axis, the light being 1, and the plain.
 
     A beam that falls in aslant is cos(theta) thinner. The lamp is that of the plain pixels at the same angle, whose own
     response is smooth.
     """
-    diodes = rates[:, ROWS - 1, ::2].reshape(len(rates), -1)
+    diodes = rates[:, REFERENCE, PLAIN].reshape(len(rates), -1)
     diodes = diodes[:, np.isfinite(diodes).any(0)]
     if not diodes.shape[1]:
         raise ParameterError(
-            f"row, col = {ROWS - 1}, 0, 2 or 4: must have light readings inside the sweep, of a plain pixel"
+            f"row, col = {REFERENCE}, 0, 2 or 4: must have light readings inside the sweep, of a plain pixel"
         )
     level = np.nanmedian(diodes, 0)
     read = np.isfinite(diodes).any(1)
@@ -247,7 +244,7 @@ def _relative(tangents: Floats, rates: Floats, notes: list[str]) -> tuple[Floats
     if not read.all():
         notes.append(f"{(~read).sum()} angles have no reading of a plain pixel: the lamp is taken as constant there")
     on_axis = float(level.mean() * smooth[0])
-    signals = types_of(rates) / (on_axis * lamp * cosine)[:, None, None]
+    signals = by_type(rates) / (on_axis * lamp * cosine)[:, None, None]
     spread = float(level.std(ddof=1) / level.mean()) if len(level) > 1 else None
     return signals, Plain(spread, len(level), float(np.sqrt(np.mean((lamp[read] - 1) ** 2))))
 
@@ -307,8 +304,8 @@ def _efficiency(signals: Floats, fit: TypeFit, plain: Plain, absent: bool) -> Fi
 
 def _crosstalk(rates: Floats) -> Figure | None:
     """Return the light signal of covered pixels over that of plain ones at the same angles."""
-    plain = mean_over(rates[:, ROWS - 1, ::2], (1, 2))
-    return Figure.mean(mean_over(rates[:, ROWS - 1, 1::2].reshape(len(rates), -1) / plain[:, None], 0))
+    plain = mean_over(rates[:, REFERENCE, PLAIN], (1, 2))
+    return Figure.mean(mean_over(rates[:, REFERENCE, COVERED].reshape(len(rates), -1) / plain[:, None], 0))
 
 
 def _doubling(dark: Dark) -> float | None:

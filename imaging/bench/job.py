@@ -11,16 +11,16 @@ import numpy as np
 from talbot.base.files import check_folder, staged
 from talbot.base.table import markdown_table
 from talbot.imaging.bench import simulated as bench
-from talbot.imaging.bench.chip import Measured, check_tile, measured, types_of
-from talbot.imaging.bench.readings import COLS, ROWS, Readings, joined, read, text_of
+from talbot.imaging.bench.chip import Measured, check_tile, measured
+from talbot.imaging.bench.readings import Readings, joined, read, text_of
 from talbot.models.calibrate import Sweep, fit_pupil, fit_types
 from talbot.models.parameters import STANDARD, ParameterError, PixelType, SensorParameters
 from talbot.pixels.designs import DRAWN, RAISED
 from talbot.pixels.measured import SUFFIX
 from talbot.pixels.tabled import pixel_of, tabled
+from talbot.pixels.test_chip.places import COLS, COVERED, PLAIN, REFERENCE, by_type
 
 SIMULATED = "simulated"
-NAMES_OF_TYPE = "beta", "gamma_deg", "alpha", "m"
 
 
 @dataclass(frozen=True)
@@ -112,7 +112,7 @@ def _labels(kind: PixelType, sensor: SensorParameters) -> dict[str, float] | Non
 def _response_rms(done: Measured, sensor: SensorParameters) -> float:
     """RMS error of (a - b) / (a + b) of the measured responses, over types and angles that were read."""
     y, x = done.angles.tangents.T
-    light = types_of(bench.relative(sensor, done.angles.tangents))
+    light = by_type(bench.relative(sensor, done.angles.tangents))
     theta = np.arctan(x), np.arctan(y)
     errors = []
     for k, table in enumerate(done.responses):
@@ -152,7 +152,7 @@ def heights(holes: int) -> str:
     """Return a table of what a bench measures without noise at both of SKY130's tables of heights."""
     columns, tangents = [], bench.angles(holes)
     for name in (DRAWN[0], DRAWN[0] + RAISED):
-        signals = types_of(bench.relative(tabled(STANDARD, name), tangents))
+        signals = by_type(bench.relative(tabled(STANDARD, name), tangents))
         sweep = Sweep(tangents, signals[:, None], np.zeros((1, signals.shape[1], 2)), np.ones(signals.shape[1]))
         fits = fit_types(sweep, fit_pupil(sweep)._replace(axis=np.zeros(2)))
         columns.append([fit.kind for fit in fits])
@@ -172,12 +172,12 @@ def heights(holes: int) -> str:
 
 
 def _groups(sensor: SensorParameters) -> list[tuple[str, list[tuple[int, int]]]]:
-    plain = [(ROWS - 1, col) for col in range(0, COLS, 2)]
+    plain = [(REFERENCE, col) for col in PLAIN]
     groups: dict[str, list[tuple[int, int]]] = {"plain": plain}
     for place, number in enumerate(sensor.tile.order):
         name = f"beta {sensor.tile.types[number].beta:g}"
         groups.setdefault(name, []).append(divmod(place, COLS))
-    covered = [(ROWS - 1, col) for col in range(1, COLS, 2)]
+    covered = [(REFERENCE, col) for col in COVERED]
     return [("plain", plain), *sorted((n, p) for n, p in groups.items() if n != "plain"), ("covered", covered)]
 
 

@@ -11,8 +11,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from talbot.imaging.bench.readings import COLS, ROWS, Floats, Readings
+from talbot.imaging.bench.readings import Floats, Readings
 from talbot.models.parameters import ParameterError
+from talbot.pixels.test_chip.places import COLS, ROWS
 
 SIDES = "a", "b"
 DEGREE = 4  # of a transfer, at most two less than its levels

@@ -16,10 +16,10 @@ import numpy.typing as npt
 
 from talbot.models.parameters import ParameterError
 from talbot.models.parameters.sensor_file import nearest
+from talbot.pixels.test_chip.places import COLS, ROWS
 
 Floats = npt.NDArray[np.float64]
 KINDS = "sweep", "dark", "light"
-ROWS, COLS = 5, 6  # of the test chip: four of a tile, one without gratings
 BYTES_MAX = 1 << 28
 
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from talbot.imaging.bench.readings import COLS, COLUMNS, ROWS, Floats, Readings
+from talbot.imaging.bench.readings import COLUMNS, Floats, Readings
 from talbot.models.calibrate import sunflower
 from talbot.models.parameters import (
     ELEMENTARY_CHARGE,
@@ -23,6 +23,7 @@ from talbot.models.parameters.electrical import BOLTZMANN, PHOTON, TEMPERATURE
 from talbot.models.pixel.weights import density
 from talbot.pixels.designs import gratings
 from talbot.pixels.test_chip.levels import BEND, DIODE_V, FARAD, FEEDTHROUGH, PAD_V
+from talbot.pixels.test_chip.places import COLS, COVERED, PLAIN, REFERENCE, ROWS, by_type
 
 TRANSFER = np.polynomial.Polynomial.fit(DIODE_V, PAD_V, 6)
 OPENING_UM = 3.57, 6.65  # of the frame above a diode: pixels/layout/pixel.py
@@ -98,8 +99,8 @@ def relative(sensor: SensorParameters, tangents: Floats) -> Floats:
     y, x = tangents.T
     plain = 1 / np.sqrt(1 + x**2 + y**2)  # a beam that the chip stands aslant in
     light = np.empty((len(x), ROWS, COLS, 2))
-    light[:, ROWS - 1] = plain[:, None, None]
-    light[:, ROWS - 1, 1::2] *= CROSSTALK
+    light[:, REFERENCE] = plain[:, None, None]
+    light[:, REFERENCE, COVERED] *= CROSSTALK
     tile, cosine = sensor.tile, plain**sensor.optics.vignetting_power
     for place, number in enumerate(tile.order):
         kind = tile.types[number]
@@ -148,9 +149,9 @@ def simulate(
     lit = {"celsius": WARM[0], "wavelength_nm": lamp.wavelength_nm}
     phase = rng.uniform(0, 2 * np.pi)
     axis = relative(sensor, np.zeros((1, 2)))[0]
-    plain = [(share, col) for _ in range(REPEATS) for share in TIMES for col in range(0, COLS, 2)]
+    plain = [(share, col) for _ in range(REPEATS) for share in TIMES for col in PLAIN]
     share, col = (np.array(column) for column in zip(*plain, strict=True))
-    row = np.full(len(col), ROWS - 1)
+    row = np.full(len(col), REFERENCE)
     rates = chip.gains[row, col] * axis[row, col] * full + dark[0]
     angles = {"outer_deg": 0.0, "inner_deg": 0.0}
     parts.append(chip.exposed("light", row, col, rates, share * seconds[row, col], lit | angles))
@@ -162,9 +163,7 @@ def simulate(
     values = {name: np.concatenate([part[1][name] for part in parts]) for name in COLUMNS}
     kind = np.concatenate([part[0] for part in parts])
     readings = Readings(kind, values, [f"line {i + 2} of the simulation" for i in range(len(kind))])
-    tile = sensor.tile
-    order = np.argsort(tile.order)
-    levels = light[:, : ROWS - 1].mean(3).reshape(len(light), -1)[:, order] / light[:, ROWS - 1, :1].mean(2)
+    levels = by_type(light).mean(2) / light[:, REFERENCE, :1].mean(2)
     gain = float(np.polyfit(LEVELS[-6:], _pad(LEVELS[-6:]), 1)[0])
     return readings, Truth(tuple(levels.mean(0)), CROSSTALK, tuple(dark), gain, BEND)
 

@@ -12,9 +12,9 @@ from talbot.pixels.circuits.netlist import Circuit, Instance, Transistor
 from talbot.pixels.circuits.row_driver import THICK, lift
 from talbot.pixels.drawn import DUMMIES
 from talbot.pixels.layout.circuit import SIDES, Diode
+from talbot.pixels.test_chip.places import COLS, ROWS
 
 NAME = "tt_um_talbot_pixels"
-ROWS, COLS = 5, 6  # a tile, and a row of pixels without gratings: plain and covered in turn
 INPUTS = {f"ui_in[{row}]": f"read[{row}]" for row in range(ROWS)}
 INPUTS |= {"ui_in[5]": "pixel_reset"} | {f"uio_in[{col}]": f"column[{col}]" for col in range(COLS)}
 VDDA, OUT_B, OUT_A, BIAS = ANALOG = tuple(f"ua[{pin}]" for pin in range(4))  # from the east

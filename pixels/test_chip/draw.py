@@ -39,7 +39,8 @@ from talbot.pixels.layout.canvas import Canvas
 from talbot.pixels.layout.circuit import SIDES
 from talbot.pixels.layout.pixel import draw, draw_reference
 from talbot.pixels.layout.write import drawn_pixels
-from talbot.pixels.test_chip.circuit import ANALOG, COLS, GROUND, HIGH, INPUTS, LOGIC, NAME, ROWS, lifts, readout
+from talbot.pixels.test_chip.circuit import ANALOG, GROUND, HIGH, INPUTS, LOGIC, NAME, lifts, readout
+from talbot.pixels.test_chip.places import COLS, COVERED, REFERENCE, ROWS
 from talbot.platforms.analog import AnalogMasks
 from talbot.platforms.sky130.tinytapeout import ANALOG_PIN_UM, ANALOG_PINS, ANALOG_PORTS, ANALOG_UM, PORT_UM
 
@@ -131,8 +132,8 @@ def _pixels(layout: "db.Layout", array: ArrayLayout) -> tuple["db.Cell", dict[tu
     for row in range(-DUMMIES, ROWS + DUMMIES):
         for col in range(-DUMMIES, COLS + DUMMIES):
             number = tile.order[row % tile.rows * tile.cols + col % tile.cols]
-            last = row == ROWS - 1 and 0 <= col < COLS
-            cell = reference[col % 2] if last else cells[number]
+            plain = row == REFERENCE and 0 <= col < COLS
+            cell = reference[col in COVERED] if plain else cells[number]
             x, y = corner(array, row, col)
             canvas.cell.insert(db.CellInstArray(cell.cell_index(), db.Trans(canvas.snap(x), canvas.snap(y))))
             places[row, col] = cell.name

@@ -3,8 +3,9 @@
 import json
 
 from talbot.base.lef import write as lef_text
-from talbot.pixels.test_chip.circuit import BIAS, COLS, GROUND, HIGH, INPUTS, LOGIC, NAME, OUT_A, OUT_B, ROWS, VDDA
+from talbot.pixels.test_chip.circuit import BIAS, GROUND, HIGH, INPUTS, LOGIC, NAME, OUT_A, OUT_B, VDDA
 from talbot.pixels.test_chip.draw import HEIGHT, STRIPE, STRIPE_ENDS, STRIPES, TIED, WIDTH
+from talbot.pixels.test_chip.places import COLS, ROWS
 from talbot.platforms.sky130.tinytapeout import ANALOG_PIN_UM, ANALOG_PINS, ANALOG_PORTS, PORT_UM
 
 METAL = "met4"

@@ -16,8 +16,9 @@ from talbot.pixels.analog_layout.cells import Cell
 from talbot.pixels.layout.circuit import SIDES
 from talbot.pixels.pixel_circuit.deck import analyse, pulses, subcircuit
 from talbot.pixels.post_layout.extract import SUBSTRATE, Extracted, extract
-from talbot.pixels.test_chip.circuit import ANALOG, BIAS, COLS, GROUND, HIGH, INPUTS, LOGIC, OUT, ROWS, VDDA
+from talbot.pixels.test_chip.circuit import ANALOG, BIAS, GROUND, HIGH, INPUTS, LOGIC, OUT, VDDA
 from talbot.pixels.test_chip.draw import TestChip, relabelled
+from talbot.pixels.test_chip.places import COLS, ROWS
 from talbot.platforms.analog import AnalogMasks
 from talbot.platforms.layout import layout_platform
 from talbot.platforms.sky130 import analog, photodiode

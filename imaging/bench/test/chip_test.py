@@ -6,12 +6,13 @@ from functools import cache
 import numpy as np
 import pytest
 
-from talbot.imaging.bench.chip import directions, measured, types_of
+from talbot.imaging.bench.chip import directions, measured
 from talbot.imaging.bench.compare import fitting_heights, heights_of, orientation
-from talbot.imaging.bench.readings import COLS, ROWS, joined
+from talbot.imaging.bench.readings import joined
 from talbot.imaging.bench.simulated import angles, desk_lamp, relative, simulate, stage, tangents_of
 from talbot.models.parameters import STANDARD, ParameterError, PixelType, TileParameters
 from talbot.pixels.tabled import tabled
+from talbot.pixels.test_chip.places import COLS, ROWS, by_type
 
 HOLES = 9  # 64 angles
 BOUNDS = {"beta": 0.1, "gamma_deg": 0.4, "alpha": 0.02, "m": 0.02}  # of any type, with noise
@@ -174,7 +175,7 @@ def test_the_stage_has_two_axes():
 
 
 def signals_of(sensor, tangents):
-    return types_of(relative(sensor, tangents))
+    return by_type(relative(sensor, tangents))
 
 
 @pytest.mark.parametrize("name", ["sky130", "sky130-raised"])

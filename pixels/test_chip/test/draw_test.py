@@ -9,9 +9,9 @@ from talbot.base.gds import db
 from talbot.models.parameters import TileParameters
 from talbot.pixels.test_chip import project
 from talbot.pixels.test_chip.checks import lvs, netlist, untied
-from talbot.pixels.test_chip.circuit import COLS, ROWS
 from talbot.pixels.test_chip.draw import HEIGHT, TIED, WIDTH, TestChip, draw_chip
 from talbot.pixels.test_chip.job import write_named
+from talbot.pixels.test_chip.places import COLS, ROWS
 from talbot.platforms.analog import analog_masks
 from talbot.platforms.sky130 import layers
 
