@@ -1,5 +1,6 @@
 """The search for the smallest area whose layout keeps all design rules."""
 
+import re
 from collections.abc import Sequence
 
 from talbot.base.steps import Runner, Step, StepError
@@ -11,6 +12,7 @@ from talbot.flow.layout.report.metrics import Attempt
 from talbot.platforms.layout import layout_platform
 
 FIRST = "floorplan", "power"  # stages that no other outline helps
+FULL = re.compile(r"cells fill ([\d.]+) % of the core after repair: must be at most ([\d.]+) %")
 
 
 def lay_out_smallest(
@@ -39,10 +41,13 @@ def lay_out_smallest(
 def _attempted(design: Design, options: Options, runner: Runner) -> list[Attempt]:
     """Place and route in OpenROAD until an attempt closes: the attempts.
 
-    Raises StepError where no attempt can close: the first stages do not run.
+    Outlines that the cells of an earlier attempt would overfill are skipped. Raises StepError where no attempt can
+    close: the first stages do not run.
     """
-    tried, known = [], dict(runner.paths)
+    tried, known, highest = [], dict(runner.paths), 1.0
     for floor in floors(design, options):
+        if floor.utilization > highest:
+            continue
         runner.paths = dict(known)
         attempt = Attempt(floor.utilization, floor.aspect)
         tried.append(attempt)
@@ -58,12 +63,24 @@ def _attempted(design: Design, options: Options, runner: Runner) -> list[Attempt
             attempt.open_nets = metrics.get("open_nets")
         if attempt.stopped:
             runner.note(f"utilization {floor.utilization:g}: {attempt.stopped}")
+            highest = fitting(floor.utilization, attempt.stopped)
             continue
         attempt.utilization = runner.run(out)["metrics"]["utilization"]
         attempt.rules_broken = broken_rules(checks(options), runner)
         if not attempt.open_nets and not attempt.rules_broken:
             break
     return tried
+
+
+def fitting(utilization: float, stopped: str) -> float:
+    """Return the utilization at which the cells of a stopped attempt fit the core; 1 where it did not overfill it.
+
+    utilization: of that attempt. A larger core takes no fewer cells: its nets are longer.
+    """
+    if not (full := FULL.search(stopped)):
+        return 1.0
+    filled, most = map(float, full.groups())
+    return utilization * most / filled
 
 
 def broken_rules(steps: Sequence[Step], runner: Runner) -> int:
