@@ -168,8 +168,8 @@ def timing_steps(design: Design, options: Options) -> list[Step]:
     clock, io = design.clock, design.io
     parameters = StimulusParameters(design.top, design.folder, design.options, CHIP_TILES)
     if design.netlist_names:
-        around = *SMALL, f"--divider={design.divider}", f"--n-frac={design.n_frac}"
-        parameters = StimulusParameters(design.top, design.folder, around)
+        around = *SMALL, f"--divider={design.divider}", f"--n-frac={design.n_frac}", *design.options
+        parameters = StimulusParameters(design.top, design.folder, tuple(dict.fromkeys(around)))
     steps: list[Step] = [] if design.verilog else [Stimulus(parameters)]
     steps.append(Leakage(LeakageParameters(options.corners)))
     for corner in options.corners:

@@ -101,6 +101,8 @@ def divider(name: str, variant: str, n_frac: int = 8) -> Design:
 
 
 SMALL = "--rows=7", "--cols=31", "--lanes=2"
+# The parameters with which the tests of `reg_file` build it: its identity and the resets of its window
+RESETS = "--rows=11", "--cols=13", "--lanes=2", "--tile-rows=4", "--tile-cols=5", "--divider=cordic"
 DIE = IoConstraints(load_pf=0.25)  # of the chip on the sensor's die: the longest nets of flow.layout.sensor
 tile = partial(Design, folder="tinytapeout", reset="rst_n")  # a block behind Tiny Tapeout's pins
 chip = partial(Design, top="AspChip", folder="asp_chip", io=DIE, asynchronous=ASYNCHRONOUS)
@@ -117,7 +119,7 @@ DESIGNS = {
         divider("cordic", "cordic"),
         Design("phase_path", "PhasePath", "phase_path", ("PhasePath_8_radix4",)),
         Design("run_length", "RunLength", "run_length", ("RunLength",), ("--rows=12", "--cols=36", "--lanes=4")),
-        Design("reg_file", "RegFile", "reg_file", ("RegFile",), ("--rows=12", "--cols=18"), asynchronous=SPI_INPUTS),
+        Design("reg_file", "RegFile", "reg_file", ("RegFile",), RESETS, divider="cordic", asynchronous=SPI_INPUTS),
         Design("proc", "Proc", "proc", ("Proc",)),
         tile("tt_quad_divider", "tt_um_talbot_divider", netlist_names=("tt_um_talbot_divider",), frame="tt_1x1"),
         tile("tt_amp_ctrl", "tt_um_talbot_amp_ctrl", netlist_names=("tt_um_talbot_amp_ctrl",), frame="tt_1x2"),

@@ -14,6 +14,8 @@ from talbot.flow.layout.sensor.die import CHIP, die_steps
 from talbot.flow.layout.sensor.plan import BLOCKS
 from talbot.flow.layout.steps.stage import SCRIPTS, STAGES, design_tcl
 from talbot.flow.layout.variables import Floor
+from talbot.rtl.reg_file.test.reg_file_test import ARRAY
+from talbot.rtl.sensor_options import sensor_with
 
 FOLDER = Path(__file__).parents[1]
 DECKS = (("klayout", Path("deck")), ("magic", Path("deck")))
@@ -52,3 +54,9 @@ def test_installed_decks_are_run():
 def test_the_supplies_of_a_frame_have_its_names(stage):
     (step,) = (s for s in stages(DESIGNS["tt_quad_divider"], Options(), Floor()) if s.name == stage)
     assert "set supply {VPWR}" in design_tcl(step.parameters)
+
+
+def test_the_register_file_has_the_parameters_of_its_tests():
+    sensor = sensor_with(design("reg_file").options)
+    sizes = sensor.array.rows, sensor.array.cols, sensor.chip.lanes, sensor.tile.rows, sensor.tile.cols
+    assert (*sizes, sensor.chip.divider) == ARRAY
