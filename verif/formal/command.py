@@ -18,11 +18,11 @@ from talbot.base.jobs import worker_count
 from talbot.base.records import from_json
 from talbot.base.tools import located
 from talbot.models.parameters import ParameterError
-from talbot.verif.formal import manifest, owners, sizes
+from talbot.verif.formal import manifest, owners, record, sizes
 from talbot.verif.formal.engine import UNDECIDED, version
 from talbot.verif.formal.freedom import FreedomResult
 from talbot.verif.formal.necessity import ConjunctResult, NecessityResult
-from talbot.verif.formal.plan import pieces
+from talbot.verif.formal.plan import Piece, pieces
 from talbot.verif.formal.proof import Proof
 from talbot.verif.formal.prove import CoverResult, ProofResult, TwinResult
 from talbot.verif.formal.replay import show
@@ -97,15 +97,21 @@ class Outcome:
         ]
 
 
-def collect(proofs: Iterable[Proof], store: Path, workers: int = -1, every_size: bool = False) -> list[Outcome]:
-    """Run every job of ``proofs``.
-
-    store: folder of the kept results. workers: processes, -1 for all cores. every_size: check the assumptions at each.
-    """
+def plan(proofs: Iterable[Proof], every_size: bool = False) -> list[tuple[Proof, list[Piece]]]:
+    """Return each of ``proofs`` with its pieces. every_size: check the assumptions at each."""
     first_of = firsts(manifest.every())
-    planned = [
+    return [
         (proof, [*pieces(proof, present(proof), every_size or first_of[proof.name] == proof.name)]) for proof in proofs
     ]
+
+
+def collect(planned: Iterable[tuple[Proof, Sequence[Piece]]], store: Path, workers: int = -1) -> list[Outcome]:
+    """Run every job of ``planned``.
+
+    store: folder of the kept results. workers: processes, -1 for all cores.
+    """
+    first_of = firsts(manifest.every())
+    planned = list(planned)
     results = iter(run_jobs([piece.job for _, parts in planned for piece in parts], store, "formal", workers))
     outcomes, conjuncts = [], {}
     for proof, parts in planned:
@@ -204,6 +210,10 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--every-size", action="store_true", help="check the assumptions at every size, not at the first of a wrapper"
     )
+    parser.add_argument("--changed", action="store_true", help="leave out what verif/formal/proven.txt has as proven")
+    parser.add_argument(
+        "--record", action="store_true", help="write verif/formal/proven.txt after a run without problem"
+    )
     parser.add_argument(
         "--show", action="store_true", help="write the shortest trace of a --proof that fails: a waveform and a test"
     )
@@ -228,11 +238,21 @@ def run(options: Namespace) -> int:
     proofs = chosen(manifest.every(), options)
     if options.show:
         return shown(options, proofs)
-    outcomes = collect(proofs, options.out / "formal", options.workers, options.every_size)
-    write_step("formal", summary(outcomes), options.out)
+    if options.record and (options.changed or len(proofs) < len(manifest.every())):
+        raise ParameterError("record = True: must be with all proofs")
+    planned = plan(proofs, options.every_size)
+    if options.changed:
+        every, planned = planned, record.unproven(planned)
+        print(f"{len(every) - len(planned)} of {len(every)} proofs are in the record, {record.RECORD.name}")
+    outcomes = collect(planned, options.out / "formal", options.workers)
+    if not options.changed:
+        write_step("formal", summary(outcomes), options.out)
     print(table(outcomes))
     general = [*owners.problems(manifest.every(), owners.contract()), *sizes.problems(manifest.every())]
     for engine in sorted({e for proof in proofs for e in proof.engines} - {"boolector"}):
         if not located(engine):
             print(f"{engine} = not found: second engine skipped; make tools installs it", file=sys.stderr)
-    return failures([*general, *(line for outcome in outcomes for line in outcome.problems)])
+    problems = [*general, *(line for outcome in outcomes for line in outcome.problems)]
+    if options.record and not problems:
+        record.keep(record.digests(planned))
+    return failures(problems)

@@ -11,7 +11,7 @@ import pytest
 from talbot.base.command import main
 from talbot.base.paths import ROOT
 from talbot.models.parameters import ParameterError
-from talbot.verif.formal import command, design, manifest
+from talbot.verif.formal import command, design, manifest, record
 from talbot.verif.formal.freedom import freedom
 from talbot.verif.formal.items import ProofsFile, failure
 from talbot.verif.formal.necessity import necessity
@@ -71,6 +71,26 @@ def test_of_a_list_of_sizes_the_first_has_covers_and_twins():
     assert [(p.name, p.twin_fails) for p in of_other.properties] == [(others[0].name, False)]
     options = Namespace(only=None, proof=[others[0].name])
     assert command.chosen(manifest.every(), options) == [first, others[0]]
+
+
+def test_the_record_leaves_out_what_has_not_changed(queue, tmp_path):
+    planned = command.plan([queue])
+    before = record.digests(planned)
+    record.keep(before, tmp_path / "proven.txt")
+    assert record.read(tmp_path / "proven.txt") == before == {"run_length/byte_queue.sv": before[next(iter(before))]}
+    assert record.unproven(planned, tmp_path / "proven.txt") == []
+    for change in ({"depth": queue.depth + 1}, {"timeout": queue.timeout + 1}, {"cover_depth": queue.cover_depth + 1}):
+        other = command.plan([dataclasses.replace(queue, **change)])
+        assert record.unproven(other, tmp_path / "proven.txt") == other
+    other = command.plan([changed(queue, tmp_path, "p_order: assert", "p_order : assert")])
+    assert record.unproven(other, tmp_path / "proven.txt") == other
+    assert record.unproven(planned, tmp_path / "none.txt") == planned
+
+
+@pytest.mark.parametrize("argument", [["--changed"], ["--proof", "byte_queue"]])
+def test_a_part_of_the_proofs_is_no_record(argument, tmp_path, capsys):
+    assert main(command, ["--record", *argument, "--out", str(tmp_path)]) == 2
+    assert "record = True: must be with all proofs" in capsys.readouterr().err
 
 
 @pytest.mark.slow
