@@ -31,7 +31,7 @@ space := $(subst ,, )
 export TALBOT_OVERRIDES = $(foreach name,$(GIVEN),$(name)=$(subst $(space),\ ,$(subst \,\\,$(value $(name)))))
 GOALS := $(or $(MAKECMDGOALS),help)
 ifeq ($(MAKELEVEL)$(filter-out $(PLAIN),$(GOALS)),0)
-known := $(KNOWN) $(if $(filter test,$(GOALS)),COMPLETE)
+known := $(KNOWN) $(if $(filter test,$(GOALS)),COMPLETE PASSED WITHOUT)
 $(foreach name,$(filter-out $(known),$(GIVEN)),$(error $(name) = '$(value $(name))': must be a variable of make $(GOALS): $(known)))
 endif
 talbot = $(PY) -m talbot --make '$@ $(KNOWN)'
@@ -125,7 +125,8 @@ explore: $(EXPLORE_READY)
 
 .PHONY: test
 test: $(TESTS_READY)
-	@$(PY) -m pytest -n auto --dist worksteal $(if $(filter-out 0 no false off,$(COMPLETE)),--complete)
+	@$(PY) -m pytest -n auto --dist worksteal $(if $(filter-out 0 no false off,$(COMPLETE)),--complete) \
+	    $(if $(PASSED),--passed '$(PASSED)') $(if $(WITHOUT),--without '$(WITHOUT)')
 
 SOURCES = $(shell git ls-files '*.py' ':!:*/test/*' ':!:*_bench.py' ':!:rtl' ':!:conftest.py')
 .PHONY: lint

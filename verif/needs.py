@@ -171,10 +171,12 @@ def require() -> Callable[..., None]:
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Add --complete."""
+    """Add --complete, --passed and --without."""
     parser.addoption(
         "--complete", action="store_true", help="fail where a test is skipped for want of a tool or package"
     )
+    parser.addoption("--passed", type=Path, metavar="FILE", help="write the tests that passed, one a line")
+    parser.addoption("--without", type=Path, metavar="FILE", help="leave out the tests of such a FILE")
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -190,12 +192,16 @@ def needs_of(item: pytest.Item) -> list[str]:
     return [name for mark in item.iter_markers("needs") for name in mark.args]
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Refuse unknown needs."""
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Refuse unknown needs; leave out the tests of --without."""
     unknown = {name: item.nodeid for item in items for name in needs_of(item) if name not in NEEDS}
     if unknown:
         at = "; ".join(f"{name} ({nodeid})" for name, nodeid in unknown.items())
         raise pytest.UsageError(f"needs = {at}: must be of {', '.join(NEEDS)} (talbot/verif/needs.py)")
+    if file := config.option.without:
+        passed = set(file.read_text("utf-8").splitlines())
+        config.hook.pytest_deselected(items=[item for item in items if item.nodeid in passed])
+        items[:] = [item for item in items if item.nodeid not in passed]
 
 
 def pytest_runtest_setup(item: pytest.Item) -> None:
@@ -319,10 +325,15 @@ def gaps(reporter: Any) -> list[str]:
 
 
 def pytest_sessionfinish(session: pytest.Session) -> None:
-    """With --complete, fail for a gap."""
+    """Write --passed; with --complete, fail for a gap."""
     config = session.config
     reporter = config.pluginmanager.get_plugin("terminalreporter")
-    if config.option.complete and reporter and not hasattr(config, "workerinput") and session.exitstatus == 0:
+    if not reporter or hasattr(config, "workerinput"):
+        return
+    if file := config.option.passed:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text("".join(f"{report.nodeid}\n" for report in reporter.stats.get("passed", ())), "utf-8")
+    if config.option.complete and session.exitstatus == 0:
         session.exitstatus = int(bool(gaps(reporter)))
 
 

@@ -86,6 +86,12 @@ def test_complete_fails_where_a_reason_is_no_need(run):
     assert run("import pytest\ndef test_one(): pytest.skip('no cheese')\n", "--complete").ret == 1
 
 
+def test_a_second_run_leaves_out_what_passed_in_the_first(run, pytester):
+    run(FILE, "--passed", "build/passed.txt")
+    assert pytester.path.joinpath("build/passed.txt").read_text() == "x_test.py::test_runs\n"
+    run(FILE, "--without", "build/passed.txt").assert_outcomes(skipped=3, deselected=1)
+
+
 def test_an_unknown_need_is_refused_at_collection(run):
     done = run("import pytest\n@pytest.mark.needs('yosis')\ndef test_one(): pass\n")
     assert done.ret == pytest.ExitCode.USAGE_ERROR
