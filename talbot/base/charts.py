@@ -40,9 +40,13 @@ if os.environ.get(RUN):  # in a notebook or a program of the user's they stay as
 @own_style()
 def svg(figure: Figure) -> Markup:
     """SVG of a figure, for a page: black is the page's ink, white its paper; `described` in words."""
-    FigureCanvasSVG(figure)
-    out = io.StringIO()
-    figure.savefig(out, format="svg", bbox_inches="tight", transparent=True, metadata={"Date": None})
+    canvas, out = FigureCanvasSVG(figure), io.StringIO()
+    if figure.get_layout_engine():  # fills its canvas; savefig would draw it twice
+        for patch in (figure.patch, *(axes.patch for axes in figure.axes)):
+            patch.set_facecolor("none")
+        canvas.print_svg(out, metadata={"Date": None})
+    else:
+        figure.savefig(out, format="svg", bbox_inches="tight", transparent=True, metadata={"Date": None})
     text = out.getvalue().replace("#000000", "currentColor")
     kind = 'class="broad" ' if figure.get_figwidth() >= BROAD else ""
     kind += f'role="img" aria-label="{escape(described(figure))}"'
@@ -145,6 +149,8 @@ def front(points: Iterable[tuple[float, float, str]]) -> list[tuple[float, float
 
 def place_labels(axes: Axes, points: Sequence[tuple[float, float, str]], size: float = 7) -> None:
     """Write the labels of ``points`` (x, y, label or '') next to them, over no other label, point or line."""
+    if not any(label for _, _, label in points):
+        return
     figure = axes.figure
     canvas = FigureCanvasAgg(figure)  # pyright: ignore[reportArgumentType]
     canvas.draw()  # the layout is that of the finished figure

@@ -143,11 +143,11 @@ def test_light_by_other_ways_moves_the_depth_of_a_room(tmp_path):
 
 
 def test_coded_light_sees_past_the_fog(tmp_path, capsys):
-    words = "--scene=fog", "--rows=40", "--cols=48", "--code=31"
+    words = "--scene=fog", "--rows=13", "--cols=50", "--lanes=4", "--code=31"  # as `done`
     s = measured(tmp_path, *words)
     assert s["chip"] and s["stream_mismatches"] == s["decoded_mismatches"] == 0
     code, sine, free = s["methods"]["code"], s["methods"]["sums"], s["baselines"]["constant"]
-    assert code["sure"] > 0.6 and code["rms_m"] < 0.2 * min(sine["rms_m"], free["rms_m"])
+    assert code["sure"] > 0.6 and code["rms_m"] < 0.3 * min(sine["rms_m"], free["rms_m"])
     # What was asked for leads: summary, first printed line, first tile, arrays
     assert s["depth_method"] == "code" and s["depth_rms_m"] == code["rms_m"] and s["depth_sure"] == code["sure"]
     lead = f"{code['rms_m']:.4f} m"

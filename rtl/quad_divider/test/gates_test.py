@@ -17,7 +17,6 @@ from talbot.rtl.messages import DivReq, div_resp
 from talbot.rtl.quad_divider import quad_divider, ratio_bits, timing
 
 DEFAULTS = [(variant, 8, 10) for variant in DIVIDERS]
-QUICK = DEFAULTS[:2]  # the others take ten times the gates or cycles
 SOME_FLOORS = [0, 1, 77, 128, 201, 254, 255]
 SIZES = [
     *product(("radix2", "radix4", "pipelined"), range(N_FRAC_MIN, N_FRAC_MAX + 1), (10,)),
@@ -144,7 +143,8 @@ def default(config, slow):
 class TestGates:
     verilog = "gates"  # recorders of the other levels leave it out
 
-    @pytest.mark.parametrize("config", [default(config, config[0] != STANDARD.chip.divider) for config in DEFAULTS])
+    @pytest.mark.slow
+    @pytest.mark.parametrize("config", DEFAULTS, ids=lambda config: config[0])
     def test_every_request_at_every_noise_floor(self, config):
         order = np.random.default_rng(5).permutation(FLOORS).tolist()
         assert wrong_requests(Gates(quad_divider(*config), REQUESTS.size), config, order) == []
@@ -155,7 +155,7 @@ class TestGates:
     def test_stalls_and_resets(self, config, seed):
         check_random(Gates(quad_divider(*config), 1 << 12), config, seed)
 
-    @pytest.mark.parametrize("config", [default(config, True) for config in DEFAULTS if config not in QUICK])
+    @pytest.mark.parametrize("config", [default(config, config[0] != STANDARD.chip.divider) for config in DEFAULTS])
     def test_every_vector_at_some_noise_floors(self, config):
         assert wrong_requests(Gates(quad_divider(*config), REQUESTS.size), config, SOME_FLOORS) == []
 

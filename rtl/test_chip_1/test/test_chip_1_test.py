@@ -37,6 +37,7 @@ PROGRAMS = st.lists(st.sampled_from((ITEMS, NEAR)).flatmap(lambda kind: kind), m
 
 class TestFL:
     cls, verilog = TestChip1FL, False
+    words = BYTES // 4  # of the memory, written and read
 
     def host(self, willing=ALWAYS):
         return Host(type(self).cls, self.verilog, willing)
@@ -44,10 +45,11 @@ class TestFL:
     @SETTINGS
     @given(st.lists(st.integers(0, 2**32 - 1), min_size=1, max_size=9), st.integers(0, BYTES // 4 - 9), STALLS)
     def test_memory(self, words, place, willing):
-        host = self.host(willing)
-        host.write(0, bytes(BYTES))
+        host, size = self.host(willing), self.words
+        place %= size - 9
+        host.write(0, bytes(4 * size))
         host.write(4 * place, bytes_of(words))
-        assert host.read(0, BYTES // 4) == [0] * place + words + [0] * (BYTES // 4 - place - len(words))
+        assert host.read(0, size) == [0] * place + words + [0] * (size - place - len(words))
         assert host.status() == 0
 
     def test_nothing_to_transfer(self):
@@ -114,10 +116,11 @@ class TestFL:
 
 class TestRTL(TestFL):
     cls = TestChip1
+    words = 24
 
 
 class TestVerilog(TestRTL):
-    verilog = True
+    verilog, words = True, TestFL.words
 
     @settings(SETTINGS, max_examples=15)
     @given(PROGRAMS, st.lists(st.integers(0, 2**32 - 1), min_size=1, max_size=5), STALLS, st.integers(0, 30))
