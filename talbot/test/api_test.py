@@ -264,6 +264,7 @@ def test_a_search_is_a_table_and_sensors(tmp_path):
         talbot.explore(task, out=tmp_path, trails=4)
 
 
+@pytest.mark.slow
 def test_a_tradeoff_is_a_table_and_a_plot():
     found = talbot.tradeoff("views", quick=True)
     assert len(found.rows) == 8 and found.rows[0]["views"] == 3

@@ -74,6 +74,7 @@ def test_measurements_are_as_many_as_they_say(kind, tile, count):
     assert len({tuple(pixel) for pixel in camera.order.reshape(camera.channels, -1).T}) > 8
 
 
+@pytest.mark.slow
 def test_more_measurements_give_better_views():
     """Of random projections, of a photograph."""
     few, every = (measurements.measured(("random", "regular", count), ("coins",))["psnr_db"] for count in (1, 4))

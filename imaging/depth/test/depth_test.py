@@ -75,6 +75,7 @@ def test_behind_leaves_the_rim_of_a_ball_has_no_depth(tmp_path):
     assert past["rms_m"] < 0.03 * past["range_m"] < past["rms_constant_m"] < past["rms_all_rays_m"]
 
 
+@pytest.mark.slow
 def test_a_wall_behind_a_fence(tmp_path):
     s = measured(tmp_path, "--scene=fence", "--rows=24", "--cols=48", "--f-mod=25e6", "--golden")
     past = s["behind"]

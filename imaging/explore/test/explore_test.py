@@ -447,7 +447,9 @@ POINTS = {
 QUICK = Fidelity("quick", 1.0, 3)
 
 
-@pytest.mark.parametrize("name", list(SCENES))
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=() if name in ("edges", "recognition") else pytest.mark.slow) for name in SCENES]
+)
 def test_every_task_beats_what_costs_nothing(name, monkeypatch):
     task = task_of(name)
     if name == "recognition":

@@ -103,6 +103,7 @@ def test_a_tile_is_drawn_of_a_plan_or_refused(tmp_path):
     assert not (tmp_path / "none.gds").exists()
 
 
+@pytest.mark.slow
 def test_errors_fall_with_what_is_kept():
     """Of a grating with a coarse, smooth response; what is held for the truth has no error."""
     found = errors(replace(DESIGNS["sky130"].geometries[12.0], period_um=2.4), 0.575, OpticsParameters())

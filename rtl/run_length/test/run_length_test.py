@@ -286,7 +286,7 @@ class TestRunLengthFL:
         assert got[HEADER_BYTES:-TRAILER_BYTES] == b"".join((0xFFFF ^ row).to_bytes(2, "big") for row in rows)
         assert self.bench(header_of()).run(messages)[HEADER_BYTES:-TRAILER_BYTES] == (0xFFFF ^ 4).to_bytes(2, "big")
 
-    @pytest.mark.parametrize("place, order", [*((place, 1) for place in range(8)), (7, 2), (7, 3), (7, 4)])
+    @pytest.mark.parametrize("place, order", [(0, 1), (1, 1), (6, 1), (7, 1), (7, 2), (7, 4)])
     def test_the_longest_tokens(self, place, order):
         """After runs of 2^11 zeros the value of most bits, at every place in a byte."""
         header = header_of(threshold=4)
@@ -299,7 +299,7 @@ class TestRunLengthFL:
         """Rows up to a mark: none, some and all of them, ends on a byte and in one, in runs and between them."""
         pick = random.Random(5)
         for resync, mode in product(range(4), ("edge", "raw")):
-            sizes = [pick.choice((0, 1, 5, 30, 63, 64, 65, 100)) for _ in range(16)]
+            sizes = [pick.choice((0, 1, 5, 30, 63, 64, 65, 100)) for _ in range(9)]
             sizes += [
                 64 * resync + by for by in range(-1, 3)
             ]  # raw: the last bytes that count go as the next row comes

@@ -37,6 +37,7 @@ def test_finds_one_wrong_threshold(radix4):
     assert mismatches == (quad_divide(X, Y, 8).ratio == 226).sum() > 0
 
 
+@pytest.mark.slow
 def test_waiting_lengthens_and_changes_nothing(radix4):
     requests = pack(X[::4099], Y[::4099])
     bench = program(*radix4)
