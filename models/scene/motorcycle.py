@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from talbot.models.parameters import check_real
-from talbot.models.scene import camera, resample, warp
+from talbot.models.scene import camera, of_skimage, resample, warp
 from talbot.models.scene.sampling import Sampling
 from talbot.models.scene.scene import Scene
 from talbot.models.scene.views import Pictured, Second
@@ -37,9 +37,9 @@ def motorcycle(sampling: Sampling) -> Scene:
     ----------
     [Scharstein2014].
     """
-    from skimage.data import stereo_motorcycle  # it imports for long
-
-    left, right, measured = stereo_motorcycle()
+    left, right = (of_skimage.codes(f"motorcycle_{side}") for side in ("left", "right"))
+    with np.load(of_skimage.folder() / "motorcycle_disp.npz") as file:
+        measured = file["arr_0"]
     lens = sampling.camera
     _check_field(measured.shape, sampling)
     zoom = lens.principal_distance / sampling.pitch / FOCAL_LENGTH_PX  # px of the array per px of the pair

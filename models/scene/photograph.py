@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from talbot.models.scene import camera, resample
+from talbot.models.scene import camera, of_skimage, resample
 from talbot.models.scene.depth_file import read_depth
 from talbot.models.scene.picture_file import read_luminance
 from talbot.models.scene.sampling import Sampling
@@ -31,10 +31,7 @@ def photograph(name: str, sampling: Sampling) -> Scene:
     Scene
         With constant disparity and depth.
     """
-    from skimage import data  # it imports for long
-
-    codes = getattr(data, name)()
-    return scene_of(name, resample.linear(codes), sampling)
+    return scene_of(name, resample.linear(of_skimage.codes(name)), sampling)
 
 
 def picture(path: str | Path, sampling: Sampling, depth: str | Path | None = None) -> Scene:
