@@ -54,23 +54,10 @@ def best(s: Row, camera: str, lux: float) -> list[Row]:
 
 def overview(s: Row) -> Table:
     """Return the table of all figures in the brightest light, means over scenes and seeds."""
-    head = (
-        "camera",
-        "light",
-        "method",
-        "PSNR, dB",
-        "SSIM",
-        "disparity, px",
-        "reliable pixels",
-        "disparity of these, px",
-        "SNR, dB",
-        "bytes",
-        "uJ",
-    )
+    head = ("camera", "light", "method", "PSNR, dB", "SSIM", "disparity, px", "SNR, dB", "bytes", "uJ")
     rows = []
     for name, text in TEXTS.items():
         some = best(s, name, s["lux"][0])
-        spread_known = name not in (PLAIN, COPIED)
         rows.append(
             (
                 text,
@@ -79,8 +66,6 @@ def overview(s: Row) -> Table:
                 number(mean(some, "psnr_db"), 1),
                 number(mean(some, "ssim"), 3),
                 "-" if name == COPIED else number(mean(some, "disparity_rms_px"), 2),
-                f"{100 * (mean(some, 'sure') or 0):.0f} %" if spread_known else "-",
-                number(mean(some, "disparity_sure_rms_px"), 2) if spread_known else "-",
                 number(mean(some, "snr_db"), 1),
                 f"{mean(some, 'bytes') or 0:.0f}",
                 number(mean(some, "energy_uj"), 2),
@@ -90,39 +75,33 @@ def overview(s: Row) -> Table:
 
 
 def light(s: Row) -> Table:
-    """Return the table over light: PSNR of the views, disparity, SNR of the samples."""
-    columns = [("PSNR, dB", "psnr_db", 1), ("disparity, px", "disparity_rms_px", 2), ("SNR, dB", "snr_db", 1)]
-    head = ["camera", *(f"{text}: {lux:g} lx" for text, *_ in columns for lux in s["lux"])]
-    rows = []
-    for name, text in TEXTS.items():
-        cells = [
-            "-" if name == COPIED and "disparity" in key else number(mean(best(s, name, lux), key), digits)
-            for _, key, digits in columns
-            for lux in s["lux"]
-        ]
-        rows.append((text, *cells))
-    return head, rows
+    """Return the table of the PSNR of the views over light, with the disparity's error in px."""
+    rows = [(text, *(_quality(name, best(s, name, lux)) for lux in s["lux"])) for name, text in TEXTS.items()]
+    return ["camera", *(f"{lux:g} lx" for lux in s["lux"])], rows
+
+
+def _quality(name: str, rows: list[Row]) -> str:
+    error = "" if name == COPIED else f" ({number(mean(rows, 'disparity_rms_px'), 2)})"
+    return number(mean(rows, "psnr_db"), 1) + error
 
 
 def by_scene(s: Row) -> Table:
     """Return the table of the PSNR of every scene in the brightest light, with the disparity's error in px."""
     rows = []
     for name, text in TEXTS.items():
-        cells = []
-        for scene in s["scenes"]:
-            some = [row for row in best(s, name, s["lux"][0]) if row["scene"] == scene]
-            error = "" if name == COPIED else f" ({number(mean(some, 'disparity_rms_px'), 2)})"
-            cells.append(number(mean(some, "psnr_db"), 1) + error)
+        some = best(s, name, s["lux"][0])
+        cells = (_quality(name, [row for row in some if row["scene"] == scene]) for scene in s["scenes"])
         rows.append((text, *cells))
     return ["camera", *(f"`{scene}`" for scene in s["scenes"])], rows
 
 
 def measurements(s: Row) -> Table:
-    """Return the table of the PSNR over the number of measurements a pixel."""
+    """Return the table of the PSNR over the number of measurements a pixel, with regular tiles."""
     psnr = {(p["camera"], p["tile"], p["measurements"]): p["psnr_db"] for p in s["measurements"]}
     shares = dict(sorted((p["measurements"], p["share"]) for p in s["measurements"]))
     head = ["measurements a pixel", *(f"{count:g} ({100 * share:.0f} %)" for count, share in shares.items())]
-    rows = [(text, *(number(psnr.get((*key, count)), 1) for count in shares)) for key, text in SERIES.items()]
+    regular = {key: text for key, text in SERIES.items() if key[1] == "regular"}
+    rows = [(text, *(number(psnr.get((*key, count)), 1) for count in shares)) for key, text in regular.items()]
     return head, rows
 
 
@@ -148,7 +127,7 @@ def write(folder: Path, s: Row) -> None:
     charts = _charts(s)
     parts = [
         _section("Cameras", about, overview(s)),
-        _section("Light", "One exposure for all.", light(s), charts),
+        _section("Light", "One exposure for all. PSNR in dB (RMS error of disparity in px).", light(s), charts),
         _section("Scenes", "PSNR in dB (RMS error of disparity in px).", by_scene(s)),
     ]
     if s["measurements"]:

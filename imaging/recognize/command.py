@@ -10,7 +10,6 @@ from talbot.base.files import check_file, check_folder, insert, marked, staged
 from talbot.base.jobs import worker_count
 from talbot.base.paths import results_of
 from talbot.base.sensor import HELP
-from talbot.base.table import markdown_table
 from talbot.imaging.frame.arguments import named
 from talbot.imaging.frame.command import typed_of
 from talbot.imaging.frame.sensor import add_pixel, asked_sensor
@@ -80,9 +79,9 @@ def run(options: Namespace) -> int:
     if options.document:
         insert(options.document, data.name, page.lines(summary))
         text = options.document.read_text(encoding="utf-8")
-        for name, (head, rows, texts) in page.TABLES_OF.items():
+        for name, table in page.TABLES_OF.items():
             if name in curves and f"<!-- {name} -->" in text:
-                insert(options.document, name, markdown_table(head, rows(summary), texts))
+                insert(options.document, name, table(summary))
     _print(summary, folder)
     return int(bool(summary["stream_mismatches"]))
 

@@ -33,16 +33,7 @@ TEXTS = {
     "learned": "learned 12 filters on the plain image",
     "chance": "chance: the most frequent class",
 }
-HEAD = (
-    "",
-    "accuracy",
-    "spread of seeds",
-    "bytes",
-    "sensor, uJ",
-    "first layer, operations",
-    "all, operations",
-    "network, uJ",
-)
+HEAD = ("", "accuracy", "spread of seeds", "bytes", "sensor, uJ", "network, uJ")
 AXES = {
     "threshold": ("threshold, codes", "Accuracy over the threshold"),
     "bits": ("bits", "Accuracy over the bits of codes and gradient"),
@@ -66,8 +57,7 @@ def _text(name: str, s: dict[str, Any]) -> str:
 
 def _cells(row: dict[str, Any]) -> tuple[str, ...]:
     spread = f"{100 * row['accuracy_std']:.2f}"
-    numbers = (f"{row['flops_first_layer']:,}", f"{row['flops_total']:,}", f"{row['network_uj']:.3g}")
-    return f"{100 * row['accuracy']:.2f} %", spread, *_cost(row), *numbers
+    return f"{100 * row['accuracy']:.2f} %", spread, *_cost(row), f"{row['network_uj']:.3g}"
 
 
 def _cost(row: dict[str, Any]) -> tuple[str, str]:
@@ -90,14 +80,29 @@ def intensity_rows(s: dict[str, Any]) -> list[tuple[str, ...]]:
     ]
 
 
+def intensity_table(s: dict[str, Any]) -> str:
+    """Return the PSNR in dB and the SSIM of every method (row) and collection (column) as Markdown."""
+    collections = s["intensity"]
+    rows: dict[str, list[str]] = {}
+    for by_method in collections.values():
+        for method, row in by_method.items():
+            psnr, _, ssim, _ = _quality(row)
+            rows.setdefault(method, []).append("-" if psnr == "-" else f"{psnr} ({ssim})")
+    return markdown_table(("", *collections), [(method, *cells) for method, cells in rows.items()], 1)
+
+
+def gesture_table(s: dict[str, Any]) -> str:
+    """Return the table of gestures as Markdown."""
+    return markdown_table(HEAD, gesture_rows(s), 1)
+
+
 def _quality(row: dict[str, Any]) -> tuple[str, ...]:
     places = {"psnr_db": 2, "psnr_db_std": 2, "ssim": 3, "ssim_std": 3}
     return tuple("-" if row[key] is None else f"{row[key]:.{n}f}" for key, n in places.items())
 
 
 INTENSITY_HEAD = ("", "from", "PSNR, dB", "spread of seeds", "SSIM", "spread of seeds", "bytes", "sensor, uJ")
-# Head, rows, and columns of text, by curve
-TABLES_OF = {"gestures": (HEAD, gesture_rows, 1), "intensity": (INTENSITY_HEAD, intensity_rows, 2)}
+TABLES_OF = {"gestures": gesture_table, "intensity": intensity_table}  # of a document, by curve
 
 
 def lines(s: dict[str, Any]) -> str:
@@ -143,8 +148,8 @@ def write(folder: Path, result: Recognition) -> None:
 
 NOTE = (
     "Accuracy: mean over seeds, each with its own split and draws; spread: standard deviation, in percent points. "
-    "Sensor: the lower and the higher reading of the energy model. Operations: multiply-accumulate; the network's "
-    "energy is 0.23 pJ each, without memory."
+    "Sensor: the lower and the higher reading of the energy model. Network: 0.23 pJ for each multiply-accumulate, "
+    "without memory."
 )
 
 

@@ -35,13 +35,6 @@ class Size:
         missing = [value for value in required if value not in self.proven]
         return missing or ([] if few or len(self.proven) > len(required) else ["a value between"])
 
-    @property
-    def row(self) -> tuple[str, ...]:
-        """Return block, parameter, values, and how each is shown."""
-        text = _text(self.allowed)
-        proven = "each" if {*self.proven} >= {*self.allowed} else ", ".join(map(str, self.proven)) or "none"
-        return self.block, self.parameter, text, proven, self.test and f"all: {self.test.split('::')[0]}"
-
 
 def _text(values: Sequence[object]) -> str:
     return f"{values[0]}..{values[-1]}" if isinstance(values, range) else ", ".join(map(str, values))
@@ -95,10 +88,9 @@ def problems(proofs: Iterable[Proof]) -> list[str]:
 
 
 def table(proofs: Iterable[Proof]) -> str:
-    """Return the sizes as a Markdown table, blocks with the same values in one row."""
-    blocks: dict[tuple[str, ...], list[str]] = {}
+    """Return the values that a parameter may have as a Markdown table, blocks with the same values in one row."""
+    blocks: dict[tuple[str, str], list[str]] = {}
     for size in sizes(proofs):
-        block, *values = size.row
-        blocks.setdefault(tuple(values), []).append(block)
-    rows = ((", ".join(names), *values) for values, names in blocks.items())
-    return markdown_table(("blocks", "parameter", "can be built with", "proven at", "tested"), rows)
+        blocks.setdefault((size.parameter, _text(size.allowed)), []).append(size.block)
+    rows = ((*values, ", ".join(names)) for values, names in blocks.items())
+    return markdown_table(("parameter", "can be built with", "blocks"), rows)
