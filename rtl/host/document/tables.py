@@ -63,15 +63,19 @@ def tile_order(sensor: SensorParameters) -> str:
 
 
 def pixel_types(sensor: SensorParameters) -> str:
-    """Return the table of beta, gamma and alpha, a row for all types of the same beta and gamma."""
+    """Return the table of beta, gamma and alpha, a row for all types of the same beta and alphas."""
     gratings: dict[tuple[float, float], dict[int, float]] = {}
     for t, p in enumerate(sensor.tile.types):
         gratings.setdefault((p.beta, p.gamma_deg), {})[t] = math.degrees(p.alpha)
-    rows = (
-        (", ".join(map(str, alphas)), f"{beta:g}", f"{gamma:g}", ", ".join(f"{alpha:g}" for alpha in alphas.values()))
-        for (beta, gamma), alphas in gratings.items()
+    rows: dict[tuple[float, str], dict[float, str]] = {}
+    for (beta, gamma), alphas in gratings.items():
+        same = rows.setdefault((beta, ", ".join(f"{alpha:g}" for alpha in alphas.values())), {})
+        same[gamma] = ", ".join(map(str, alphas))
+    cells = (
+        ("; ".join(types.values()), f"{beta:g}", "; ".join(f"{gamma:g}" for gamma in types), alphas)
+        for (beta, alphas), types in rows.items()
     )
-    return markdown_table(["types", "beta", "gamma, degrees", "alpha, degrees"], rows)
+    return markdown_table(["types", "beta", "gamma, degrees", "alpha, degrees"], cells)
 
 
 def phase_examples(sensor: SensorParameters) -> str:

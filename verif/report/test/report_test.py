@@ -242,5 +242,5 @@ def test_the_page_has_the_steps_that_ran_and_every_size(tmp_path):
     assert "Not run: suite." in lines
     assert any("| stuck_at | 66.6 ± 4.0 % of stuck-at faults detected, 1 open points | 4 |" in line for line in lines)
     lanes = "ReadoutSeq, AdcBank, PhasePath, RunLength, RegFile, AspChip"
-    assert f"| {lanes} | lanes | 1, 2, 4, 8, 16, 32 | each |  |" in lines
+    assert f"| lanes | 1, 2, 4, 8, 16, 32 | {lanes} |" in lines
     assert main(command, ["--read", "--out", str(tmp_path), "--document", str(tmp_path / "runs.json")]) == 2
