@@ -51,8 +51,8 @@ CROWDED = 2.5  # violations a net after the first iteration: 1.4 to 1.8 ended, 3
 HOPELESS = 8, 0.3  # after so many iterations, more than this share of the first violations
 ROUTING = "[INFO DRT-0187]"  # the line with which detailed routing begins
 # An iteration that takes so many times as long as the longest of the first ones, and as LEAST_S, is about a few
-# violations that no route of their tiles mends
-STUBBORN, SLOW, LEAST_S = 5, 3.0, 60.0
+# violations that no route of their tiles mends. It gets EACH_S for each of them: those that ended took 15 to 30 s
+STUBBORN, SLOW, LEAST_S, EACH_S = 5, 3.0, 60.0, 45.0
 
 
 @dataclass(frozen=True)
@@ -232,7 +232,8 @@ def diverges(counts: Sequence[int], seconds: Sequence[float] = (), nets: int = 0
     if nets and counts and counts[0] > CROWDED * nets:
         return True
     number, share = HOPELESS
-    if len(seconds) > STUBBORN and seconds[-1] > SLOW * max(*seconds[:STUBBORN], LEAST_S):
+    left = EACH_S * counts[-1] if counts else 0.0
+    if len(seconds) > STUBBORN and seconds[-1] > max(SLOW * max(*seconds[:STUBBORN], LEAST_S), left):
         return True
     if len(counts) > number and counts[-1] > share * counts[0]:
         return True
