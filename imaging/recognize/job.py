@@ -16,6 +16,7 @@ from talbot.imaging.recognize import chip, gestures, intensity, study, wake
 from talbot.imaging.recognize.data import Pictures, load
 from talbot.imaging.recognize.study import CURVES, FREE, FRONTS, WHOLE, Point, Setting
 from talbot.models.parameters import ParameterError, check_choice
+from talbot.models.recognition.network import SMALLEST
 from talbot.models.recognition.optics import Display, phase_types
 
 STORE = Path("parts")  # of the results' folder: kept parts of a run
@@ -81,6 +82,8 @@ def measure(task: Study, folder: Path) -> Recognition:
     rows = study.run(chosen, data, folder, "front", task.workers)
     free = {"image": replace(base, front="image")} if "image" not in task.fronts else {}
     free |= {name: replace(base, front=name, bytes=rows[lead]["bytes"]) for name in FREE}
+    if study.image_size(free["same_bytes"], data.images.shape[1:]) < SMALLEST:
+        free["same_bytes"] = replace(free["same_bytes"], classifier="kernel")
     if as_trained(task):
         free["shipped"] = Setting(classifier="shipped", seeds=1)
     if base.classifier == "lenet":

@@ -23,6 +23,7 @@ DECAY = 0.02  # of the weights, decoupled from the gradient
 MOMENTS = 0.9, 0.99
 EPSILON = 1e-8
 CHUNK = 500  # pictures of one inference
+SMALLEST = 4  # px, for a lenet
 LARGE = 20  # px: pictures of this size and more are pooled ahead of the second layer
 
 
@@ -230,7 +231,7 @@ def lenet(size: int, classes: int, first: Sequence[Layer] = ()) -> list[Layer]:
     list of Layer
         Both signs of the first layer rectified, a convolution, pooling, two dense layers.
     """
-    check_int("size", size, 4, 1 << 12)
+    check_int("size", size, SMALLEST, 1 << 12)
     check_int("classes", classes, 2, 1 << 12)
     head = [Pool(), Conv(32, 5, same=False)] if size >= LARGE else [Conv(24, 3, same=False)]
     return [*first, Signs(), *head, Relu(), Pool(), Drop(0.2), Dense(64), Relu(), Drop(0.2), Dense(classes)]

@@ -106,6 +106,14 @@ def test_the_network_beats_chance_and_its_optics_cost_no_first_layer(digits):
     assert learned["flops_first_layer"] == 8 * 8 * 25 * 12
 
 
+@pytest.mark.slow
+def test_as_many_bytes_as_a_gradient_are_a_picture_too_small_for_a_network(tmp_path):
+    words = "--classifier lenet --front gradient --epochs 1 --seeds 1 --count 30 --curves none --golden"
+    assert main(["recognize", *words.split(), "--workers", "1", "--out", str(tmp_path / "out")]) == 0
+    baselines = json.loads((tmp_path / "out" / "summary.json").read_text())["baselines"]
+    assert baselines["same_bytes"]["bytes"] <= baselines["image"]["bytes"] and "learned" in baselines
+
+
 def test_fewer_bits_are_coarser_codes(digits):
     base = Setting(scale=3, threshold=0)
     fine, coarse = (see(replace(base, bits=bits), digits.radiance[:3]) for bits in (8, 3))
