@@ -26,6 +26,7 @@ from talbot.models.parameters import (
     ELEMENTARY_CHARGE,
     STANDARD,
     ParameterError,
+    PixelType,
     SensorParameters,
     TileParameters,
     drawn_electrical,
@@ -80,17 +81,8 @@ def measured(readings: Readings, sensor: SensorParameters = STANDARD) -> Measure
     factor = bend.value if bend else 0.0
     dark = dark_of(collected, factor)
     angles = _angles(collected, dark, factor)
-    dead = _dead(angles, followers)
-    rates = angles.rates.copy()
-    for row, col in dead:
-        rates[:, row, col] = np.nan
-        notes.append(f"pixel {row},{col} is left out: its pads do not follow the reset level or the light")
-    outside = lost(collected)
-    notes += [
-        f"pixel {row},{col}: {count} light readings are outside the reset sweep and are left out; shorten the exposure"
-        for (row, col), count in sorted(outside.items())
-        if (row, col) not in dead
-    ]
+    rates, dead, excluded = _sound(collected, angles, followers)
+    notes += excluded
     signals, plain = _relative(angles.tangents, rates, notes)
     theta = np.arctan(angles.tangents)
     calibration, pupil, fits, absent = _fitted(signals, angles.tangents, sensor)
@@ -144,14 +136,36 @@ def measured(readings: Readings, sensor: SensorParameters = STANDARD) -> Measure
         "dead": [[*pixel] for pixel in dead],
         "notes": notes,
     }
-    plain_types = tuple(replace(kind, response=None) for kind in types)
-    shown = replace(
-        sensor,
-        tile=replace(sensor.tile, types=plain_types),
-        optics=replace(sensor.optics, aperture_sigma=float(np.clip(pupil.sigma, 0.01, 10))),
-        electrical=replace(sensor.electrical, dark_current=float(np.clip(dark_rate.value * farad, 0, 1e-6))),
-    )
+    shown = _as_measured(sensor, types, pupil.sigma, dark_rate.value * farad)
     return Measured(shown, followers, bend, dark, angles, fits, efficiency, responses, signals, summary)
+
+
+def _sound(
+    collected: Collected, angles: Angles, followers: Followers
+) -> tuple[Floats, Sequence[tuple[int, int]], list[str]]:
+    """Return the rates without those of dead pixels, the dead pixels, and notes on what is left out."""
+    dead, rates, notes = _dead(angles, followers), angles.rates.copy(), []
+    for row, col in dead:
+        rates[:, row, col] = np.nan
+        notes.append(f"pixel {row},{col} is left out: its pads do not follow the reset level or the light")
+    notes += [
+        f"pixel {row},{col}: {count} light readings are outside the reset sweep and are left out; shorten the exposure"
+        for (row, col), count in sorted(lost(collected).items())
+        if (row, col) not in dead
+    ]
+    return rates, dead, notes
+
+
+def _as_measured(
+    sensor: SensorParameters, types: Sequence[PixelType], sigma: float, dark_current: float
+) -> SensorParameters:
+    """Return ``sensor`` with the fitted types, aperture and dark current, each within its range."""
+    return replace(
+        sensor,
+        tile=replace(sensor.tile, types=tuple(replace(kind, response=None) for kind in types)),
+        optics=replace(sensor.optics, aperture_sigma=float(np.clip(sigma, 0.01, 10))),
+        electrical=replace(sensor.electrical, dark_current=float(np.clip(dark_current, 0, 1e-6))),
+    )
 
 
 def check_tile(tile: TileParameters) -> None:
