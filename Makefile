@@ -7,7 +7,6 @@ PY := $(VENV)/bin/python
 READY := $(VENV)/.ready
 VIDEO_READY := $(VENV)/.video-ready
 TESTS_READY := $(VENV)/.tests-ready
-RENDER_READY := $(VENV)/.render-ready
 EXPLORE_READY := $(VENV)/.explore-ready
 LAYOUT_READY := $(VENV)/.layout-ready
 LINT_READY := $(VENV)/.lint-ready
@@ -49,16 +48,12 @@ $(READY): requirements/run.lock pyproject.toml requirements/venv.sh
 
 # Before packages or tools are installed for them, a command's arguments are checked (talbot/base/check.py): the target's recipe
 # once more, with everything taken for ready
-HAVE := $(READY) $(VIDEO_READY) $(TESTS_READY) $(RENDER_READY) $(EXPLORE_READY) $(LAYOUT_READY) $(LINT_READY) have-tools
+HAVE := $(READY) $(VIDEO_READY) $(TESTS_READY) $(EXPLORE_READY) $(LAYOUT_READY) $(LINT_READY) have-tools
 CHECK = $(if $(filter-out $(PLAIN),$(GOALS)),MAKELEVEL=0 TALBOT_CHECK=1 $(MAKE) -s $(HAVE:%=-o %) $(filter-out $(PLAIN),$(GOALS)),true)
 
 $(VIDEO_READY): $(READY) requirements/video.lock
 	@$(CHECK)
 	@bash requirements/venv.sh '$(PYTHON)' '$(VENV)' '$@' requirements/video.lock
-
-$(RENDER_READY): $(READY) requirements/render.lock
-	@$(CHECK)
-	@bash requirements/venv.sh '$(PYTHON)' '$(VENV)' '$@' requirements/render.lock
 
 $(EXPLORE_READY): $(READY) requirements/explore.lock
 	@$(CHECK)
@@ -115,10 +110,6 @@ VIDEO := $(filter %.mp4 %.m4v %.mov %.mkv %.webm %.avi %.ts %.mts %.m2ts %.wmv %
 sequence: $(READY) $(if $(VIDEO),$(VIDEO_READY))
 	@$(talbot) sequence
 
-.PHONY: render
-render: $(RENDER_READY)
-	@$(talbot) render
-
 .PHONY: explore
 explore: $(EXPLORE_READY)
 	@$(talbot) explore
@@ -149,7 +140,7 @@ locks: $(READY)
 	@PATH="$(CURDIR)/build/uv/bin:$$PATH" bash requirements/lock.sh
 
 .PHONY: verify
-verify: $(TESTS_READY) $(LAYOUT_READY) $(RENDER_READY)
+verify: $(TESTS_READY) $(LAYOUT_READY)
 	@[ "$$TALBOT_CHECK" ] || BEFORE="$(CHECK)" bash requirements/tools.sh --missing iverilog z3
 	@$(talbot) verify
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Renew the locks (make locks): for Python 3.11 and later on every platform, versions and hashes of what runs (run), what
-# video files add (video), rendering (render), searches (explore), tests and verification (test), cells and layouts (layout), `make lint`
+# video files add (video), searches (explore), tests and verification (test), cells and layouts (layout), `make lint`
 # (lint), `make dist` (release); LibreLane has another environment; uv installs all of these (uv). pdk.lock is edited directly: one wheel whose
 # dependencies are not wanted.
 set -euo pipefail
@@ -9,7 +9,6 @@ compile() { uv pip compile --quiet --universal --python-version 3.11 --generate-
 lock() { compile ../pyproject.toml "$@"; }
 lock --extra setup --output-file run.lock
 lock --extra setup --extra video --constraint run.lock --output-file video.lock
-lock --extra setup --extra render --constraint run.lock --output-file render.lock
 lock --extra setup --extra explore --constraint run.lock --output-file explore.lock
 lock --extra setup --extra test --extra verify --extra document --extra video --extra codecs --extra explore --constraint run.lock --output-file test.lock
 lock --extra setup --extra layout --constraint test.lock --output-file layout.lock

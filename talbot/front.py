@@ -41,7 +41,6 @@ GROUPS: dict[str, dict[str, Command]] = {
         "tradeoff": Command("error against run time: tables and plots", "imaging.tradeoff.command"),
         "stability": Command("stiff and extreme cases of all subjects: bounds and measured figures", "verif.stability"),
         "decode": Command("the chip's byte stream to samples, as .npz", "imaging.decode"),
-        "render": Command("render the shipped scenes again with Mitsuba 3", "imaging.render.command"),
     },
     "Pixel and analog": {
         "pixel": Command("search and solve the gratings of a pixel in a process's metal", "pixels.response.command"),

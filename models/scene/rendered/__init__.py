@@ -1,4 +1,4 @@
-"""Scenes that Mitsuba 3 has rendered (imaging/render), as files: no formula of this project made their light.
+"""Scenes that Mitsuba 3 rendered, as files: no formula of this project made their light.
 
 Each is made for one lens. Through another, or enlarged to more pixels than it has, it is a picture with disparity
 alone: its depth and its echoes are another lens's.

@@ -46,7 +46,7 @@ def make_lines():
 def test_make_knows_every_target_and_variable(target, words):
     variables = [word.strip("[]") for word in shlex.split(words) if "=" in word]
     given = [word for word in variables if word.partition("=")[0] not in OF_MAKE]
-    ready = [f"-o.venv/.{name}ready" for name in ("", "video-", "tests-", "layout-", "render-", "explore-")]
+    ready = [f"-o.venv/.{name}ready" for name in ("", "video-", "tests-", "layout-", "explore-")]
     own = {name: value for name, value in os.environ.items() if not name.startswith(("MAKE", "MFLAGS", "TALBOT"))}
     line = ["make", "-n", *ready, "-ohave-tools", target, *given]
     recipe = subprocess.run(line, cwd=ROOT, env=own, capture_output=True, text=True, check=True).stdout
