@@ -126,8 +126,7 @@ lint: $(LINT_READY)
 	@$(VENV)/bin/ruff format --check
 	@$(VENV)/bin/lint-imports --no-cache
 	@$(VENV)/bin/pyright
-	@$(VENV)/bin/numpydoc lint $(filter models/%,$(SOURCES))
-	@$(VENV)/bin/numpydoc lint --ignore 'PR01 RT01' $(filter-out models/%,$(SOURCES))
+	@$(VENV)/bin/numpydoc lint $(SOURCES)
 
 .PHONY: format
 format: $(LINT_READY)

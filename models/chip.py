@@ -20,24 +20,11 @@ from talbot.models.parameters.energy import DigitalEvents
 class GoldenFrame:
     """Expected output of the chip for one frame; samples that are not read are 0.
 
-    Attributes
-    ----------
-    sensor : SensorParameters
-        The sensor.
-    frame : FrameParameters
-        Configuration of the frame.
-    codes : int16 (rows, cols, subs)
-        Codes of the converters.
-    converted : bool (rows, cols, subs)
-        True where the search ran.
-    sent : int16 (rows, cols, subs)
-        Samples of the stream: the codes, or with ``frame.phase`` (phase, amplitude).
-    read : bool (rows, cols)
-        Pixels that are read.
-    decisions : int
-        Comparator decisions, all lanes together.
-    strobes : int
-        Of all lanes' comparators: in a step each lane's is strobed from the sample until the last decision of any lane.
+    sensor: the sensor. frame: configuration of the frame. codes: (rows, cols, subs), codes of the converters.
+    converted: (rows, cols, subs), True where the search ran. sent: (rows, cols, subs), samples of the stream: the
+    codes, or with ``frame.phase`` (phase, amplitude). read: (rows, cols), pixels that are read. decisions: comparator
+    decisions, all lanes together. strobes: of all lanes' comparators: in a step each lane's is strobed from the sample
+    until the last decision of any lane.
     """
 
     sensor: SensorParameters
@@ -67,15 +54,7 @@ class GoldenFrame:
     def digital_events(self, cycles: int) -> DigitalEvents:
         """Count the events of the digital part in a frame.
 
-        Parameters
-        ----------
-        cycles : int
-            In which the chip was busy.
-
-        Returns
-        -------
-        DigitalEvents
-            For `EnergyParameters`.
+        cycles: in which the chip was busy. Returns DigitalEvents: for `EnergyParameters`.
         """
         divisions = int(self.read.sum()) if self.frame.phase else 0
         rows, sent = int(self.read.any(1).sum()), len(self.stream)
@@ -92,17 +71,8 @@ class GoldenFrame:
 def front_end_of(sensor: SensorParameters, trims: Iterable[int]) -> FrontEnd:
     """Analog front end of a sensor.
 
-    Parameters
-    ----------
-    sensor : SensorParameters
-        The sensor.
-    trims : iterable of int
-        Register values by pixel type, -512..511.
-
-    Returns
-    -------
-    FrontEnd
-        With drawn converters, or none where all imperfections are 0.
+    sensor: the sensor. trims: register values by pixel type, -512..511. Returns FrontEnd: with drawn converters, or
+    none where all imperfections are 0.
     """
     drawn = sensor.converter != ConverterParameters(seed=sensor.converter.seed)
     converter = Converter.draw(sensor.converter, sensor.chip.lanes) if drawn else None
@@ -116,26 +86,9 @@ def golden_frame(
 ) -> GoldenFrame:
     """Run the golden chip on one exposure.
 
-    Parameters
-    ----------
-    samples : float64 (taps, rows, cols, 2)
-        Diode pairs, a + b = 255 when both wells are full.
-    sensor : SensorParameters
-        The sensor.
-    frame : FrameParameters
-        Configuration of the frame.
-    front_end : FrontEnd or PatternEnd
-        Converts the samples.
-
-    Returns
-    -------
-    GoldenFrame
-        Codes, samples sent and stream.
-
-    Raises
-    ------
-    ParameterError
-        For samples of a wrong shape or a window outside the array.
+    samples: (taps, rows, cols, 2), diode pairs, a + b = 255 when both wells are full. sensor: the sensor. frame:
+    configuration of the frame. front_end: converts the samples. Returns codes, samples sent and stream. Raises
+    ParameterError for samples of a wrong shape or a window outside the array.
     """
     read = pixels_read(sensor.array.rows, sensor.array.cols, sensor.chip.lanes, frame, sensor.tile)
     done = front_end.convert(samples, frame.mode, frame.threshold)

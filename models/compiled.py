@@ -15,14 +15,7 @@ __all__ = ["njit", "vectorize"]
 class Compiled:
     """A function that Numba compiles when it is first called, or when one that calls it is compiled.
 
-    Parameters
-    ----------
-    function : callable
-        What is compiled.
-    decorator : str
-        Of Numba.
-    *arguments, **options
-        Of the decorator.
+    function: what is compiled. decorator: of Numba. *arguments, **options: of the decorator.
     """
 
     def __init__(self, function: Callable[..., Any], decorator: str, *arguments: Any, **options: Any) -> None:
@@ -51,15 +44,7 @@ class Compiled:
 def njit(**options: Any) -> Callable[[Callable[..., Any]], Any]:
     """Compile a function as `numba.njit` does.
 
-    Parameters
-    ----------
-    **options
-        Of `numba.njit`.
-
-    Returns
-    -------
-    callable
-        The decorator.
+    **options: of `numba.njit`. Returns the decorator.
     """
     return lambda function: Compiled(function, "njit", **options)
 
@@ -67,17 +52,7 @@ def njit(**options: Any) -> Callable[[Callable[..., Any]], Any]:
 def vectorize(signatures: list[str], **options: Any) -> Callable[[Callable[..., Any]], Any]:
     """Compile a function of numbers for arrays as `numba.vectorize` does.
 
-    Parameters
-    ----------
-    signatures : list of str
-        Types.
-    **options
-        Of `numba.vectorize`.
-
-    Returns
-    -------
-    callable
-        The decorator.
+    signatures: types. **options: of `numba.vectorize`. Returns the decorator.
     """
     return lambda function: Compiled(function, "vectorize", signatures, **options)
 

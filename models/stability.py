@@ -38,12 +38,7 @@ from talbot.models.scene import Sampling, load
 class Case:
     """One case of the table.
 
-    Attributes
-    ----------
-    name, bound, measured : str
-        Name, expectation and measurement, as text.
-    ok : bool
-        The measurement meets the expectation.
+    name, bound, measured: name, expectation and measurement, as text. ok: the measurement meets the expectation.
     """
 
     name: str
@@ -55,15 +50,7 @@ class Case:
 def table(cases: Iterable[Case]) -> str:
     """Format cases as text, one per line.
 
-    Parameters
-    ----------
-    cases : iterable of Case
-        Rows of the table.
-
-    Returns
-    -------
-    str
-        Aligned columns with a header.
+    cases: rows of the table. Returns aligned columns with a header.
     """
     rows = [
         ("", "case", "expected", "measured"),  # the verdict first: a message is longer than a line

@@ -53,28 +53,10 @@ def search(
 ) -> None:
     """Decide, sample by sample, as models.digital.sar.decisions asks.
 
-    Parameters
-    ----------
-    v : float64 (n,)
-        Values in LSB.
-    lane, index : int64 (n,)
-        Lane and number of each.
-    levels : float64 (lanes, 256)
-        Of every DAC code.
-    offset : float64 (lanes,)
-        Of the comparators.
-    scales : tuple of float
-        LSB per count of a decision's noise and of the sampling capacitor's.
-    seed : uint32
-        Of the noise.
-    window : int
-        Codes of a smaller magnitude are not searched for; 0 searches for all.
-    low : int
-        Code of the DAC's 0.
-    codes : int16 (n,)
-        Receives the codes, 0 where the window gives them.
-    converted : bool (n,)
-        Receives whether the search ran.
+    v: (n,), values in LSB. lane, index: (n,), lane and number of each. levels: (lanes, 256), of every DAC code. offset:
+    (lanes,), of the comparators. scales: LSB per count of a decision's noise and of the sampling capacitor's. seed: of
+    the noise. window: codes of a smaller magnitude are not searched for; 0 searches for all. low: code of the DAC's 0.
+    codes: (n,), receives the codes, 0 where the window gives them. converted: (n,), receives whether the search ran.
     """
     key = _mix(seed)
     scale, ktc = scales

@@ -25,18 +25,9 @@ TILTED = 3.0  # the same of the exit pupil's power
 class Pupil(NamedTuple):
     """Aperture and chief ray.
 
-    Attributes
-    ----------
-    sigma : float
-        Of the aperture in rad.
-    axis : float64 (2,)
-        Tangents (y, x) of the chief ray at the array's middle.
-    slope : float
-        Of its tangents, 1 / px; 0 where it is less than its error.
-    slope_error : float
-        Standard deviation of the slope.
-    condition : float
-        Of the normal equations, columns of length 1.
+    sigma: of the aperture in rad. axis: (2,), tangents (y, x) of the chief ray at the array's middle. slope: of its
+    tangents, 1 / px; 0 where it is less than its error. slope_error: standard deviation of the slope. condition: of the
+    normal equations, columns of length 1.
     """
 
     sigma: float

@@ -28,14 +28,8 @@ SOURCE = "CALIBRATION"
 class Samples(NamedTuple):
     """The measurements of a type.
 
-    Attributes
-    ----------
-    theta : float64 (n, 2)
-        Angles (y, x) of the rays in rad.
-    diodes : float64 (n, 2)
-        Signals over aperture and vignetting, in any unit that all types share.
-    weight : float64 (n,)
-        Inverse standard deviation of the signals, in any unit.
+    theta: (n, 2), angles (y, x) of the rays in rad. diodes: (n, 2), signals over aperture and vignetting, in any unit
+    that all types share. weight: (n,), inverse standard deviation of the signals, in any unit.
     """
 
     theta: Floats
@@ -46,19 +40,8 @@ class Samples(NamedTuple):
 def tables(kinds: Sequence[PixelType], samples: Sequence[Samples], sigma: float) -> tuple[PixelType, ...]:
     """Return pixel types with a table each instead of Eq. 3.1.
 
-    Parameters
-    ----------
-    kinds : sequence of PixelType
-        beta, gamma, alpha and m of Eq. 3.1 as fitted.
-    samples : sequence of Samples
-        Of the same types; none where a type was not seen.
-    sigma : float
-        Of the aperture in rad.
-
-    Returns
-    -------
-    tuple of PixelType
-        Levels against the mean of all types; a type without samples stays as it is.
+    kinds: beta, gamma, alpha and m of Eq. 3.1 as fitted. samples: of the same types; none where a type was not seen.
+    sigma: of the aperture in rad. Returns levels against the mean of all types; a type without samples stays as it is.
     """
     levels = [part.diodes.mean() for part in samples if len(part.theta)]
     level, reach = float(np.mean(levels)), max(float(np.abs(part.theta).max(initial=0)) for part in samples)

@@ -44,17 +44,7 @@ OPEN = PixelType(0.0, 0.0, 0.0, response=_open)
 def open_weights(optics: OpticsParameters, pupil: int) -> Floats:
     """Weights of an open pixel over the pupil.
 
-    Parameters
-    ----------
-    optics : OpticsParameters
-        Lens and vignetting.
-    pupil : int
-        Cells along the pupil's diameter.
-
-    Returns
-    -------
-    float64 (pupil, pupil)
-        Of sum 1.
+    optics: lens and vignetting. pupil: cells along the pupil's diameter. Returns (pupil, pupil), of sum 1.
     """
     raw = raw_weights((OPEN,), replace(optics, views=pupil))[0, 0]
     return raw / raw.sum()
@@ -63,17 +53,8 @@ def open_weights(optics: OpticsParameters, pupil: int) -> Floats:
 def plain(sensor: SensorParameters, pupil: int) -> Projection:
     """Open pixels.
 
-    Parameters
-    ----------
-    sensor : SensorParameters
-        Array and lens.
-    pupil : int
-        Cells along the pupil's diameter.
-
-    Returns
-    -------
-    Projection
-        Of one channel and one response.
+    sensor: array and lens. pupil: cells along the pupil's diameter. Returns Projection: of one channel and one
+    response.
     """
     order = np.zeros((1, PERIOD, PERIOD), np.int64)
     return Projection(sensor.shape, open_weights(sensor.optics, pupil)[None], order, np.ones(1, bool))
@@ -82,17 +63,9 @@ def plain(sensor: SensorParameters, pupil: int) -> Projection:
 def lenslets(sensor: SensorParameters, pupil: int) -> Projection:
     """Open pixels behind lenslets, each of views x views pixels, of which pixel (v, u) sees view (v, u) alone.
 
-    Parameters
-    ----------
-    sensor : SensorParameters
-        Array, of whole lenslets, lens, and an odd number of views.
-    pupil : int
-        Cells along the pupil's diameter, a multiple of the views.
-
-    Returns
-    -------
-    Projection
-        Of one channel; a sample is the mean of its view over the lenslet, times that cell's share of the light.
+    sensor: array, of whole lenslets, lens, and an odd number of views. pupil: cells along the pupil's diameter, a
+    multiple of the views. Returns Projection: of one channel; a sample is the mean of its view over the lenslet, times
+    that cell's share of the light.
     """
     views = sensor.optics.views
     every = open_weights(sensor.optics, pupil) * views**2 * _cells(views, pupil)
@@ -111,17 +84,7 @@ def _cells(views: int, pupil: int) -> Floats:
 def mask_code(count: int = 1, high: int = MASK, wide: int = MASK) -> Floats:
     """Random codes of a mask, half of whose cells of a pixel's size are open.
 
-    Parameters
-    ----------
-    count : int
-        Codes.
-    high, wide : int
-        Cells of their period; their product is even.
-
-    Returns
-    -------
-    float64 (count, high, wide)
-        1 or 0.
+    count: codes. high, wide: cells of their period; their product is even. Returns (count, high, wide), 1 or 0.
     """
     rng = np.random.default_rng(SEED)
     cells = np.arange(high * wide) % 2
@@ -133,25 +96,10 @@ def mask(
 ) -> Projection:
     """Open pixels behind a mask at a distance at which a view step moves it by ``shift`` pixels.
 
-    Parameters
-    ----------
-    sensor : SensorParameters
-        Array and lens.
-    pupil : int
-        Cells along the pupil's diameter.
-    codes : array (codes, high, wide), optional
-        Transmission of the mask's cells, one code for each of several exposures; None is one `mask_code`.
-    shift : float
-        Px of the mask a view step.
-
-    Returns
-    -------
-    Projection
-        A channel for each code. Transmission is linear between the middles of cells: pixels are as wide as these.
-
-    References
-    ----------
-    [Marwah2013].
+    sensor: array and lens. pupil: cells along the pupil's diameter. codes: (codes, high, wide), transmission of the
+    mask's cells, one code for each of several exposures; None is one `mask_code`. shift: px of the mask a view step.
+    Returns a channel for each code. Transmission is linear between the middles of cells: pixels are as wide as these.
+    Source: [Marwah2013].
     """
     codes = mask_code() if codes is None else np.asarray(codes, float)
     count, high, wide = codes.shape
@@ -178,25 +126,9 @@ def random(
 ) -> Projection:
     """Random projections: every sample weighs each view by a random number, which no optics does.
 
-    Parameters
-    ----------
-    sensor : SensorParameters
-        Array, tile and lens.
-    pupil : int
-        Cells along the pupil's diameter, a multiple of the views.
-    channels : int
-        Samples of a pixel, 1..RANDOM.
-    period : tuple of int, optional
-        Rows and columns after which the pixels repeat; None is as the tile.
-
-    Returns
-    -------
-    Projection
-        Of RANDOM responses, different ones in a pixel.
-
-    References
-    ----------
-    [Jayasuriya2017], Sec. 3.7.3.
+    sensor: array, tile and lens. pupil: cells along the pupil's diameter, a multiple of the views. channels: samples of
+    a pixel, 1..RANDOM. period: rows and columns after which the pixels repeat; None is as the tile. Returns Projection:
+    of RANDOM responses, different ones in a pixel. Source: [Jayasuriya2017], Sec. 3.7.3.
     """
     rng, views = np.random.default_rng(SEED), sensor.optics.views
     drawn = rng.random((RANDOM, views**2)) @ _cells(views, pupil).reshape(views**2, -1)
@@ -212,17 +144,8 @@ def random(
 def asp(sensor: SensorParameters, pupil: int) -> Projection:
     """Angle-sensitive pixels, both diodes of each.
 
-    Parameters
-    ----------
-    sensor : SensorParameters
-        The sensor; its lens counts as telecentric.
-    pupil : int
-        Cells along the pupil's diameter.
-
-    Returns
-    -------
-    Projection
-        Of two channels: response 2 t and 2 t + 1 are the diodes of type t.
+    sensor: the sensor; its lens counts as telecentric. pupil: cells along the pupil's diameter. Returns Projection: of
+    two channels: response 2 t and 2 t + 1 are the diodes of type t.
     """
     tile = sensor.tile
     weights = view_weights(tile, replace(sensor.optics, views=pupil)).reshape(-1, pupil, pupil)

@@ -161,15 +161,8 @@ def full_wells(
 
     Their sum and difference are those of the wells, not of the light.
 
-    Parameters
-    ----------
-    pair, exposure, balance
-        As in `expose`.
-
-    Returns
-    -------
-    bool (rows, cols)
-        True where a well without noise reaches a full one less `SIGMAS` of shot noise and gain, at most `NEAR` of it.
+    pair, exposure, balance: as in `expose`. Returns (rows, cols), True where a well without noise reaches a full one
+    less `SIGMAS` of shot noise and gain, at most `NEAR` of it.
     """
     e, clear = exposure.electrical, replace(exposure, noise=0.0)
     near = min(SIGMAS * exposure.noise * float(np.hypot(1 / np.sqrt(e.full_well), e.gain_fpn)), NEAR)

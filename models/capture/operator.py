@@ -168,17 +168,7 @@ def rounding(dtype: str, views: int) -> float:
 
     The terms are positive, so each of the views**2 additions adds at most one rounding of the sum.
 
-    Parameters
-    ----------
-    dtype : str
-        'float32' or 'float64'.
-    views : int
-        Views along each axis.
-
-    Returns
-    -------
-    float
-        The bound.
+    dtype: 'float32' or 'float64'. views: views along each axis. Returns the bound.
     """
     return (views**2 + 2) * float(np.finfo(dtype).eps)
 

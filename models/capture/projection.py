@@ -16,25 +16,12 @@ Ints = npt.NDArray[np.int64]
 class Projection:
     """Linear map from l[v, u, y, x] to the samples of every pixel.
 
-    Attributes
-    ----------
-    shape : tuple of int
-        Rows and columns of the array.
-    weights : float64 (responses, pupil, pupil)
-        Responses over a grid of cells of the pupil.
-    order : int64 (channels, high, wide)
-        Response of every sample of a pixel, in a period of pixels.
-    telling : bool (responses,)
-        Responses that tell a disparity, not only the texture.
-    side : int
-        Side, in px, of the squares whose mean every pixel within sees (a lenslet); 1 is the pixel itself. Odd.
-    block : tuple of int, optional
-        Rows and columns of pixels that are estimated together, a part of a period; None is a period.
-
-    Raises
-    ------
-    ParameterError
-        For weights, order or side that do not go together.
+    shape: rows and columns of the array. weights: (responses, pupil, pupil), responses over a grid of cells of the
+    pupil. order: (channels, high, wide), response of every sample of a pixel, in a period of pixels. telling:
+    (responses,), responses that tell a disparity, not only the texture. side: side, in px, of the squares whose mean
+    every pixel within sees (a lenslet); 1 is the pixel itself. Odd. block: rows and columns of pixels that are
+    estimated together, a part of a period; None is a period. Raises ParameterError for weights, order or side that do
+    not go together.
     """
 
     shape: tuple[int, int]
@@ -86,15 +73,8 @@ class Projection:
     def seen(self, view: Floats) -> Floats:
         """Return what the pixels see of a view: the means of squares.
 
-        Parameters
-        ----------
-        view : array (..., rows, cols)
-            Radiance at the pixels.
-
-        Returns
-        -------
-        array (..., rows, cols)
-            ``view`` itself where a pixel sees no more.
+        view: (..., rows, cols), radiance at the pixels. Returns (..., rows, cols), ``view`` itself where a pixel sees
+        no more.
         """
         if self.side == 1:
             return view
@@ -105,20 +85,8 @@ class Projection:
     def forward(self, light_field: Floats) -> npt.NDArray[np.float64]:
         """Apply the map.
 
-        Parameters
-        ----------
-        light_field : array (pupil, pupil, rows, cols)
-            l[v, u, y, x].
-
-        Returns
-        -------
-        float64 (channels, rows, cols)
-            Samples.
-
-        Raises
-        ------
-        ParameterError
-            For a wrong shape.
+        light_field: (pupil, pupil, rows, cols), l[v, u, y, x]. Returns (channels, rows, cols), samples. Raises
+        ParameterError for a wrong shape.
         """
         self._check("light_field", light_field, (self.pupil, self.pupil, *self.shape))
         out = np.zeros(self.responses.shape)
@@ -129,34 +97,16 @@ class Projection:
     def add(self, samples: npt.NDArray[np.float64], view: Floats, v: int, u: int) -> None:
         """Add one view to all samples, in place.
 
-        Parameters
-        ----------
-        samples : float64 (channels, rows, cols)
-            Samples.
-        view : array (rows, cols)
-            Radiance at the pixels.
-        v, u : int
-            Row and column of the view's cell in the pupil.
+        samples: (channels, rows, cols), samples. view: (rows, cols), radiance at the pixels. v, u: row and column of
+        the view's cell in the pupil.
         """
         samples += self.weights[:, v, u][self.responses] * self.seen(view)
 
     def transpose(self, samples: Floats) -> npt.NDArray[np.float64]:
         """Apply the transpose of the map.
 
-        Parameters
-        ----------
-        samples : array (channels, rows, cols)
-            Samples.
-
-        Returns
-        -------
-        float64 (pupil, pupil, rows, cols)
-            l[v, u, y, x].
-
-        Raises
-        ------
-        ParameterError
-            For a wrong shape.
+        samples: (channels, rows, cols), samples. Returns (pupil, pupil, rows, cols), l[v, u, y, x]. Raises
+        ParameterError for a wrong shape.
         """
         self._check("samples", samples, self.responses.shape)
         out = np.empty((self.pupil, self.pupil, *self.shape))

@@ -119,18 +119,8 @@ def integrate(
 def add_view(pair: Floats, light: Floats, field: FieldWeights, sensor: SensorParameters, v: int, u: int) -> None:
     """Add one view to all pixels, in place.
 
-    Parameters
-    ----------
-    pair : array (2, rows, cols)
-        Photocurrents.
-    light : array (rows, cols)
-        Radiance of the view.
-    field : FieldWeights
-        Of the sensor.
-    sensor : SensorParameters
-        The sensor.
-    v, u : int
-        View row and column.
+    pair: (2, rows, cols), photocurrents. light: (rows, cols), radiance of the view. field: of the sensor. sensor: the
+    sensor. v, u: view row and column.
     """
     order = sensor.tile.type_map(sensor.tile.rows, sensor.tile.cols)
     _add(pair, light, np.ascontiguousarray(field.series[:, :, v, u]), order, field.y, field.x, np.arange(len(light)))

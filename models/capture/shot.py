@@ -38,17 +38,8 @@ def photon_count(mean: Any, z: Any) -> Any:  # arrays outside, scalars inside
 
     Few photons: the distribution function is inverted. Many: the Cornish-Fisher expansion, rounded.
 
-    Parameters
-    ----------
-    mean : float32 or float64
-        Expected electrons, 0..1e15; broadcastable.
-    z : float32 or float64
-        Standard normal deviate; broadcastable.
-
-    Returns
-    -------
-    float32 or float64
-        Whole electrons.
+    mean: expected electrons, 0..1e15; broadcastable. z: standard normal deviate; broadcastable. Returns whole
+    electrons.
     """
     return _count(mean, z)
 
@@ -56,13 +47,9 @@ def photon_count(mean: Any, z: Any) -> Any:  # arrays outside, scalars inside
 class Pixels(NamedTuple):
     """The diodes of an array, all of one type: float32 or float64.
 
-    Attributes
-    ----------
-    gain, offset : array (2, rows, cols)
-        Of each diode: factor of its photocurrent, and electrons.
-    numbers : array (7,)
-        Electrons/s of a photocurrent of 1, electrons/s of dark current, electrons of a full well, electrons an LSB,
-        factor of the shot noise, RMS of the read noise in electrons, PHOTONS_MAX.
+    gain, offset: (2, rows, cols), of each diode: factor of its photocurrent, and electrons. numbers: (7,), electrons/s
+    of a photocurrent of 1, electrons/s of dark current, electrons of a full well, electrons an LSB, factor of the shot
+    noise, RMS of the read noise in electrons, PHOTONS_MAX.
     """
 
     gain: Floats
@@ -74,18 +61,9 @@ class Pixels(NamedTuple):
 def collect(wells: Floats, pair: Floats, pixels: Pixels, seconds: Any, z: Floats) -> None:
     """Add what the diodes collect in an interval, up to the full well, in place.
 
-    Parameters
-    ----------
-    wells : array (2, rows, cols)
-        Electrons.
-    pair : array (2, rows, cols)
-        Relative photocurrents.
-    pixels : Pixels
-        The diodes.
-    seconds : float
-        Of the interval, of the arrays' type.
-    z : array (2, rows, cols)
-        Standard normal deviates; of no element where there is no noise.
+    wells: (2, rows, cols), electrons. pair: (2, rows, cols), relative photocurrents. pixels: the diodes. seconds: of
+    the interval, of the arrays' type. z: (2, rows, cols), standard normal deviates; of no element where there is no
+    noise.
     """
     unit, dark, full, _, noise, _, most = pixels.numbers
     zero = noise - noise
@@ -106,24 +84,10 @@ def read(
 ) -> None:
     """Read the electrons through the pixels and the columns' amplifiers.
 
-    Parameters
-    ----------
-    out : array (rows, cols, 2)
-        Receives it, in LSB.
-    wells : array (2, rows, cols)
-        Electrons.
-    pixels : Pixels
-        The diodes.
-    z : array (2, rows, cols)
-        Standard normal deviates of the read noise; of no element where there is none.
-    pink : float64 (2, rows or more, cols)
-        1/f noise of the columns, RMS 1; of no element where the columns add nothing.
-    rms : float
-        Of the 1/f noise in electrons.
-    columns : float64 (2, 1, cols)
-        Offsets of the columns in electrons.
-    noise : float
-        Factor of what the columns add.
+    out: (rows, cols, 2), receives it, in LSB. wells: (2, rows, cols), electrons. pixels: the diodes. z: (2, rows,
+    cols), standard normal deviates of the read noise; of no element where there is none. pink: (2, rows or more, cols),
+    1/f noise of the columns, RMS 1; of no element where the columns add nothing. rms: of the 1/f noise in electrons.
+    columns: (2, 1, cols), offsets of the columns in electrons. noise: factor of what the columns add.
     """
     lsb, read_noise = pixels.numbers[3], pixels.numbers[5]
     added = np.zeros(1, wells.dtype)  # a number of the arrays' type

@@ -37,14 +37,8 @@ Waveform = Generator[AmpPins, bool, None]
 class Slot:
     """The actions of one run of AmpCtrl; its duration does not depend on them.
 
-    Attributes
-    ----------
-    resets : bool
-        It resets a row of pixels.
-    reads : bool
-        It ends the integration of a row and reads it.
-    opens : bool
-        The row that it resets is read in a later slot: it integrates from `expose` on.
+    resets: it resets a row of pixels. reads: it ends the integration of a row and reads it. opens: the row that it
+    resets is read in a later slot: it integrates from `expose` on.
     """
 
     resets: bool = True
@@ -58,19 +52,8 @@ def row_waveform(timing: AmpTiming, four_tap: bool = False, slot: Slot = Slot())
     The generator expects hold_free (bool) of the cycle whose pins it has just yielded; the guard before a read lasts
     until hold_free is True in its last cycle. Prime it with next().
 
-    Parameters
-    ----------
-    timing : AmpTiming
-        Durations of the phases.
-    four_tap : bool
-        Four sub-frames, one per time-of-flight tap, instead of one.
-    slot : Slot
-        What is left out of the row.
-
-    Yields
-    ------
-    AmpPins
-        Of each cycle.
+    timing: durations of the phases. four_tap: four sub-frames, one per time-of-flight tap, instead of one. slot: what
+    is left out of the row. Yields AmpPins: of each cycle.
     """
     for tap in range(TAPS if four_tap else 1):
         yield from _sub_frame(timing, tap, slot)
@@ -118,21 +101,9 @@ def waveform(
 ) -> dict[str, npt.NDArray[np.uint8]]:
     """Pins of one row for a known pattern of hold_free.
 
-    Parameters
-    ----------
-    timing : AmpTiming
-        Durations of the phases.
-    four_tap : bool
-        Four sub-frames instead of one.
-    hold_free : iterable of bool
-        Entry i belongs to the i-th cycle after `start`.
-    slot : Slot
-        What is left out of the row.
-
-    Returns
-    -------
-    dict of str to uint8
-        Pin name to one value per cycle, up to the cycle of `done` or the end of ``hold_free``.
+    timing: durations of the phases. four_tap: four sub-frames instead of one. hold_free: entry i belongs to the i-th
+    cycle after `start`. slot: what is left out of the row. Returns pin name to one value per cycle, up to the cycle of
+    `done` or the end of ``hold_free``.
     """
     row, cycles = row_waveform(timing, four_tap, slot), []
     pins = next(row)
@@ -148,17 +119,7 @@ def waveform(
 def row_cycles(timing: AmpTiming, four_tap: bool = False) -> int:
     """Cycles from the one after `start` to the one before `done`, if hold_free is always True.
 
-    Parameters
-    ----------
-    timing : AmpTiming
-        Durations of the phases.
-    four_tap : bool
-        Four sub-frames instead of one.
-
-    Returns
-    -------
-    int
-        Cycles of a row.
+    timing: durations of the phases. four_tap: four sub-frames instead of one. Returns cycles of a row.
     """
     t = timing
     tap = (

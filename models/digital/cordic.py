@@ -26,24 +26,9 @@ Ints = npt.NDArray[np.integer]
 def cordic(x: npt.ArrayLike, y: npt.ArrayLike, iterations: int = 10, noise_floor: int = 0) -> QuadResult:
     """Phase of vectors by CORDIC.
 
-    Parameters
-    ----------
-    x, y : array of int
-        -256..255, broadcastable.
-    iterations : int
-        Steps, 4..16, and as many fraction bits.
-    noise_floor : int
-        Amplitude below which a phase is not valid, 0..255.
-
-    Returns
-    -------
-    QuadResult
-        Of the broadcast shape, with ratio 0.
-
-    Raises
-    ------
-    ParameterError
-        For an argument out of range.
+    x, y: -256..255, broadcastable. iterations: steps, 4..16, and as many fraction bits. noise_floor: amplitude below
+    which a phase is not valid, 0..255. Returns QuadResult: of the broadcast shape, with ratio 0. Raises ParameterError
+    for an argument out of range.
     """
     check_int("iterations", iterations, ITERATIONS_MIN, ITERATIONS_MAX)
     octant, larger, smaller = fold(*operands(x, y, noise_floor))
@@ -56,19 +41,7 @@ def cordic(x: npt.ArrayLike, y: npt.ArrayLike, iterations: int = 10, noise_floor
 def rotate(x: Ints, y: Ints, z: Ints, i: int, angle: int) -> tuple[Ints, Ints, Ints]:
     """Turn (x, y) by atan(2^-i) towards the x axis and count the angle in z.
 
-    Parameters
-    ----------
-    x, y, z : array of int
-        State.
-    i : int
-        Number of the step, from 1.
-    angle : int
-        Angle of the step in LSB of z.
-
-    Returns
-    -------
-    tuple of array
-        State after the step.
+    x, y, z: state. i: number of the step, from 1. angle: angle of the step in LSB of z. Returns state after the step.
     """
     up = y >= 0
     return (
@@ -81,17 +54,7 @@ def rotate(x: Ints, y: Ints, z: Ints, i: int, angle: int) -> tuple[Ints, Ints, I
 def nearest_even(z: Ints, fraction: int) -> Ints:
     """Round z / 2^fraction to the nearest integer, ties to even.
 
-    Parameters
-    ----------
-    z : array of int
-        Fixed-point values.
-    fraction : int
-        Fraction bits, 1 or more.
-
-    Returns
-    -------
-    array of int
-        Shape of ``z``.
+    z: fixed-point values. fraction: fraction bits, 1 or more. Returns shape of ``z``.
     """
     whole, half = z >> fraction, 1 << fraction - 1
     return whole + ((z & 2 * half - 1) + (whole & 1) > half)

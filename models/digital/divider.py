@@ -25,20 +25,10 @@ from talbot.models.parameters.divider import (
 class QuadResult:
     """Results of a division, arrays of the operands' common shape.
 
-    Attributes
-    ----------
-    octant : uint8
-        0..7, floor(angle / 45 degrees); an axis or a diagonal belongs to the octant that starts there.
-    ratio : uint16
-        floor(2^n_frac * min/max) of (|x|, |y|), saturated to 2^n_frac - 1; CORDIC: 0.
-    zero : bool
-        True where x = y = 0; octant, ratio and phase are then 0.
-    phase : uint8
-        Binary angle.
-    amp_valid : bool
-        max(|x|, |y|) >= the noise floor, and not zero (a zero vector has no phase).
-    amp : uint8
-        max(|x|, |y|), saturated to 255.
+    octant: 0..7, floor(angle / 45 degrees); an axis or a diagonal belongs to the octant that starts there. ratio:
+    floor(2^n_frac * min/max) of (|x|, |y|), saturated to 2^n_frac - 1; CORDIC: 0. zero: True where x = y = 0; octant,
+    ratio and phase are then 0. phase: binary angle. amp_valid: max(|x|, |y|) >= the noise floor, and not zero (a zero
+    vector has no phase). amp: max(|x|, |y|), saturated to 255.
     """
 
     octant: npt.NDArray[np.integer]
@@ -52,24 +42,9 @@ class QuadResult:
 def quad_divide(x: npt.ArrayLike, y: npt.ArrayLike, n_frac: int = 8, noise_floor: int = 0) -> QuadResult:
     """Divide the smaller component by the larger one and look the phase up.
 
-    Parameters
-    ----------
-    x, y : array of int
-        -256..255, broadcastable.
-    n_frac : int
-        Fraction bits of the ratio, 4..16.
-    noise_floor : int
-        Amplitude below which a phase is not valid, 0..255.
-
-    Returns
-    -------
-    QuadResult
-        Of the broadcast shape.
-
-    Raises
-    ------
-    ParameterError
-        For an argument out of range.
+    x, y: -256..255, broadcastable. n_frac: fraction bits of the ratio, 4..16. noise_floor: amplitude below which a
+    phase is not valid, 0..255. Returns QuadResult: of the broadcast shape. Raises ParameterError for an argument out of
+    range.
     """
     check_int("n_frac", n_frac, N_FRAC_MIN, N_FRAC_MAX)
     octant, larger, smaller = fold(*operands(x, y, noise_floor))
@@ -81,22 +56,8 @@ def quad_divide(x: npt.ArrayLike, y: npt.ArrayLike, n_frac: int = 8, noise_floor
 def operands(x: npt.ArrayLike, y: npt.ArrayLike, noise_floor: int) -> tuple[npt.NDArray[np.int32], ...]:
     """Check and broadcast the operands.
 
-    Parameters
-    ----------
-    x, y : array of int
-        -256..255, broadcastable.
-    noise_floor : int
-        0..255.
-
-    Returns
-    -------
-    tuple of int32
-        x and y, of one shape.
-
-    Raises
-    ------
-    ParameterError
-        Unless all operands are integers in range.
+    x, y: -256..255, broadcastable. noise_floor: 0..255. Returns tuple of int32: x and y, of one shape. Raises
+    ParameterError unless all operands are integers in range.
     """
     check_int("noise_floor", noise_floor, 0, AMP_MAX)
     checked = []
@@ -120,17 +81,7 @@ def fold(
 
     A quadrant holds the axis it starts at. Turned back by its quadrant, a vector other than zero has u > 0, v >= 0.
 
-    Parameters
-    ----------
-    x, y : int32
-        Vectors, of one shape.
-
-    Returns
-    -------
-    octant : array of int
-        0..7.
-    larger, smaller : int32
-        |x| and |y| in order of size.
+    x, y: vectors, of one shape. Returns octant (0..7), larger, smaller (|x| and |y| in order of size).
     """
     lower = (y < 0) | ((y == 0) & (x < 0))
     odd = (y != 0) & np.where(lower, x >= 0, x <= 0)
@@ -151,21 +102,8 @@ def unfold(
 
     Odd octants run from their diagonal to the axis where the next one starts.
 
-    Parameters
-    ----------
-    octant, larger : array of int
-        Results of `fold`.
-    ratio : array of int
-        Fixed-point ratio.
-    index : array of int
-        Angle from the octant's own axis, in LSB of the phase.
-    noise_floor : int
-        0..255.
-
-    Returns
-    -------
-    QuadResult
-        Of the shape of ``octant``.
+    octant, larger: results of `fold`. ratio: fixed-point ratio. index: angle from the octant's own axis, in LSB of the
+    phase. noise_floor: 0..255. Returns QuadResult: of the shape of ``octant``.
     """
     zero = larger == 0
     odd = octant & 1
@@ -183,17 +121,8 @@ def unfold(
 def phase_error(phase: npt.ArrayLike, x: npt.ArrayLike, y: npt.ArrayLike) -> npt.NDArray[np.float64]:
     """Error of a binary angle against atan2(y, x).
 
-    Parameters
-    ----------
-    phase : array
-        Binary angle, 0..255.
-    x, y : array
-        Vectors, broadcastable.
-
-    Returns
-    -------
-    float64
-        -128..128 LSB, of the common shape; 0 where x = y = 0.
+    phase: binary angle, 0..255. x, y: vectors, broadcastable. Returns -128..128 LSB, of the common shape; 0 where x = y
+    = 0.
     """
     exact = np.arctan2(y, x) * (TURN / (2 * np.pi))
     error = (np.asarray(phase) - exact + TURN / 2) % TURN - TURN / 2

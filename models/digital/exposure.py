@@ -12,17 +12,7 @@ from talbot.models.parameters import AmpTiming
 def slot_cycles(timing: AmpTiming, four_tap: bool = False) -> int:
     """Cycles from one `amp_start` to the next, with overlap, where no row waits for the converters.
 
-    Parameters
-    ----------
-    timing : AmpTiming
-        Durations of the phases.
-    four_tap : bool
-        Four sub-frames instead of one.
-
-    Returns
-    -------
-    int
-        Cycles of a slot.
+    timing: durations of the phases. four_tap: four sub-frames instead of one. Returns cycles of a slot.
     """
     return row_cycles(timing, four_tap) + 2
 
@@ -30,19 +20,8 @@ def slot_cycles(timing: AmpTiming, four_tap: bool = False) -> int:
 def windows(timing: AmpTiming, rows: int) -> tuple[list[int], int]:
     """When the rows that are read integrate.
 
-    Parameters
-    ----------
-    timing : AmpTiming
-        Of the frame as it exposes.
-    rows : int
-        Rows that are read.
-
-    Returns
-    -------
-    list of int
-        Cycle in which each row's first integration begins, after the first row's.
-    int
-        Cycles from there to the end of its last one, common-mode resets included.
+    timing: of the frame as it exposes. rows: rows that are read. Returns cycle in which each row's first integration
+    begins, after the first row's. Returns cycles from there to the end of its last one, common-mode resets included.
     """
     slot = slot_cycles(timing)
     pauses = timing.n_cm * (timing.t_cm + 2 * timing.t_guard)
@@ -52,14 +31,7 @@ def windows(timing: AmpTiming, rows: int) -> tuple[list[int], int]:
 def integration_cycles(timing: AmpTiming) -> tuple[int, ...]:
     """Cycles of each integration of a row: a common-mode reset is between any two.
 
-    Parameters
-    ----------
-    timing : AmpTiming
-        Of the frame as it exposes (`FrameParameters.exposing`).
-
-    Returns
-    -------
-    tuple of int
-        n_cm + 1 integrations: exposure slots and t_int, then t_int each.
+    timing: of the frame as it exposes (`FrameParameters.exposing`). Returns n_cm + 1 integrations: exposure slots and
+    t_int, then t_int each.
     """
     return (timing.exposure * slot_cycles(timing) + timing.t_int, *(timing.t_int,) * timing.n_cm)

@@ -12,22 +12,8 @@ TRANSFER_MAX = 255  # bytes of one transfer
 def frame_values(frame: FrameParameters, trims: Iterable[int] | None = None) -> dict[str, int]:
     """Configuration of one frame, field by field.
 
-    Parameters
-    ----------
-    frame : FrameParameters
-        Configuration.
-    trims : iterable of int, optional
-        Up to 24 register values by pixel type; 0 for the rest.
-
-    Returns
-    -------
-    dict of str to int
-        Key of the field to value.
-
-    Raises
-    ------
-    ParameterError
-        For too many trims or a trim out of range.
+    frame: configuration. trims: up to 24 register values by pixel type; 0 for the rest. Returns dict of str to int: key
+    of the field to value. Raises ParameterError for too many trims or a trim out of range.
     """
     trims = [] if trims is None else [int(t) for t in trims]
     chip = register_map()
@@ -45,22 +31,8 @@ def frame_values(frame: FrameParameters, trims: Iterable[int] | None = None) -> 
 def frame_writes(frame: FrameParameters, trims: Iterable[int] | None = None) -> list[tuple[int, int]]:
     """Configuration writes of one frame.
 
-    Parameters
-    ----------
-    frame : FrameParameters
-        Configuration.
-    trims : iterable of int, optional
-        As in `frame_values`.
-
-    Returns
-    -------
-    list of (int, int)
-        (address, byte), ascending, every configuration byte once.
-
-    Raises
-    ------
-    ParameterError
-        As in `frame_values`.
+    frame: configuration. trims: as in `frame_values`. Returns (address, byte), ascending, every configuration byte
+    once. Raises ParameterError as in `frame_values`.
     """
     chip = register_map()
     return sorted(chip.image(chip.configuration, frame_values(frame, trims)).items())
@@ -69,20 +41,8 @@ def frame_writes(frame: FrameParameters, trims: Iterable[int] | None = None) -> 
 def write_transfers(writes: Iterable[tuple[int, int]]) -> list[bytes]:
     """SPI transfers of some writes.
 
-    Parameters
-    ----------
-    writes : iterable of (int, int)
-        (address, byte), 0..127 and 0..255.
-
-    Returns
-    -------
-    list of bytes
-        Each a command byte and data at ascending addresses.
-
-    Raises
-    ------
-    ParameterError
-        For an address or a byte out of range.
+    writes: (address, byte), 0..127 and 0..255. Returns list of bytes: each a command byte and data at ascending
+    addresses. Raises ParameterError for an address or a byte out of range.
     """
     out: list[bytearray] = []
     last = None
@@ -100,15 +60,7 @@ def write_transfers(writes: Iterable[tuple[int, int]]) -> list[bytes]:
 def command(name: str) -> bytes:
     """SPI transfer that writes 1 to a single-bit field.
 
-    Parameters
-    ----------
-    name : str
-        Key of the field: 'start' or a sticky status bit.
-
-    Returns
-    -------
-    bytes
-        Command byte and data.
+    name: key of the field: 'start' or a sticky status bit. Returns command byte and data.
     """
     field = register_map()[name]
     return bytes((WRITE | field.byte, 1 << field.shift))
@@ -117,22 +69,8 @@ def command(name: str) -> bytes:
 def read_transfer(address: int, count: int) -> bytes:
     """SPI transfer that reads consecutive bytes; the reply holds them from its second byte on.
 
-    Parameters
-    ----------
-    address : int
-        First address, 0..127.
-    count : int
-        Bytes, 1..254.
-
-    Returns
-    -------
-    bytes
-        Command byte and zeros.
-
-    Raises
-    ------
-    ParameterError
-        For an argument out of range.
+    address: first address, 0..127. count: bytes, 1..254. Returns command byte and zeros. Raises ParameterError for an
+    argument out of range.
     """
     check_int("address", address, 0, 127)
     check_int("count", count, 1, TRANSFER_MAX - 1)
@@ -149,20 +87,8 @@ def status_transfers() -> list[bytes]:
 def decode_status(replies: Sequence[bytes]) -> dict[str, int | bool]:
     """Decode the status and the counters.
 
-    Parameters
-    ----------
-    replies : sequence of bytes
-        Replies to `status_transfers`, with the byte during the command.
-
-    Returns
-    -------
-    dict of str to int or bool
-        Field to value.
-
-    Raises
-    ------
-    ParameterError
-        For a reply of the wrong length.
+    replies: replies to `status_transfers`, with the byte during the command. Returns field to value. Raises
+    ParameterError for a reply of the wrong length.
     """
     chip, transfers = register_map(), status_transfers()
     lengths, expected = [len(r) for r in replies], [len(t) for t in transfers]

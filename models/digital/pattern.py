@@ -18,15 +18,8 @@ def pattern_value(
 ) -> npt.NDArray[np.int64]:
     """Value of the pattern at the comparators.
 
-    Parameters
-    ----------
-    row, tile, k, sub : array of int
-        Pixel row, tile column, column in the tile and sub-sample; 0 or more, broadcastable.
-
-    Returns
-    -------
-    int64
-        0..255 (offset binary in edge and ternary mode), of the broadcast shape.
+    row, tile, k, sub: pixel row, tile column, column in the tile and sub-sample; 0 or more, broadcastable. Returns
+    0..255 (offset binary in edge and ternary mode), of the broadcast shape.
     """
     y, t, x, s = (np.asarray(place, np.int64) for place in (row, tile, k, sub))
     ramp = (3 * y + 5 * t + 40 * x + 37 * s) & 0xFF
@@ -38,12 +31,7 @@ def pattern_value(
 class PatternEnd:
     """Replacement of models.afe.FrontEnd when the test pattern is on: ideal, and independent of the scene.
 
-    Attributes
-    ----------
-    rows, cols : int
-        Size of the array in pixels.
-    tile : TileParameters
-        The tile.
+    rows, cols: size of the array in pixels. tile: the tile.
     """
 
     rows: int
@@ -53,15 +41,7 @@ class PatternEnd:
     def values(self, mode: str) -> npt.NDArray[np.float64]:
         """Values at the comparators.
 
-        Parameters
-        ----------
-        mode : str
-            One of MODES.
-
-        Returns
-        -------
-        float64 (subs, rows, cols)
-            In LSB.
+        mode: one of MODES. Returns (subs, rows, cols), in LSB.
         """
         sub, row, col = np.ogrid[: SAMPLES_PER_PIXEL[mode], : self.rows, : self.cols]
         value = pattern_value(row, col // self.tile.cols, col % self.tile.cols, sub).astype(np.float64)
@@ -70,18 +50,6 @@ class PatternEnd:
     def convert(self, samples: npt.ArrayLike, mode: str, threshold: int = 0) -> Conversion:
         """Convert a whole frame.
 
-        Parameters
-        ----------
-        samples : array
-            Ignored.
-        mode : str
-            One of MODES.
-        threshold : int
-            0..127 codes.
-
-        Returns
-        -------
-        Conversion
-            Of arrays (subs, rows, cols).
+        samples: ignored. mode: one of MODES. threshold: 0..127 codes. Returns Conversion: of arrays (subs, rows, cols).
         """
         return convert(self.values(mode), mode not in SIGNED, threshold, ternary=mode == "ternary")

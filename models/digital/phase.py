@@ -13,28 +13,9 @@ def divide(
 ) -> QuadResult:
     """Result of a divider variant, bit true.
 
-    Parameters
-    ----------
-    variant : str
-        One of DIVIDERS.
-    n_frac : int
-        Fraction bits of the ratio, 4..16; unused by CORDIC.
-    iterations : int
-        Steps of CORDIC, 4..16.
-    x, y : array of int
-        -256..255, broadcastable.
-    noise_floor : int
-        Amplitude below which a phase is not valid, 0..255.
-
-    Returns
-    -------
-    QuadResult
-        Of the broadcast shape.
-
-    Raises
-    ------
-    ParameterError
-        For an argument out of range.
+    variant: one of DIVIDERS. n_frac: fraction bits of the ratio, 4..16; unused by CORDIC. iterations: steps of CORDIC,
+    4..16. x, y: -256..255, broadcastable. noise_floor: amplitude below which a phase is not valid, 0..255. Returns
+    QuadResult: of the broadcast shape. Raises ParameterError for an argument out of range.
     """
     check_choice("divider", variant, DIVIDERS)
     if variant == "cordic":
@@ -47,25 +28,10 @@ def phase_samples(
 ) -> tuple[npt.NDArray[np.int16], npt.NDArray[np.int16]]:
     """Phase and amplitude of every pixel.
 
-    Parameters
-    ----------
-    taps : array of int (..., 4)
-        0..255, at 0, 90, 180 and 270 degrees.
-    chip : ChipParameters
-        Variant and widths of the divider.
-    noise_floor : int
-        0..255.
-
-    Returns
-    -------
-    phase : int16 (...)
-        8-bit binary angle of atan2(i270 - i90, i0 - i180).
-    amplitude : int16 (...)
-        max(|x|, |y|), 1..255, or 0 where it is below ``noise_floor`` or both differences are 0.
-
-    References
-    ----------
-    [Jayasuriya2017], Eq. 5.3 with both signs.
+    taps: (..., 4), 0..255, at 0, 90, 180 and 270 degrees. chip: variant and widths of the divider. noise_floor: 0..255.
+    Returns phase ((...), 8-bit binary angle of atan2(i270 - i90, i0 - i180)), amplitude ((...), max(|x|, |y|), 1..255,
+    or 0 where it is below ``noise_floor`` or both differences are 0). Source: [Jayasuriya2017], Eq. 5.3 with both
+    signs.
     """
     taps = np.asarray(taps, np.int32)
     x, y = taps[..., 0] - taps[..., 2], taps[..., 3] - taps[..., 1]

@@ -13,10 +13,7 @@ class RegisterBank:
     A write to `start`, `abort` or `loop_back` is kept in ``start``, ``abort`` and ``loop`` (a byte) until `take`
     collects it.
 
-    Parameters
-    ----------
-    resets : mapping of str to int, optional
-        Values after reset that differ from the map's, by field (those that follow the array).
+    resets: values after reset that differ from the map's, by field (those that follow the array).
     """
 
     def __init__(self, resets: Mapping[str, int] | None = None) -> None:
@@ -33,15 +30,7 @@ class RegisterBank:
     def value(self, key: str) -> int:
         """Current value of a configuration field.
 
-        Parameters
-        ----------
-        key : str
-            Key of the field in the map.
-
-        Returns
-        -------
-        int
-            Unsigned.
+        key: key of the field in the map. Returns unsigned.
         """
         f = self.chip[key]
         raw = sum(self.bytes.get(f.byte + i, 0) << 8 * i for i in range(f.bytes))
@@ -50,10 +39,7 @@ class RegisterBank:
     def set(self, name: str) -> None:
         """Set a sticky status bit.
 
-        Parameters
-        ----------
-        name : str
-            Name of the bit.
+        name: name of the bit.
         """
         self.held |= 1 << self.sticky[name]
 
@@ -66,16 +52,7 @@ class RegisterBank:
     def write(self, address: int, byte: int, busy: bool, loop_full: bool) -> None:
         """Write one byte from the host.
 
-        Parameters
-        ----------
-        address : int
-            0..127.
-        byte : int
-            0..255.
-        busy : bool
-            A frame runs.
-        loop_full : bool
-            A loop-back byte waits for the link.
+        address: 0..127. byte: 0..255. busy: a frame runs. loop_full: a loop-back byte waits for the link.
         """
         chip = self.chip
         locked, loop_enable = busy or loop_full, bool(self.value("loop_enable"))
@@ -106,21 +83,8 @@ class RegisterBank:
     def read(self, address: int, busy: bool, counters: Sequence[int], state: int = 0) -> int:
         """Read one byte for the host.
 
-        Parameters
-        ----------
-        address : int
-            0..127.
-        busy : bool
-            A frame runs.
-        counters : sequence of int
-            Current values in the order of the map.
-        state : int
-            Current value of the register `state`.
-
-        Returns
-        -------
-        int
-            0..255; 0 at an unused address.
+        address: 0..127. busy: a frame runs. counters: current values in the order of the map. state: current value of
+        the register `state`. Returns 0..255; 0 at an unused address.
         """
         for f, value in zip(self.chip.counters, counters, strict=True):
             if address == f.byte:

@@ -18,14 +18,8 @@ BIPOLAR = 128  # offset binary: DAC code = code + 128
 class Conversion(NamedTuple):
     """Result of a conversion, arrays of one shape.
 
-    Attributes
-    ----------
-    codes : int16
-        -128..127 or 0..255.
-    converted : bool
-        False where the window comparison alone gives the code.
-    decisions : uint8
-        Comparator decisions of each sample.
+    codes: -128..127 or 0..255. converted: False where the window comparison alone gives the code. decisions: comparator
+    decisions of each sample.
     """
 
     codes: npt.NDArray[np.int16]
@@ -52,26 +46,9 @@ def decisions(unsigned: bool, threshold: int, ternary: bool = False) -> Generato
     decisions, MSB first. A code that is inside the window after these is set to zero. Ternary mode makes the first two
     alone, whatever the threshold.
 
-    Parameters
-    ----------
-    unsigned : bool
-        Codes 0..255 without a window, else -128..127 with it.
-    threshold : int
-        T, 0..127; 0 converts every sample of edge mode.
-    ternary : bool
-        Codes -1, 0 and 1; not with ``unsigned``.
-
-    Yields
-    ------
-    int
-        DAC code, 0..255.
-
-    Returns
-    -------
-    code : int
-        -128..127 or 0..255.
-    converted : bool
-        False where the window comparison alone gives the code.
+    unsigned: codes 0..255 without a window, else -128..127 with it. threshold: T, 0..127; 0 converts every sample of
+    edge mode. ternary: codes -1, 0 and 1; not with ``unsigned``. Yields DAC code, 0..255. Returns code (-128..127 or
+    0..255), converted (False where the window comparison alone gives the code).
     """
     window = 0 if unsigned else threshold
     if window or ternary:
@@ -100,32 +77,12 @@ def convert(
 ) -> Conversion:
     """Convert held values.
 
-    Parameters
-    ----------
-    v : float64
-        Values in LSB, finite.
-    unsigned : bool
-        Codes 0..255 without a window, else -128..127 with it.
-    threshold : int
-        0..127; samples of a smaller magnitude become exact zeros; 0 converts every sample of edge mode.
-    converter : models.afe.Converter, optional
-        Imperfect lanes; None is ideal ones.
-    lane : array of int
-        Lane of each sample, 0..lanes-1, broadcastable to ``v``.
-    index : array of int
-        Number of each sample, for its noise, broadcastable to ``v``.
-    ternary : bool
-        Codes -1, 0 and 1 by the window comparison alone; not with ``unsigned``.
-
-    Returns
-    -------
-    Conversion
-        Of arrays of the shape of ``v``.
-
-    Raises
-    ------
-    ParameterError
-        For a threshold out of range and for values that are not finite.
+    v: values in LSB, finite. unsigned: codes 0..255 without a window, else -128..127 with it. threshold: 0..127;
+    samples of a smaller magnitude become exact zeros; 0 converts every sample of edge mode. converter: imperfect lanes;
+    None is ideal ones. lane: lane of each sample, 0..lanes-1, broadcastable to ``v``. index: number of each sample, for
+    its noise, broadcastable to ``v``. ternary: codes -1, 0 and 1 by the window comparison alone; not with ``unsigned``.
+    Returns Conversion: of arrays of the shape of ``v``. Raises ParameterError for a threshold out of range and for
+    values that are not finite.
     """
     check_int("threshold", threshold, 0, 127)
     v = np.asarray(v, np.float64)

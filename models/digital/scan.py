@@ -13,18 +13,8 @@ from talbot.models.parameters import SAMPLES_PER_PIXEL, FrameParameters, Paramet
 class Step:
     """One conversion step: every enabled lane of L converts the pixel at (row, 6 * (L * group + lane) + k).
 
-    Attributes
-    ----------
-    row : int
-        Pixel row.
-    k : int
-        Column in the tile.
-    group : int
-        Tile columns L * group .. L * group + L - 1.
-    sub : int
-        Sub-sample.
-    enable : int
-        Bit l set = lane l converts.
+    row: pixel row. k: column in the tile. group: tile columns L * group .. L * group + L - 1. sub: sub-sample. enable:
+    bit l set = lane l converts.
     """
 
     row: int
@@ -38,21 +28,8 @@ class Step:
 class Scan:
     """Order of the rows, steps and samples of one frame.
 
-    Attributes
-    ----------
-    rows, cols : int
-        Size of the array in pixels.
-    lanes : int
-        Converters, a power of two.
-    frame : FrameParameters
-        Configuration of the frame.
-    tile : TileParameters
-        The tile.
-
-    Raises
-    ------
-    ParameterError
-        If the window is outside the array or selects no pixel.
+    rows, cols: size of the array in pixels. lanes: converters, a power of two. frame: configuration of the frame. tile:
+    the tile. Raises ParameterError if the window is outside the array or selects no pixel.
     """
 
     rows: int
@@ -97,15 +74,7 @@ class Scan:
     def columns_of(self, row: int) -> tuple[int, ...]:
         """Unmasked in-tile columns of a row that exist in the window's first tile.
 
-        Parameters
-        ----------
-        row : int
-            Pixel row.
-
-        Returns
-        -------
-        tuple of int
-            k, ascending.
+        row: pixel row. Returns k, ascending.
         """
         base = (row % self.tile.rows) * self.tile.cols
         first = self.tile.cols * self.frame.window.col0
@@ -120,15 +89,7 @@ class Scan:
 
         ``enable`` is 0 where the array ends, or decimation keeps no tile of the last group: nothing is converted.
 
-        Parameters
-        ----------
-        row : int
-            Pixel row.
-
-        Returns
-        -------
-        list of Step
-            In order.
+        row: pixel row. Returns list of Step: in order.
         """
         w, lanes = self.frame.window, self.lanes
         stride = 1 << self.frame.decimation
@@ -148,17 +109,8 @@ class Scan:
     def row_samples(self, row: int) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
         """Samples of one row in the order of the stream.
 
-        Parameters
-        ----------
-        row : int
-            Pixel row.
-
-        Returns
-        -------
-        cols : int64 (n,)
-            Pixel column of each sample.
-        subs : int64 (n,)
-            Sub-sample; with ``frame.phase`` 0 is the phase and 1 the amplitude.
+        row: pixel row. Returns cols ((n,), pixel column of each sample), subs ((n,), sub-sample; with ``frame.phase`` 0
+        is the phase and 1 the amplitude).
         """
         return _row_samples(self, row % self.tile.rows)
 
@@ -169,26 +121,8 @@ def pixels_read(
 ) -> npt.NDArray[np.bool_]:
     """Pixels that a frame reads, the same array in all frames of a sequence.
 
-    Parameters
-    ----------
-    rows, cols : int
-        Size of the array in pixels.
-    lanes : int
-        Converters.
-    frame : FrameParameters
-        Configuration of the frame.
-    tile : TileParameters
-        The tile.
-
-    Returns
-    -------
-    bool (rows, cols)
-        As `Scan.read`; it cannot be written.
-
-    Raises
-    ------
-    ParameterError
-        As `Scan`.
+    rows, cols: size of the array in pixels. lanes: converters. frame: configuration of the frame. tile: the tile.
+    Returns (rows, cols), as `Scan.read`; it cannot be written. Raises ParameterError as `Scan`.
     """
     if frame.frame_number:
         return pixels_read(rows, cols, lanes, replace(frame, frame_number=0), tile)

@@ -46,21 +46,8 @@ def stokes(
 ) -> npt.NDArray[np.floating]:
     """Relative Stokes parameters from the common modes at four orientations.
 
-    Parameters
-    ----------
-    i0, i45, i90, i135 : array (...)
-        Common modes of the pixels at 0, 45, 90 and 135 degrees.
-    diattenuation : float
-        Greater than 0, at most 1.
-
-    Returns
-    -------
-    array (2, ...)
-        S1/S0 and S2/S0; 0 where there is no light.
-
-    References
-    ----------
-    [Jayasuriya2017], Ch. 4.
+    i0, i45, i90, i135: (...), common modes of the pixels at 0, 45, 90 and 135 degrees. diattenuation: greater than 0,
+    at most 1. Returns (2, ...), S1/S0 and S2/S0; 0 where there is no light. Source: [Jayasuriya2017], Ch. 4.
     """
     s1, s2 = i90 - i0, i135 - i45
     total = (i0 + i45 + i90 + i135) / 2
@@ -71,18 +58,7 @@ def stokes(
 def angle(s1: npt.ArrayLike, s2: npt.ArrayLike) -> npt.NDArray[np.floating]:
     """Angle of linear polarization, psi = atan2(S2, S1) / 2.
 
-    Parameters
-    ----------
-    s1, s2 : array
-        Stokes parameters, broadcastable.
-
-    Returns
-    -------
-    array
-        In rad, (-pi/2, pi/2].
-
-    References
-    ----------
-    [Jayasuriya2017], Ch. 4, with the factor 1/2 that the thesis leaves out.
+    s1, s2: Stokes parameters, broadcastable. Returns array: in rad, (-pi/2, pi/2]. Source: [Jayasuriya2017], Ch. 4,
+    with the factor 1/2 that the thesis leaves out.
     """
     return 0.5 * np.arctan2(s2, s1)

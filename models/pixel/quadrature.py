@@ -93,19 +93,7 @@ def exact(
 def sampled(types: tuple[PixelType, ...], optics: OpticsParameters, light: Light) -> npt.NDArray[np.float64]:
     """Photocurrents from the view weights and the light at the middle of each view.
 
-    Parameters
-    ----------
-    types : tuple of PixelType
-        Pixel types.
-    optics : OpticsParameters
-        Lens, gratings and views.
-    light : callable
-        As in `exact`.
-
-    Returns
-    -------
-    float64 (types, 2)
-        Not scaled.
+    types: pixel types. optics: lens, gratings and views. light: as in `exact`. Returns (types, 2), not scaled.
     """
     middle = (np.arange(optics.views) + 0.5) / optics.views * 2 - 1
     nu_y, nu_x = np.meshgrid(middle * optics.nu_max, middle * optics.nu_max, indexing="ij")

@@ -51,15 +51,7 @@ class TableResponse:
     def __call__(self, theta_x: npt.NDArray[np.floating], theta_y: npt.NDArray[np.floating]) -> Floats:
         """Response to rays.
 
-        Parameters
-        ----------
-        theta_x, theta_y : array (n,)
-            Incidence angles in rad, |theta| <= pi/2.
-
-        Returns
-        -------
-        float64 (2, n)
-            Of both diodes.
+        theta_x, theta_y: (n,), incidence angles in rad, |theta| <= pi/2. Returns (2, n), of both diodes.
         """
         limit = np.pi / 2 - 1e-6  # the tangent of a right angle times a cosine of 0
         x, y = (np.tan(np.clip(theta, -limit, limit)) for theta in (theta_x, theta_y))

@@ -66,19 +66,8 @@ def depth_of(phase: npt.ArrayLike, f_mod: float) -> npt.NDArray[np.float64]:
 def tap_gains(phase: npt.ArrayLike, contrast: float = 1.0, ambient: float = 0.0) -> npt.NDArray[np.floating]:
     """Share of light of mean 1 that each tap collects: (1 + contrast cos(tap + phase)) / 2 + ambient.
 
-    Parameters
-    ----------
-    phase : array (...)
-        In rad.
-    contrast : float
-        Of the demodulation, 0..1.
-    ambient : float
-        Light that is not modulated, 0 or more.
-
-    Returns
-    -------
-    array (4, ...)
-        0..1, and what is ambient.
+    phase: (...), in rad. contrast: of the demodulation, 0..1. ambient: light that is not modulated, 0 or more. Returns
+    (4, ...), 0..1, and what is ambient.
     """
     return np.stack([(1 + contrast * np.cos(tap + np.asarray(phase))) / 2 + ambient for tap in TAPS])
 
@@ -86,23 +75,8 @@ def tap_gains(phase: npt.ArrayLike, contrast: float = 1.0, ambient: float = 0.0)
 def code_correlation(delay: npt.ArrayLike, chips: int, rate: float) -> npt.NDArray[np.float64]:
     """Correlation of an m-sequence with itself: a triangle of two chips.
 
-    Parameters
-    ----------
-    delay : array
-        In s.
-    chips : int
-        Of the sequence.
-    rate : float
-        Chips a second.
-
-    Returns
-    -------
-    float64
-        1 at no delay and after every sequence, -1/chips from one chip on.
-
-    References
-    ----------
-    [Tadano2015].
+    delay: in s. chips: of the sequence. rate: chips a second. Returns 1 at no delay and after every sequence, -1/chips
+    from one chip on. Source: [Tadano2015].
     """
     off = np.asarray(delay, float) * rate
     off = np.abs((off + chips / 2) % chips - chips / 2)
@@ -112,15 +86,7 @@ def code_correlation(delay: npt.ArrayLike, chips: int, rate: float) -> npt.NDArr
 def tap_depths(electrical: ElectricalParameters) -> npt.NDArray[np.float64]:
     """Depths at which the taps of a code see most.
 
-    Parameters
-    ----------
-    electrical : ElectricalParameters
-        With a code.
-
-    Returns
-    -------
-    float64 (4,)
-        In m.
+    electrical: with a code. Returns (4,), in m.
     """
     return SPEED_OF_LIGHT / 2 * (electrical.code_delay + np.arange(4) / electrical.chip_rate)
 
@@ -128,15 +94,7 @@ def tap_depths(electrical: ElectricalParameters) -> npt.NDArray[np.float64]:
 def tap_functions(electrical: ElectricalParameters) -> list[Callable[[npt.ArrayLike], npt.NDArray[np.floating]]]:
     """Share that each tap collects of light from a depth, of mean 1.
 
-    Parameters
-    ----------
-    electrical : ElectricalParameters
-        Modulation, contrast and ambient light.
-
-    Returns
-    -------
-    list of callable
-        Four functions of a depth in m.
+    electrical: modulation, contrast and ambient light. Returns four functions of a depth in m.
     """
     e = electrical
 
@@ -157,20 +115,7 @@ def tap_functions(electrical: ElectricalParameters) -> list[Callable[[npt.ArrayL
 def quadrature(taps: npt.NDArray[np.floating]) -> tuple[npt.NDArray[np.floating], npt.NDArray[np.floating]]:
     """Quadrature components of four taps.
 
-    Parameters
-    ----------
-    taps : array (4, ...)
-        At 0, 90, 180 and 270 degrees.
-
-    Returns
-    -------
-    x : array (...)
-        i_0 - i_180.
-    y : array (...)
-        i_270 - i_90.
-
-    References
-    ----------
+    taps: (4, ...), at 0, 90, 180 and 270 degrees. Returns x ((...), i_0 - i_180), y ((...), i_270 - i_90). Source:
     [Jayasuriya2017], Eq. 5.3, with the signs that agree with Eq. 5.2.
     """
     return taps[0] - taps[2], taps[3] - taps[1]

@@ -24,28 +24,9 @@ def density(
 ) -> npt.NDArray[np.floating]:
     """Integrand rho * omega of all diodes.
 
-    Parameters
-    ----------
-    types : sequence of PixelType
-        Pixel types.
-    optics : OpticsParameters
-        Lens and gratings.
-    nu_x, nu_y : array (n,)
-        Tangents of the rays.
-
-    Returns
-    -------
-    array (types, 2, n)
-        0..2, or what a type's own response gives.
-
-    Raises
-    ------
-    ParameterError
-        For a type's own response of a wrong shape, negative or not finite.
-
-    References
-    ----------
-    [Jayasuriya2017], Eq. 3.3.
+    types: pixel types. optics: lens and gratings. nu_x, nu_y: (n,), tangents of the rays. Returns (types, 2, n), 0..2,
+    or what a type's own response gives. Raises ParameterError for a type's own response of a wrong shape, negative or
+    not finite. Source: [Jayasuriya2017], Eq. 3.3.
     """
     theta_x, theta_y = np.arctan(nu_x), np.arctan(nu_y)
     omega = vignetting(nu_x, nu_y, optics.vignetting_power)
@@ -74,17 +55,7 @@ def cell_nodes(optics: OpticsParameters, v: int, u: int) -> npt.NDArray[np.float
     The integral over nu_x runs in arcs, nu_x = nu_max sin t, cut where the disc crosses the cell's corners. The
     integrand is thus smooth up to the rim of the lens, and the error falls exponentially with the nodes.
 
-    Parameters
-    ----------
-    optics : OpticsParameters
-        Lens, views and subsamples.
-    v, u : int
-        View row and column.
-
-    Returns
-    -------
-    float64 (3, n)
-        nu_x, nu_y and weight of each node.
+    optics: lens, views and subsamples. v, u: view row and column. Returns (3, n), nu_x, nu_y and weight of each node.
     """
     radius = optics.nu_max
     edges = np.linspace(-radius, radius, optics.views + 1)
@@ -112,19 +83,8 @@ def raw_weights(
 ) -> npt.NDArray[np.float64]:
     """View weights W, not scaled.
 
-    Parameters
-    ----------
-    types : tuple of PixelType
-        Pixel types.
-    optics : OpticsParameters
-        Lens, gratings and views.
-    chief : (float, float)
-        Tangents of the chief ray at the pixel, y and x.
-
-    Returns
-    -------
-    float64 (types, 2, views, views)
-        Read-only.
+    types: pixel types. optics: lens, gratings and views. chief: tangents of the chief ray at the pixel, y and x.
+    Returns (types, 2, views, views), read-only.
     """
     nodes, starts = _all_nodes(optics)
     nu_x, nu_y, w = nodes
@@ -170,14 +130,8 @@ class FieldWeights:
 
     W of a pixel of this type at (row, col) is the sum over i, j of series[type, :, v, u, i, j] y[row, i] x[col, j].
 
-    Attributes
-    ----------
-    series : float64 (types, 2, views, views, terms, terms)
-        Coefficients.
-    y : float64 (rows, terms)
-        Polynomials at each row.
-    x : float64 (cols, terms)
-        Polynomials at each column.
+    series: (types, 2, views, views, terms, terms), coefficients. y: (rows, terms), polynomials at each row. x: (cols,
+    terms), polynomials at each column.
     """
 
     series: npt.NDArray[np.float64]
@@ -197,17 +151,8 @@ NODES = 40  # across the pupil, all views together; at least 3 a view
 def field_weights(sensor: SensorParameters, views: int) -> FieldWeights:
     """View weights of every pixel behind the sensor's lens, scaled as `view_weights` on the axis.
 
-    Parameters
-    ----------
-    sensor : SensorParameters
-        The sensor; its own number of views is not used.
-    views : int
-        Views along the pupil's diameter, 1..31.
-
-    Returns
-    -------
-    FieldWeights
-        Off by less than 1e-4 of a weight's share of the light.
+    sensor: the sensor; its own number of views is not used. views: views along the pupil's diameter, 1..31. Returns
+    FieldWeights: off by less than 1e-4 of a weight's share of the light.
     """
     optics = replace(sensor.optics, views=views, subsamples=max(3, -(-NODES // views)))
     types, array = sensor.tile.types, sensor.array

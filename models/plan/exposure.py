@@ -13,17 +13,7 @@ CYCLES_A_ROW = 16  # marks, and what the bank and the encoder still hold
 def fitting(frame: FrameParameters, sensor: SensorParameters) -> AmpTiming:
     """Timing of a frame with t_int so long that no row waits for the converters: all slots last as long.
 
-    Parameters
-    ----------
-    frame : FrameParameters
-        The frame.
-    sensor : SensorParameters
-        The sensor.
-
-    Returns
-    -------
-    AmpTiming
-        Of the frame, t_int longer where needed.
+    frame: the frame. sensor: the sensor. Returns AmpTiming: of the frame, t_int longer where needed.
     """
     timing = frame.timing
     scan = Scan(*sensor.shape, sensor.chip.lanes, frame, sensor.tile)
@@ -39,19 +29,8 @@ def exposed_for(signal: float, frame: FrameParameters, sensor: SensorParameters)
 
     In light that would give more in t_int alone the reset pointer does not lead, and t_int is shorter.
 
-    Parameters
-    ----------
-    signal : float
-        Part of a full well, 0..1.
-    frame : FrameParameters
-        The frame, without common-mode resets.
-    sensor : SensorParameters
-        The sensor; its white_current is that of the light.
-
-    Returns
-    -------
-    AmpTiming
-        Of the frame but t_int and exposure.
+    signal: part of a full well, 0..1. frame: the frame, without common-mode resets. sensor: the sensor; its
+    white_current is that of the light. Returns AmpTiming: of the frame but t_int and exposure.
     """
     e = sensor.electrical
     cycles = round(signal * e.full_well * ELEMENTARY_CHARGE / e.white_current * sensor.chip.f_clk)
@@ -65,17 +44,8 @@ def exposed_for(signal: float, frame: FrameParameters, sensor: SensorParameters)
 def row_cycles(frame: FrameParameters, sensor: SensorParameters) -> int:
     """Cycles of a row: its slot, or as long as the converters take where every sample has the longest search.
 
-    Parameters
-    ----------
-    frame : FrameParameters
-        The frame; in time of flight a slot has four integrations.
-    sensor : SensorParameters
-        The sensor.
-
-    Returns
-    -------
-    int
-        Cycles from a row to the next.
+    frame: the frame; in time of flight a slot has four integrations. sensor: the sensor. Returns cycles from a row to
+    the next.
     """
     timing = frame.exposing
     fitted = fitting(replace(frame, timing=timing), sensor)  # of tof: all four samples in one slot
@@ -86,17 +56,7 @@ def row_cycles(frame: FrameParameters, sensor: SensorParameters) -> int:
 def frame_cycles(frame: FrameParameters, sensor: SensorParameters) -> int:
     """Cycles of a frame: a row's for each row that is read, and for each by which the reset pointer leads.
 
-    Parameters
-    ----------
-    frame : FrameParameters
-        The frame.
-    sensor : SensorParameters
-        The sensor.
-
-    Returns
-    -------
-    int
-        Without what a slow host takes.
+    frame: the frame. sensor: the sensor. Returns int: without what a slow host takes.
     """
     scan = Scan(*sensor.shape, sensor.chip.lanes, frame, sensor.tile)
     return (len(scan.row_list) + frame.exposing.exposure) * row_cycles(frame, sensor)

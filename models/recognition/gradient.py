@@ -38,21 +38,8 @@ def contrast(pictures: npt.ArrayLike) -> npt.NDArray[np.float64]:
 def spatial(pictures: npt.ArrayLike, threshold: float) -> Bools:
     """Binary spatial gradient.
 
-    Parameters
-    ----------
-    pictures : array (..., height, width)
-        Intensity.
-    threshold : float
-        In the same unit, 0 or more.
-
-    Returns
-    -------
-    bool (..., height, width)
-        True where a pixel is active.
-
-    References
-    ----------
-    [Jayasuriya2017], Eq. A.1.
+    pictures: (..., height, width), intensity. threshold: in the same unit, 0 or more. Returns (..., height, width),
+    True where a pixel is active. Source: [Jayasuriya2017], Eq. A.1.
     """
     check_real("threshold", threshold, 0, 1e9)
     return contrast(pictures) > threshold
@@ -61,24 +48,8 @@ def spatial(pictures: npt.ArrayLike, threshold: float) -> Bools:
 def temporal(now: npt.ArrayLike, before: npt.ArrayLike) -> Bools:
     """Binary temporal gradient: the activity of a pixel changes.
 
-    Parameters
-    ----------
-    now, before : bool (..., height, width)
-        Spatial gradients of two frames.
-
-    Returns
-    -------
-    bool (..., height, width)
-        True where they differ.
-
-    Raises
-    ------
-    ParameterError
-        For two shapes.
-
-    References
-    ----------
-    [Jayasuriya2017], Eq. A.2.
+    now, before: (..., height, width), spatial gradients of two frames. Returns (..., height, width), True where they
+    differ. Raises ParameterError for two shapes. Source: [Jayasuriya2017], Eq. A.2.
     """
     now, before = np.asarray(now, bool), np.asarray(before, bool)
     if now.shape != before.shape:
@@ -89,23 +60,9 @@ def temporal(now: npt.ArrayLike, before: npt.ArrayLike) -> Bools:
 def levels(pictures: npt.ArrayLike, bits: int, threshold: float) -> npt.NDArray[np.uint8]:
     """Gradient of several bits, as by frames that are added.
 
-    Parameters
-    ----------
-    pictures : array (..., height, width)
-        Intensity.
-    bits : int
-        1..8.
-    threshold : float
-        Of one bit, more than 0. 2**bits - 1 thresholds are spread evenly up to twice this one, which is their middle.
-
-    Returns
-    -------
-    uint8 (..., height, width)
-        Number of thresholds passed, 0..2**bits-1; of one bit as `spatial`.
-
-    References
-    ----------
-    [Jayasuriya2017], Sec. A.4.2.
+    pictures: (..., height, width), intensity. bits: 1..8. threshold: of one bit, more than 0. 2**bits - 1 thresholds
+    are spread evenly up to twice this one, which is their middle. Returns (..., height, width), number of thresholds
+    passed, 0..2**bits-1; of one bit as `spatial`. Source: [Jayasuriya2017], Sec. A.4.2.
     """
     check_int("bits", bits, 1, BITS_MAX)
     check_real("threshold", threshold, 1e-9, 1e9)
@@ -116,23 +73,8 @@ def levels(pictures: npt.ArrayLike, bits: int, threshold: float) -> npt.NDArray[
 def power(bits: int, pixels: int, active: float) -> float:
     """Power of a camera of binary gradients.
 
-    Parameters
-    ----------
-    bits : int
-        1..8.
-    pixels : int
-        Of the array.
-    active : float
-        Share of the pixels that is active, and is delivered, 0..1.
-
-    Returns
-    -------
-    float
-        In W at `RATE` frames/s: 2**bits scans, and a delivery.
-
-    References
-    ----------
-    [Jayasuriya2017], Eq. A.3.
+    bits: 1..8. pixels: of the array. active: share of the pixels that is active, and is delivered, 0..1. Returns float:
+    in W at `RATE` frames/s: 2**bits scans, and a delivery. Source: [Jayasuriya2017], Eq. A.3.
     """
     check_int("bits", bits, 1, BITS_MAX)
     check_int("pixels", pixels, 1, 1 << 31)
@@ -143,16 +85,6 @@ def power(bits: int, pixels: int, active: float) -> float:
 def packed_bytes(pixels: int, bits: int) -> int:
     """Bytes of a frame of gradients sent as a bit map.
 
-    Parameters
-    ----------
-    pixels : int
-        Of the array.
-    bits : int
-        A pixel, 1..8.
-
-    Returns
-    -------
-    int
-        Without a header.
+    pixels: of the array. bits: a pixel, 1..8. Returns int: without a header.
     """
     return -(-pixels * bits // 8)

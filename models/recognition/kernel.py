@@ -21,15 +21,8 @@ LARGE = 20  # px: channels of this size and more are averaged over 2 x 2
 def features(channels: npt.ArrayLike) -> Floats:
     """Prepare the channels of a first layer for the kernel.
 
-    Parameters
-    ----------
-    channels : array (n, height, width, channels)
-        Several: both signs are rectified, and from `LARGE` px on averaged over 2 x 2. One is taken as it is.
-
-    Returns
-    -------
-    float32 (n, features)
-        A row a picture.
+    channels: (n, height, width, channels), several: both signs are rectified, and from `LARGE` px on averaged over 2 x
+    2. One is taken as it is. Returns (n, features), a row a picture.
     """
     x = np.asarray(channels, np.float32)
     if x.shape[-1] > 1:
@@ -44,14 +37,8 @@ def features(channels: npt.ArrayLike) -> Floats:
 class KernelClassifier:
     """A trained classifier.
 
-    Attributes
-    ----------
-    landmarks : float32 (m, features)
-        Pictures that new ones are compared with.
-    weights : float64 (m, classes)
-        Of each landmark for each class.
-    width : float
-        Inverse of twice the kernel's variance.
+    landmarks: (m, features), pictures that new ones are compared with. weights: (m, classes), of each landmark for each
+    class. width: inverse of twice the kernel's variance.
     """
 
     landmarks: Floats
@@ -66,20 +53,8 @@ class KernelClassifier:
     def scores(self, x: Floats) -> npt.NDArray[np.float64]:
         """Score every class.
 
-        Parameters
-        ----------
-        x : float32 (n, features)
-            As of `features`.
-
-        Returns
-        -------
-        float64 (n, classes)
-            Near 1 for the class, near 0 for the others.
-
-        Raises
-        ------
-        ParameterError
-            For features of another number.
+        x: (n, features), as of `features`. Returns (n, classes), near 1 for the class, near 0 for the others. Raises
+        ParameterError for features of another number.
         """
         if x.shape[1:] != self.landmarks.shape[1:]:
             raise ParameterError(f"features = {x.shape}: must be (n, {self.landmarks.shape[1]})")
@@ -91,15 +66,7 @@ class KernelClassifier:
     def classify(self, x: Floats) -> npt.NDArray[np.intp]:
         """Classify pictures.
 
-        Parameters
-        ----------
-        x : float32 (n, features)
-            As of `features`.
-
-        Returns
-        -------
-        int (n,)
-            The class of each.
+        x: (n, features), as of `features`. Returns (n,), the class of each.
         """
         return self.scores(x).argmax(1)
 
@@ -107,19 +74,8 @@ class KernelClassifier:
 def gaussian(x: Floats, y: Floats, width: float) -> npt.NDArray[np.float64]:
     """Gaussian kernel of all pairs.
 
-    Parameters
-    ----------
-    x : float32 (n, features)
-        One set.
-    y : float32 (m, features)
-        The other.
-    width : float
-        Factor of the squared distance.
-
-    Returns
-    -------
-    float64 (n, m)
-        exp(-width |x - y|**2).
+    x: (n, features), one set. y: (m, features), the other. width: factor of the squared distance. Returns (n, m),
+    exp(-width |x - y|**2).
     """
     squares = (x * x).sum(1, dtype=np.float64)[:, None] + (y * y).sum(1, dtype=np.float64) - 2.0 * (x @ y.T)
     return np.exp(-width * np.maximum(squares, 0))
@@ -130,28 +86,9 @@ def train(
 ) -> KernelClassifier:
     """Train a classifier.
 
-    Parameters
-    ----------
-    x : float32 (n, features)
-        As of `features`.
-    labels : int (n,)
-        0..classes-1.
-    classes : int
-        Number of classes, 2 or more.
-    seed : int
-        Of the landmarks' draw.
-    landmarks : int
-        At most; all pictures where there are no more.
-
-    Returns
-    -------
-    KernelClassifier
-        Of a kernel as wide as the pictures differ: the width is 1 / (features variance).
-
-    Raises
-    ------
-    ParameterError
-        For no picture.
+    x: (n, features), as of `features`. labels: (n,), 0..classes-1. classes: number of classes, 2 or more. seed: of the
+    landmarks' draw. landmarks: at most; all pictures where there are no more. Returns KernelClassifier: of a kernel as
+    wide as the pictures differ: the width is 1 / (features variance). Raises ParameterError for no picture.
     """
     return regress(x, np.eye(classes)[labels], seed, landmarks)
 
@@ -161,26 +98,9 @@ def regress(
 ) -> KernelClassifier:
     """Learn the targets of pictures.
 
-    Parameters
-    ----------
-    x : float32 (n, features)
-        As of `features`.
-    targets : float (n, outputs)
-        What `KernelClassifier.scores` is to return.
-    seed, landmarks : int
-        As of `train`.
-    ridge : float
-        Of the kernel's value at distance 0.
-
-    Returns
-    -------
-    KernelClassifier
-        As of `train`.
-
-    Raises
-    ------
-    ParameterError
-        For no picture.
+    x: (n, features), as of `features`. targets: (n, outputs), what `KernelClassifier.scores` is to return. seed,
+    landmarks: as of `train`. ridge: of the kernel's value at distance 0. Returns KernelClassifier: as of `train`.
+    Raises ParameterError for no picture.
     """
     if not len(x):
         raise ParameterError("pictures = 0: must be 1 or more, to train")

@@ -217,19 +217,9 @@ def _drawn(rng: np.random.Generator, shape: tuple[int, int], inputs: int) -> Flo
 def lenet(size: int, classes: int, first: Sequence[Layer] = ()) -> list[Layer]:
     """Lay a network out behind a first layer, which the optics or ``first`` computes.
 
-    Parameters
-    ----------
-    size : int
-        Height of the pictures in px, 4 or more; from `LARGE` on they are pooled at the start, as LeNet's are.
-    classes : int
-        Outputs, 2 or more.
-    first : sequence of Layer
-        The first layer, where the optics has none.
-
-    Returns
-    -------
-    list of Layer
-        Both signs of the first layer rectified, a convolution, pooling, two dense layers.
+    size: height of the pictures in px, 4 or more; from `LARGE` on they are pooled at the start, as LeNet's are.
+    classes: outputs, 2 or more. first: the first layer, where the optics has none. Returns list of Layer: both signs of
+    the first layer rectified, a convolution, pooling, two dense layers.
     """
     check_int("size", size, SMALLEST, 1 << 12)
     check_int("classes", classes, 2, 1 << 12)
@@ -240,14 +230,8 @@ def lenet(size: int, classes: int, first: Sequence[Layer] = ()) -> list[Layer]:
 class Network:
     """Layers, and the scale of their inputs.
 
-    Parameters
-    ----------
-    layers : sequence of Layer
-        In their order.
-    shape : tuple of int
-        Height, width and channels of a picture.
-    seed : int
-        Of the weights, and of the draws of training.
+    layers: in their order. shape: height, width and channels of a picture. seed: of the weights, and of the draws of
+    training.
     """
 
     def __init__(self, layers: Sequence[Layer], shape: tuple[int, ...], seed: int = 1) -> None:
@@ -273,20 +257,8 @@ class Network:
     def scores(self, pictures: npt.ArrayLike) -> Floats:
         """Score every class.
 
-        Parameters
-        ----------
-        pictures : array (n, height, width, channels)
-            Of the shape of those that it was trained on.
-
-        Returns
-        -------
-        float32 (n, classes)
-            The logarithm of a probability, less a constant.
-
-        Raises
-        ------
-        ParameterError
-            For pictures of another shape.
+        pictures: (n, height, width, channels), of the shape of those that it was trained on. Returns (n, classes), the
+        logarithm of a probability, less a constant. Raises ParameterError for pictures of another shape.
         """
         pictures = np.asarray(pictures)
         if pictures.shape[1:] != self.shape:
@@ -297,15 +269,7 @@ class Network:
     def classify(self, pictures: npt.ArrayLike) -> npt.NDArray[np.intp]:
         """Classify pictures.
 
-        Parameters
-        ----------
-        pictures : array (n, height, width, channels)
-            As in `scores`.
-
-        Returns
-        -------
-        int (n,)
-            The class of each.
+        pictures: (n, height, width, channels), as in `scores`. Returns (n,), the class of each.
         """
         return self.scores(pictures).argmax(1)
 
@@ -318,17 +282,7 @@ class Network:
     def loss(self, pictures: npt.NDArray[Any], labels: npt.NDArray[np.integer]) -> float:
         """Cross-entropy of a batch, with the gradients left in the layers.
 
-        Parameters
-        ----------
-        pictures : array (n, height, width, channels)
-            The batch.
-        labels : int (n,)
-            Their classes.
-
-        Returns
-        -------
-        float
-            Mean, in nats.
+        pictures: (n, height, width, channels), the batch. labels: (n,), their classes. Returns mean, in nats.
         """
         logits = self._forward(pictures, self.rng)
         logits = logits - logits.max(1, keepdims=True)
@@ -352,18 +306,9 @@ class Network:
     ) -> None:
         """Train by Adam with decoupled decay, its rate rising, then falling.
 
-        Parameters
-        ----------
-        pictures : array (n, height, width, channels)
-            Pictures; their mean and RMS, channel by channel, become the scale of the input.
-        labels : int (n,)
-            Classes.
-        epochs : int
-            Passes over all pictures, 1..1000.
-        shift : int
-            Px by which batches are moved at random, 0..4.
-        note : callable
-            Receives the number of every epoch and its mean loss.
+        pictures: (n, height, width, channels), pictures; their mean and RMS, channel by channel, become the scale of
+        the input. labels: (n,), classes. epochs: passes over all pictures, 1..1000. shift: px by which batches are
+        moved at random, 0..4. note: receives the number of every epoch and its mean loss.
         """
         check_int("epochs", epochs, 1, 1000)
         check_int("shift", shift, 0, 4)
@@ -390,10 +335,7 @@ class Network:
     def save(self, path: Path | BinaryIO) -> None:
         """Write the weights as float16, and the scale.
 
-        Parameters
-        ----------
-        path : path or binary file
-            An .npz file.
+        path: an .npz file.
         """
         arrays = [w for layer in self.layers for w in layer.weights]
         named = {f"w{i}": w.astype(np.float16) for i, w in enumerate(arrays)}
@@ -402,15 +344,7 @@ class Network:
     def load(self, path: Path) -> None:
         """Read what `save` wrote of a network of the same layers.
 
-        Parameters
-        ----------
-        path : path
-            The file.
-
-        Raises
-        ------
-        ParameterError
-            For another network's.
+        path: the file. Raises ParameterError for another network's.
         """
         with np.load(path) as file:
             arrays = iter([file[f"w{i}"].astype(np.float32) for i in range(len(file.files) - 2)])

@@ -25,17 +25,9 @@ Floats = npt.NDArray[np.float64]
 def kernels(sensor: SensorParameters, blur: float) -> Floats:
     """Correlation kernels of all diodes for a plane out of focus.
 
-    Parameters
-    ----------
-    sensor : SensorParameters
-        Tile and optics; the lens as it is on the axis.
-    blur : float
-        Diameter of the blur of a point in sensor px, -200..200: positive behind the focal plane.
-
-    Returns
-    -------
-    float64 (types, 2, k, k)
-        Of odd size k; a pixel measures the sum of kernel times picture around it, 1 of a flat white scene on average.
+    sensor: tile and optics; the lens as it is on the axis. blur: diameter of the blur of a point in sensor px,
+    -200..200: positive behind the focal plane. Returns (types, 2, k, k), of odd size k; a pixel measures the sum of
+    kernel times picture around it, 1 of a flat white scene on average.
     """
     check_real("blur", blur, -BLUR_MAX, BLUR_MAX)
     weights = view_weights(sensor.tile, replace(sensor.optics, views=VIEWS))
@@ -52,18 +44,9 @@ def kernels(sensor: SensorParameters, blur: float) -> Floats:
 class Display:
     """Pictures on a display before the sensor.
 
-    Attributes
-    ----------
-    sensor : SensorParameters
-        Its array is replaced by one that the picture and a margin fill.
-    shape : (int, int)
-        Height and width of the pictures in px, 2..256.
-    scale : int
-        Sensor px along an edge of a picture px, 1..32.
-    blur : float
-        As in `kernels`.
-    margin : int
-        Dark picture px around the picture, 0..32.
+    sensor: its array is replaced by one that the picture and a margin fill. shape: height and width of the pictures in
+    px, 2..256. scale: sensor px along an edge of a picture px, 1..32. blur: as in `kernels`. margin: dark picture px
+    around the picture, 0..32.
     """
 
     sensor: SensorParameters
@@ -120,20 +103,8 @@ class Display:
     def currents(self, pictures: npt.ArrayLike) -> npt.NDArray[np.float32]:
         """Photocurrents of pictures.
 
-        Parameters
-        ----------
-        pictures : array (n, height, width)
-            Linear radiance, 1 = white.
-
-        Returns
-        -------
-        float32 (n, 2, rows, cols)
-            1 = the average diode in a flat white scene; not negative.
-
-        Raises
-        ------
-        ParameterError
-            For pictures of another size.
+        pictures: (n, height, width), linear radiance, 1 = white. Returns (n, 2, rows, cols), 1 = the average diode in a
+        flat white scene; not negative. Raises ParameterError for pictures of another size.
         """
         pictures = np.asarray(pictures, np.float32)
         if pictures.shape[1:] != self.shape:
@@ -146,17 +117,8 @@ class Display:
 
         A type is in one pixel of a tile; between two of them the samples are interpolated linearly.
 
-        Parameters
-        ----------
-        samples : array (n, rows, cols)
-            Decoded samples.
-        types : array of int (channels,)
-            Types to take, one a channel.
-
-        Returns
-        -------
-        float32 (n, height + 2 margin, width + 2 margin, channels)
-            At the middle of every picture px.
+        samples: (n, rows, cols), decoded samples. types: (channels,), types to take, one a channel. Returns (n, height
+        + 2 margin, width + 2 margin, channels), at the middle of every picture px.
         """
         samples, tile = np.asarray(samples, np.float32), self.sensor.tile
         where = {int(kind): divmod(i, tile.cols) for i, kind in enumerate(tile.order)}
@@ -178,15 +140,7 @@ class Display:
 def phase_types(sensor: SensorParameters) -> npt.NDArray[np.int64]:
     """Return the pixel types that are the first layer [Jayasuriya2017, Sec. 6.3].
 
-    Parameters
-    ----------
-    sensor : SensorParameters
-        Its tile.
-
-    Returns
-    -------
-    int64 (types,)
-        Numbers of those of alpha 0; all, where there is none.
+    sensor: its tile. Returns (types,), numbers of those of alpha 0; all, where there is none.
     """
     kinds = [i for i, kind in enumerate(sensor.tile.types) if kind.alpha == 0]
     return np.array(kinds or range(sensor.tile.n_types), np.int64)

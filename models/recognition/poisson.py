@@ -12,15 +12,8 @@ Floats = npt.NDArray[np.float64]
 def differences(pictures: npt.ArrayLike) -> tuple[Floats, Floats]:
     """Differences from the left and from the top neighbour.
 
-    Parameters
-    ----------
-    pictures : array (..., height, width)
-        Intensity, any unit.
-
-    Returns
-    -------
-    float64 (..., height, width), float64 (..., height, width)
-        Along x and along y; 0 in the first column and the first row.
+    pictures: (..., height, width), intensity, any unit. Returns (..., height, width), along x and along y; 0 in the
+    first column and the first row.
     """
     p = np.asarray(pictures, np.float64)
     return np.diff(p, axis=-1, prepend=p[..., :1]), np.diff(p, axis=-2, prepend=p[..., :1, :])
@@ -52,17 +45,7 @@ def integrate(dx: npt.ArrayLike, dy: npt.ArrayLike, screen: float = 0.0) -> Floa
 def smooth(source: npt.ArrayLike, screen: float) -> Floats:
     """Solve screen u - Laplacian(u) = source less its mean, with edges that nothing crosses.
 
-    Parameters
-    ----------
-    source : array (..., height, width)
-        Right side.
-    screen : float
-        0 or more, in 1/px^2.
-
-    Returns
-    -------
-    float64 (..., height, width)
-        u, of mean 0.
+    source: (..., height, width), right side. screen: 0 or more, in 1/px^2. Returns (..., height, width), u, of mean 0.
     """
     check_real("screen", screen, 0, 1e9)
     wave = np.asarray(dctn(np.asarray(source, np.float64), axes=(-2, -1)))

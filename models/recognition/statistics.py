@@ -18,15 +18,7 @@ class Spread(NamedTuple):
     def of(cls, values: npt.ArrayLike) -> "Spread":
         """Return those of some values.
 
-        Parameters
-        ----------
-        values : array (n,)
-            1 or more.
-
-        Returns
-        -------
-        Spread
-            With the standard deviation of a sample, over n - 1.
+        values: (n,), 1 or more. Returns Spread: with the standard deviation of a sample, over n - 1.
         """
         array = np.asarray(values, float)
         return cls(float(array.mean()), float(array.std(ddof=1)) if array.size > 1 else 0.0)
@@ -35,12 +27,7 @@ class Spread(NamedTuple):
 class Roc(NamedTuple):
     """Receiver operating characteristic: rates of false and of true alarms by falling threshold, and the area below.
 
-    Attributes
-    ----------
-    false, true : float64 (n,)
-        From 0 to 1.
-    area : float
-        Of a random pair, the probability that the event scores higher; 0.5 is chance.
+    false, true: (n,), from 0 to 1. area: of a random pair, the probability that the event scores higher; 0.5 is chance.
     """
 
     false: npt.NDArray[np.float64]
@@ -51,22 +38,8 @@ class Roc(NamedTuple):
 def roc(scores: npt.ArrayLike, events: npt.ArrayLike) -> Roc:
     """Compute the characteristic of a detector.
 
-    Parameters
-    ----------
-    scores : array (n,)
-        Large where it detects something.
-    events : bool (n,)
-        Where there is something.
-
-    Returns
-    -------
-    Roc
-        Equal scores count half.
-
-    Raises
-    ------
-    ParameterError
-        Where there are no events, or nothing else.
+    scores: (n,), large where it detects something. events: (n,), where there is something. Returns equal scores count
+    half. Raises ParameterError where there are no events, or nothing else.
     """
     scores, events = np.asarray(scores, float), np.asarray(events, bool)
     if not events.any() or events.all():
@@ -81,20 +54,7 @@ def roc(scores: npt.ArrayLike, events: npt.ArrayLike) -> Roc:
 def first_layer_flops(height: int, width: int, kernel: int, filters: int, channels: int = 1) -> int:
     """Count the multiply-accumulate operations of a first layer that the optics replaces.
 
-    Parameters
-    ----------
-    height, width : int
-        Of its output in px.
-    kernel : int
-        Edge of a filter in px.
-    filters : int
-        Their number.
-    channels : int
-        Of the picture.
-
-    Returns
-    -------
-    int
-        What [Jayasuriya2017], Table 6.2, calls FLOPS.
+    height, width: of its output in px. kernel: edge of a filter in px. filters: their number. channels: of the picture.
+    Returns int: what [Jayasuriya2017], Table 6.2, calls FLOPS.
     """
     return height * width * kernel**2 * filters * channels

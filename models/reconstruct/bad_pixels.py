@@ -14,15 +14,8 @@ AROUND = 7  # px, side of what is around: dead columns are less than half of it
 def dead_pixels(pair: Floats) -> Bools:
     """Pixels without light amid light.
 
-    Parameters
-    ----------
-    pair : array (2, rows, cols)
-        Both diodes of every pixel, 1 = the average diode in a flat white scene.
-
-    Returns
-    -------
-    bool (rows, cols)
-        The dead ones.
+    pair: (2, rows, cols), both diodes of every pixel, 1 = the average diode in a flat white scene. Returns (rows,
+    cols), the dead ones.
     """
     light = np.asarray(pair, float).mean(0)
     return (light < NONE) & (median_filter(light, AROUND) > SOME)
@@ -31,17 +24,8 @@ def dead_pixels(pair: Floats) -> Bools:
 def repaired(pair: Floats, dead: Bools) -> Floats:
     """Samples with those of dead pixels replaced by the light around: a diode's share of a pixel without an angle.
 
-    Parameters
-    ----------
-    pair : array (2, rows, cols)
-        As for `dead_pixels`.
-    dead : bool (rows, cols)
-        Pixels to replace.
-
-    Returns
-    -------
-    array (2, rows, cols)
-        Of the type of ``pair``.
+    pair: (2, rows, cols), as for `dead_pixels`. dead: (rows, cols), pixels to replace. Returns (2, rows, cols), of the
+    type of ``pair``.
     """
     if not dead.any():
         return pair
@@ -52,17 +36,8 @@ def repaired(pair: Floats, dead: Bools) -> Floats:
 def dilated(pixels: Bools, reach: int) -> Bools:
     """Dilate a mask of pixels.
 
-    Parameters
-    ----------
-    pixels : bool (..., rows, cols)
-        Pixels.
-    reach : int
-        In px, along both axes.
-
-    Returns
-    -------
-    bool (..., rows, cols)
-        These, and all within reach.
+    pixels: (..., rows, cols), pixels. reach: in px, along both axes. Returns (..., rows, cols), these, and all within
+    reach.
     """
     size = 2 * reach + 1
     return np.asarray(maximum_filter(pixels, (1,) * (pixels.ndim - 2) + (size, size)), bool)

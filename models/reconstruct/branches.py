@@ -35,10 +35,8 @@ UNLIKE = 0.2  # greatest rms of what other optics weigh the views with, relative
 def shapes() -> dict[str, tuple[int, ...]]:
     """List the weights of a network, of one kind or both.
 
-    Returns
-    -------
-    dict of str to tuple of int
-        Shape by name: dense layers (out, in), convolutions (out, in, 3, 3, 3, 3) over view and pixel, biases (out,).
+    Returns shape by name: dense layers (out, in), convolutions (out, in, 3, 3, 3, 3) over view and pixel, biases
+    (out,).
     """
     out: dict[str, tuple[int, ...]] = {}
     for name, widths, kernel in (("dense", DENSE, ()), ("after", AFTER, (3,) * 4), ("conv", CHANNELS, (3,) * 4)):
@@ -51,19 +49,9 @@ def shapes() -> dict[str, tuple[int, ...]]:
 class Seen:
     """The input of both branches.
 
-    Parameters
-    ----------
-    pair : array (2, rows, cols)
-        Both diodes of every pixel, 1 = the average diode in a flat white scene; the array begins with a tile.
-    sensor : SensorParameters
-        Tile and optics.
-    noise : float
-        Standard deviation of a sample, 1 = white; outside of `NOISE` its nearer end.
-
-    Attributes
-    ----------
-    total, difference : float32 (rows, cols)
-        The sum image, and the differences less a uniform scene's.
+    pair: (2, rows, cols), both diodes of every pixel, 1 = the average diode in a flat white scene; the array begins
+    with a tile. sensor: tile and optics. noise: standard deviation of a sample, 1 = white; outside of `NOISE` its
+    nearer end. total, difference: (rows, cols), the sum image, and the differences less a uniform scene's.
     """
 
     def __init__(self, pair: Floats, sensor: SensorParameters, noise: float) -> None:
@@ -79,10 +67,7 @@ class Seen:
     def back(self) -> Floats:
         """The input of the convolutions.
 
-        Returns
-        -------
-        float32 (3, 5, 5, rows, cols)
-            The sum image in every view, Phi' of the differences, the noise's logarithm.
+        Returns (3, 5, 5, rows, cols), the sum image in every view, Phi' of the differences, the noise's logarithm.
         """
         across = self._across - self._across.mean((1, 2), keepdims=True)
         across /= np.square(across).sum((1, 2), keepdims=True) + 1e-9
@@ -93,15 +78,8 @@ class Seen:
     def patches(self, rows: npt.NDArray[np.int64], cols: npt.NDArray[np.int64]) -> Floats:
         """Take the samples of patches.
 
-        Parameters
-        ----------
-        rows, cols : int64 (n,), (m,)
-            Where they begin.
-
-        Returns
-        -------
-        float32 (n * m, 163)
-            Sums less the patch's mean, STRETCH times the differences, the noise's logarithm.
+        rows, cols: (n,), where they begin. Returns (n * m, 163), sums less the patch's mean, STRETCH times the
+        differences, the noise's logarithm.
         """
         both = np.stack([self.total, np.float32(STRETCH) * self.difference])
         windows = sliding_window_view(both, (PATCH, PATCH), (1, 2))[:, rows[:, None], cols]
@@ -113,11 +91,8 @@ class Seen:
 class Branches:
     """The network with its weights.
 
-    Parameters
-    ----------
-    weights : mapping of str to array
-        ``<kind>/<name>`` of `KINDS` and `shapes`, each branch as it was taught alone and both as they were together;
-        ``phi``, the weights of all diodes over the views (types, 2, 5, 5) in the training.
+    weights: ``<kind>/<name>`` of `KINDS` and `shapes`, each branch as it was taught alone and both as they were
+    together; ``phi``, the weights of all diodes over the views (types, 2, 5, 5) in the training.
     """
 
     def __init__(self, weights: Mapping[str, Floats]) -> None:
@@ -133,10 +108,7 @@ class Branches:
     def shipped(cls) -> Self:
         """Load the weights that are shipped.
 
-        Returns
-        -------
-        Branches
-            Of `WEIGHTS`.
+        Returns Branches: of `WEIGHTS`.
         """
         with np.load(WEIGHTS) as weights:
             return cls(dict(weights))
@@ -144,15 +116,7 @@ class Branches:
     def knows(self, sensor: SensorParameters) -> bool:
         """Return whether it was trained with such a sensor.
 
-        Parameters
-        ----------
-        sensor : SensorParameters
-            Any one.
-
-        Returns
-        -------
-        bool
-            True for its tile and about its optics, and an array of 9 x 9 pixels or more.
+        sensor: any one. Returns True for its tile and about its optics, and an array of 9 x 9 pixels or more.
         """
         if min(sensor.shape) < PATCH or sensor.optics.views != VIEWS:
             return False
@@ -164,22 +128,8 @@ class Branches:
     def estimate(self, pair: Floats, sensor: SensorParameters, noise: float, kind: str = "both") -> Floats:
         """Light field from samples.
 
-        Parameters
-        ----------
-        pair, sensor, noise
-            As of `Seen`.
-        kind : str
-            Of `KINDS`.
-
-        Returns
-        -------
-        float32 (5, 5, rows, cols)
-            l[v, u, y, x], 1 = white.
-
-        Raises
-        ------
-        ParameterError
-            For a sensor of another kind or a wrong shape.
+        pair, sensor, noise: as of `Seen`. kind: of `KINDS`. Returns (5, 5, rows, cols), l[v, u, y, x], 1 = white.
+        Raises ParameterError for a sensor of another kind or a wrong shape.
         """
         if pair.shape != (2, *sensor.shape):
             raise ParameterError(f"pair shape = {pair.shape}: must be {(2, *sensor.shape)}")

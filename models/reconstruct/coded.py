@@ -21,14 +21,8 @@ CHUNK = 1 << 14  # pixels at once
 class Coded(NamedTuple):
     """Depth of the light from within the gate.
 
-    Attributes
-    ----------
-    depth : float64 (...)
-        In m, from the first to the last tap.
-    amplitude : float64 (...)
-        A, in the unit of the taps, 0 or more.
-    sure : bool (...)
-        Where there is enough of it, and not at an end of the gate.
+    depth: (...), in m, from the first to the last tap. amplitude: (...), a, in the unit of the taps, 0 or more. sure:
+    (...), where there is enough of it, and not at an end of the gate.
     """
 
     depth: Floats
@@ -39,28 +33,9 @@ class Coded(NamedTuple):
 def coded_depth(taps: Floats, electrical: ElectricalParameters, noise: Floats | float) -> Coded:
     """Depth by the best fit of B + A R to the taps.
 
-    Parameters
-    ----------
-    taps : array (4, ...)
-        Of light that `ElectricalParameters.code` modulates.
-    electrical : ElectricalParameters
-        The modulation.
-    noise : array (...) or float
-        Standard deviation of a tap, greater than 0.
-
-    Returns
-    -------
-    Coded
-        Finite everywhere.
-
-    Raises
-    ------
-    ParameterError
-        Without a code, or for a noise that is not greater than 0.
-
-    References
-    ----------
-    [Jayasuriya2017], Sec. 5.6.4; [Tadano2015].
+    taps: (4, ...), of light that `ElectricalParameters.code` modulates. electrical: the modulation. noise: (...),
+    standard deviation of a tap, greater than 0. Returns finite everywhere. Raises ParameterError without a code, or for
+    a noise that is not greater than 0. Source: [Jayasuriya2017], Sec. 5.6.4; [Tadano2015].
     """
     if not electrical.code:
         raise ParameterError("code = 0: must be the chips of the light's code")

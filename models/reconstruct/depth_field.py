@@ -43,12 +43,8 @@ BINS = 128  # of the histogram of phases
 class DepthField(NamedTuple):
     """A depth field and the disparity of its scene.
 
-    Attributes
-    ----------
-    taps : float32 (4, views, views, rows, cols)
-        Light field of every tap, 1 = white.
-    disparity, spread : float32 (rows, cols)
-        In px per view step, with its standard deviation.
+    taps: (4, views, views, rows, cols), light field of every tap, 1 = white. disparity, spread: (rows, cols), in px per
+    view step, with its standard deviation.
     """
 
     taps: Floats
@@ -71,27 +67,10 @@ class DepthField(NamedTuple):
 def depth_field(estimator: FieldEstimator, pairs: Floats) -> DepthField:
     """Depth field from the diodes of four taps.
 
-    Parameters
-    ----------
-    estimator : FieldEstimator
-        Of the sensor.
-    pairs : array (4, 2, rows, cols) or (3, 2, rows, cols)
-        Both diodes of every pixel in every tap, 1 = the average diode in a flat white scene. Of three, the tap at 270
-        degrees is what two opposite taps have in common less the one at 90: right where nothing moves (`still`).
-
-    Returns
-    -------
-    DepthField
-        By the mixture, the disparity from the sum of the taps.
-
-    Raises
-    ------
-    ParameterError
-        For a wrong shape.
-
-    References
-    ----------
-    [Jayasuriya2017], Sec. 5.3.3.
+    estimator: of the sensor. pairs: (4, 2, rows, cols), both diodes of every pixel in every tap, 1 = the average diode
+    in a flat white scene. Of three, the tap at 270 degrees is what two opposite taps have in common less the one at 90:
+    right where nothing moves (`still`). Returns DepthField: by the mixture, the disparity from the sum of the taps.
+    Raises ParameterError for a wrong shape. Source: [Jayasuriya2017], Sec. 5.3.3.
     """
     if len(pairs) not in (3, 4):
         raise ParameterError(f"pairs = {len(pairs)} taps: must be 3 or 4")
@@ -108,17 +87,8 @@ def depth_field(estimator: FieldEstimator, pairs: Floats) -> DepthField:
 def still(pairs: Floats, noise: float) -> bool:
     """Return whether nothing moves between four taps: opposite ones have the same sum.
 
-    Parameters
-    ----------
-    pairs : array (4, ...)
-        In order of the taps.
-    noise : float
-        Standard deviation of a sample, greater than 0.
-
-    Returns
-    -------
-    bool
-        Whether the sums differ by no more than noise makes them, over all and in the worst hundredth.
+    pairs: (4, ...), in order of the taps. noise: standard deviation of a sample, greater than 0. Returns whether the
+    sums differ by no more than noise makes them, over all and in the worst hundredth.
     """
     off = np.abs(pairs[0] + pairs[2] - pairs[1] - pairs[3]) / (2 * noise)
     return bool(np.sqrt(np.mean(off**2)) < MOVED and np.quantile(off, 0.99) < 3 * MOVED)
@@ -127,12 +97,8 @@ def still(pairs: Floats, noise: float) -> bool:
 class Unwrapped(NamedTuple):
     """A phase with its turns.
 
-    Attributes
-    ----------
-    turns : float64 (rows, cols)
-        Phase / 2 pi and the whole turns before it, 0 or more; finite.
-    sure : bool (rows, cols)
-        Where the number of whole turns is known.
+    turns: (rows, cols), phase / 2 pi and the whole turns before it, 0 or more; finite. sure: (rows, cols), where the
+    number of whole turns is known.
     """
 
     turns: Floats
@@ -147,23 +113,10 @@ def unwrap(phase: Floats, coarse: Floats, doubt: Floats) -> Unwrapped:
     depth that is smeared over an edge, and an edge of whole turns, which no phase shows, are what the solution
     contradicts: both count less when it is found again [Geman1987].
 
-    Parameters
-    ----------
-    phase : array (rows, cols)
-        In rad, modulo 2 pi; NaN where there is none.
-    coarse : array (rows, cols)
-        Depth in turns, without wrap.
-    doubt : array (rows, cols)
-        Its standard deviation in turns; infinite where it is not known.
-
-    Returns
-    -------
-    Unwrapped
-        Where there is no phase, the mean of what is around; 0 turns where there is none at all.
-
-    References
-    ----------
-    [Jayasuriya2017], Sec. 5.6.2, without a manually marked line.
+    phase: (rows, cols), in rad, modulo 2 pi; NaN where there is none. coarse: (rows, cols), depth in turns, without
+    wrap. doubt: (rows, cols), its standard deviation in turns; infinite where it is not known. Returns Unwrapped: where
+    there is no phase, the mean of what is around; 0 turns where there is none at all. Source: [Jayasuriya2017], Sec.
+    5.6.2, without a manually marked line.
     """
     known = np.isfinite(phase)
     fine = np.where(known, phase, 0) / (2 * np.pi) % 1
@@ -257,23 +210,8 @@ def _followed(links: Sequence[tuple[Floats, Floats]], trust: Floats) -> Callable
 def refocused(field: Complexes, disparity: float, rays: Bools | None = None) -> Complexes:
     """Mean phasor of the rays that meet at a disparity: depth through the whole lens, sharp there.
 
-    Parameters
-    ----------
-    field : complex (views, views, rows, cols)
-        Phasors.
-    disparity : float
-        In px per view step.
-    rays : bool (views, views, rows, cols), optional
-        Rays that count; None is all.
-
-    Returns
-    -------
-    complex (rows, cols)
-        0 where no ray counts.
-
-    References
-    ----------
-    [Jayasuriya2017], Sec. 5.6.1.
+    field: (views, views, rows, cols), phasors. disparity: in px per view step. rays: (views, views, rows, cols), rays
+    that count; None is all. Returns (rows, cols), 0 where no ray counts. Source: [Jayasuriya2017], Sec. 5.6.1.
     """
     views = len(field)
     total, count = np.zeros(field.shape[2:], complex), np.zeros(field.shape[2:])
@@ -292,21 +230,8 @@ def foreground(field: DepthField, coarse: Floats) -> Bools | None:
     The edges between an occluder and what is behind it move with the occluder, and are most of what the disparity is
     from: the nearer cluster is the one whose phases agree with it.
 
-    Parameters
-    ----------
-    field : DepthField
-        The depth field.
-    coarse : array (rows, cols)
-        Depth by disparity in turns.
-
-    Returns
-    -------
-    bool (views, views, rows, cols) or None
-        None where the phases are of one cluster alone.
-
-    References
-    ----------
-    [Jayasuriya2017], Sec. 5.6.3.
+    field: the depth field. coarse: (rows, cols), depth by disparity in turns. Returns (views, views, rows, cols), None
+    where the phases are of one cluster alone. Source: [Jayasuriya2017], Sec. 5.6.3.
     """
     phasors = field.phasors
     strength = np.abs(phasors)

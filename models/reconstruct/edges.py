@@ -178,15 +178,7 @@ def _dot(a: Floats, b: Floats) -> float:
 def laplacian(image: Floats) -> Floats:
     """Negative Laplacian grad' grad of an image with a free border.
 
-    Parameters
-    ----------
-    image : float64 (rows, cols)
-        The image.
-
-    Returns
-    -------
-    float64 (rows, cols)
-        Its sum is 0.
+    image: (rows, cols), the image. Returns (rows, cols), its sum is 0.
     """
     out = np.zeros_like(image)
     for axis in (0, 1):

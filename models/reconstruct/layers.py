@@ -48,12 +48,8 @@ FIT, MISFIT = 1.0, 1.8  # residual, of the noise, up to which they have it and f
 class Surfaces(NamedTuple):
     """Surfaces of a scene, the nearest first.
 
-    Attributes
-    ----------
-    disparity : list of float32 (rows + 2 margin, cols + 2 margin)
-        Of each, px per view step.
-    label : int (rows, cols)
-        Which one the middle view shows.
+    disparity: (rows + 2 margin, cols + 2 margin), of each, px per view step. label: (rows, cols), which one the middle
+    view shows.
     """
 
     disparity: list[Floats]
@@ -63,23 +59,10 @@ class Surfaces(NamedTuple):
 def layered(estimate: Estimate, sensor: SensorParameters, pupil: int, noise: float, pair: Floats) -> Floats:
     """Light field of layers where they explain the samples, else that of the mixture.
 
-    Parameters
-    ----------
-    estimate : Estimate
-        Of the mixture.
-    sensor : SensorParameters
-        The sensor; its lens counts as telecentric.
-    pupil : int
-        Points of the pupil at which the samples see the scene, along its diameter.
-    noise : float
-        Standard deviation of a sample as the mixture's prior has it, of white = 1.
-    pair : array (2, rows, cols)
-        Both diodes of every pixel, 1 = the average diode in a flat white scene.
-
-    Returns
-    -------
-    float32 (views, views, rows, cols)
-        l[v, u, y, x], 1 = white.
+    estimate: of the mixture. sensor: the sensor; its lens counts as telecentric. pupil: points of the pupil at which
+    the samples see the scene, along its diameter. noise: standard deviation of a sample as the mixture's prior has it,
+    of white = 1. pair: (2, rows, cols), both diodes of every pixel, 1 = the average diode in a flat white scene.
+    Returns (views, views, rows, cols), l[v, u, y, x], 1 = white.
     """
     field, views = estimate.light_field, len(estimate.light_field)
     margin = math.ceil(float(np.abs(estimate.disparity).max()) * views / 2) + 4
@@ -108,17 +91,8 @@ def layered(estimate: Estimate, sensor: SensorParameters, pupil: int, noise: flo
 def surfaces_of(disparity: Floats, spread: Floats, margin: int) -> Surfaces:
     """Planes that a share of the reliable disparities is on, bent to follow them.
 
-    Parameters
-    ----------
-    disparity, spread : array (rows, cols)
-        Of the mixture, px per view step.
-    margin : int
-        Px around the array.
-
-    Returns
-    -------
-    Surfaces
-        None where nothing is reliable.
+    disparity, spread: (rows, cols), of the mixture, px per view step. margin: px around the array. Returns None where
+    nothing is reliable.
     """
     y, x = np.indices(disparity.shape, float)
     sure = spread <= SURE
@@ -181,25 +155,9 @@ def fit_textures(
 ) -> Floats:
     """Textures that explain the samples behind these masks, of least total variation: conjugate gradients.
 
-    Parameters
-    ----------
-    stack : Stack
-        At the operator's views.
-    operator : CaptureOperator
-        In float32.
-    samples : float32 (2, rows, cols)
-        Of the frame.
-    masks : sequence of float32 (rows + 2 margin, cols + 2 margin)
-        Of all surfaces but the farthest, 0..1.
-    textures : float32 (surfaces, rows + 2 margin, cols + 2 margin)
-        To begin with.
-    sigma : float
-        Standard deviation of a sample.
-
-    Returns
-    -------
-    float32
-        As ``textures``.
+    stack: at the operator's views. operator: in float32. samples: (2, rows, cols), of the frame. masks: (rows + 2
+    margin, cols + 2 margin), of all surfaces but the farthest, 0..1. textures: (surfaces, rows + 2 margin, cols + 2
+    margin), to begin with. sigma: standard deviation of a sample. Returns float32: as ``textures``.
     """
     seen = stack.seen(masks)
     weight = SMOOTH / np.sqrt(sum(np.square(step) for step in _gradient(textures)) + np.float32(CORNER**2))
@@ -233,17 +191,8 @@ def fit_masks(
 ) -> list[Floats]:
     """Masks with which these textures explain the samples, of short outlines: projected accelerated gradients.
 
-    Parameters
-    ----------
-    stack, operator, samples, masks, textures, sigma
-        As of `fit_textures`.
-    outline : float32 (rows + 2 margin, cols + 2 margin)
-        Weight of an outline at each place.
-
-    Returns
-    -------
-    list of float32
-        As ``masks``, one surface after the other.
+    stack, operator, samples, masks, textures, sigma: as of `fit_textures`. outline: (rows + 2 margin, cols + 2 margin),
+    weight of an outline at each place. Returns list of float32: as ``masks``, one surface after the other.
     """
     masks, shown = list(masks), [stack.warped(k, texture) for k, texture in enumerate(textures)]
     for k in range(stack.count - 1):

@@ -32,14 +32,9 @@ DEFAULT = "linear"  # as fast as direct once its filters are there, and it has p
 class Found(NamedTuple):
     """The result of a method.
 
-    Attributes
-    ----------
-    light_field : array (views, views, rows, cols)
-        l[v, u, y, x], white = 1; noise and error take it below 0.
-    disparity, spread : array (rows, cols) or None
-        In px per view step, and its standard deviation; None of a method that tells none.
-    plain : float
-        Share of the windows that are left out, since their samples show no angular content.
+    light_field: (views, views, rows, cols), l[v, u, y, x], white = 1; noise and error take it below 0. disparity,
+    spread: (rows, cols), in px per view step, and its standard deviation; None of a method that tells none. plain:
+    share of the windows that are left out, since their samples show no angular content.
     """
 
     light_field: Values
@@ -109,15 +104,7 @@ ANY_TYPES = "direct", "linear", "mixture"  # know what to do where some pixel ty
 def applicable(operator: CaptureOperator) -> list[str]:
     """Methods for frames of this size and light fields of as many views; learned methods have a fixed size.
 
-    Parameters
-    ----------
-    operator : CaptureOperator
-        Operator of all views.
-
-    Returns
-    -------
-    list of str
-        Their names, in the order of `METHODS`.
+    operator: operator of all views. Returns list of str: their names, in the order of `METHODS`.
     """
     views, _, *shape = operator.shape
     _, trained, _, *patch = Dictionary.shipped().atoms.shape
@@ -130,17 +117,7 @@ def applicable(operator: CaptureOperator) -> list[str]:
 def check_method(name: str, operator: CaptureOperator) -> None:
     """Check that a method is there, and for frames of this size.
 
-    Parameters
-    ----------
-    name : str
-        Of the method.
-    operator : CaptureOperator
-        As for `applicable`.
-
-    Raises
-    ------
-    ParameterError
-        With the list of those that are.
+    name: of the method. operator: as for `applicable`. Raises ParameterError with the list of those that are.
     """
     if name not in METHODS:
         raise ParameterError(f"method = {name!r}: must be one of {', '.join(METHODS)}")
@@ -157,23 +134,9 @@ def measure(
 ) -> tuple[Found, dict[str, float]]:
     """Run a method.
 
-    Parameters
-    ----------
-    name : str
-        One of `METHODS`.
-    estimator : FieldEstimator
-        Of the sensor, with the prior.
-    operator : CaptureOperator
-        Of the same sensor, all views.
-    pair : array (2, rows, cols)
-        1 = the average diode in a flat white scene.
-
-    Returns
-    -------
-    Found
-        What it gives.
-    dict
-        ``seconds`` a frame, and ``seconds_once``, those that it takes once a sensor.
+    name: one of `METHODS`. estimator: of the sensor, with the prior. operator: of the same sensor, all views. pair: (2,
+    rows, cols), 1 = the average diode in a flat white scene. Returns Found: what it gives. Returns ``seconds`` a frame,
+    and ``seconds_once``, those that it takes once a sensor.
     """
     start = perf_counter()
     PREPARE.get(name, lambda estimator, operator: None)(estimator, operator)

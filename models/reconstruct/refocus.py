@@ -18,17 +18,8 @@ FLAT = 1e-6  # of white squared, per px squared: what rounding leaves of the dif
 def moved(image: Floats, down: float, right: float) -> Floats:
     """Move a picture.
 
-    Parameters
-    ----------
-    image : array (rows, cols)
-        The picture.
-    down, right : float
-        By how much, px.
-
-    Returns
-    -------
-    array (rows, cols)
-        Linear between pixels, constant outside; of the type of ``image``.
+    image: (rows, cols), the picture. down, right: by how much, px. Returns (rows, cols), linear between pixels,
+    constant outside; of the type of ``image``.
     """
     for axis, move in enumerate((down, right)):
         if move:

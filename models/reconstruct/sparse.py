@@ -31,27 +31,12 @@ CHUNK = 2048  # patches that are coded together: as much as stays in the cache, 
 class Coding:
     """The parameters of the patches' code.
 
-    Attributes
-    ----------
-    stride : int
-        Px from patch to patch, 1..the patch's size.
-    iterations : int
-        Of ADMM, 1..10000.
-    penalty : float
-        Of the codes' absolute values, each over its mean, against squares of samples over their noise, 0..1000.
-    noise : float
-        Standard deviation of a sample, of white = 1: 1e-5..10.
-    floor_sum, floor_difference : float
-        Standard deviation of what the dictionary leaves unexplained of the sum and of the difference of a pixel's
-        diodes, over sqrt(2), 0..1: what is fine in a picture is in its sums alone.
-    atoms : int, optional
-        How many atoms are used, the most used first; None is all.
-    jobs : int
-        Processes of joblib, 1..1024.
-
-    References
-    ----------
-    [Jayasuriya2017], Sec. 3.3.2.
+    stride: px from patch to patch, 1..the patch's size. iterations: of ADMM, 1..10000. penalty: of the codes' absolute
+    values, each over its mean, against squares of samples over their noise, 0..1000. noise: standard deviation of a
+    sample, of white = 1: 1e-5..10. floor_sum, floor_difference: standard deviation of what the dictionary leaves
+    unexplained of the sum and of the difference of a pixel's diodes, over sqrt(2), 0..1: what is fine in a picture is
+    in its sums alone. atoms: how many atoms are used, the most used first; None is all. jobs: processes of joblib,
+    1..1024. Source: [Jayasuriya2017], Sec. 3.3.2.
     """
 
     stride: int = 3
@@ -76,12 +61,7 @@ class Coding:
 class Lasso(NamedTuple):
     """Least squares with a penalty on absolute values, factored once for all right sides.
 
-    Attributes
-    ----------
-    inverse : float32 (atoms, atoms)
-        Of A'A + rho I.
-    rho : float
-        Step of ADMM, > 0.
+    inverse: (atoms, atoms), of A'A + rho I. rho: step of ADMM, > 0.
     """
 
     inverse: Floats
@@ -91,15 +71,7 @@ class Lasso(NamedTuple):
     def of(cls, gram: Floats) -> "Lasso":
         """Factor.
 
-        Parameters
-        ----------
-        gram : array (atoms, atoms)
-            A'A.
-
-        Returns
-        -------
-        Lasso
-            With the mean of the diagonal as step.
+        gram: (atoms, atoms), A'A. Returns Lasso: with the mean of the diagonal as step.
         """
         rho = float(np.trace(gram) / len(gram)) or 1.0
         inverse = cho_solve(cho_factor(gram + rho * np.eye(len(gram))), np.eye(len(gram)))
@@ -108,23 +80,8 @@ class Lasso(NamedTuple):
     def solve(self, right: Floats, penalty: Floats, iterations: int) -> Floats:
         """Codes of many right sides.
 
-        Parameters
-        ----------
-        right : float32 (atoms, n)
-            A'i.
-        penalty : float32 (atoms, 1)
-            Of every code, 0 or more.
-        iterations : int
-            Of ADMM, without over-relaxation.
-
-        Returns
-        -------
-        float32 (atoms, n)
-            Codes, with exact zeros.
-
-        References
-        ----------
-        [Boyd2011], Sec. 6.4.
+        right: (atoms, n), A'i. penalty: (atoms, 1), of every code, 0 or more. iterations: of ADMM, without
+        over-relaxation. Returns (atoms, n), codes, with exact zeros. Source: [Boyd2011], Sec. 6.4.
         """
         limit = (penalty / self.rho).astype(np.float32)
         dual = np.zeros_like(right)
@@ -140,12 +97,8 @@ class Lasso(NamedTuple):
 class Dictionary(NamedTuple):
     """The atoms of the patches.
 
-    Attributes
-    ----------
-    atoms : float32 (atoms, views, views, height, width)
-        Of norm 1, the first constant, then the most used first.
-    sizes : float32 (atoms,)
-        Mean of the absolute value of each one's code, > 0.
+    atoms: (atoms, views, views, height, width), of norm 1, the first constant, then the most used first. sizes:
+    (atoms,), mean of the absolute value of each one's code, > 0.
     """
 
     atoms: Floats
@@ -156,10 +109,7 @@ class Dictionary(NamedTuple):
     def shipped(cls) -> "Dictionary":
         """Load the one that is shipped.
 
-        Returns
-        -------
-        Dictionary
-            Of `DICTIONARY`.
+        Returns Dictionary: of `DICTIONARY`.
         """
         with np.load(DICTIONARY) as file:
             atoms = file["codes"].astype(np.float32)
@@ -169,10 +119,7 @@ class Dictionary(NamedTuple):
     def save(self, path: Path) -> None:
         """Write it as int8, each atom with its scale, which its norm restores.
 
-        Parameters
-        ----------
-        path : Path
-            An .npz file.
+        path: an .npz file.
         """
         codes = np.rint(self.atoms * (127 / np.abs(self.atoms).max((1, 2, 3, 4), keepdims=True))).astype(np.int8)
         np.savez_compressed(path, codes=codes, sizes=self.sizes)
@@ -181,14 +128,7 @@ class Dictionary(NamedTuple):
 class SparseEstimator:
     """Light fields of one sensor by sparse coding.
 
-    Parameters
-    ----------
-    sensor : SensorParameters
-        The sensor; its lens counts as telecentric.
-    coding : Coding
-        How.
-    dictionary : Dictionary, optional
-        None is the one that is shipped.
+    sensor: the sensor; its lens counts as telecentric. coding: how. dictionary: None is the one that is shipped.
     """
 
     def __init__(
@@ -216,20 +156,8 @@ class SparseEstimator:
     def estimate(self, pair: Floats) -> Floats:
         """Light field from samples.
 
-        Parameters
-        ----------
-        pair : array (2, rows, cols)
-            Both diodes of every pixel, 1 = the average diode in a flat white scene.
-
-        Returns
-        -------
-        float32 (views, views, rows, cols)
-            l[v, u, y, x], 1 = white.
-
-        Raises
-        ------
-        ParameterError
-            For a wrong shape.
+        pair: (2, rows, cols), both diodes of every pixel, 1 = the average diode in a flat white scene. Returns (views,
+        views, rows, cols), l[v, u, y, x], 1 = white. Raises ParameterError for a wrong shape.
         """
         rows, cols = self.sensor.shape
         if pair.shape != (2, rows, cols):
@@ -292,33 +220,11 @@ def learn(
 ) -> Iterator[tuple[Floats, Floats, float]]:
     """Learn a dictionary: codes of a batch by `Lasso`, then every atom again from all that was coded.
 
-    Parameters
-    ----------
-    patches : float32 (n, size)
-        Light fields of patches.
-    atoms : int
-        With the constant one, 2..n.
-    penalty : float
-        On the codes' absolute values.
-    rounds : int
-        Batches.
-    seed : int
-        Of the first atoms and the batches.
-    batch, iterations : int
-        Patches of a batch, and of ADMM.
-
-    Yields
-    ------
-    dictionary : float32 (atoms, size)
-        Norm 1, the most used first, but for the first, which is constant.
-    sizes : float32 (atoms,)
-        Mean of the absolute value of each one's code.
-    error : float
-        RMS of what the codes of the last batch leave.
-
-    References
-    ----------
-    [Mairal2010], Alg. 1 and 2.
+    patches: (n, size), light fields of patches. atoms: with the constant one, 2..n. penalty: on the codes' absolute
+    values. rounds: batches. seed: of the first atoms and the batches. batch, iterations: patches of a batch, and of
+    ADMM. Yields dictionary ((atoms, size), norm 1, the most used first, but for the first, which is constant), sizes
+    ((atoms,), mean of the absolute value of each one's code), error (RMS of what the codes of the last batch leave).
+    Source: [Mairal2010], Alg. 1 and 2.
     """
     rng = np.random.default_rng(seed)
     size = patches.shape[1]

@@ -13,14 +13,8 @@ Floats = npt.NDArray[np.floating]
 class Stack:
     """Surfaces as views see them.
 
-    Parameters
-    ----------
-    disparity : sequence of float32 (rows + 2 margin, cols + 2 margin)
-        Of the surfaces, the nearest first, px per view step.
-    steps : float64 (views,)
-        Places of the views down and across, in view steps.
-    margin : int
-        Px around the array.
+    disparity: (rows + 2 margin, cols + 2 margin), of the surfaces, the nearest first, px per view step. steps:
+    (views,), places of the views down and across, in view steps. margin: px around the array.
     """
 
     def __init__(self, disparity: Sequence[Floats], steps: npt.NDArray[np.float64], margin: int) -> None:
@@ -40,19 +34,8 @@ class Stack:
     def warped(self, k: int, picture: Floats, linear: bool = False) -> Floats:
         """Show a picture of a surface in every view.
 
-        Parameters
-        ----------
-        k : int
-            Number of the surface.
-        picture : float32 (rows + 2 margin, cols + 2 margin)
-            As the middle view shows it.
-        linear : bool
-            Interpolate linearly, not by cubic convolution.
-
-        Returns
-        -------
-        float32 (views, views, rows, cols)
-            l[v, u, y, x].
+        k: number of the surface. picture: (rows + 2 margin, cols + 2 margin), as the middle view shows it. linear:
+        interpolate linearly, not by cubic convolution. Returns (views, views, rows, cols), l[v, u, y, x].
         """
         out = np.empty(self.shape, np.float32)
         for v, u in np.ndindex(self.shape[:2]):
@@ -62,19 +45,8 @@ class Stack:
     def back(self, k: int, field: Floats, linear: bool = False) -> Floats:
         """Apply the transpose of `warped`.
 
-        Parameters
-        ----------
-        k : int
-            Number of the surface.
-        field : float32 (views, views, rows, cols)
-            A light field.
-        linear : bool
-            As of `warped`.
-
-        Returns
-        -------
-        float32 (rows + 2 margin, cols + 2 margin)
-            A picture of the surface.
+        k: number of the surface. field: (views, views, rows, cols), a light field. linear: as of `warped`. Returns
+        (rows + 2 margin, cols + 2 margin), a picture of the surface.
         """
         out = np.zeros(self.whole, np.float32)
         for v, u in np.ndindex(self.shape[:2]):
@@ -84,15 +56,8 @@ class Stack:
     def seen(self, masks: Sequence[Floats]) -> list[Floats]:
         """Tell how much of every surface each view shows.
 
-        Parameters
-        ----------
-        masks : sequence of float32 (rows + 2 margin, cols + 2 margin)
-            Of all surfaces but the farthest, 0..1.
-
-        Returns
-        -------
-        list of float32 (views, views, rows, cols)
-            Of every surface; their sum is 1.
+        masks: (rows + 2 margin, cols + 2 margin), of all surfaces but the farthest, 0..1. Returns (views, views, rows,
+        cols), of every surface; their sum is 1.
         """
         left, out = np.ones(self.shape, np.float32), []
         for k, mask in enumerate(masks):
@@ -104,33 +69,15 @@ class Stack:
     def field(self, textures: Floats, seen: Sequence[Floats]) -> Floats:
         """Compose the light field.
 
-        Parameters
-        ----------
-        textures : float32 (surfaces, rows + 2 margin, cols + 2 margin)
-            Of every surface.
-        seen : sequence of float32 (views, views, rows, cols)
-            As of `seen`.
-
-        Returns
-        -------
-        float32 (views, views, rows, cols)
-            l[v, u, y, x].
+        textures: (surfaces, rows + 2 margin, cols + 2 margin), of every surface. seen: (views, views, rows, cols), as
+        of `seen`. Returns (views, views, rows, cols), l[v, u, y, x].
         """
         return np.asarray(sum(part * self.warped(k, textures[k]) for k, part in enumerate(seen)), np.float32)
 
     def textures(self, field: Floats, seen: Sequence[Floats]) -> Floats:
         """Apply the transpose of `field`.
 
-        Parameters
-        ----------
-        field : float32 (views, views, rows, cols)
-            A light field.
-        seen : sequence of float32 (views, views, rows, cols)
-            As of `seen`.
-
-        Returns
-        -------
-        float32 (surfaces, rows + 2 margin, cols + 2 margin)
-            Pictures of the surfaces.
+        field: (views, views, rows, cols), a light field. seen: (views, views, rows, cols), as of `seen`. Returns
+        (surfaces, rows + 2 margin, cols + 2 margin), pictures of the surfaces.
         """
         return np.stack([self.back(k, part * field) for k, part in enumerate(seen)])

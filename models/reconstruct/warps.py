@@ -23,14 +23,8 @@ def _inside(place: Any, first: int, last: int) -> tuple[int, Any]:
 def gather(picture: Floats, y: Floats, x: Floats, out: Floats) -> None:
     """Interpolate by cubic convolution, places within a pixel of the border moved inside [Keys1981].
 
-    Parameters
-    ----------
-    picture : float32 (height, width)
-        4 pixels or more along each side.
-    y, x : float32 (rows, cols)
-        Places, px.
-    out : float32 (rows, cols)
-        Receives the values there.
+    picture: (height, width), 4 pixels or more along each side. y, x: (rows, cols), places, px. out: (rows, cols),
+    receives the values there.
     """
     height, width = picture.shape
     for i in range(y.shape[0]):
@@ -49,14 +43,7 @@ def gather(picture: Floats, y: Floats, x: Floats, out: Floats) -> None:
 def scatter(picture: Floats, y: Floats, x: Floats, values: Floats) -> None:
     """Add the transpose of `gather` to a picture.
 
-    Parameters
-    ----------
-    picture : float32 (height, width)
-        Is added to.
-    y, x : float32 (rows, cols)
-        As of `gather`.
-    values : float32 (rows, cols)
-        Values there.
+    picture: (height, width), is added to. y, x: (rows, cols), as of `gather`. values: (rows, cols), values there.
     """
     height, width = picture.shape
     for i in range(y.shape[0]):
@@ -74,12 +61,7 @@ def scatter(picture: Floats, y: Floats, x: Floats, values: Floats) -> None:
 def gather_linear(picture: Floats, y: Floats, x: Floats, out: Floats) -> None:
     """Interpolate linearly, places beyond the border moved to it.
 
-    Parameters
-    ----------
-    picture : float32 (height, width)
-        2 pixels or more along each side.
-    y, x, out : float32 (rows, cols)
-        As of `gather`.
+    picture: (height, width), 2 pixels or more along each side. y, x, out: (rows, cols), as of `gather`.
     """
     height, width = picture.shape
     for i in range(y.shape[0]):
@@ -95,12 +77,7 @@ def gather_linear(picture: Floats, y: Floats, x: Floats, out: Floats) -> None:
 def scatter_linear(picture: Floats, y: Floats, x: Floats, values: Floats) -> None:
     """Add the transpose of `gather_linear` to a picture.
 
-    Parameters
-    ----------
-    picture : float32 (height, width)
-        Is added to.
-    y, x, values : float32 (rows, cols)
-        As of `scatter`.
+    picture: (height, width), is added to. y, x, values: (rows, cols), as of `scatter`.
     """
     height, width = picture.shape
     for i in range(y.shape[0]):

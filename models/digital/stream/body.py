@@ -12,16 +12,8 @@ from talbot.models.parameters.stream_format import CRC, HEADER_BYTES, TRAILER_BY
 class Body:
     """Decoder of the bytes after a header into the frame's samples.
 
-    Parameters
-    ----------
-    view : uint8
-        Bytes of the stream.
-    frame : DecodedFrame
-        Receives samples and errors.
-    sent : bytes
-        The header as it was sent.
-    start : int, optional
-        Start of the frame in ``view``; the frame's own by default.
+    view: bytes of the stream. frame: receives samples and errors. sent: the header as it was sent. start: start of the
+    frame in ``view``; the frame's own by default.
     """
 
     def __init__(self, view: npt.NDArray[np.uint8], frame: DecodedFrame, sent: bytes, start: int | None = None) -> None:
@@ -38,23 +30,10 @@ class Body:
     def decode(self, ordinal: int, at: int, whole: bool = True) -> tuple[int, int, Trailer | None]:
         """Decode segments, and the trailer after the last, until one does not fit.
 
-        Parameters
-        ----------
-        ordinal : int
-            Number of the first row, with which a segment begins.
-        at : int
-            Its position.
-        whole : bool
-            Nothing before it is damaged: check the frame's CRC-32 too.
-
-        Returns
-        -------
-        ordinal : int
-            Number of the first row of the segment that does not fit, or the number of rows.
-        at : int
-            Position of that segment or of the trailer.
-        trailer : Trailer or None
-            None if a row or the trailer does not fit.
+        ordinal: number of the first row, with which a segment begins. at: its position. whole: nothing before it is
+        damaged: check the frame's CRC-32 too. Returns ordinal (number of the first row of the segment that does not
+        fit, or the number of rows), at (position of that segment or of the trailer), trailer (None if a row or the
+        trailer does not fit).
         """
         layout, view = self.frame.layout, self.view
         places = layout.rows, layout.counts, layout.kind, layout.places, layout.start
@@ -70,15 +49,7 @@ class Body:
         The CRC-32 yields the candidates for the byte and its change; all marks must then agree. Without success, the
         rows before the first bad one are decoded again.
 
-        Parameters
-        ----------
-        stop : int
-            End of the frame.
-
-        Returns
-        -------
-        Trailer or None
-            None if no change of one byte makes everything fit.
+        stop: end of the frame. Returns None if no change of one byte makes everything fit.
         """
         start, last = self.first - HEADER_BYTES, stop - CRC.size
         if last < self.first:

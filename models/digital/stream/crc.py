@@ -16,15 +16,7 @@ CRC16_START = 0xFFFF
 def crc16(data: bytes) -> int:
     """CRC-16 of some bytes.
 
-    Parameters
-    ----------
-    data : bytes-like
-        Any length.
-
-    Returns
-    -------
-    int
-        0..65535.
+    data: any length. Returns 0..65535.
     """
     return binascii.crc_hqx(data, CRC16_START)
 
@@ -41,16 +33,8 @@ CRC16_AFTER = np.array([[binascii.crc_hqx(bytes([byte]) + bytes(n), 0) for byte 
 def one_byte_errors(length: int) -> dict[int, tuple[int, int]]:
     """Syndromes of every change of one byte in a message and its CRC-32.
 
-    Parameters
-    ----------
-    length : int
-        Bytes of the message.
-
-    Returns
-    -------
-    dict of int to (int, int)
-        (computed CRC) xor (received CRC) to (position, change); positions from ``length`` on are the CRC's own bytes,
-        most significant first.
+    length: bytes of the message. Returns (computed CRC) xor (received CRC) to (position, change); positions from
+    ``length`` on are the CRC's own bytes, most significant first.
     """
     quiet = zlib.crc32(bytes(length))
     errors = {}

@@ -226,20 +226,10 @@ class StreamHeader:
 class Layout:
     """Rows of a frame, and their samples in the order of the stream.
 
-    Attributes
-    ----------
-    rows : int32 (R,)
-        Rows that are read.
-    kind : int32 (R,)
-        List of places of each row.
-    counts : int32 (R,)
-        Samples of each row.
-    places : int32 (n,)
-        For each kind the samples' index col * subs + sub in their row, one list after the other.
-    start : int32 (kinds + 1,)
-        Start of each list in ``places``.
-    order : int64 (samples of a frame,)
-        Index of each in an array (rows, cols, subs), row after row.
+    rows: (R,), rows that are read. kind: (R,), list of places of each row. counts: (R,), samples of each row. places:
+    (n,), for each kind the samples' index col * subs + sub in their row, one list after the other. start: (kinds + 1,),
+    start of each list in ``places``. order: (samples of a frame,), index of each in an array (rows, cols, subs), row
+    after row.
     """
 
     rows: npt.NDArray[np.int32]
@@ -252,15 +242,7 @@ class Layout:
     def places_of(self, ordinal: int) -> npt.NDArray[np.int32]:
         """Samples of one row in the order of the stream.
 
-        Parameters
-        ----------
-        ordinal : int
-            Number of the row in ``rows``.
-
-        Returns
-        -------
-        int32 (n,)
-            Index col * subs + sub of each sample in its row.
+        ordinal: number of the row in ``rows``. Returns (n,), index col * subs + sub of each sample in its row.
         """
         kind = self.kind[ordinal]
         return self.places[self.start[kind] : self.start[kind + 1]]
@@ -296,14 +278,7 @@ def _correct(data: bytes) -> tuple[bytes, int | None] | None:
 class ReceivedHeader(NamedTuple):
     """A header after the correction of one byte.
 
-    Attributes
-    ----------
-    header : StreamHeader
-        Its contents.
-    sent : bytes
-        The header as it was sent.
-    corrected : int or None
-        Position of the wrong byte; None if there is none.
+    header: its contents. sent: the header as it was sent. corrected: position of the wrong byte; None if there is none.
     """
 
     header: StreamHeader
@@ -314,20 +289,8 @@ class ReceivedHeader(NamedTuple):
 def read_header(data: bytes) -> ReceivedHeader:
     """Decode a header, one byte of which may be wrong.
 
-    Parameters
-    ----------
-    data : bytes
-        HEADER_BYTES bytes.
-
-    Returns
-    -------
-    ReceivedHeader
-        Its contents and the correction.
-
-    Raises
-    ------
-    StreamError
-        When this is no header, has more than one wrong byte, or holds values out of range.
+    data: HEADER_BYTES bytes. Returns ReceivedHeader: its contents and the correction. Raises StreamError when this is
+    no header, has more than one wrong byte, or holds values out of range.
     """
     if len(data) < HEADER_BYTES:
         raise StreamError(f"{len(data)} bytes: a header has {HEADER_BYTES}")

@@ -35,17 +35,7 @@ Places = npt.NDArray[np.int64]
 def base_of(mode: str, threshold: int) -> int:
     """Smallest magnitude of a coded value: a sample below it is a zero.
 
-    Parameters
-    ----------
-    mode : str
-        One of MODES.
-    threshold : int
-        0..127.
-
-    Returns
-    -------
-    int
-        1..127; 0 in ternary mode, which codes the sign alone.
+    mode: one of MODES. threshold: 0..127. Returns 1..127; 0 in ternary mode, which codes the sign alone.
     """
     return 0 if mode == "ternary" else max(threshold, 1)
 
@@ -53,17 +43,7 @@ def base_of(mode: str, threshold: int) -> int:
 def row_bytes_max(count: int, edge: bool) -> int:
     """Largest payload of a segment: 8.25 bits a sample and 4 bytes where coded.
 
-    Parameters
-    ----------
-    count : int
-        Samples of the segment.
-    edge : bool
-        Run-length coded signed codes; else plain bytes.
-
-    Returns
-    -------
-    int
-        Bytes.
+    count: samples of the segment. edge: run-length coded signed codes; else plain bytes. Returns bytes.
     """
     return -(-(33 * count + 128) // 32) if edge else count
 
@@ -77,17 +57,7 @@ def _word(data: Bytes, at: int) -> int:
 def crc16_span(data: Bytes, start: int, stop: int) -> int:
     """CRC-16 of data[start:stop].
 
-    Parameters
-    ----------
-    data : uint8
-        Bytes of the stream.
-    start, stop : int
-        Span.
-
-    Returns
-    -------
-    int
-        0..65535.
+    data: bytes of the stream. start, stop: span. Returns 0..65535.
     """
     crc = CRC16_START
     whole = start + (stop - start) // 4 * 4
@@ -108,15 +78,7 @@ def crc16_span(data: Bytes, start: int, stop: int) -> int:
 def start(base: int) -> tuple[int, int, int, int]:
     """State of the coder at the start of a segment.
 
-    Parameters
-    ----------
-    base : int
-        See `base_of`.
-
-    Returns
-    -------
-    tuple of int
-        k, r2, run, credit: see docs/stream.md, Payload.
+    base: see `base_of`. Returns k, r2, run, credit: see docs/stream.md, Payload.
     """
     return 8 if 0 < base < DENSE else 16, 2, 0, 128
 
@@ -135,21 +97,8 @@ def code_sample(code: int, base: int, k: int, r2: int, run: int, credit: int) ->
 
     A run that is still open at the end of a segment is closed by one more 0 bit.
 
-    Parameters
-    ----------
-    code : int
-        -128..127.
-    base : int
-        See `base_of`.
-    k, r2, run, credit : int
-        State of the coder, see `start`.
-
-    Returns
-    -------
-    bits, length : int
-        Token, 0..27 bits.
-    k, r2, run, credit : int
-        State after it.
+    code: -128..127. base: see `base_of`. k, r2, run, credit: state of the coder, see `start`. Returns bits, length
+    (token, 0..27 bits), k, r2, run, credit (state after it).
     """
     q, magnitude = k >> 2, abs(code)
     zero = magnitude < max(base, 1)
@@ -217,23 +166,9 @@ def _fresh(base: int) -> tuple[int, int, int, int, int, int]:
 def encode_segment(codes: Codes, edge: bool, base: int, out: Bytes) -> tuple[int, int]:
     """Payload of a segment.
 
-    Parameters
-    ----------
-    codes : int16 (n,)
-        Samples in the order of the stream, of all its rows.
-    edge : bool
-        Run-length coded signed codes; else plain bytes.
-    base : int
-        See `base_of`.
-    out : uint8
-        Receives the bytes.
-
-    Returns
-    -------
-    end : int
-        Bytes of the payload.
-    whole : int
-        Those that are complete before the segment is closed.
+    codes: (n,), samples in the order of the stream, of all its rows. edge: run-length coded signed codes; else plain
+    bytes. base: see `base_of`. out: receives the bytes. Returns end (bytes of the payload), whole (those that are
+    complete before the segment is closed).
     """
     whole, state = _append(codes, edge, base, out, 0, _fresh(base))
     return _close(out, whole, state), whole
@@ -243,25 +178,9 @@ def encode_segment(codes: Codes, edge: bool, base: int, out: Bytes) -> tuple[int
 def encode_rows(codes: Codes, rows: Ints, counts: Ints, edge: bool, base: int, segment: int, out: Bytes) -> int:
     """Encode rows with their marks.
 
-    Parameters
-    ----------
-    codes : int16 (n,)
-        Samples in the order of the stream, row after row.
-    rows, counts : int32 (R,)
-        Index and samples of each row.
-    edge : bool
-        Run-length coded signed codes; else plain bytes.
-    base : int
-        See `base_of`.
-    segment : int
-        Bytes of payload after which a row is a segment's last.
-    out : uint8
-        Receives the bytes.
-
-    Returns
-    -------
-    int
-        Bytes written.
+    codes: (n,), samples in the order of the stream, row after row. rows, counts: (R,), index and samples of each row.
+    edge: run-length coded signed codes; else plain bytes. base: see `base_of`. segment: bytes of payload after which a
+    row is a segment's last. out: receives the bytes. Returns bytes written.
     """
     at, begin, first, row, state = 0, 0, 0, 0, _fresh(base)
     for i in range(rows.size):
@@ -291,37 +210,12 @@ def decode_segment(
 ) -> tuple[int, int, int, int]:
     """Decode the payload of a segment from data[at:stop].
 
-    Parameters
-    ----------
-    data : uint8
-        Bytes of the stream.
-    at, stop : int
-        Span.
-    ordinal : int
-        Number of the segment's first row.
-    counts : int32 (R,)
-        Samples of each row.
-    edge : bool
-        Run-length coded signed codes; else plain bytes, which are the samples themselves.
-    base : int
-        See `base_of`.
-    segment : int
-        Bytes of payload after which a row is the last.
-    where : int32 (samples of the frame or more,)
-        Receives the index in the segment of each non-zero coded sample, ascending.
-    value : int16 (as many,)
-        Receives these samples.
-
-    Returns
-    -------
-    end : int
-        Position after the payload; -1 when no encoder writes these bits or they run past ``stop``.
-    rows : int
-        Rows of the segment.
-    found : int
-        Non-zero coded samples.
-    work : int
-        Tokens, or rows of plain bytes, that were decoded.
+    data: bytes of the stream. at, stop: span. ordinal: number of the segment's first row. counts: (R,), samples of each
+    row. edge: run-length coded signed codes; else plain bytes, which are the samples themselves. base: see `base_of`.
+    segment: bytes of payload after which a row is the last. where: (samples of the frame or more,), receives the index
+    in the segment of each non-zero coded sample, ascending. value: (as many,), receives these samples. Returns end
+    (position after the payload; -1 when no encoder writes these bits or they run past ``stop``), rows (rows of the
+    segment), found (non-zero coded samples), work (tokens, or rows of plain bytes, that were decoded).
     """
     row, row_end = ordinal, int64(counts[ordinal])
     if not edge:
@@ -421,19 +315,9 @@ def check_segment(
 ) -> tuple[int, int, int, int, int]:
     """Decode a segment and its mark from data[at:stop].
 
-    Parameters
-    ----------
-    data, at, stop, ordinal, counts, edge, base, segment, where, value
-        As in `decode_segment`.
-
-    Returns
-    -------
-    end : int
-        Position after the mark; -1 when the payload or the mark does not fit.
-    row : int
-        Row index of the mark; a random number when the segment is damaged.
-    rows, found, work : int
-        As in `decode_segment`.
+    data, at, stop, ordinal, counts, edge, base, segment, where, value: as in `decode_segment`. Returns end (position
+    after the mark; -1 when the payload or the mark does not fit), row (row index of the mark; a random number when the
+    segment is damaged), rows, found, work (as in `decode_segment`).
     """
     end, rows, decoded, work = decode_segment(data, at, stop, ordinal, counts, edge, base, segment, where, value)
     if end < 0 or end + 2 > stop:
@@ -461,27 +345,10 @@ def decode_rows(
 ) -> tuple[int, int]:
     """Decode segments until one does not fit.
 
-    Parameters
-    ----------
-    data : uint8
-        Bytes of the stream.
-    at, ordinal : int
-        Position of the first segment, and the number of its first row.
-    rows, counts, kind, places, start
-        As in Layout.
-    edge, base, segment, where, value
-        As in `decode_segment`.
-    out : int16 (rows, cols * subs)
-        Receives the samples.
-    ends : int64 (R,)
-        Receives the end of the segment of each row.
-
-    Returns
-    -------
-    ordinal : int
-        Number of the first row of the segment that does not fit, or the number of rows.
-    at : int
-        Its position.
+    data: bytes of the stream. at, ordinal: position of the first segment, and the number of its first row. rows,
+    counts, kind, places, start: as in Layout. edge, base, segment, where, value: as in `decode_segment`. out: (rows,
+    cols * subs), receives the samples. ends: (R,), receives the end of the segment of each row. Returns ordinal (number
+    of the first row of the segment that does not fit, or the number of rows), at (its position).
     """
     while ordinal < rows.size:
         end, row, many, decoded, _ = check_segment(
@@ -509,17 +376,7 @@ def decode_rows(
 def counts_fit(data: Bytes, at: int, stop: int) -> bool:
     """Return whether the trailer's counts and their mark are at a position.
 
-    Parameters
-    ----------
-    data : uint8
-        Bytes of the stream.
-    at, stop : int
-        Position, and end of the bytes.
-
-    Returns
-    -------
-    bool
-        True if they fit.
+    data: bytes of the stream. at, stop: position, and end of the bytes. Returns True if they fit.
     """
     if at < 0 or at + _COUNTED > stop:
         return False
@@ -530,17 +387,8 @@ def counts_fit(data: Bytes, at: int, stop: int) -> bool:
 def frame_ends(data: Bytes, at: int, stop: int) -> bool:
     """Return whether the bytes end at a position, or a header seems to start there.
 
-    Parameters
-    ----------
-    data : uint8
-        Bytes of the stream.
-    at, stop : int
-        Position, and end of the bytes.
-
-    Returns
-    -------
-    bool
-        True if so; one byte of the header's magic may be wrong.
+    data: bytes of the stream. at, stop: position, and end of the bytes. Returns True if so; one byte of the header's
+    magic may be wrong.
     """
     if at >= stop:
         return True
@@ -566,23 +414,9 @@ def segment_fits(
 ) -> bool:
     """Return whether a segment, or the trailer after the last, is at a position.
 
-    Parameters
-    ----------
-    data : uint8
-        Bytes of the stream.
-    at, stop : int
-        Position, and end of the bytes.
-    ordinal : int
-        Number of its first row; the number of rows is the trailer.
-    rows, counts : int32 (R,)
-        Index and samples of each row.
-    edge, base, segment, where, value
-        As in `decode_segment`.
-
-    Returns
-    -------
-    bool
-        True if payload and mark fit.
+    data: bytes of the stream. at, stop: position, and end of the bytes. ordinal: number of its first row; the number of
+    rows is the trailer. rows, counts: (R,), index and samples of each row. edge, base, segment, where, value: as in
+    `decode_segment`. Returns True if payload and mark fit.
     """
     if ordinal == rows.size:
         return counts_fit(data, at, stop)
@@ -609,31 +443,11 @@ def find_segment(
 ) -> tuple[int, int, int]:
     """Search data[start:stop] for the start of one of some segments.
 
-    Parameters
-    ----------
-    data : uint8
-        Bytes of the stream.
-    start, stop : int
-        Span.
-    limit : int
-        Tokens that may be decoded on trial.
-    first, last : int
-        Numbers of the rows that it may begin with, both included; the number of rows is the trailer.
-    rows, counts : int32 (R,)
-        Index and samples of each row.
-    number : int32 (ROWS_MAX,)
-        Number of a row index, or -1.
-    edge, base, segment, where, value
-        As in `decode_segment`.
-
-    Returns
-    -------
-    at : int
-        Position, or -1.
-    ordinal : int
-        Number of the first row there.
-    limit : int
-        Tokens that may still be decoded on trial.
+    data: bytes of the stream. start, stop: span. limit: tokens that may be decoded on trial. first, last: numbers of
+    the rows that it may begin with, both included; the number of rows is the trailer. rows, counts: (R,), index and
+    samples of each row. number: (ROWS_MAX,), number of a row index, or -1. edge, base, segment, where, value: as in
+    `decode_segment`. Returns at (position, or -1), ordinal (number of the first row there), limit (tokens that may
+    still be decoded on trial).
     """
     for at in range(start, stop):
         if last == rows.size and counts_fit(data, at, stop) and frame_ends(data, at + _TRAILER, stop):
@@ -696,19 +510,8 @@ def _last_segment(
 def one_byte_changes(syndrome: int, length: int, where: Places, change: Places) -> int:
     """Changes of one byte that explain a CRC-32: the right one, if there is one, and one more for every 16 MB.
 
-    Parameters
-    ----------
-    syndrome : int
-        (computed CRC) xor (received CRC).
-    length : int
-        Bytes that the CRC covers.
-    where, change : int64 (n,)
-        Receive position and change of up to n candidates.
-
-    Returns
-    -------
-    int
-        Number of candidates.
+    syndrome: (computed CRC) xor (received CRC). length: bytes that the CRC covers. where, change: (n,), receive
+    position and change of up to n candidates. Returns number of candidates.
     """
     changes = 0
     for position in range(length - 1, -1, -1):

@@ -20,24 +20,10 @@ LONE_MAX = 2048  # positions times rows that are tried for a lone segment; a mar
 class Search:
     """The searches of one frame.
 
-    Parameters
-    ----------
-    data : uint8
-        Bytes of the stream.
-    stop : int
-        Start of the next frame, or the end.
-    limit : int
-        Tokens that may be decoded on trial; the attribute counts down.
-    layout : Layout
-        Rows of the frame.
-    edge : bool
-        Run-length coded signed codes; else plain bytes.
-    base : int
-        Smallest magnitude of a coded value.
-    segment : int
-        Bytes of payload after which a row is a segment's last.
-    where, value : int32, int16
-        Scratch arrays of a frame's length.
+    data: bytes of the stream. stop: start of the next frame, or the end. limit: tokens that may be decoded on trial;
+    the attribute counts down. layout: rows of the frame. edge: run-length coded signed codes; else plain bytes. base:
+    smallest magnitude of a coded value. segment: bytes of payload after which a row is a segment's last. where, value:
+    scratch arrays of a frame's length.
     """
 
     def __init__(
@@ -61,17 +47,8 @@ class Search:
     def next_segment(self, lost: int, at: int) -> tuple[int, int] | None:
         """Find the next segment when one does not fit.
 
-        Parameters
-        ----------
-        lost : int
-            Number of the first row of the segment that does not fit.
-        at : int
-            Its position.
-
-        Returns
-        -------
-        (int, int) or None
-            Position of the next good segment and number of its first row (number of rows: the trailer).
+        lost: number of the first row of the segment that does not fit. at: its position. Returns position of the next
+        good segment and number of its first row (number of rows: the trailer).
         """
         total = self.layout.rows.size
         after = self._after(lost, at) if lost < total else None
@@ -86,22 +63,9 @@ class Search:
     def lone_segment(self, lost: int, at: int, following: int, until: int) -> tuple[int, int] | None:
         """Find a good segment between two bad ones.
 
-        Parameters
-        ----------
-        lost : int
-            Number of the first row of the segment that does not fit.
-        at : int
-            Its position.
-        following : int
-            Number of the first row of the next segment of `next_segment`.
-        until : int
-            Its position.
-
-        Returns
-        -------
-        (int, int) or None
-            Position and number of the first row, where exactly one position and row fit and at most `LONE_MAX` are
-            possible.
+        lost: number of the first row of the segment that does not fit. at: its position. following: number of the first
+        row of the next segment of `next_segment`. until: its position. Returns position and number of the first row,
+        where exactly one position and row fit and at most `LONE_MAX` are possible.
         """
         least = max(self.coder[2], 1) + MARK.size
         last = 1 + MARK.size if following == self.layout.rows.size else least  # bytes of a bad segment after it

@@ -19,12 +19,7 @@ from talbot.models.parameters.stream_format import (
 class Trailer(NamedTuple):
     """Contents of a trailer.
 
-    Attributes
-    ----------
-    made, left_out : int
-        Conversions, 0..2**32-1.
-    notes : list of str
-        What is wrong, one line each.
+    made, left_out: conversions, 0..2**32-1. notes: what is wrong, one line each.
     """
 
     made: int
@@ -35,17 +30,8 @@ class Trailer(NamedTuple):
 def row_mark(payload: bytes, row: int) -> bytes:
     """Mark of a segment.
 
-    Parameters
-    ----------
-    payload : bytes
-        Payload of the segment.
-    row : int
-        Index of its first row, 0..65535.
-
-    Returns
-    -------
-    bytes
-        CRC-16 of the payload xor the row index: two bytes.
+    payload: payload of the segment. row: index of its first row, 0..65535. Returns CRC-16 of the payload xor the row
+    index: two bytes.
     """
     return MARK.pack(crc16(payload) ^ row)
 
@@ -53,17 +39,7 @@ def row_mark(payload: bytes, row: int) -> bytes:
 def frame_crc(sent: bytes, body: bytes | memoryview) -> int:
     """CRC-32 of a frame, without the header's own CRC.
 
-    Parameters
-    ----------
-    sent : bytes
-        The header.
-    body : bytes-like
-        Bytes after the header.
-
-    Returns
-    -------
-    int
-        0..2**32-1.
+    sent: the header. body: bytes after the header. Returns 0..2**32-1.
     """
     return zlib.crc32(body, zlib.crc32(sent[:FIELD_BYTES]))
 
@@ -71,24 +47,8 @@ def frame_crc(sent: bytes, body: bytes | memoryview) -> int:
 def trailer(sent: bytes, rows: bytes, made: int, left_out: int) -> bytes:
     """Encode a trailer.
 
-    Parameters
-    ----------
-    sent : bytes
-        The header.
-    rows : bytes
-        All bytes between the header and the trailer.
-    made, left_out : int
-        Conversions, 0..2**32-1.
-
-    Returns
-    -------
-    bytes
-        TRAILER_BYTES bytes.
-
-    Raises
-    ------
-    ParameterError
-        For a count out of range.
+    sent: the header. rows: all bytes between the header and the trailer. made, left_out: conversions, 0..2**32-1.
+    Returns TRAILER_BYTES bytes. Raises ParameterError for a count out of range.
     """
     check_int("conversions made", made, 0, 2**32 - 1)
     check_int("conversions left out", left_out, 0, 2**32 - 1)
@@ -100,17 +60,8 @@ def trailer(sent: bytes, rows: bytes, made: int, left_out: int) -> bytes:
 def read_trailer(tail: bytes, crc: int | None) -> Trailer | None:
     """Decode a trailer.
 
-    Parameters
-    ----------
-    tail : bytes
-        Its bytes, possibly cut short.
-    crc : int or None
-        CRC-32 of the frame before it, None if that is damaged.
-
-    Returns
-    -------
-    Trailer or None
-        None when the counts do not fit their mark.
+    tail: its bytes, possibly cut short. crc: CRC-32 of the frame before it, None if that is damaged. Returns None when
+    the counts do not fit their mark.
     """
     if len(tail) < COUNTED_BYTES or row_mark(tail[: COUNTS.size], TRAILER_ROW) != tail[COUNTS.size : COUNTED_BYTES]:
         return None

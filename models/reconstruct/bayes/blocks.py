@@ -22,14 +22,8 @@ Kind = tuple[int, int, int, int]
 class Blocks:
     """A period of a camera's pixels, of the sensor's a tile, is a block.
 
-    Attributes
-    ----------
-    y, x : Axis
-        Blocks down and across.
-    camera : Projection
-        Its samples are the array's.
-    measured : bool (responses,)
-        Responses of the camera that are read.
+    y, x: blocks down and across. camera: its samples are the array's. measured: (responses,), responses of the camera
+    that are read.
     """
 
     y: Axis
@@ -45,15 +39,8 @@ class Blocks:
     def pooled_errors(self, width: float) -> float:
         """Errors that count where those of pixels around are pooled.
 
-        Parameters
-        ----------
-        width : float
-            Standard deviation of the pool, px.
-
-        Returns
-        -------
-        float
-            One for each sample that tells a disparity, of as many pixels as a pool of equal weights has.
+        width: standard deviation of the pool, px. Returns one for each sample that tells a disparity, of as many pixels
+        as a pool of equal weights has.
         """
         telling = float(self.camera.telling[self.camera.order].sum(0).mean())
         return 4 * math.pi * width**2 * telling
@@ -66,30 +53,14 @@ class Blocks:
     def count(self, down: Group, across: Group) -> tuple[int, int]:
         """Blocks of a group, down and across.
 
-        Parameters
-        ----------
-        down, across : Group
-            The group.
-
-        Returns
-        -------
-        tuple of int
-            How many.
+        down, across: the group. Returns tuple of int: how many.
         """
         return len(self.y.blocks[down.blocks]), len(self.x.blocks[across.blocks])
 
     def diodes(self, down: Group, across: Group) -> tuple[Ints, Ints, Ints]:
         """Row, column and response of every sample of a window, channel after channel: sums before differences.
 
-        Parameters
-        ----------
-        down, across : Group
-            The group.
-
-        Returns
-        -------
-        tuple of int64 (samples,)
-            Those three.
+        down, across: the group. Returns (samples,), those three.
         """
         diode = self._responses(down, across)
         y, x = (np.tile(p.ravel(), len(diode)) for p in np.indices(diode.shape[1:]))
@@ -105,15 +76,8 @@ class Blocks:
     def aims(self, down: Group, across: Group) -> tuple[Ints, Ints]:
         """Row and column, in the window, of the middle of what every sample of `diodes` sees.
 
-        Parameters
-        ----------
-        down, across : Group
-            The group, of windows of whole squares of the camera.
-
-        Returns
-        -------
-        tuple of int64 (samples,)
-            Pixels, those of the samples where a pixel sees itself alone.
+        down, across: the group, of windows of whole squares of the camera. Returns (samples,), pixels, those of the
+        samples where a pixel sees itself alone.
         """
         (y, x, _), side = self.diodes(down, across), self.camera.side
         return y // side * side + side // 2, x // side * side + side // 2
@@ -121,15 +85,7 @@ class Blocks:
     def own(self, down: Group, across: Group) -> tuple[Ints, Ints, int]:
         """Return samples of the block's pixels that tell a disparity, these pixels' numbers in it, and their count.
 
-        Parameters
-        ----------
-        down, across : Group
-            The group.
-
-        Returns
-        -------
-        tuple of int64 (n,), int64 (n,), int
-            Those three.
+        down, across: the group. Returns (n,), those three.
         """
         y, x, diode = self.diodes(down, across)
         y, x = y - down.offset, x - across.offset
@@ -139,17 +95,8 @@ class Blocks:
     def samples(self, pair: Floats, down: Group, across: Group) -> Floats:
         """Samples of all windows of a group.
 
-        Parameters
-        ----------
-        pair : array (channels, rows, cols)
-            Samples of the camera.
-        down, across : Group
-            The group.
-
-        Returns
-        -------
-        float32 (samples, windows)
-            The samples.
+        pair: (channels, rows, cols), samples of the camera. down, across: the group. Returns (samples, windows), the
+        samples.
         """
         windows = sliding_window_view(pair, (self.y.window, self.x.window), (1, 2))
         windows = windows[:, down.windows, across.windows].transpose(0, 3, 4, 1, 2)
@@ -161,15 +108,8 @@ class Blocks:
     def map(self, values: Iterable[Floats]) -> Floats:
         """Put the values of every group's blocks into place.
 
-        Parameters
-        ----------
-        values : iterable of array (pixels, windows) or (pixels,)
-            Of each group; the latter are the same in all of its blocks.
-
-        Returns
-        -------
-        float32 (rows, cols)
-            The values.
+        values: (pixels, windows), of each group; the latter are the same in all of its blocks. Returns (rows, cols),
+        the values.
         """
         out = np.zeros((1, 1, *self.shape), np.float32)
         for (down, across), part in zip(self.groups, values, strict=True):
@@ -180,14 +120,8 @@ class Blocks:
     def place(self, out: Floats, values: Floats, down: Group, across: Group) -> None:
         """Write the blocks of a group into a light field.
 
-        Parameters
-        ----------
-        out : array (views, views, rows, cols)
-            The light field.
-        values : array (pixels * views**2, windows)
-            Of the blocks.
-        down, across : Group
-            The group.
+        out: (views, views, rows, cols), the light field. values: (pixels * views**2, windows), of the blocks. down,
+        across: the group.
         """
         first, count = self.y.blocks[down.blocks], self.x.blocks[across.blocks]
         part = values.reshape(self.y.block, self.x.block, *out.shape[:2], len(first), len(count))
@@ -199,17 +133,7 @@ class Blocks:
     def taken(self, values: Floats, down: Group, across: Group) -> Floats:
         """Take the blocks of a group out of pictures: what `place` puts back.
 
-        Parameters
-        ----------
-        values : array (n, rows, cols)
-            The pictures.
-        down, across : Group
-            The group.
-
-        Returns
-        -------
-        array (n, pixels, windows)
-            Of the blocks.
+        values: (n, rows, cols), the pictures. down, across: the group. Returns (n, pixels, windows), of the blocks.
         """
         lines, columns = even(self.y.blocks[down.blocks]), even(self.x.blocks[across.blocks])
         windows = sliding_window_view(values, (self.y.block, self.x.block), (1, 2))[:, lines, columns]
@@ -229,14 +153,6 @@ class Blocks:
 def kind(down: Group, across: Group) -> Kind:
     """Return the key of similar windows.
 
-    Parameters
-    ----------
-    down, across : Group
-        A group.
-
-    Returns
-    -------
-    tuple of int
-        Where its windows begin in a tile, then where the blocks are in them.
+    down, across: a group. Returns tuple of int: where its windows begin in a tile, then where the blocks are in them.
     """
     return down.phase, across.phase, down.offset, across.offset

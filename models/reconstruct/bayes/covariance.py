@@ -23,12 +23,8 @@ Ints = npt.NDArray[np.int64]
 class Tables(NamedTuple):
     """Covariances for one disparity, or their mean over several.
 
-    Attributes
-    ----------
-    samples : float64 (2 height - 1, 2 width - 1, diodes, diodes)
-        Of two samples, at their distance.
-    field : float64 (2 height - 1, 2 width - 1, views * views, diodes)
-        Of a pixel's views with a sample, at the distance from the pixel to the sample.
+    samples: (2 height - 1, 2 width - 1, diodes, diodes), of two samples, at their distance. field: (2 height - 1, 2
+    width - 1, views * views, diodes), of a pixel's views with a sample, at the distance from the pixel to the sample.
     """
 
     samples: Floats
@@ -39,18 +35,9 @@ class Tables(NamedTuple):
 class Covariances:
     """Makes the tables.
 
-    Attributes
-    ----------
-    weights : float64 (diodes, pupil, pupil)
-        Weights of all diodes of a tile over the pupil.
-    views : int
-        Of the light field that is to be given back, along the pupil's diameter.
-    height, width : int
-        Window in px.
-    prior : FieldPrior
-        The prior.
-    side : int
-        Side in px of the square that every sample is the mean of.
+    weights: (diodes, pupil, pupil), weights of all diodes of a tile over the pupil. views: of the light field that is
+    to be given back, along the pupil's diameter. height, width: window in px. prior: the prior. side: side in px of the
+    square that every sample is the mean of.
     """
 
     weights: Floats
@@ -72,15 +59,7 @@ class Covariances:
     def of(self, disparity: float) -> Tables:
         """Tables for a disparity.
 
-        Parameters
-        ----------
-        disparity : float
-            In px per view step.
-
-        Returns
-        -------
-        Tables
-            The covariances.
+        disparity: in px per view step. Returns the covariances.
         """
         diodes, pupil, _ = self.weights.shape
         step = disparity * self.views / pupil
@@ -121,10 +100,7 @@ class Covariances:
     def mean(self) -> Tables:
         """Tables of a light field whose disparity is any of the prior's, each as likely.
 
-        Returns
-        -------
-        Tables
-            The covariances.
+        Returns the covariances.
         """
         every = [self.of(float(d)) for d in self.prior.grid]
         return Tables(sum(t.samples for t in every) / len(every), sum(t.field for t in every) / len(every))  # type: ignore

@@ -447,17 +447,8 @@ class FieldEstimator:
 def sums_and_differences(sensor: SensorParameters, pupil: int) -> Projection:
     """Sum and difference of each pair of diodes, over the square root of 2, as a camera.
 
-    Parameters
-    ----------
-    sensor : SensorParameters
-        The sensor.
-    pupil : int
-        Cells along the pupil's diameter.
-
-    Returns
-    -------
-    Projection
-        Of two channels: response 2 t is the sum of type t, which tells no disparity, 2 t + 1 its difference.
+    sensor: the sensor. pupil: cells along the pupil's diameter. Returns Projection: of two channels: response 2 t is
+    the sum of type t, which tells no disparity, 2 t + 1 its difference.
     """
     diodes = asp(sensor, pupil)
     a, b = diodes.weights[::2], diodes.weights[1::2]

@@ -20,12 +20,8 @@ FLOOR = 0.05  # of a sample's variance, below which disparities count as equally
 class Residuals(NamedTuple):
     """The map of a window's samples to the errors of its block's differences, each over its standard deviation.
 
-    Attributes
-    ----------
-    matrix : float32 (pixels * samples of each, samples)
-        Of the telling samples of a block's pixels, first of all pixels; 0 for one that is not read.
-    certain : float32 (pixels,)
-        Logarithm of 1 over each error's variance, sum over a pixel.
+    matrix: (pixels * samples of each, samples), of the telling samples of a block's pixels, first of all pixels; 0 for
+    one that is not read. certain: (pixels,), logarithm of 1 over each error's variance, sum over a pixel.
     """
 
     matrix: Floats
@@ -35,21 +31,8 @@ class Residuals(NamedTuple):
     def of(cls, inverse: Floats, rows: Ints, places: Ints, pixels: int) -> "Residuals":
         """Take the block's differences out of a window's precision.
 
-        Parameters
-        ----------
-        inverse : float64 (samples, samples)
-            `whitener` of the samples' covariance.
-        rows : int64 (n,)
-            Which samples they are.
-        places : int64 (n,)
-            Their pixels in the block.
-        pixels : int
-            Of the block.
-
-        Returns
-        -------
-        Residuals
-            For this window.
+        inverse: (samples, samples), `whitener` of the samples' covariance. rows: (n,), which samples they are. places:
+        (n,), their pixels in the block. pixels: of the block. Returns Residuals: for this window.
         """
         precision = inverse[:, rows].T @ inverse
         diagonal = precision[np.arange(len(rows)), rows]
@@ -63,15 +46,7 @@ class Residuals(NamedTuple):
     def squares(self, samples: Floats) -> Floats:
         """Return the squares of the errors, sum over each pixel.
 
-        Parameters
-        ----------
-        samples : float32 (samples, windows)
-            Of the windows.
-
-        Returns
-        -------
-        float32 (pixels, windows)
-            The squares.
+        samples: (samples, windows), of the windows. Returns (pixels, windows), the squares.
         """
         return np.square(self.matrix @ samples).reshape(-1, len(self.certain), samples.shape[1]).sum(0)
 
@@ -79,15 +54,7 @@ class Residuals(NamedTuple):
 def whitener(shared: Floats) -> Floats:
     """Matrix that makes samples white: the inverse of their covariance's Cholesky factor.
 
-    Parameters
-    ----------
-    shared : float64 (samples, samples)
-        The covariance.
-
-    Returns
-    -------
-    float64 (samples, samples)
-        Lower triangular.
+    shared: (samples, samples), the covariance. Returns (samples, samples), lower triangular.
     """
     return solve_triangular(cholesky(shared, lower=True), np.eye(len(shared)), lower=True)
 
@@ -95,17 +62,7 @@ def whitener(shared: Floats) -> Floats:
 def pooled(values: Floats, pool: float) -> Floats:
     """Mean around each pixel.
 
-    Parameters
-    ----------
-    values : array (rows, cols)
-        Of the pixels.
-    pool : float
-        Standard deviation of the weights, px.
-
-    Returns
-    -------
-    array (rows, cols)
-        The means.
+    values: (rows, cols), of the pixels. pool: standard deviation of the weights, px. Returns (rows, cols), the means.
     """
     return gaussian_filter(values, pool, truncate=REACH)
 
@@ -113,19 +70,8 @@ def pooled(values: Floats, pool: float) -> Floats:
 def badness(squares: Floats, certain: Floats, count: float) -> Floats:
     """-2 log p of errors of an unknown common scale: a Student's t.
 
-    Parameters
-    ----------
-    squares : array
-        Mean square of the errors, each over its standard deviation.
-    certain : array
-        Mean logarithm of 1 over their variances.
-    count : float
-        How many errors there are.
-
-    Returns
-    -------
-    array
-        Lower is more probable.
+    squares: mean square of the errors, each over its standard deviation. certain: mean logarithm of 1 over their
+    variances. count: how many errors there are. Returns lower is more probable.
     """
     return count * (np.log(squares + FLOOR) - certain)
 
@@ -133,17 +79,8 @@ def badness(squares: Floats, certain: Floats, count: float) -> Floats:
 def probability(scores: Floats, unlikely: float) -> Floats:
     """Probabilities from scores.
 
-    Parameters
-    ----------
-    scores : array (disparities, ...)
-        -2 log p of each.
-    unlikely : float
-        Share of the sum below which a probability is 0.
-
-    Returns
-    -------
-    array (disparities, ...)
-        Of sum 1.
+    scores: (disparities, ...), -2 log p of each. unlikely: share of the sum below which a probability is 0. Returns
+    (disparities, ...), of sum 1.
     """
     chance = np.exp(-(scores - scores.min(0)) / 2)
     chance[chance < unlikely * chance.sum(0)] = 0

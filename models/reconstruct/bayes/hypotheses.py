@@ -22,20 +22,9 @@ Make = Callable[[int, Pair], Solver]
 class Hypotheses:
     """The hypotheses of a slant.
 
-    Parameters
-    ----------
-    slant : tuple of float
-        By how much the disparity grows a pixel down and across.
-    blocks : Blocks
-        Of the array.
-    prior : FieldPrior
-        What is known before.
-    read : array (rows, cols)
-        Share of the pixels around each that are read.
-    residuals : list of list of Residuals
-        Of every disparity, in every group.
-    make : callable
-        Gives a disparity's solver.
+    slant: by how much the disparity grows a pixel down and across. blocks: of the array. prior: what is known before.
+    read: (rows, cols), share of the pixels around each that are read. residuals: of every disparity, in every group.
+    make: gives a disparity's solver.
     """
 
     def __init__(
@@ -56,15 +45,7 @@ class Hypotheses:
     def scores(self, groups: Windows) -> Floats:
         """Return -2 log p of every disparity, times trust.
 
-        Parameters
-        ----------
-        groups : Windows
-            Samples that tell the disparity.
-
-        Returns
-        -------
-        float32 (disparities, rows, cols)
-            By the disparity of the pixel.
+        groups: samples that tell the disparity. Returns (disparities, rows, cols), by the disparity of the pixel.
         """
         errors = np.stack(
             [
@@ -80,17 +61,8 @@ class Hypotheses:
     def solver(self, number: int, group: Pair) -> Solver:
         """Return the map of a group's samples to the views of its blocks, cached.
 
-        Parameters
-        ----------
-        number : int
-            Of the disparity.
-        group : tuple of Group
-            Down and across.
-
-        Returns
-        -------
-        Solver
-            The estimator, of views as they are, not `scene.raised`.
+        number: of the disparity. group: down and across. Returns the estimator, of views as they are, not
+        `scene.raised`.
         """
         key = number, kind(*group)
         if key not in self._solvers:
@@ -100,15 +72,8 @@ class Hypotheses:
     def at_blocks(self, values: Floats) -> Floats:
         """Values by the disparity at the window's middle, of those by the pixel's.
 
-        Parameters
-        ----------
-        values : array (disparities, rows, cols)
-            By the disparity of the pixel.
-
-        Returns
-        -------
-        array (disparities, rows, cols)
-            0 beyond the ends.
+        values: (disparities, rows, cols), by the disparity of the pixel. Returns (disparities, rows, cols), 0 beyond
+        the ends.
         """
         if self.slant == (0.0, 0.0):
             return values

@@ -24,12 +24,7 @@ ROUNDED = 4  # px, to which the texture is enlarged: few sizes, whose roots are 
 class Plane(NamedTuple):
     """A plane of the scene, as the middle view sees it.
 
-    Attributes
-    ----------
-    disparity : float
-        At the middle of a window, px per view step.
-    slant : tuple of float
-        By how much it grows a pixel down and across.
+    disparity: at the middle of a window, px per view step. slant: by how much it grows a pixel down and across.
     """
 
     disparity: float
@@ -38,17 +33,8 @@ class Plane(NamedTuple):
     def seen(self, y: Floats, x: Floats, dv: Floats, du: Floats) -> tuple[Floats, Floats]:
         """Places in the middle view of what other views see at pixels.
 
-        Parameters
-        ----------
-        y, x : float64 (n, 1)
-            Pixels, from the middle of the window.
-        dv, du : float64 (views,)
-            Steps from the middle view.
-
-        Returns
-        -------
-        tuple of float64 (n, views)
-            Down and across.
+        y, x: (n, 1), pixels, from the middle of the window. dv, du: (views,), steps from the middle view. Returns (n,
+        views), down and across.
         """
         down, across = self.slant
         grown = (self.disparity + down * y + across * x) / (1 - down * dv - across * du)
@@ -152,21 +138,9 @@ class Window:
 def texture_points(size: tuple[int, int], views: int, disparity: float, slant: tuple[float, float]) -> float:
     """Bound the texture that any plane of a slant is seen in.
 
-    Parameters
-    ----------
-    size : tuple of int
-        Rows and columns of a window.
-    views : int
-        Along the pupil's diameter.
-    disparity : float
-        The largest in the window's middle, px per view step, 0 or more.
-    slant : tuple of float
-        Down and across.
-
-    Returns
-    -------
-    float
-        Pixels; infinite where a ray sees the plane from its edge.
+    size: rows and columns of a window. views: along the pupil's diameter. disparity: the largest in the window's
+    middle, px per view step, 0 or more. slant: down and across. Returns pixels; infinite where a ray sees the plane
+    from its edge.
     """
     steep = (abs(slant[0]) + abs(slant[1])) * views / 2
     if steep >= 1:

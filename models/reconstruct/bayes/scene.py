@@ -28,18 +28,9 @@ ROUNDING = 1e-6  # of a sample's variance: what float32 leaves, so that no covar
 class Ways(NamedTuple):
     """Covariances of a group of windows at every disparity.
 
-    Attributes
-    ----------
-    shared : float32 (disparities, samples, samples)
-        Covariance of the samples.
-    mean : float64 (samples, samples)
-        Mean of these over the disparities.
-    field : float32 (disparities, pixels * views**2, samples)
-        Covariance of the block's views with them.
-    residuals : list of Residuals
-        For the evidence.
-    read : int
-        Differences of the block that are read, 1 or more.
+    shared: (disparities, samples, samples), covariance of the samples. mean: (samples, samples), mean of these over the
+    disparities. field: (disparities, pixels * views**2, samples), covariance of the block's views with them. residuals:
+    for the evidence. read: differences of the block that are read, 1 or more.
     """
 
     shared: Floats
@@ -51,23 +42,9 @@ class Ways(NamedTuple):
     def estimate(self, samples: Floats, shares: Floats, parallax: float, views: int, whole: int) -> Floats:
         """Estimate the blocks from the samples of their windows.
 
-        Parameters
-        ----------
-        samples : float32 (samples, windows)
-            Of all windows.
-        shares : array (disparities, windows)
-            Of every disparity in a window, of sum 1.
-        parallax : float
-            Factor on what differs between views.
-        views : int
-            Along the pupil's diameter.
-        whole : int
-            Windows of all groups.
-
-        Returns
-        -------
-        float32 (pixels * views**2, windows)
-            The views of the blocks.
+        samples: (samples, windows), of all windows. shares: (disparities, windows), of every disparity in a window, of
+        sum 1. parallax: factor on what differs between views. views: along the pupil's diameter. whole: windows of all
+        groups. Returns (pixels * views**2, windows), the views of the blocks.
         """
         kinds = classes(shares, math.ceil(CLASSES * math.sqrt(samples.shape[1] / whole)))
         masks = [kinds == kind for kind in np.unique(kinds)]
@@ -80,17 +57,8 @@ class Ways(NamedTuple):
     def mixed(self, shares: Floats, parallax: float, views: int) -> Iterator["Solver"]:
         """Make the estimators of windows whose disparities have some shares.
 
-        Parameters
-        ----------
-        shares : array (classes, disparities)
-            Each of sum 1.
-        parallax, views
-            As of `estimate`.
-
-        Yields
-        ------
-        Solver
-            From samples to the views of a block, for each.
+        shares: (classes, disparities), each of sum 1. parallax, views: as of `estimate`. Yields Solver: from samples to
+        the views of a block, for each.
         """
         weights = shares.astype(np.float32)
         shared, field = (
@@ -117,15 +85,7 @@ class Solver(NamedTuple):
     def __call__(self, samples: Floats) -> Floats:
         """Estimate the blocks.
 
-        Parameters
-        ----------
-        samples : float32 (samples, windows)
-            Of the windows.
-
-        Returns
-        -------
-        float32 (pixels * views**2, windows)
-            Their views.
+        samples: (samples, windows), of the windows. Returns (pixels * views**2, windows), their views.
         """
         return self.field @ cho_solve(self.factor, samples, check_finite=False)
 
@@ -133,15 +93,7 @@ class Solver(NamedTuple):
 def factor(shared: Floats) -> Factor:
     """Factor a covariance of samples.
 
-    Parameters
-    ----------
-    shared : float32 (samples, samples)
-        The covariance; written over.
-
-    Returns
-    -------
-    tuple
-        As of `scipy.linalg.cho_factor`.
+    shared: (samples, samples), the covariance; written over. Returns tuple: as of `scipy.linalg.cho_factor`.
     """
     diagonal = np.arange(len(shared))
     shared[diagonal, diagonal] *= 1 + ROUNDING
@@ -151,19 +103,8 @@ def factor(shared: Floats) -> Factor:
 def raised(field: Floats, parallax: float, views: int) -> Floats:
     """Raise what differs between the views, in place.
 
-    Parameters
-    ----------
-    field : float32 (..., pixels * views**2, samples)
-        Covariances of views with samples.
-    parallax : float
-        Factor.
-    views : int
-        Along the pupil's diameter.
-
-    Returns
-    -------
-    float32
-        ``field``.
+    field: (..., pixels * views**2, samples), covariances of views with samples. parallax: factor. views: along the
+    pupil's diameter. Returns ``field``.
     """
     each = field.reshape(*field.shape[:-2], -1, views**2, field.shape[-1])
     middle = (1 - parallax) * each.mean(-2, keepdims=True)
@@ -175,17 +116,8 @@ def raised(field: Floats, parallax: float, views: int) -> Floats:
 def shares_of(chance: Floats, contrast: Floats) -> Floats:
     """Shares of the disparities in every window, from the windows around, as their contrast weighs them.
 
-    Parameters
-    ----------
-    chance : array (disparities, block rows, block cols)
-        Probability of each, of sum 1.
-    contrast : array (block rows, block cols)
-        Variance of a window.
-
-    Returns
-    -------
-    float64 (disparities, block rows, block cols)
-        Of sum 1, none of them 0.
+    chance: (disparities, block rows, block cols), probability of each, of sum 1. contrast: (block rows, block cols),
+    variance of a window. Returns (disparities, block rows, block cols), of sum 1, none of them 0.
     """
     weight = contrast + 1e-9 + 1e-3 * contrast.mean()
     pooled = np.stack([gaussian_filter(part * weight, AROUND) for part in chance])
@@ -195,17 +127,8 @@ def shares_of(chance: Floats, contrast: Floats) -> Floats:
 def classes(shares: Floats, count: int) -> Ints:
     """Put windows into classes of like shares: k-means of their square roots, begun far apart.
 
-    Parameters
-    ----------
-    shares : array (disparities, windows)
-        Of sum 1.
-    count : int
-        Of the classes at most, 1 or more.
-
-    Returns
-    -------
-    int64 (windows,)
-        Number of each window's class.
+    shares: (disparities, windows), of sum 1. count: of the classes at most, 1 or more. Returns (windows,), number of
+    each window's class.
     """
     places = np.sqrt(shares.T)
     middles, away = places.mean(0)[None], np.full(len(places), np.inf)

@@ -25,17 +25,9 @@ ROUGH = 0.1  # px, rms distance from the plane above which pixels give none
 def slants_of(disparity: Floats, spread: Floats, most: int) -> list[Slant]:
     """Slants that a share of the pixels have, the most frequent first; none where planes face the camera.
 
-    Parameters
-    ----------
-    disparity, spread : array (rows, cols)
-        Mean of the disparity's probability and its standard deviation, px per view step.
-    most : int
-        How many slants are given, 0 or more.
-
-    Returns
-    -------
-    list of tuple
-        By how much the disparity grows a pixel down and across: whole numbers of STEP.
+    disparity, spread: (rows, cols), mean of the disparity's probability and its standard deviation, px per view step.
+    most: how many slants are given, 0 or more. Returns list of tuple: by how much the disparity grows a pixel down and
+    across: whole numbers of STEP.
     """
     weight = 1 / (np.square(spread) + ROUGH**2)
     y, x = (p - p.mean() for p in np.indices(disparity.shape, float))
@@ -63,17 +55,8 @@ def slants_of(disparity: Floats, spread: Floats, most: int) -> list[Slant]:
 def moved(values: Floats, steps: Floats | float) -> Floats:
     """Values at other places along the first axis, linear between, the ends repeated.
 
-    Parameters
-    ----------
-    values : array (n, rows, cols)
-        The values.
-    steps : array (rows, cols) or float
-        By how many to go up.
-
-    Returns
-    -------
-    array (n, rows, cols)
-        At each index plus ``steps``.
+    values: (n, rows, cols), the values. steps: (rows, cols), by how many to go up. Returns (n, rows, cols), at each
+    index plus ``steps``.
     """
     whole = np.floor(steps).astype(int)
     part = (steps - whole).astype(values.dtype)
@@ -88,21 +71,8 @@ def moved(values: Floats, steps: Floats | float) -> Floats:
 def along(values: Floats, pool: float, axis: int, slope: float) -> Floats:
     """Gaussian mean along an axis of the picture that goes up with a plane; the weights as in `evidence.pooled`.
 
-    Parameters
-    ----------
-    values : array (disparities, rows, cols)
-        By the pixel's disparity.
-    pool : float
-        Standard deviation of the weights, px.
-    axis : int
-        1 is down, 2 across.
-    slope : float
-        Disparities a pixel.
-
-    Returns
-    -------
-    array (disparities, rows, cols)
-        The means.
+    values: (disparities, rows, cols), by the pixel's disparity. pool: standard deviation of the weights, px. axis: 1 is
+    down, 2 across. slope: disparities a pixel. Returns (disparities, rows, cols), the means.
     """
     if not slope:
         return np.asarray(gaussian_filter1d(values, pool, axis, truncate=REACH))

@@ -11,16 +11,8 @@ import numpy.typing as npt
 class Group(NamedTuple):
     """Blocks along an axis whose windows begin at the same place in a tile, and are placed alike around the block.
 
-    Attributes
-    ----------
-    phase : int
-        First pixel of the windows, in the tile.
-    offset : int
-        First pixel of the blocks, in their windows.
-    blocks : slice
-        Index of each block.
-    windows : slice
-        First pixel of each window.
+    phase: first pixel of the windows, in the tile. offset: first pixel of the blocks, in their windows. blocks: index
+    of each block. windows: first pixel of each window.
     """
 
     phase: int
@@ -37,14 +29,8 @@ Windows = Sequence[tuple[Group, Group, npt.NDArray[np.floating]]]
 class Axis:
     """Blocks and windows along one axis.
 
-    Attributes
-    ----------
-    length : int
-        Pixels of the array.
-    period : int
-        Pixels of a tile.
-    block, window : int
-        Pixels of a block, and of the window around it.
+    length: pixels of the array. period: pixels of a tile. block, window: pixels of a block, and of the window around
+    it.
     """
 
     length: int
@@ -56,19 +42,8 @@ class Axis:
     def of(cls, length: int, period: int, margin: int, block: int | None = None) -> "Axis":
         """Blocks of a tile, or of a part of one.
 
-        Parameters
-        ----------
-        length, period : int
-            Pixels of the array and of a tile.
-        margin : int
-            Pixels of a window on each side of its block.
-        block : int, optional
-            Pixels of a block; None is a tile.
-
-        Returns
-        -------
-        Axis
-            No window is longer than the array.
+        length, period: pixels of the array and of a tile. margin: pixels of a window on each side of its block. block:
+        pixels of a block; None is a tile. Returns Axis: no window is longer than the array.
         """
         block = min(block or period, length)
         return cls(length, period, block, min(block + 2 * margin, length))
@@ -86,10 +61,7 @@ class Axis:
     def spread(self) -> npt.NDArray[np.float64]:
         """Make the matrix from values at the middles of the blocks to values at the pixels, linear between.
 
-        Returns
-        -------
-        float64 (length, blocks)
-            Rows of sum 1.
+        Returns (length, blocks), rows of sum 1.
         """
         middles = self.blocks + (self.block - 1) / 2
         return np.stack([np.interp(np.arange(self.length), middles, unit) for unit in np.eye(len(middles))], 1)
@@ -97,10 +69,7 @@ class Axis:
     def groups(self) -> Iterator[Group]:
         """Find the groups.
 
-        Yields
-        ------
-        Group
-            Every block is in one.
+        Yields Group: every block is in one.
         """
         first = self.firsts
         # The last block may begin out of step; a group is evenly spaced
@@ -113,15 +82,7 @@ class Axis:
 def even(places: npt.NDArray[np.int64]) -> slice:
     """Make the slice of some places.
 
-    Parameters
-    ----------
-    places : int64 (n,)
-        At least one, evenly spaced, rising.
-
-    Returns
-    -------
-    slice
-        Of these places.
+    places: (n,), at least one, evenly spaced, rising. Returns slice: of these places.
     """
     step = int(places[1] - places[0]) if len(places) > 1 else 1
     return slice(int(places[0]), int(places[-1]) + 1, step)
