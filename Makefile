@@ -78,7 +78,7 @@ setup: $(TESTS_READY)
 setup-layout: $(LAYOUT_READY)
 
 # The program's commands, by what is installed before they run.
-RUN := sim sensor lightfield cameras polar depth recognize calibrate tradeoff stability decode learn index verilog \
+RUN := sim sensor lightfield cameras polar depth recognize calibrate tradeoff stability decode index verilog \
   divider
 TESTS := formal coverage mutate sizes fuzz cocotb suite stuck-at document site pixel pixel-layout cosim layout \
   layout-energy

@@ -89,9 +89,6 @@ GROUPS: dict[str, dict[str, Command]] = {
         "locks": Command("renew requirements/*.lock from pyproject.toml"),
         "librelane": Command("LibreLane itself on our designs"),
         "dist": Command("wheel and source distribution, checked: dist/"),
-        "learn": Command(
-            "learn the dictionary or the two-branch network of light fields", "imaging.lightfield.learn.command"
-        ),
         "openroad-compare": Command("layouts with both cell libraries in one table", "flow.openroad.compare"),
         "cells-report": Command("the characterizer compared with a foundry's tables", "cells.report.command"),
         "cells-compact": Command("draw and check the cell library Compact", "cells.compact.command"),

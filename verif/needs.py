@@ -127,7 +127,6 @@ NEEDS = {
     "tclsh": Need(programs("tclsh"), TOOLS),
     "layout": Need(packages(*PACKAGES), LAYOUT, imported=True),
     "librelane": Need(librelane, "make librelane"),
-    "torch": Need(packages("torch"), "pip install 'talbot[nn]'", offered=False, imported=True),
     "openroad": Need(openroad, LAYOUT, offered=(sys.platform, platform.machine()) == ("linux", "x86_64")),
     "PDK_ROOT": Need(paths("PDK_ROOT"), "PDK_ROOT=<an installed PDK>", offered=False),
     "RISCV_ARCH_TEST": Need(paths("RISCV_ARCH_TEST"), "RISCV_ARCH_TEST=<riscv-arch-test>", offered=False),

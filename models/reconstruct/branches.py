@@ -1,8 +1,8 @@
 """The two-branch network of the thesis, smaller: from samples to a light field, by NumPy [Jayasuriya2017, Sec. 3.7].
 
 One branch is an autoencoder of fully connected layers on patches of 9 x 9 pixels and two 4-D convolutions, the other
-five 4-D convolutions on Phi' i; their mean is what is added to the sum image. Learned by `talbot learn branches`, each
-branch alone first, then both together.
+five 4-D convolutions on Phi' i; their mean is what is added to the sum image. The weights are files:
+each branch was trained alone first, then both together.
 """
 
 from collections.abc import Mapping

@@ -23,7 +23,6 @@ from talbot.models.pixel.weights import view_weights
 
 Floats = npt.NDArray[np.floating]
 DICTIONARY = Path(__file__).with_name("dictionary.npz")
-UNUSED = 1e-4  # least mean of a code's absolute value
 CHUNK = 2048  # patches that are coded together: as much as stays in the cache, and a task for a core
 
 
@@ -116,14 +115,6 @@ class Dictionary(NamedTuple):
             atoms /= np.linalg.norm(atoms.reshape(len(atoms), -1), axis=1)[:, None, None, None, None]
             return cls(atoms, file["sizes"])
 
-    def save(self, path: Path) -> None:
-        """Write it as int8, each atom with its scale, which its norm restores.
-
-        path: an .npz file.
-        """
-        codes = np.rint(self.atoms * (127 / np.abs(self.atoms).max((1, 2, 3, 4), keepdims=True))).astype(np.int8)
-        np.savez_compressed(path, codes=codes, sizes=self.sizes)
-
 
 class SparseEstimator:
     """Light fields of one sensor by sparse coding.
@@ -213,50 +204,3 @@ def _turned(values: Floats, axis: int) -> Floats:
     """Sums and differences of both diodes, over sqrt(2): the noise of both is a diode's."""
     a, b = np.take(values, 0, axis), np.take(values, 1, axis)
     return np.stack([a + b, a - b], axis) / np.float32(np.sqrt(2))
-
-
-def learn(
-    patches: Floats, atoms: int, penalty: float, rounds: int, seed: int, batch: int = 2048, iterations: int = 60
-) -> Iterator[tuple[Floats, Floats, float]]:
-    """Learn a dictionary: codes of a batch by `Lasso`, then every atom again from all that was coded.
-
-    patches: (n, size), light fields of patches. atoms: with the constant one, 2..n. penalty: on the codes' absolute
-    values. rounds: batches. seed: of the first atoms and the batches. batch, iterations: patches of a batch, and of
-    ADMM. Yields dictionary ((atoms, size), norm 1, the most used first, but for the first, which is constant), sizes
-    ((atoms,), mean of the absolute value of each one's code), error (RMS of what the codes of the last batch leave).
-    Source: [Mairal2010], Alg. 1 and 2.
-    """
-    rng = np.random.default_rng(seed)
-    size = patches.shape[1]
-    chosen = patches[rng.choice(len(patches), atoms, replace=len(patches) < atoms)]
-    words = chosen - chosen.mean(1, keepdims=True)
-    words += 1e-3 * rng.standard_normal(words.shape).astype(np.float32)
-    words[0] = 1
-    words /= np.linalg.norm(words, axis=1, keepdims=True)
-    limit = np.full((atoms, 1), penalty, np.float32)
-    limit[0] = 0
-    shared, pulled, used, coded = np.zeros((atoms, atoms)), np.zeros((atoms, size)), np.zeros(atoms), 0.0
-    for number in range(rounds):
-        part = patches[rng.choice(len(patches), min(batch, len(patches)), replace=False)]
-        codes = Lasso.of((words @ words.T).astype(float)).solve(words @ part.T, limit, iterations)
-        error = float(np.sqrt(np.mean((part - codes.T @ words) ** 2)))
-        keep = number / (number + 1)  # the first batches had poor atoms
-        shared, pulled = keep * shared + codes @ codes.T, keep * pulled + codes @ part
-        used, coded = keep * used + np.abs(codes).sum(1), keep * coded + len(part)
-        words = _updated(words, shared, pulled, part, rng)
-        order = np.r_[0, 1 + np.argsort(-used[1:], kind="stable")]
-        words, used, pulled, shared = words[order], used[order], pulled[order], shared[np.ix_(order, order)]
-        yield words, np.maximum(used / coded, UNUSED).astype(np.float32), error
-
-
-def _updated(words: Floats, shared: Floats, pulled: Floats, part: Floats, rng: np.random.Generator) -> Floats:
-    """Every atom but the constant one in turn, with the others as they are; one that is not used is a new patch."""
-    words = words.astype(float)
-    for k in range(1, len(words)):
-        if shared[k, k] < 1e-6 * shared.diagonal().mean():
-            words[k] = part[rng.integers(len(part))]
-        else:
-            words[k] += (pulled[k] - shared[k] @ words) / shared[k, k]
-        words[k] -= words[k].mean()
-        words[k] /= max(np.linalg.norm(words[k]), 1e-9)
-    return words.astype(np.float32)

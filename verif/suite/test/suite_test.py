@@ -118,7 +118,7 @@ def test_counts_by_block(repository):
 
 
 @pytest.mark.parametrize(
-    "reason, points", [("no tool", 1), ("needs z3", 1), ("needs torch", 0), ("needs torch, z3", 1), ("needs x", 1)]
+    "reason, points", [("no tool", 1), ("needs z3", 1), ("needs tinyrv", 0), ("needs tinyrv, z3", 1), ("needs x", 1)]
 )
 def test_a_test_without_what_make_installs_is_an_open_point(reason, points):
     entry = BlockResults()
