@@ -17,17 +17,8 @@ LINK = re.compile(r"(?ms)^```.*?^```|^ {4}.*?$|(?<!!)\[((?:[^\[\]]|\[[^\]]*\])*)
 # Title of a part of the contents -> its documents, in order; a folder: all in it that no other part has
 PARTS = {
     "Start": ("docs/install", "docs/tutorial", "docs/how-to", "docs/comparison"),
-    "Reference": (
-        "api",
-        "docs/chip",
-        "architecture",
-        "docs/registers",
-        "docs/stream",
-        "docs/host",
-        "docs/bring-up",
-        "docs/figures",
-    ),
-    "Results": ("gallery", "docs/gallery", "docs/results"),
+    "Reference": ("api", "docs/chip", "docs/registers", "docs/stream", "docs/host", "docs/bring-up", "docs/figures"),
+    "Results": ("docs/gallery", "docs/results"),
     "Models": ("models",),
     "The chip, block by block": ("rtl",),
     "Pictures": ("imaging",),

@@ -1,4 +1,4 @@
-"""The documents site, from the READMEs, docs/, docstrings, the RTL and the test plans: build/site/index.html.
+"""The documents site, from the READMEs, docs/ and docstrings: build/site/index.html.
 
 Nothing is fetched. A warning, a link to nothing among them, fails.
 """
@@ -15,10 +15,10 @@ from talbot.base.files import staged
 from talbot.base.paths import RESULTS, ROOT
 from talbot.base.progress import Steps
 from talbot.models.parameters import ParameterError
-from talbot.site import api, architecture, gallery
+from talbot.site import api
 from talbot.site.collect import collect, contents
 
-STEPS = "documents", "API", "architecture", "gallery", "HTML"
+STEPS = "documents", "API", "HTML"
 COLOUR = re.compile(r"\x1b\[[\d;]*m")
 PACKAGES = "sphinx", "myst_parser", "furo"
 SETTINGS = {
@@ -59,10 +59,6 @@ def run(options: Namespace) -> int:
             return failures(broken)
         steps.note("API")
         api.write(source)
-        steps.note("architecture")
-        architecture.write(source)
-        steps.note("gallery")
-        gallery.write(source, RESULTS)
         (source / "index.md").write_text(
             (source / "index.md").read_text(encoding="utf-8") + contents(source), encoding="utf-8"
         )

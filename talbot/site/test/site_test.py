@@ -1,25 +1,18 @@
-"""The documents: examples run, make lines are understood, links lead somewhere, diagrams are those of the code."""
+"""The documents: examples run, make lines are understood, links lead somewhere."""
 
 import os
 import re
 import shlex
-import shutil
 import subprocess
-import xml.etree.ElementTree as xml
 
 import pytest
-from PIL import Image
 
 from talbot.base.command import Parser, add_command
 from talbot.base.command import main as run_command
-from talbot.base.page import index
 from talbot.base.paths import ROOT
 from talbot.commands import command
 from talbot.make import arguments
-from talbot.models.parameters import SensorParameters
-from talbot.rtl.amp_ctrl.ports import SLOT
-from talbot.rtl.tops import build_top
-from talbot.site import api, architecture, collect, diagrams, gallery
+from talbot.site import api, collect
 from talbot.site import command as site
 
 PYTHON = re.compile(r"(?ms)^```python\n(.*?)^```")
@@ -81,29 +74,6 @@ def test_links_of_the_site(tmp_path):
     assert "\n[no](link)\n" in done
 
 
-def test_connections_are_those_of_the_rtl():
-    top = build_top("AspChip", SensorParameters())
-    top.elaborate()
-    blocks, bits = architecture.connections(top)
-    assert blocks["amp"] == "AmpCtrl" and blocks["encoder"] == "RunLength" and len(blocks) == 15
-    assert bits["seq", "amp"] == 3 + len(SLOT)  # start, four_tap, hold_free and a slot's
-    stream = 1 + top.phase.send.msg._dsl.Type.nbits  # val and msg forth
-    assert bits["phase", "scan"] == bits["scan", "encoder"] == stream
-    assert bits["encoder", "scan"] == bits["scan", "phase"] == 1  # rdy back
-    assert ("amp", "encoder") not in bits
-
-
-def test_diagrams_show_everything():
-    drawn = diagrams.machine({"idle": 0, "run": 2, "b<c": 1}, [("idle", "run"), ("run", "b<c"), ("b<c", "idle")])
-    root = xml.fromstring(drawn)
-    texts = {"".join(element.itertext()) for element in root.iter()}
-    assert {"0 idle", "1 b<c", "2 run", "idle to run", "run to b<c", "b<c to idle"} <= texts
-    text = diagrams.matrix({"a": "A", "b": "B"}, {("a", "b"): 12})
-    assert "a to b: 12 bits" in text and xml.fromstring(text).tag.endswith("svg")
-    floors = diagrams.floors(next(iter(architecture.layers().values())))
-    assert {"verif", "cells", "pixels", "models"} <= {"".join(e.itertext()) for e in xml.fromstring(floors).iter()}
-
-
 def test_the_page_of_the_api_has_every_name(tmp_path):
     import talbot
 
@@ -135,18 +105,3 @@ def test_a_bad_folder_is_one_line(tmp_path, capsys):
     (tmp_path / "file").write_text("")
     assert run_command(site, ["--out", str(tmp_path / "file")]) == 2
     assert capsys.readouterr().err.count("\n") == 1
-
-
-def test_the_gallery_moves(tmp_path, monkeypatch):
-    monkeypatch.setattr(gallery, "FRAMES", 4)
-    gallery.clip(tmp_path / "clip.webp")
-    shutil.copyfile(tmp_path / "clip.webp", tmp_path / "edges.webp")
-    still = "data:image/webp;base64,AAAA"
-    for folder, name in ((".", "moves"), ("elsewhere", "stands")):
-        gallery.picture(index.Card("", folder, "", "", [], still), tmp_path, tmp_path / name)
-    with Image.open(tmp_path / "moves") as moving:
-        assert moving.n_frames == gallery.FRAMES and moving.size == (gallery.SIDE, gallery.SIDE)
-        first = moving.convert("RGB").tobytes()
-        moving.seek(1)
-        assert moving.convert("RGB").tobytes() != first
-    assert (tmp_path / "stands").read_bytes() == bytes(3)
