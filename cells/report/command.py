@@ -15,7 +15,7 @@ from talbot.cells.characterize.conditions import Conditions
 from talbot.cells.corner import Corner
 from talbot.cells.liberty import compare, reference
 from talbot.cells.library import characterize_library
-from talbot.cells.report import curve, pictures, separate
+from talbot.cells.report import curve, pictures
 from talbot.models.parameters import ParameterError
 
 # per cent, constraints in ps: median and 95th percentile that are asked of cells that are not in the fit, at any corner
@@ -23,14 +23,13 @@ BOUNDS = {"delay": (2, 8), "slew": (2, 8), "capacitance": (5, None), "leakage": 
 BOUNDS |= {"setup": (15, None), "hold": (15, None)}
 
 
-TABLES = "curve", "off_grid", "variants"
+TABLES = "curve", "off_grid"
 
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot cells-report`."""
     parser.add_argument("--reference", type=Path, help="folder of <cell>.lib.json; without it nothing is compared")
     parser.add_argument("--cells", help="names with commas between of cells to compare (default: all of the reference)")
-    parser.add_argument("--netlists", action="store_true", help="also other models and netlists: whose error it is")
     parser.add_argument("--corners", default="tt_025C_1v80", help="the corner of the reference, one")
     parser.add_argument("--models", default="fitted", help="set of device models of the comparison")
     parser.add_argument("--workers", type=worker_count, default=-1, help="processes; -1: all cores")
@@ -49,7 +48,7 @@ def run(options: Namespace) -> int:
     page |= {"curve": settings, "curve_picture": picture, "off_grid": curve.by_cell(measured)}
     with staged(options.out) as part:
         (part / "index.html").write_text(html(page), encoding="utf-8")
-        figures = {name: page.get(name) for name in ("tables", "curve", "off_grid", "variants", "alone")}
+        figures = {name: page.get(name) for name in ("tables", "curve", "off_grid", "alone")}
         (part / "report.json").write_text(json.dumps(figures, indent=1) + "\n", encoding="utf-8")
     for title, kinds in page["tables"].items():
         print(f"{options.corners}, {title}")
@@ -102,8 +101,4 @@ def against(conditions: Conditions, options: Namespace) -> dict[str, Any]:
     }
     kinds = list(compare.errors(differences))
     alone = {name: summary[name] for name in ("only_theirs", "only_ours")}
-    page = {"tables": tables, "kinds": kinds, "cells": cells, "alone": alone}
-    if options.netlists:
-        errors = separate.separate("sky130_hd", files, conditions, out / "jobs", options.workers)
-        page["variants"] = separate.table(errors, process.FITTED)
-    return page
+    return {"tables": tables, "kinds": kinds, "cells": cells, "alone": alone}

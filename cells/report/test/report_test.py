@@ -57,7 +57,6 @@ def test_a_table_that_is_alone_is_named_and_has_no_map():
         },
         "kinds": ["delay", "slew"],
         "cells": {"c": {**found_summary, "picture": picture}},
-        "variants": [("fitted", "extracted", 8, 1.0, 2.0)],
         "curve": curve.table(ERRORS),
         "off_grid": curve.by_cell(ERRORS),
         "curve_picture": pictures.error_against_time(curve.table(ERRORS), curve.DEFAULT),
