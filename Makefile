@@ -78,8 +78,7 @@ setup: $(TESTS_READY)
 setup-layout: $(LAYOUT_READY)
 
 # The program's commands, by what is installed before they run.
-RUN := sim sensor lightfield cameras polar depth recognize calibrate tradeoff stability decode index verilog \
-  divider
+RUN := sim sensor lightfield cameras polar depth recognize calibrate tradeoff stability decode index verilog
 TESTS := formal coverage mutate sizes fuzz cocotb suite stuck-at document site pixel pixel-layout cosim layout \
   layout-energy
 LAYOUT := pixel pixel-layout cosim pixel-circuit analog analog-layout footprints handoff cells cells-report \

@@ -33,6 +33,5 @@ def test_a_default_is_named_once_in_words_and_from_here(name, monkeypatch):
 
 
 def test_what_a_default_looks_like(monkeypatch):
-    assert "(default: radix2 radix4 pipelined cordic)" in help_of("divider", monkeypatch)
     assert "(default: build/verify)" in help_of("verify", monkeypatch)
     assert "(default: motorcycle)" in help_of("sim", monkeypatch)

@@ -12,7 +12,7 @@ from talbot.models.parameters.sensor_file import keys, values
 
 # Commands that make nothing of a sensor: scenes, cells, blocks of fixed sizes, tests of them
 WITHOUT = {
-    *("sensor", "index", "site", "divider"),
+    *("sensor", "index", "site"),
     *("stability",),  # its cases have sensors of their own
     *("cells", "cells-report", "cells-compact"),
     *("openroad-compare", "openroad-fit", "layout-compare", "layout-timing", "layout-energy"),
