@@ -1,6 +1,6 @@
-"""Write the documents for a host: docs/registers.*, the tables of host.md, the C header.
+"""Write the documents for a host: docs/registers.md, the tables of host.md, the C header.
 
-build/registers/ has the map for other tools: a page, IP-XACT and a C header of structs (PeakRDL).
+build/registers/ has the map as a page and as IP-XACT (PeakRDL).
 """
 
 import os
@@ -15,7 +15,7 @@ from talbot.models.parameters import ParameterError
 from talbot.rtl.host.document import exports, registers, tables
 from talbot.rtl.host.document.c_header import c_header
 
-DOCUMENT, MAPS = "host.md", ("registers.md", "registers.html")
+DOCUMENT, MAP = "host.md", "registers.md"
 HEADER = Path(__file__).parents[1] / "asp_chip_registers.h"
 DOCS, EXPORTS = ROOT / "docs", RESULTS / "registers"
 VARIED = Varied(
@@ -30,7 +30,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     add_sensor(parser)
     add("--out", type=Path, help=f"folder of {DOCUMENT} (default: docs; {ours})")
     add("--header", type=Path, help=f"the C header (default: rtl/host/asp_chip_registers.h; {ours})")
-    add("--exports", type=Path, help=f"folder of the map for other tools (default: build/registers; {ours}/registers)")
+    add("--exports", type=Path, help=f"folder of its page and IP-XACT (default: build/registers; {ours}/registers)")
 
 
 def run(options: Namespace) -> int:
@@ -49,17 +49,15 @@ def run(options: Namespace) -> int:
     if not (out / DOCUMENT).is_file():
         raise ParameterError(f"out = {str(out)!r}: must be a folder with {DOCUMENT}")
     chip = tables.map_of(sensor)
-    maps = dict(zip(MAPS, (registers.markdown(chip), registers.html(chip)), strict=True))
-    for name, text in maps.items():
-        write(out / name, text)
+    write(out / MAP, registers.markdown(chip))
     write(header, c_header(chip))
     exports.export(exported, tables.resets_of(sensor))
     for mark, table in tables.TABLES.items():
         insert(out / DOCUMENT, mark, table(sensor))
     print(f"{len(chip.fields)} fields of registers, {len(tables.TABLES)} tables of {DOCUMENT}")
-    print(f"  {out}: {', '.join((*maps, DOCUMENT))}")
+    print(f"  {out}: {MAP}, {DOCUMENT}")
     print(f"  {header}")
-    print(f"  {exported}: {', '.join((exports.PAGE, exports.IPXACT, exports.HEADER))}")
+    print(f"  {exported}: {exports.PAGE}, {exports.IPXACT}")
     print(f"  look at {exported / exports.PAGE}")
     return 0
 
@@ -68,6 +66,6 @@ def _copy(out: Path) -> None:
     """Copy the document into ``out``, with links to the files that it names."""
 
     def linked(match: re.Match[str]) -> str:
-        return match[1] if match[1] in MAPS else os.path.relpath(DOCS / match[1], out)
+        return match[1] if match[1] == MAP else os.path.relpath(DOCS / match[1], out)
 
     write(out / DOCUMENT, LINK.sub(linked, (DOCS / DOCUMENT).read_text(encoding="utf-8")))

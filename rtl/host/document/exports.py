@@ -1,4 +1,4 @@
-"""The register map for other tools: a page, and by PeakRDL IP-XACT and a C header of structs."""
+"""The register map as a page, and by PeakRDL as IP-XACT."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -8,20 +8,18 @@ from talbot.models.parameters.registers import register_map
 from talbot.models.parameters.registers.map import compiled
 from talbot.rtl.host.document import registers
 
-PAGE, IPXACT, HEADER = "registers.html", "asp_chip.xml", "asp_chip_peakrdl.h"
+PAGE, IPXACT = "registers.html", "asp_chip.xml"
 SITE = "html"  # of earlier releases
 
 
 def export(folder: Path, resets: Mapping[str, int] | None = None) -> None:
-    """Write the page, the IP-XACT component (IEEE 1685-2014) and the header into ``folder``.
+    """Write the page and the IP-XACT component (IEEE 1685-2014) into ``folder``.
 
     resets: values after reset that are not those of the default chip, by field.
     """
-    from peakrdl_cheader.exporter import CHeaderExporter  # with the packages of the tests
-    from peakrdl_ipxact import IPXACTExporter
+    from peakrdl_ipxact import IPXACTExporter  # with the packages of the tests
 
     chip, fields = compiled(resets), register_map().with_resets(resets or {})
-    with staged(folder, (PAGE, IPXACT, HEADER, SITE)) as part:
-        (part / PAGE).write_text(registers.html(fields, listed=True), encoding="utf-8")
+    with staged(folder, (PAGE, IPXACT, SITE)) as part:
+        (part / PAGE).write_text(registers.html(fields), encoding="utf-8")
         IPXACTExporter(vendor="talbot", library="asp").export(chip, str(part / IPXACT))
-        CHeaderExporter().export(chip, str(part / HEADER))

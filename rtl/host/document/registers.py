@@ -55,14 +55,14 @@ def markdown(chip: RegisterMap) -> str:
     return f"# Registers of AspChip\n\n{note}\n\n{markdown_table(COLUMNS, (row.cells for row in rows(chip)))}\n"
 
 
-def html(chip: RegisterMap, listed: bool = False) -> str:
-    """Return the map as an HTML page; ``listed``: the index of results has it."""
+def html(chip: RegisterMap) -> str:
+    """Return the map as an HTML page."""
     table = [[cell.replace("`", "") for cell in row.cells] for row in rows(chip)]
     return (
         render(
             Path(__file__).with_name("registers.html"),
             "Registers of AspChip",
-            listed=listed,
+            listed=True,
             note=NOTE,
             columns=COLUMNS,
             table=table,
