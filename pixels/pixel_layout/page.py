@@ -24,14 +24,6 @@ PICTURES = {
         "The tile",
         "24 types: three periods, eight orientations, two analyzers; bars between pixels, frames over the diodes.",
     ),
-    "layers": (
-        "One pixel, mask by mask",
-        "Below the diodes reset, follower and select transistor of each; columns and supply run up the middle.",
-    ),
-    "corner": (
-        "The array's corner",
-        "Pins of rows in the west and of columns in the south, two rings, dummies, pixels.",
-    ),
 }
 NAMES = ("pixel_layout.html", *(f"{name}.png" for name in PICTURES))
 
@@ -44,8 +36,6 @@ def write(made: Made, s: dict[str, Any]) -> None:
             made.path("pixel.gds"), made.shown, gratings(s["process"]).wavelength_um
         ),
         "tile": pictures.tile(made.path("tile.gds"), process),
-        "layers": pictures.layers(made.path("pixel.gds"), process),
-        "corner": pictures.corner(made.path("small_array.gds"), process),
     }
     shown = []
     for name, figure in figures.items():

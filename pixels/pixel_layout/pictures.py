@@ -1,4 +1,4 @@
-"""Pictures of drawn pixels: masks one by one, the tile, the array's corner, a cross-section with the light in it."""
+"""Pictures of drawn pixels: the tile, and a cross-section with the light in it."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
@@ -19,35 +19,15 @@ from talbot.pixels.optics.geometry import QUADRATURE
 from talbot.platforms.layers import GdsLayer
 from talbot.platforms.pixel import PixelProcess
 
-WELL, ACTIVE, POLY, CONTACT = "#c9b8d8", "#6d4c41", "#c9574b", "#222222"
+WELL, ACTIVE, POLY = "#c9b8d8", "#6d4c41", "#c9574b"
 METALS = ("#7aa874", "#4878a8", "#b8678f", "#e8a33d", "#5f6b7a", "#c9a24b")  # from the lowest
 SILICA, NITRIDE, SILICON = "#eef2f6", "#cfe0c9", "#8b7fa0"
 WELL_DEPTH_UM = 1.1  # of pictures alone
-CORNER_UM = 75.0
 
 
 def _active(process: PixelProcess, colour: str) -> list[tuple[GdsLayer, str]]:
     """Diffusion, of transistors and of taps."""
     return [(process.active, colour), (process.tap, colour)]
-
-
-def panels(process: PixelProcess) -> list[tuple[str, list[tuple[GdsLayer, str]]]]:
-    """Title and masks with their colours of every panel."""
-    metals = [(metal.lef, metal.gds) for metal in process.metals[: UPPER + 1]]
-    out = [
-        ("wells, diffusion", [(process.well, WELL), *_active(process, ACTIVE)]),
-        ("poly, contacts", [*_active(process, "#e3d6d2"), (process.poly, POLY), (process.contact, CONTACT)]),
-    ]
-    return out + [(name, [(mask, METALS[k])]) for k, (name, mask) in enumerate(metals)]
-
-
-def layers(gds: Path, process: PixelProcess) -> Figure:
-    """Return the masks of a cell one by one."""
-    wanted = panels(process)
-    figure = Figure(figsize=(10, 5.3), layout="constrained")
-    for axes, (title, masks) in zip(figure.subplots(2, (len(wanted) + 1) // 2).flat, wanted + [("", [])]):
-        draw_masks(axes, gds, masks, title)
-    return figure
 
 
 def tile(gds: Path, process: PixelProcess) -> Figure:
@@ -59,16 +39,6 @@ def tile(gds: Path, process: PixelProcess) -> Figure:
     everything = [(process.well, WELL), *_active(process, ACTIVE), (process.poly, POLY)]
     everything += [(metal.gds, METALS[k]) for k, metal in enumerate(process.metals[: UPPER + 1])]
     draw_masks(second, gds, everything, "all masks")
-    return figure
-
-
-def corner(gds: Path, process: PixelProcess) -> Figure:
-    """Return the south-west corner of the array: pins, rings, dummies, the first pixels."""
-    figure = Figure(figsize=(6, 6), layout="constrained")
-    axes = figure.subplots()
-    shown = [(process.well, WELL), *_active(process, ACTIVE)]
-    shown += [(metal.gds, METALS[k]) for k, metal in enumerate(process.metals[: UPPER + 1])]
-    draw_masks(axes, gds, shown, "", (0, 0, CORNER_UM, CORNER_UM))
     return figure
 
 
