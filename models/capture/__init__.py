@@ -5,7 +5,6 @@ from talbot.models.capture.frame import capture, currents, exposed, full_pixels
 from talbot.models.capture.moving import instants, moving_currents
 from talbot.models.capture.operator import CaptureOperator
 from talbot.models.capture.pupil import Region, cells, integrate
-from talbot.models.capture.ratio import capture_ratio
 from talbot.models.capture.views import Views, captured, choose_views
 
 __all__ = [
@@ -14,7 +13,6 @@ __all__ = [
     "Region",
     "Views",
     "capture",
-    "capture_ratio",
     "captured",
     "cells",
     "choose_views",
