@@ -20,11 +20,15 @@ from talbot.models.parameters.energy import DigitalEvents
 class GoldenFrame:
     """Expected output of the chip for one frame; samples that are not read are 0.
 
-    sensor: the sensor. frame: configuration of the frame. codes: (rows, cols, subs), codes of the converters.
-    converted: (rows, cols, subs), True where the search ran. sent: (rows, cols, subs), samples of the stream: the
-    codes, or with ``frame.phase`` (phase, amplitude). read: (rows, cols), pixels that are read. decisions: comparator
-    decisions, all lanes together. strobes: of all lanes' comparators: in a step each lane's is strobed from the sample
-    until the last decision of any lane.
+    sensor: the sensor.
+    frame: configuration of the frame.
+    codes: (rows, cols, subs), codes of the converters.
+    converted: (rows, cols, subs), True where the search ran.
+    sent: (rows, cols, subs), samples of the stream: the codes, or with ``frame.phase`` (phase, amplitude).
+    read: (rows, cols), pixels that are read.
+    decisions: comparator decisions, all lanes together.
+    strobes: of all lanes' comparators: in a step each lane's is strobed from the sample until the last decision of any
+        lane.
     """
 
     sensor: SensorParameters

@@ -15,7 +15,9 @@ __all__ = ["njit", "vectorize"]
 class Compiled:
     """A function that Numba compiles when it is first called, or when one that calls it is compiled.
 
-    function: what is compiled. decorator: of Numba. *arguments, **options: of the decorator.
+    function: what is compiled.
+    decorator: of Numba.
+    *arguments, **options: of the decorator.
     """
 
     def __init__(self, function: Callable[..., Any], decorator: str, *arguments: Any, **options: Any) -> None:

@@ -38,7 +38,8 @@ from talbot.models.scene import Sampling, load
 class Case:
     """One case of the table.
 
-    name, bound, measured: name, expectation and measurement, as text. ok: the measurement meets the expectation.
+    name, bound, measured: name, expectation and measurement, as text.
+    ok: the measurement meets the expectation.
     """
 
     name: str

@@ -26,18 +26,11 @@ def _binary(rng: np.random.Generator) -> npt.NDArray[np.float64]:
 class Converter:
     """Converters with imperfections drawn from ConverterParameters, in LSB.
 
-    Attributes
-    ----------
-    levels : float64 (2, lanes, 256)
-        Comparator thresholds of every DAC code; [0] bipolar (code - 128), [1] unipolar.
-    offset : float64 (lanes,)
-        Offset of the comparator, input-referred.
-    noise_scale, ktc_scale : float
-        LSB per count of `noise_counts`.
-    seed : int
-        Seed of the noise, 0..2**32-1.
-    amplifier : tuple of float
-        LSB that the amplifier adds, times 1, x, x**2, x**3.
+    levels: (2, lanes, 256), comparator thresholds of every DAC code; [0] bipolar (code - 128), [1] unipolar.
+    offset: (lanes,), offset of the comparator, input-referred.
+    noise_scale, ktc_scale: LSB per count of `noise_counts`.
+    seed: seed of the noise, 0..2**32-1.
+    amplifier: LSB that the amplifier adds, times 1, x, x**2, x**3.
     """
 
     levels: npt.NDArray[np.float64]
@@ -55,22 +48,8 @@ class Converter:
         plus a random walk of step `dnl` with its ends pinned to zero, plus what `unit_mismatch` makes of eight binary
         capacitors and a terminator, less its gain: 0 at both ends. It is the same for both ranges.
 
-        Parameters
-        ----------
-        parameters : ConverterParameters
-            Sizes of the imperfections, and the seed.
-        lanes : int
-            Converters, 1..32.
-
-        Returns
-        -------
-        Converter
-            The bank.
-
-        Raises
-        ------
-        ParameterError
-            For lanes out of range.
+        parameters: sizes of the imperfections, and the seed. lanes: converters, 1..32. Returns the bank. Raises
+        ParameterError for lanes out of range.
         """
         check_int("lanes", lanes, 1, 32)
         x = np.arange(CODES) / (CODES - 1)
@@ -96,15 +75,7 @@ class Converter:
     def ideal(cls, lanes: int) -> Self:
         """Converters without any imperfection.
 
-        Parameters
-        ----------
-        lanes : int
-            Converters, 1..32.
-
-        Returns
-        -------
-        Converter
-            The bank.
+        lanes: converters, 1..32. Returns the bank.
         """
         return cls.draw(ConverterParameters(), lanes)
 
@@ -116,17 +87,8 @@ class Converter:
     def amplified(self, v: npt.ArrayLike, unsigned: bool) -> npt.NDArray[np.float64]:
         """Values as the amplifier gives them.
 
-        Parameters
-        ----------
-        v : float64
-            Values in LSB.
-        unsigned : bool
-            The unipolar range, whose middle is the amplifier's zero.
-
-        Returns
-        -------
-        float64
-            In LSB, shape of ``v``.
+        v: values in LSB. unsigned: the unipolar range, whose middle is the amplifier's zero. Returns float64: in LSB,
+        shape of ``v``.
         """
         v = np.asarray(v, np.float64)
         if not any(self.amplifier):
@@ -138,19 +100,8 @@ class Converter:
     def held(self, v: npt.ArrayLike, lane: npt.ArrayLike, index: npt.ArrayLike) -> npt.NDArray[np.float64]:
         """Value on the sampling capacitor after the hold, plus the comparator's offset.
 
-        Parameters
-        ----------
-        v : float64
-            Sampled value in LSB.
-        lane : array of int
-            0..lanes-1.
-        index : array of int
-            Sample number, 0..2**28-1.
-
-        Returns
-        -------
-        float64
-            In LSB, of the broadcast shape.
+        v: sampled value in LSB. lane: 0..lanes-1. index: sample number, 0..2**28-1. Returns float64: in LSB, of the
+        broadcast shape.
         """
         kt = self.ktc_scale * noise_counts(self.seed, index, KTC_DECISION)
         return (np.asarray(v, np.float64) + kt) + self.offset[np.asarray(lane)]
@@ -166,25 +117,9 @@ class Converter:
     ) -> npt.NDArray[np.bool_]:
         """Compare held values with the DAC.
 
-        Parameters
-        ----------
-        held : float64
-            Result of `held`.
-        dac : array of int
-            DAC code, 0..255, offset binary when bipolar.
-        unsigned : bool
-            The unipolar range.
-        lane : array of int
-            0..lanes-1.
-        index : array of int
-            Sample number, 0..2**28-1.
-        decision : int
-            Number of this decision since the hold, 0..14.
-
-        Returns
-        -------
-        bool
-            True where held + noise >= level(dac).
+        held: result of `held`. dac: DAC code, 0..255, offset binary when bipolar. unsigned: the unipolar range. lane:
+        0..lanes-1. index: sample number, 0..2**28-1. decision: number of this decision since the hold, 0..14. Returns
+        True where held + noise >= level(dac).
         """
         noise = self.noise_scale * noise_counts(self.seed, index, decision)
         return held + noise >= self.levels[int(unsigned), np.asarray(lane), np.asarray(dac)]
@@ -194,25 +129,9 @@ class Converter:
     ) -> tuple[npt.NDArray[np.int16], npt.NDArray[np.bool_]]:
         """Hold and search many values: what `held` and `compare` give one decision after another.
 
-        Parameters
-        ----------
-        v : float64
-            Values in LSB.
-        unsigned : bool
-            The unipolar range.
-        window : int
-            0..127; 0 searches for every code.
-        lane : array of int
-            0..lanes-1, broadcastable to ``v``.
-        index : array of int
-            Sample number, 0..2**28-1, broadcastable to ``v``.
-
-        Returns
-        -------
-        codes : int16
-            Of the shape of ``v``; 0 where the window comparison gives them, otherwise as found.
-        converted : bool
-            Where the search ran.
+        v: values in LSB. unsigned: the unipolar range. window: 0..127; 0 searches for every code. lane: 0..lanes-1,
+        broadcastable to ``v``. index: sample number, 0..2**28-1, broadcastable to ``v``. Returns codes (of the shape of
+        ``v``; 0 where the window comparison gives them, otherwise as found), converted (where the search ran).
         """
         codes, converted = np.empty(v.size, np.int16), np.empty(v.size, bool)
         lane, index = (np.broadcast_to(x, v.shape).astype(np.int64).ravel() for x in (lane, index))
@@ -226,23 +145,9 @@ class Converter:
     ) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]]:
         """Hold and compare with both ends of the window alone: `held`, and `compare` twice.
 
-        Parameters
-        ----------
-        v : float64
-            Values in LSB.
-        threshold : int
-            T, 0..127.
-        lane : array of int
-            0..lanes-1, broadcastable to ``v``.
-        index : array of int
-            Sample number, 0..2**28-1, broadcastable to ``v``.
-
-        Returns
-        -------
-        above : bool
-            True where held + noise >= level(T).
-        not_below : bool
-            True where held + noise >= level(1 - T).
+        v: values in LSB. threshold: T, 0..127. lane: 0..lanes-1, broadcastable to ``v``. index: sample number,
+        0..2**28-1, broadcastable to ``v``. Returns above (True where held + noise >= level(T)), not_below (True where
+        held + noise >= level(1 - T)).
         """
         held = self.held(v, lane, index)
         above = self.compare(held, BIPOLAR + threshold, False, lane, index, 0)

@@ -12,15 +12,7 @@ from talbot.models.afe.front_end import FrontEnd
 def sample_words(samples: npt.NDArray[np.float64]) -> memoryview:
     """Diode values as the bytes of a file.
 
-    Parameters
-    ----------
-    samples : float64 (taps, rows, cols, 2)
-        Word ((tap * rows + row) * cols + col) * 2 + diode.
-
-    Returns
-    -------
-    memoryview
-        The bytes, 8 a word.
+    samples: (taps, rows, cols, 2), word ((tap * rows + row) * cols + col) * 2 + diode. Returns the bytes, 8 a word.
     """
     return np.ascontiguousarray(samples, ">f8").data.cast("B")
 
@@ -28,12 +20,7 @@ def sample_words(samples: npt.NDArray[np.float64]) -> memoryview:
 def write_samples(path: str | Path, samples: npt.NDArray[np.float64]) -> None:
     """Write diode values.
 
-    Parameters
-    ----------
-    path : path
-        The file.
-    samples : float64 (taps, rows, cols, 2)
-        Word ((tap * rows + row) * cols + col) * 2 + diode.
+    path: the file. samples: (taps, rows, cols, 2), word ((tap * rows + row) * cols + col) * 2 + diode.
     """
     with open(path, "wb") as file:
         file.write(sample_words(samples))
@@ -45,12 +32,7 @@ def write_converter(path: str | Path, front_end: FrontEnd) -> None:
     Words: gain, noise_scale, ktc_scale (float64), seed (integer), the amplifier's four, offset of every lane, then for
     every lane 256 bipolar levels, and for every lane 256 unipolar levels (float64).
 
-    Parameters
-    ----------
-    path : path
-        The file.
-    front_end : FrontEnd
-        Source of the values.
+    path: the file. front_end: source of the values.
     """
     c = front_end.converter or Converter.ideal(front_end.lanes)
     with open(path, "wb") as file:

@@ -15,23 +15,13 @@ from talbot.models.parameters import MODES, SIGNED, ParameterError, TileParamete
 class FrontEnd:
     """Trimmed difference amplifier, sample-and-hold and converters of the whole array.
 
-    Attributes
-    ----------
-    gain : float
-        Gain of the difference before conversion, 0.25..64.
-    trim : tuple of int
-        Register value of every pixel type, -512..511 (models/afe/trim.py).
-    lanes : int
-        Converters, 1..32; lane t mod lanes converts tile column t.
-    converter : Converter or None
-        Imperfections of the lanes; None is ideal ones.
-    tile : TileParameters
-        The tile.
+    gain: gain of the difference before conversion, 0.25..64.
+    trim: register value of every pixel type, -512..511 (models/afe/trim.py).
+    lanes: converters, 1..32; lane t mod lanes converts tile column t.
+    converter: imperfections of the lanes; None is ideal ones.
+    tile: the tile.
 
-    Raises
-    ------
-    ParameterError
-        For a value out of range, or a converter of other lanes.
+    Raises ParameterError for a value out of range, or a converter of other lanes.
     """
 
     gain: float
@@ -52,22 +42,10 @@ class FrontEnd:
     def values(self, samples: npt.ArrayLike, mode: str) -> npt.NDArray[np.float64]:
         """Values at the input of the sample-and-hold.
 
-        Parameters
-        ----------
-        samples : float64 (taps, rows, cols, 2)
-            Diodes a and b of every pixel, a + b = 255 when both wells are full.
-        mode : str
-            edge and ternary: gain * (a - b * g); image: a + b; raw: 2 a and 2 b; tof: a + b of each tap.
-
-        Returns
-        -------
-        float64 (subs, rows, cols)
-            In LSB.
-
-        Raises
-        ------
-        ParameterError
-            For a wrong shape, mode or number of taps, and for samples that are not finite.
+        samples: (taps, rows, cols, 2), diodes a and b of every pixel, a + b = 255 when both wells are full. mode: edge
+        and ternary: gain * (a - b * g); image: a + b; raw: 2 a and 2 b; tof: a + b of each tap. Returns (subs, rows,
+        cols), in LSB. Raises ParameterError for a wrong shape, mode or number of taps, and for samples that are not
+        finite.
         """
         check_choice("mode", mode, MODES)
         samples = np.asarray(samples)
@@ -93,24 +71,9 @@ class FrontEnd:
         The noise of a sample is drawn for its number (sub * rows + row) * cols + col: it does not depend on the
         window, the mask or the order in which samples are read.
 
-        Parameters
-        ----------
-        samples : float64 (taps, rows, cols, 2)
-            As in `values`.
-        mode : str
-            One of MODES.
-        threshold : int
-            0..127 codes; edge and ternary mode.
-
-        Returns
-        -------
-        Conversion
-            Of arrays (subs, rows, cols).
-
-        Raises
-        ------
-        ParameterError
-            As in `values`, and for a threshold out of range.
+        samples: (taps, rows, cols, 2), as in `values`. mode: one of MODES. threshold: 0..127 codes; edge and ternary
+        mode. Returns Conversion: of arrays (subs, rows, cols). Raises ParameterError as in `values`, and for a
+        threshold out of range.
         """
         v = self.values(samples, mode)
         unsigned = mode not in SIGNED

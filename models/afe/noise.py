@@ -24,19 +24,8 @@ def _mix(x: npt.NDArray[np.uint32]) -> npt.NDArray[np.uint32]:
 def noise_counts(seed: int, index: npt.ArrayLike, decision: npt.ArrayLike) -> npt.NDArray[np.int32]:
     """Noise of some decisions: the sum of the four bytes of mix(mix(seed) ^ (16 * index + decision)), less 510.
 
-    Parameters
-    ----------
-    seed : int
-        0..2**32-1.
-    index : array of int
-        Sample number, 0..2**28-1.
-    decision : array of int
-        0..15, broadcastable to ``index``.
-
-    Returns
-    -------
-    int32
-        -510..510, variance 1 / NOISE_SCALE**2, close to Gaussian up to 3.45 sigma, where it ends.
+    seed: 0..2**32-1. index: sample number, 0..2**28-1. decision: 0..15, broadcastable to ``index``. Returns -510..510,
+    variance 1 / NOISE_SCALE**2, close to Gaussian up to 3.45 sigma, where it ends.
     """
     key = _mix(np.array([seed], np.uint32))
     word = np.atleast_1d(np.asarray(index)).astype(np.uint32) * np.uint32(DECISIONS)

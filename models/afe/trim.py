@@ -20,20 +20,8 @@ TRIM_MIN, TRIM_MAX = -(1 << TRIM_BITS - 1), (1 << TRIM_BITS - 1) - 1
 def trim_codes(g: npt.ArrayLike) -> npt.NDArray[np.int64]:
     """Register values nearest to some capacitor ratios.
 
-    Parameters
-    ----------
-    g : array
-        Ratios; those beyond the register's range (below 0, above 1.998, infinity) take its end.
-
-    Returns
-    -------
-    int64
-        -512..511, shape of ``g``.
-
-    Raises
-    ------
-    ParameterError
-        For NaN.
+    g: ratios; those beyond the register's range (below 0, above 1.998, infinity) take its end. Returns -512..511, shape
+    of ``g``. Raises ParameterError for NaN.
     """
     g = np.asarray(g, np.float64)
     if np.isnan(g).any():
@@ -45,20 +33,7 @@ def trim_codes(g: npt.ArrayLike) -> npt.NDArray[np.int64]:
 def trim_gain(code: npt.ArrayLike) -> npt.NDArray[np.float64]:
     """Capacitor ratios of some register values.
 
-    Parameters
-    ----------
-    code : array of int
-        -512..511.
-
-    Returns
-    -------
-    float64
-        g, exact, shape of ``code``.
-
-    Raises
-    ------
-    ParameterError
-        For a value out of range.
+    code: -512..511. Returns g, exact, shape of ``code``. Raises ParameterError for a value out of range.
     """
     code = np.asarray(code, np.int64)
     if code.size and (code.min() < TRIM_MIN or code.max() > TRIM_MAX):

@@ -20,19 +20,12 @@ PUPIL_MAX = 1000.0  # m, of CameraParameters
 class Calibration:
     """Pixel types and lens as measured.
 
-    Attributes
-    ----------
-    types : tuple of PixelType
-        beta, gamma, alpha, m of every type, in the tile's order; with a table of what was measured where Eq. 3.1 is not
-        its response.
-    gains : tuple of float
-        Capacitor ratio of every type, 0..64.
-    sigma : float
-        Of the aperture in rad, 0.01..10, in addition to cos**4 of the lens.
-    pupil_power : float
-        Inverse distance of the exit pupil from the sensor in 1/m, 0..1e4; 0 is telecentric.
-    centre : tuple of float or None
-        Optical centre (y, x) in px from the array's middle; None where the lens is telecentric.
+    types: beta, gamma, alpha, m of every type, in the tile's order; with a table of what was measured where Eq. 3.1 is
+        not its response.
+    gains: capacitor ratio of every type, 0..64.
+    sigma: of the aperture in rad, 0.01..10, in addition to cos**4 of the lens.
+    pupil_power: inverse distance of the exit pupil from the sensor in 1/m, 0..1e4; 0 is telecentric.
+    centre: optical centre (y, x) in px from the array's middle; None where the lens is telecentric.
     """
 
     types: tuple[PixelType, ...]
@@ -52,20 +45,8 @@ class Calibration:
     def applied(self, sensor: SensorParameters) -> SensorParameters:
         """Return the sensor with the measured pixel types, aperture, vignetting and exit pupil.
 
-        Parameters
-        ----------
-        sensor : SensorParameters
-            Has the tile's order, the rest of the lens and the chip.
-
-        Returns
-        -------
-        SensorParameters
-            The optical centre stays the array's middle.
-
-        Raises
-        ------
-        ParameterError
-            For another number of types.
+        sensor: has the tile's order, the rest of the lens and the chip; the optical centre stays the array's middle.
+        Raises ParameterError for another number of types.
         """
         tile, optics = sensor.tile, sensor.optics
         if len(self.types) != tile.n_types:
@@ -94,20 +75,8 @@ class Calibration:
     def of(cls, table: dict[str, Any]) -> Self:
         """Calibration of `table`.
 
-        Parameters
-        ----------
-        table : dict
-            Its keys; others are left alone.
-
-        Returns
-        -------
-        Calibration
-            The same.
-
-        Raises
-        ------
-        ParameterError
-            For a key that is missing, or a value out of range.
+        table: its keys; others are left alone. Returns the same. Raises ParameterError for a key that is missing, or a
+        value out of range.
         """
         try:
             types = tuple(_type(kind) for kind in table["types"])
@@ -142,20 +111,8 @@ def _type(kind: dict[str, Any]) -> PixelType:
 def read_calibration(path: str | Path) -> Calibration:
     """Read the calibration.json that `make calibrate` writes.
 
-    Parameters
-    ----------
-    path : path
-        The file.
-
-    Returns
-    -------
-    Calibration
-        As measured.
-
-    Raises
-    ------
-    ParameterError
-        For a file that is missing, no JSON, or out of range.
+    path: the file. Returns Calibration: as measured. Raises ParameterError for a file that is missing, no JSON, or out
+    of range.
     """
     try:
         if Path(path).exists() and not Path(path).is_file():

@@ -25,9 +25,11 @@ TILTED = 3.0  # the same of the exit pupil's power
 class Pupil(NamedTuple):
     """Aperture and chief ray.
 
-    sigma: of the aperture in rad. axis: (2,), tangents (y, x) of the chief ray at the array's middle. slope: of its
-    tangents, 1 / px; 0 where it is less than its error. slope_error: standard deviation of the slope. condition: of the
-    normal equations, columns of length 1.
+    sigma: of the aperture in rad.
+    axis: (2,), tangents (y, x) of the chief ray at the array's middle.
+    slope: of its tangents, 1 / px; 0 where it is less than its error.
+    slope_error: standard deviation of the slope.
+    condition: of the normal equations, columns of length 1.
     """
 
     sigma: float
@@ -40,18 +42,11 @@ class Pupil(NamedTuple):
 class TypeFit(NamedTuple):
     """A pixel type as measured.
 
-    Attributes
-    ----------
-    kind : PixelType
-        beta, gamma, alpha, m; beta and m are 0 where no modulation is seen.
-    m_error, alpha_error : float
-        Standard deviations; alpha's in rad, pi where no modulation is seen.
-    residual : float
-        RMS of q that the fit leaves.
-    condition : float
-        Of the normal equations, columns of length 1.
-    beta_error, gamma_error : float
-        Standard deviations, gamma's in degrees; BETA_MAX and 180 where no modulation is seen.
+    kind: beta, gamma, alpha, m; beta and m are 0 where no modulation is seen.
+    m_error, alpha_error: standard deviations; alpha's in rad, pi where no modulation is seen.
+    residual: RMS of q that the fit leaves.
+    condition: of the normal equations, columns of length 1.
+    beta_error, gamma_error: standard deviations, gamma's in degrees; BETA_MAX and 180 where no modulation is seen.
     """
 
     kind: PixelType
@@ -66,20 +61,7 @@ class TypeFit(NamedTuple):
 def fit_pupil(sweep: Sweep) -> Pupil:
     """Aperture and chief ray from the sums of the pairs.
 
-    Parameters
-    ----------
-    sweep : Sweep
-        Of the bench.
-
-    Returns
-    -------
-    Pupil
-        As measured.
-
-    Raises
-    ------
-    ParameterError
-        For a sweep without light.
+    sweep: of the bench. Returns Pupil: as measured. Raises ParameterError for a sweep without light.
     """
     sums = np.nanmean(sweep.diodes.sum(-1), 2)  # (n, blocks): the types' own differences are in none
     places = np.nanmean(sweep.places, 1)
@@ -112,17 +94,8 @@ def fit_pupil(sweep: Sweep) -> Pupil:
 def fit_types(sweep: Sweep, pupil: Pupil) -> list[TypeFit]:
     """Every pixel type from the ratios of difference and sum.
 
-    Parameters
-    ----------
-    sweep : Sweep
-        Of the bench.
-    pupil : Pupil
-        Of the same sweep.
-
-    Returns
-    -------
-    list of TypeFit
-        In the order of the tile; a type without pixels or light has no modulation.
+    sweep: of the bench. pupil: of the same sweep. Returns list of TypeFit: in the order of the tile; a type without
+    pixels or light has no modulation.
     """
     return [_fit_type(sweep, pupil, number) for number in range(sweep.places.shape[1])]
 
@@ -130,19 +103,8 @@ def fit_types(sweep: Sweep, pupil: Pupil) -> list[TypeFit]:
 def calibrated(sweep: Sweep, pitch: float, centred: bool = False) -> tuple[Calibration, Pupil, list[TypeFit]]:
     """Quantities fitted to a sweep.
 
-    Parameters
-    ----------
-    sweep : Sweep
-        Of the bench.
-    pitch : float
-        Of the pixels in m.
-    centred : bool
-        Whether the angles' zero is that of the holes, not that of the light's sums.
-
-    Returns
-    -------
-    tuple of Calibration, Pupil, list of TypeFit
-        What is kept, and what it is from.
+    sweep: of the bench. pitch: of the pixels in m. centred: whether the angles' zero is that of the holes, not that of
+    the light's sums. Returns tuple of Calibration, Pupil, list of TypeFit: what is kept, and what it is from.
     """
     pupil = fit_pupil(sweep)
     rays = pupil._replace(axis=np.zeros(2)) if centred else pupil

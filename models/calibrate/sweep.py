@@ -19,16 +19,10 @@ BLOCK = 12  # px along a side of what is averaged: the chief ray hardly turns wi
 class Sweep:
     """Means of blocks of pixels, by pixel type.
 
-    Attributes
-    ----------
-    holes : float64 (n, 2)
-        Tangents (y, x) of the hole's places against the lens's axis.
-    diodes : float64 (n, blocks, types, 2)
-        Mean signal in any unit, offset taken off; NaN where a block has no pixel of a type.
-    places : float64 (blocks, types, 2)
-        Mean place (y, x) of these pixels in px from the array's middle.
-    gains : float64 (types,)
-        Capacitor ratio of each type from frames through the whole pupil.
+    holes: (n, 2), tangents (y, x) of the hole's places against the lens's axis.
+    diodes: (n, blocks, types, 2), mean signal in any unit, offset taken off; NaN where a block has no pixel of a type.
+    places: (blocks, types, 2), mean place (y, x) of these pixels in px from the array's middle.
+    gains: (types,), capacitor ratio of each type from frames through the whole pupil.
     """
 
     holes: Floats
@@ -49,21 +43,7 @@ def sunflower(count: int, radius: float) -> Floats:
 
     A grating's response is so sampled finer than by as many places on a grid.
 
-    Parameters
-    ----------
-    count : int
-        Places.
-    radius : float
-        Of the disc.
-
-    Returns
-    -------
-    float64 (count, 2)
-        Places (y, x).
-
-    References
-    ----------
-    [Vogel1979].
+    count: places. radius: of the disc. Returns (count, 2), places (y, x). Source: [Vogel1979].
     """
     k = np.arange(count) + 0.5
     radii, turn = radius * np.sqrt(k / count), k * np.pi * (3 - np.sqrt(5))
@@ -73,17 +53,8 @@ def sunflower(count: int, radius: float) -> Floats:
 def block_means(samples: Floats, tile: TileParameters) -> Floats:
     """Mean of every type in every block of an array.
 
-    Parameters
-    ----------
-    samples : float64 (rows, cols, ...)
-        Values of every pixel.
-    tile : TileParameters
-        Pixel types.
-
-    Returns
-    -------
-    float64 (blocks, types, ...)
-        NaN where a block has no pixel of a type.
+    samples: (rows, cols, ...), values of every pixel. tile: pixel types. Returns (blocks, types, ...), NaN where a
+    block has no pixel of a type.
     """
     rows, cols = samples.shape[:2]
     down, across = (np.minimum(np.arange(n) // BLOCK, max(n // BLOCK - 1, 0)) for n in (rows, cols))

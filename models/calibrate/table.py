@@ -28,8 +28,9 @@ SOURCE = "CALIBRATION"
 class Samples(NamedTuple):
     """The measurements of a type.
 
-    theta: (n, 2), angles (y, x) of the rays in rad. diodes: (n, 2), signals over aperture and vignetting, in any unit
-    that all types share. weight: (n,), inverse standard deviation of the signals, in any unit.
+    theta: (n, 2), angles (y, x) of the rays in rad.
+    diodes: (n, 2), signals over aperture and vignetting, in any unit that all types share.
+    weight: (n,), inverse standard deviation of the signals, in any unit.
     """
 
     theta: Floats

@@ -28,20 +28,12 @@ NEAR = 0.5  # of a full well, which that is at most
 class Exposure:
     """Exposure of the array.
 
-    Attributes
-    ----------
-    electrical : ElectricalParameters
-        Photodiodes and amplifiers.
-    timing : AmpTiming
-        Integration times, common-mode resets, lead of the reset pointer.
-    f_clk : float
-        System clock, 1e3..1e9 Hz.
-    noise : float
-        Factor on the physical noise of every kind, 0..100; 0 is none, 1 physical.
-    seed : int
-        Seed of the fixed pattern and of the temporal noise, 0..2**32-1; the two use separate random streams.
-    number : int
-        Of the exposure in a sequence, 0..2**32-1: each has independent temporal noise.
+    electrical: photodiodes and amplifiers.
+    timing: integration times, common-mode resets, lead of the reset pointer.
+    f_clk: system clock, 1e3..1e9 Hz.
+    noise: factor on the physical noise of every kind, 0..100; 0 is none, 1 physical.
+    seed: seed of the fixed pattern and of the temporal noise, 0..2**32-1; the two use separate random streams.
+    number: of the exposure in a sequence, 0..2**32-1: each has independent temporal noise.
     """
 
     electrical: ElectricalParameters
@@ -65,15 +57,7 @@ class Exposure:
     def generator(self, stream: int) -> np.random.Generator:
         """Random generator of a stream of temporal noise.
 
-        Parameters
-        ----------
-        stream : int
-            Number of the stream, 0 or more.
-
-        Returns
-        -------
-        numpy.random.Generator
-            In its initial state.
+        stream: number of the stream, 0 or more. Returns numpy.random.Generator: in its initial state.
         """
         return np.random.default_rng([self.seed, stream, self.number])
 
@@ -116,27 +100,12 @@ def expose(
     common, so that the difference a - g b of a whole exposure survives where the wells would overflow, and leaves kT/C
     noise. Read noise, the offsets of pixels and columns and the columns' 1/f noise are added once, at the end.
 
-    Parameters
-    ----------
-    pair : float32 or float64 (2, rows, cols)
-        Relative photocurrents, 0 or more (1 = a diode of a flat white scene).
-    exposure : Exposure
-        Times, electrical parameters and noise.
-    balance : array (rows, cols), optional
-        Capacitor ratio g of every pixel in the common-mode reset; None is 1 everywhere.
-    tap : int
-        Sub-frame of a time-of-flight frame, 0..3, or another frame of the same chip, 4..99; each has its own noise.
-
-    Returns
-    -------
-    array (rows, cols, 2)
-        In LSB of an 8-bit sum, type of ``pair``: a + b = 255 where both wells are full. Noise may exceed 0..255; the
-        converter clips.
-
-    Raises
-    ------
-    ParameterError
-        For a wrong shape, or a value that is negative or not finite.
+    pair: (2, rows, cols), relative photocurrents, 0 or more (1 = a diode of a flat white scene). exposure: times,
+    electrical parameters and noise. balance: (rows, cols), capacitor ratio g of every pixel in the common-mode reset;
+    None is 1 everywhere. tap: sub-frame of a time-of-flight frame, 0..3, or another frame of the same chip, 4..99; each
+    has its own noise. Returns (rows, cols, 2), in LSB of an 8-bit sum, type of ``pair``: a + b = 255 where both wells
+    are full. Noise may exceed 0..255; the converter clips. Raises ParameterError for a wrong shape, or a value that is
+    negative or not finite.
     """
     if pair.ndim != 3 or pair.shape[0] != 2 or not pair.min() >= 0 or not np.isfinite(pair.max()):
         raise ParameterError(f"pair = {pair.dtype} {pair.shape}: must be (2, rows, cols), finite and not negative")

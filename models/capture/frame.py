@@ -29,33 +29,11 @@ def capture(
 ) -> Floats:
     """Capture a scene: `currents`, then `exposed`.
 
-    Parameters
-    ----------
-    scene : Scene
-        Of the sensor's size.
-    sensor : SensorParameters
-        The sensor.
-    plan : Plan
-        Plan of the same scene and sensor.
-    exposure : Exposure
-        Times, electrical parameters and noise.
-    balance : array (types,), optional
-        Capacitor ratio g of every pixel type in the common-mode reset; None is 1.
-    dtype : str
-        'float32' or 'float64'.
-    regions : sequence of Region, optional
-        As in `currents`.
-
-    Returns
-    -------
-    array (taps, rows, cols, 2)
-        Diode pairs in LSB of an 8-bit sum (see `expose`). Pixels that the plan does not read hold noise and offset
-        alone.
-
-    Raises
-    ------
-    ParameterError
-        For a scene of another size, or time of flight of a scene without depth.
+    scene: of the sensor's size. sensor: the sensor. plan: plan of the same scene and sensor. exposure: times,
+    electrical parameters and noise. balance: (types,), capacitor ratio g of every pixel type in the common-mode reset;
+    None is 1. dtype: 'float32' or 'float64'. regions: as in `currents`. Returns (taps, rows, cols, 2), diode pairs in
+    LSB of an 8-bit sum (see `expose`). Pixels that the plan does not read hold noise and offset alone. Raises
+    ParameterError for a scene of another size, or time of flight of a scene without depth.
     """
     return exposed(currents(scene, sensor, plan, dtype, regions), sensor, exposure, balance)
 
@@ -65,21 +43,9 @@ def exposed(
 ) -> Floats:
     """Expose the photocurrents of a frame.
 
-    Parameters
-    ----------
-    pairs : array (taps, 2, rows, cols)
-        Photocurrents of every tap.
-    sensor : SensorParameters
-        The sensor.
-    exposure : Exposure
-        Times, electrical parameters and noise.
-    balance : array (types,), optional
-        Capacitor ratio g of every pixel type in the common-mode reset; None is 1.
-
-    Returns
-    -------
-    array (taps, rows, cols, 2)
-        As in `capture`.
+    pairs: (taps, 2, rows, cols), photocurrents of every tap. sensor: the sensor. exposure: times, electrical parameters
+    and noise. balance: (types,), capacitor ratio g of every pixel type in the common-mode reset; None is 1. Returns
+    (taps, rows, cols, 2), as in `capture`.
     """
     ratio = _ratio(pairs, sensor, balance)
     return np.stack([expose(pair, exposure, ratio, tap) for tap, pair in enumerate(pairs)])
@@ -90,15 +56,7 @@ def full_pixels(
 ) -> npt.NDArray[np.bool_]:
     """Tell the pixels that have a full well in any tap of a frame.
 
-    Parameters
-    ----------
-    pairs, sensor, exposure, balance
-        As in `exposed`.
-
-    Returns
-    -------
-    bool (rows, cols)
-        As of `full_wells`.
+    pairs, sensor, exposure, balance: as in `exposed`. Returns (rows, cols), as of `full_wells`.
     """
     ratio = _ratio(pairs, sensor, balance)
     return np.any([full_wells(pair, exposure, ratio) for pair in pairs], axis=0)
@@ -116,32 +74,11 @@ def currents(
 ) -> Floats:
     """Relative photocurrents of every tap.
 
-    Parameters
-    ----------
-    scene : Scene
-        Of the sensor's size.
-    sensor : SensorParameters
-        The sensor.
-    plan : Plan
-        Plan of the same scene and sensor.
-    dtype : str
-        'float32' or 'float64'.
-    regions : sequence of Region, optional
-        Views of which pixels (models.capture.choose_views); None is the scene's own grid everywhere.
-
-    Returns
-    -------
-    array (taps, 2, rows, cols)
-        In the order of the taps; 0 at pixels that the plan does not read.
-
-    Raises
-    ------
-    ParameterError
-        For a scene of another size, or time of flight of a scene without depth.
-
-    References
-    ----------
-    [Jayasuriya2017], Eq. 5.2.
+    scene: of the sensor's size. sensor: the sensor. plan: plan of the same scene and sensor. dtype: 'float32' or
+    'float64'. regions: views of which pixels (models.capture.choose_views); None is the scene's own grid everywhere.
+    Returns (taps, 2, rows, cols), in the order of the taps; 0 at pixels that the plan does not read. Raises
+    ParameterError for a scene of another size, or time of flight of a scene without depth. Source: [Jayasuriya2017],
+    Eq. 5.2.
     """
     if scene.shape != (sensor.array.rows, sensor.array.cols):
         raise ParameterError(f"scene shape = {scene.shape}: must be ({sensor.array.rows}, {sensor.array.cols})")

@@ -20,26 +20,9 @@ INSTANTS_MAX = 2000
 def instants(scene: Scene, sensor: SensorParameters, plan: Plan, timing: AmpTiming) -> int:
     """Count the instants of a frame between which a scene moves half a pixel at most.
 
-    Parameters
-    ----------
-    scene : Scene
-        Of the sensor's size.
-    sensor : SensorParameters
-        The sensor.
-    plan : Plan
-        Plan of the same scene and sensor.
-    timing : AmpTiming
-        Of the frame as it exposes.
-
-    Returns
-    -------
-    int
-        1 to INSTANTS_MAX; 1 for a scene that does not move.
-
-    Raises
-    ------
-    ParameterError
-        For time of flight of a scene that moves, and for one that moves too far in a frame.
+    scene: of the sensor's size. sensor: the sensor. plan: plan of the same scene and sensor. timing: of the frame as it
+    exposes. Returns 1 to INSTANTS_MAX; 1 for a scene that does not move. Raises ParameterError for time of flight of a
+    scene that moves, and for one that moves too far in a frame.
     """
     if scene.moved is None or not scene.speed:
         return 1
@@ -66,30 +49,9 @@ def moving_currents(
     The frame is cut into instants between which the scene moves half a pixel at most; an instant is captured for the
     rows that integrate in it. A scene that does not move is captured once.
 
-    Parameters
-    ----------
-    scene : Scene
-        Of the sensor's size.
-    sensor : SensorParameters
-        The sensor.
-    plan : Plan
-        Plan of the same scene and sensor.
-    timing : AmpTiming
-        Of the frame as it exposes.
-    dtype : str
-        'float32' or 'float64'.
-    regions : sequence of Region, optional
-        As in `currents`.
-
-    Returns
-    -------
-    array (taps, 2, rows, cols)
-        As of `currents`.
-
-    Raises
-    ------
-    ParameterError
-        As `currents` and `instants`.
+    scene: of the sensor's size. sensor: the sensor. plan: plan of the same scene and sensor. timing: of the frame as it
+    exposes. dtype: 'float32' or 'float64'. regions: as in `currents`. Returns (taps, 2, rows, cols), as of `currents`.
+    Raises ParameterError as `currents` and `instants`.
     """
     if scene.moved is None or not scene.speed:
         return currents(scene, sensor, plan, dtype, regions)

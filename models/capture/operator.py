@@ -28,27 +28,14 @@ class CaptureOperator:
 
     Photocurrents are relative: 1 is the average diode in a flat white scene.
 
-    Parameters
-    ----------
-    sensor : SensorParameters
-        The sensor.
-    dtype : str
-        'float32' or 'float64', the type of every array.
-    angular : bool
-        False where all views are equal: then the light field is (1, 1, rows, cols), and one view is read instead of
-        views squared. The result differs by rounding only (see `rounding`).
-    read : bool (rows, cols), optional
-        Pixels to compute; the others are 0. None computes all. The bits of a computed pixel do not depend on the
-        others.
+    sensor: the sensor.
+    dtype: 'float32' or 'float64', the type of every array.
+    angular: False where all views are equal: then the light field is (1, 1, rows, cols), and one view is read instead
+        of views squared. The result differs by rounding only (see `rounding`).
+    read: (rows, cols), pixels to compute; the others are 0. None computes all. The bits of a computed pixel do not
+        depend on the others.
 
-    Raises
-    ------
-    ParameterError
-        For a wrong dtype or shape.
-
-    References
-    ----------
-    [Jayasuriya2017], Eq. 3.3 to 3.5.
+    Raises ParameterError for a wrong dtype or shape. Source: [Jayasuriya2017], Eq. 3.3 to 3.5.
     """
 
     def __init__(
@@ -107,20 +94,8 @@ class CaptureOperator:
     def forward(self, light_field: Floats) -> Floats:
         """Apply Phi.
 
-        Parameters
-        ----------
-        light_field : array (views, views, rows, cols)
-            l[v, u, y, x].
-
-        Returns
-        -------
-        array (2, rows, cols)
-            Photocurrents of both diodes.
-
-        Raises
-        ------
-        ParameterError
-            For a wrong shape or type.
+        light_field: (views, views, rows, cols), l[v, u, y, x]. Returns (2, rows, cols), photocurrents of both diodes.
+        Raises ParameterError for a wrong shape or type.
         """
         light_field = self._checked("light_field", light_field, self.shape)
         out = np.zeros((2, self.rows, self.cols), self.dtype)
@@ -135,20 +110,8 @@ class CaptureOperator:
     def transpose(self, pair: Floats) -> Floats:
         """Apply the transpose of Phi.
 
-        Parameters
-        ----------
-        pair : array (2, rows, cols)
-            Photocurrents of both diodes; pixels that are not read do not count.
-
-        Returns
-        -------
-        array (views, views, rows, cols)
-            l[v, u, y, x].
-
-        Raises
-        ------
-        ParameterError
-            For a wrong shape or type.
+        pair: (2, rows, cols), photocurrents of both diodes; pixels that are not read do not count. Returns (views,
+        views, rows, cols), l[v, u, y, x]. Raises ParameterError for a wrong shape or type.
         """
         pair = self._checked("pair", pair, (2, self.rows, self.cols))
         if self.read is not None:

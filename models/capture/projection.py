@@ -16,12 +16,14 @@ Ints = npt.NDArray[np.int64]
 class Projection:
     """Linear map from l[v, u, y, x] to the samples of every pixel.
 
-    shape: rows and columns of the array. weights: (responses, pupil, pupil), responses over a grid of cells of the
-    pupil. order: (channels, high, wide), response of every sample of a pixel, in a period of pixels. telling:
-    (responses,), responses that tell a disparity, not only the texture. side: side, in px, of the squares whose mean
-    every pixel within sees (a lenslet); 1 is the pixel itself. Odd. block: rows and columns of pixels that are
-    estimated together, a part of a period; None is a period. Raises ParameterError for weights, order or side that do
-    not go together.
+    shape: rows and columns of the array.
+    weights: (responses, pupil, pupil), responses over a grid of cells of the pupil.
+    order: (channels, high, wide), response of every sample of a pixel, in a period of pixels.
+    telling: (responses,), responses that tell a disparity, not only the texture.
+    side: side, in px, of the squares whose mean every pixel within sees (a lenslet); 1 is the pixel itself. Odd.
+    block: rows and columns of pixels that are estimated together, a part of a period; None is a period.
+
+    Raises ParameterError for weights, order or side that do not go together.
     """
 
     shape: tuple[int, int]

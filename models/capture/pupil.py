@@ -26,12 +26,8 @@ CHUNKS = 4  # sums of views, added in their order: the result does not depend on
 class Region(NamedTuple):
     """Pixels that see the pupil through a number of views.
 
-    Attributes
-    ----------
-    views : int
-        Along the pupil's diameter.
-    pixels : bool (rows, cols)
-        Where.
+    views: along the pupil's diameter.
+    pixels: (rows, cols), where.
     """
 
     views: int
@@ -41,15 +37,7 @@ class Region(NamedTuple):
 def cells(views: int) -> npt.NDArray[np.bool_]:
     """Cells of a grid of views that the round pupil reaches.
 
-    Parameters
-    ----------
-    views : int
-        Along the diameter.
-
-    Returns
-    -------
-    bool (views, views)
-        True where the nearest point of the cell is inside.
+    views: along the diameter. Returns (views, views), True where the nearest point of the cell is inside.
     """
     edge = np.maximum(np.abs(2 * np.arange(views) - (views - 1)) - 1, 0) / views
     return np.hypot(edge[:, None], edge) < 1
@@ -64,23 +52,9 @@ def integrate(
 ) -> Floats:
     """Photocurrents of a region.
 
-    Parameters
-    ----------
-    scene : Scene
-        Of the sensor's size.
-    sensor : SensorParameters
-        The sensor.
-    region : Region
-        Views and pixels.
-    waves : sequence of callable or None
-        Factors of the light, each a separate integral; None is 1.
-    dtype : str
-        'float32' or 'float64'.
-
-    Returns
-    -------
-    array (waves, 2, rows, cols)
-        1 = a diode's average in a flat white scene; 0 outside the region.
+    scene: of the sensor's size. sensor: the sensor. region: views and pixels. waves: factors of the light, each a
+    separate integral; None is 1. dtype: 'float32' or 'float64'. Returns (waves, 2, rows, cols), 1 = a diode's average
+    in a flat white scene; 0 outside the region.
     """
     field = field_weights(sensor, scene.views if region.views == 1 else region.views)
     field = field.summed if region.views == 1 else field

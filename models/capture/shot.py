@@ -47,9 +47,9 @@ def photon_count(mean: Any, z: Any) -> Any:  # arrays outside, scalars inside
 class Pixels(NamedTuple):
     """The diodes of an array, all of one type: float32 or float64.
 
-    gain, offset: (2, rows, cols), of each diode: factor of its photocurrent, and electrons. numbers: (7,), electrons/s
-    of a photocurrent of 1, electrons/s of dark current, electrons of a full well, electrons an LSB, factor of the shot
-    noise, RMS of the read noise in electrons, PHOTONS_MAX.
+    gain, offset: (2, rows, cols), of each diode: factor of its photocurrent, and electrons.
+    numbers: (7,), electrons/s of a photocurrent of 1, electrons/s of dark current, electrons of a full well, electrons
+        an LSB, factor of the shot noise, RMS of the read noise in electrons, PHOTONS_MAX.
     """
 
     gain: Floats

@@ -26,21 +26,13 @@ PROBE = 24  # tile rows that are measured at most
 class Views(NamedTuple):
     """Views of a capture.
 
-    Attributes
-    ----------
-    regions : tuple of Region
-        Which pixels need how many.
-    most : int
-        Views along the pupil's diameter where most are needed.
-    error : float or None
-        Of the quadrature: RMS error of the differences against REFERENCE views in codes, where they are measured; None
-        where the scene has no other views than its own.
-    left_out : tuple of LeftOut
-        Views that are not rendered.
-    tried : tuple of (int, float, float)
-        Views, their RMS error in codes and their time in s, where they are measured.
-    hidden : float or None
-        RMS in codes, there, by which the differences of the middle view and its disparity are off: light that other
+    regions: which pixels need how many.
+    most: views along the pupil's diameter where most are needed.
+    error: of the quadrature: RMS error of the differences against REFERENCE views in codes, where they are measured;
+        None where the scene has no other views than its own.
+    left_out: views that are not rendered.
+    tried: views, their RMS error in codes and their time in s, where they are measured.
+    hidden: RMS in codes, there, by which the differences of the middle view and its disparity are off: light that other
         views show and the middle view does not. None where the scene does not know that light.
     """
 
@@ -62,28 +54,10 @@ def choose_views(
     keep the scene's own grid, as many as the error allows: regions in focus, and plain ones. Mask, window and
     decimation of the frame play no part: leaving pixels out changes no bit of the others.
 
-    Parameters
-    ----------
-    scene : Scene
-        Of the sensor's size.
-    sensor : SensorParameters
-        The sensor.
-    timing : AmpTiming
-        Integration time, which makes codes of photocurrents.
-    views : int, optional
-        Along the pupil's diameter everywhere, 1..31; None chooses.
-    bound : float
-        Largest RMS error in codes, 0.01..100.
-
-    Returns
-    -------
-    Views
-        Their number, where, and the error.
-
-    Raises
-    ------
-    ParameterError
-        For views or a bound out of range, or other views than those of a light field.
+    scene: of the sensor's size. sensor: the sensor. timing: integration time, which makes codes of photocurrents.
+    views: along the pupil's diameter everywhere, 1..31; None chooses. bound: largest RMS error in codes, 0.01..100.
+    Returns Views: their number, where, and the error. Raises ParameterError for views or a bound out of range, or other
+    views than those of a light field.
     """
     check_real("bound", bound, 0.01, 100)
     everywhere = np.ones(scene.shape, bool)
@@ -127,30 +101,9 @@ def captured(
 ) -> tuple[Views, npt.NDArray[np.floating]]:
     """Choose the views of a capture and capture the scene through them.
 
-    Parameters
-    ----------
-    scene : Scene
-        Of the sensor's size.
-    sensor : SensorParameters
-        The sensor.
-    plan : Plan
-        Plan of the same scene and sensor.
-    timing : AmpTiming
-        Of the frame as it exposes.
-    views : int, optional
-        As in `choose_views`.
-
-    Returns
-    -------
-    Views
-        As of `choose_views`.
-    array (taps, 2, rows, cols)
-        As of `moving_currents`.
-
-    Raises
-    ------
-    ParameterError
-        As both.
+    scene: of the sensor's size. sensor: the sensor. plan: plan of the same scene and sensor. timing: of the frame as it
+    exposes. views: as in `choose_views`. Returns Views: as of `choose_views`. Returns (taps, 2, rows, cols), as of
+    `moving_currents`. Raises ParameterError as both.
     """
     chosen = choose_views(scene, sensor, timing, views)
     return chosen, moving_currents(scene, sensor, plan, timing, regions=chosen.regions)

@@ -37,8 +37,9 @@ Waveform = Generator[AmpPins, bool, None]
 class Slot:
     """The actions of one run of AmpCtrl; its duration does not depend on them.
 
-    resets: it resets a row of pixels. reads: it ends the integration of a row and reads it. opens: the row that it
-    resets is read in a later slot: it integrates from `expose` on.
+    resets: it resets a row of pixels.
+    reads: it ends the integration of a row and reads it.
+    opens: the row that it resets is read in a later slot: it integrates from `expose` on.
     """
 
     resets: bool = True

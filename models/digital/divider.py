@@ -25,10 +25,12 @@ from talbot.models.parameters.divider import (
 class QuadResult:
     """Results of a division, arrays of the operands' common shape.
 
-    octant: 0..7, floor(angle / 45 degrees); an axis or a diagonal belongs to the octant that starts there. ratio:
-    floor(2^n_frac * min/max) of (|x|, |y|), saturated to 2^n_frac - 1; CORDIC: 0. zero: True where x = y = 0; octant,
-    ratio and phase are then 0. phase: binary angle. amp_valid: max(|x|, |y|) >= the noise floor, and not zero (a zero
-    vector has no phase). amp: max(|x|, |y|), saturated to 255.
+    octant: 0..7, floor(angle / 45 degrees); an axis or a diagonal belongs to the octant that starts there.
+    ratio: floor(2^n_frac * min/max) of (|x|, |y|), saturated to 2^n_frac - 1; CORDIC: 0.
+    zero: True where x = y = 0; octant, ratio and phase are then 0.
+    phase: binary angle.
+    amp_valid: max(|x|, |y|) >= the noise floor, and not zero (a zero vector has no phase).
+    amp: max(|x|, |y|), saturated to 255.
     """
 
     octant: npt.NDArray[np.integer]

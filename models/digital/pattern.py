@@ -31,7 +31,8 @@ def pattern_value(
 class PatternEnd:
     """Replacement of models.afe.FrontEnd when the test pattern is on: ideal, and independent of the scene.
 
-    rows, cols: size of the array in pixels. tile: the tile.
+    rows, cols: size of the array in pixels.
+    tile: the tile.
     """
 
     rows: int

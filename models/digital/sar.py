@@ -18,8 +18,9 @@ BIPOLAR = 128  # offset binary: DAC code = code + 128
 class Conversion(NamedTuple):
     """Result of a conversion, arrays of one shape.
 
-    codes: -128..127 or 0..255. converted: False where the window comparison alone gives the code. decisions: comparator
-    decisions of each sample.
+    codes: -128..127 or 0..255.
+    converted: False where the window comparison alone gives the code.
+    decisions: comparator decisions of each sample.
     """
 
     codes: npt.NDArray[np.int16]

@@ -13,8 +13,11 @@ from talbot.models.parameters import SAMPLES_PER_PIXEL, FrameParameters, Paramet
 class Step:
     """One conversion step: every enabled lane of L converts the pixel at (row, 6 * (L * group + lane) + k).
 
-    row: pixel row. k: column in the tile. group: tile columns L * group .. L * group + L - 1. sub: sub-sample. enable:
-    bit l set = lane l converts.
+    row: pixel row.
+    k: column in the tile.
+    group: tile columns L * group .. L * group + L - 1.
+    sub: sub-sample.
+    enable: bit l set = lane l converts.
     """
 
     row: int
@@ -28,8 +31,12 @@ class Step:
 class Scan:
     """Order of the rows, steps and samples of one frame.
 
-    rows, cols: size of the array in pixels. lanes: converters, a power of two. frame: configuration of the frame. tile:
-    the tile. Raises ParameterError if the window is outside the array or selects no pixel.
+    rows, cols: size of the array in pixels.
+    lanes: converters, a power of two.
+    frame: configuration of the frame.
+    tile: the tile.
+
+    Raises ParameterError if the window is outside the array or selects no pixel.
     """
 
     rows: int

@@ -14,23 +14,8 @@ def transmission(
 ) -> npt.NDArray[np.floating]:
     """Factor on the photocurrent relative to unpolarized light of the same S0.
 
-    Parameters
-    ----------
-    polarization : array (2, ...)
-        S1/S0 and S2/S0.
-    gamma : array
-        Grating orientation in rad, broadcastable to ``polarization[0]``.
-    diattenuation : float
-        0..1.
-
-    Returns
-    -------
-    array (...)
-        0..2.
-
-    References
-    ----------
-    [Jayasuriya2017], Ch. 4.
+    polarization: (2, ...), S1/S0 and S2/S0. gamma: grating orientation in rad, broadcastable to ``polarization[0]``.
+    diattenuation: 0..1. Returns (...), 0..2. Source: [Jayasuriya2017], Ch. 4.
     """
     s1, s2 = polarization
     angle = 2 * np.asarray(gamma)

@@ -18,12 +18,8 @@ Light = Callable[[Floats, Floats, float], Floats]
 class Ripple:
     """Light from one scene point over the lens: (1 + cos(2 pi periods nu / (2 nu_max) + 1)) / 2.
 
-    Attributes
-    ----------
-    periods : float
-        Periods across the diameter of the lens; 0 is the same light from every direction.
-    degrees : float
-        Direction in which the light varies.
+    periods: periods across the diameter of the lens; 0 is the same light from every direction.
+    degrees: direction in which the light varies.
     """
 
     periods: float = 1.0
@@ -39,12 +35,8 @@ class Ripple:
 class SamplingError:
     """Error of a diode's photocurrent against the exact one, relative to the mean photocurrent of all diodes.
 
-    Attributes
-    ----------
-    worst, rms : float
-        Over the diodes of all types.
-    seconds : float
-        Time to compute the view weights.
+    worst, rms: over the diodes of all types.
+    seconds: time to compute the view weights.
     """
 
     worst: float
@@ -57,25 +49,8 @@ def exact(
 ) -> npt.NDArray[np.float64]:
     """Photocurrents by adaptive cubature in polar coordinates over the lens.
 
-    Parameters
-    ----------
-    types : sequence of PixelType
-        Pixel types.
-    optics : OpticsParameters
-        Lens and gratings.
-    light : callable
-        Radiance as a function of (nu_x, nu_y, nu_max).
-    tolerance : float
-        Relative, 1e-13..1e-2.
-
-    Returns
-    -------
-    float64 (types, 2)
-        Not scaled.
-
-    References
-    ----------
-    [Jayasuriya2017], Eq. 3.3.
+    types: pixel types. optics: lens and gratings. light: radiance as a function of (nu_x, nu_y, nu_max). tolerance:
+    relative, 1e-13..1e-2. Returns (types, 2), not scaled. Source: [Jayasuriya2017], Eq. 3.3.
     """
 
     def _integrand(points: Floats) -> Floats:
@@ -105,21 +80,8 @@ def sampling_error(
 ) -> SamplingError:
     """Error of a number of views and subsamples.
 
-    Parameters
-    ----------
-    types : tuple of PixelType
-        Pixel types.
-    optics : OpticsParameters
-        Lens, gratings, views and subsamples.
-    light : callable
-        As in `exact`.
-    reference : float64 (types, 2), optional
-        Result of `exact` if it is known.
-
-    Returns
-    -------
-    SamplingError
-        Relative error, and time.
+    types: pixel types. optics: lens, gratings, views and subsamples. light: as in `exact`. reference: (types, 2),
+    result of `exact` if it is known. Returns relative error, and time.
     """
     reference = exact(types, optics, light) if reference is None else reference
     start = perf_counter()

@@ -9,21 +9,8 @@ Floats = npt.NDArray[np.floating]
 def aperture(theta_x: npt.ArrayLike, theta_y: npt.ArrayLike, sigma: float) -> Floats:
     """Common-mode angular response A(theta), a Gaussian.
 
-    Parameters
-    ----------
-    theta_x, theta_y : array
-        Incidence angle in rad, |theta| <= pi/2.
-    sigma : float
-        Standard deviation in rad.
-
-    Returns
-    -------
-    array
-        1 on the axis, of the floating type of theta; not below the smallest normal number of that type.
-
-    References
-    ----------
-    [Jayasuriya2017], Eq. 2.2.
+    theta_x, theta_y: incidence angle in rad, |theta| <= pi/2. sigma: standard deviation in rad. Returns 1 on the axis,
+    of the floating type of theta; not below the smallest normal number of that type. Source: [Jayasuriya2017], Eq. 2.2.
     """
     theta_x, theta_y = _floats(theta_x, theta_y)
     exponent = -0.5 * ((theta_x / sigma) ** 2 + (theta_y / sigma) ** 2)
@@ -37,29 +24,10 @@ def response(
 
     The second diode of a pixel has alpha + pi.
 
-    Parameters
-    ----------
-    alpha : float
-        Phase of the analyzer grating, rad.
-    beta : float
-        Angular frequency, 0..50 rad of response per rad of angle.
-    gamma : float
-        Grating orientation, rad.
-    theta_x, theta_y : array
-        Incidence angle in rad, |theta| <= pi/2, grazing light included.
-    m : float
-        Modulation depth, 0..1.
-    sigma : float
-        Standard deviation of the aperture in rad.
-
-    Returns
-    -------
-    array
-        0..2, of the floating type of theta.
-
-    References
-    ----------
-    [Jayasuriya2017], Eq. 3.1.
+    alpha: phase of the analyzer grating, rad. beta: angular frequency, 0..50 rad of response per rad of angle. gamma:
+    grating orientation, rad. theta_x, theta_y: incidence angle in rad, |theta| <= pi/2, grazing light included. m:
+    modulation depth, 0..1. sigma: standard deviation of the aperture in rad. Returns 0..2, of the floating type of
+    theta. Source: [Jayasuriya2017], Eq. 3.1.
     """
     theta_x, theta_y = _floats(theta_x, theta_y)
     phase = beta * (theta_x * np.cos(gamma) + theta_y * np.sin(gamma)) + alpha
@@ -71,21 +39,8 @@ def response(
 def vignetting(nu_x: npt.ArrayLike, nu_y: npt.ArrayLike, power: float) -> Floats:
     """Vignetting omega(nu) = cos(theta)**power of a ray.
 
-    Parameters
-    ----------
-    nu_x, nu_y : array
-        Tangents of the incidence angle.
-    power : float
-        Exponent, 0 or more.
-
-    Returns
-    -------
-    array
-        0..1, 1 on the axis, of the floating type of nu.
-
-    References
-    ----------
-    [Jayasuriya2017], Eq. 3.3.
+    nu_x, nu_y: tangents of the incidence angle. power: exponent, 0 or more. Returns 0..1, 1 on the axis, of the
+    floating type of nu. Source: [Jayasuriya2017], Eq. 3.3.
     """
     nu_x, nu_y = _floats(nu_x, nu_y)
     # hypot does not overflow for huge tangents (grazing light), as their squares would.

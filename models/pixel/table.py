@@ -19,18 +19,12 @@ Floats = npt.NDArray[np.floating]
 class TableResponse:
     """Response of both diodes of a type, for `PixelType.response`; cubic between angles, held beyond the last.
 
-    Attributes
-    ----------
-    along : float64 (n,)
-        Angles in rad between the normal and the ray's projection on the plane across the lines, ascending.
-    across : float64 (k,)
-        The same in the plane along the lines, ascending from 0; those below 0 have the response of those above.
-    values : float64 (2, n, k)
-        Response of both diodes, 0 or more; 1 is as sensitive as a plain diode on the axis.
-    gamma : float
-        Orientation of the grating in rad.
-    source : str
-        What made it, as the command line names it.
+    along: (n,), angles in rad between the normal and the ray's projection on the plane across the lines, ascending.
+    across: (k,), the same in the plane along the lines, ascending from 0; those below 0 have the response of those
+        above.
+    values: (2, n, k), response of both diodes, 0 or more; 1 is as sensitive as a plain diode on the axis.
+    gamma: orientation of the grating in rad.
+    source: what made it, as the command line names it.
     """
 
     along: Floats

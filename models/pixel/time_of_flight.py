@@ -22,21 +22,8 @@ TAPS = (0.0, np.pi / 2, np.pi, 3 * np.pi / 2)
 def phase_of(depth: npt.ArrayLike, f_mod: float) -> npt.NDArray[np.float64]:
     """Phase of an echo.
 
-    Parameters
-    ----------
-    depth : array
-        In m.
-    f_mod : float
-        Modulation frequency in Hz.
-
-    Returns
-    -------
-    float64
-        In rad, not wrapped.
-
-    References
-    ----------
-    [Jayasuriya2017], Ch. 5, with f_mod in Hz.
+    depth: in m. f_mod: modulation frequency in Hz. Returns float64: in rad, not wrapped. Source: [Jayasuriya2017], Ch.
+    5, with f_mod in Hz.
     """
     return 4 * np.pi * f_mod / SPEED_OF_LIGHT * np.asarray(depth, float)
 
@@ -44,21 +31,8 @@ def phase_of(depth: npt.ArrayLike, f_mod: float) -> npt.NDArray[np.float64]:
 def depth_of(phase: npt.ArrayLike, f_mod: float) -> npt.NDArray[np.float64]:
     """Depth of an echo.
 
-    Parameters
-    ----------
-    phase : array
-        In rad, taken modulo 2 pi.
-    f_mod : float
-        Modulation frequency in Hz.
-
-    Returns
-    -------
-    float64
-        In m, 0..c / (2 f_mod).
-
-    References
-    ----------
-    [Jayasuriya2017], Ch. 5, with f_mod in Hz.
+    phase: in rad, taken modulo 2 pi. f_mod: modulation frequency in Hz. Returns float64: in m, 0..c / (2 f_mod).
+    Source: [Jayasuriya2017], Ch. 5, with f_mod in Hz.
     """
     return SPEED_OF_LIGHT * np.mod(phase, 2 * np.pi) / (4 * np.pi * f_mod)
 
@@ -124,21 +98,8 @@ def quadrature(taps: npt.NDArray[np.floating]) -> tuple[npt.NDArray[np.floating]
 def demodulate(taps: npt.NDArray[np.floating]) -> tuple[npt.NDArray[np.floating], npt.NDArray[np.floating]]:
     """Phase and albedo of four taps; both 0 where the taps are equal.
 
-    Parameters
-    ----------
-    taps : array (4, ...)
-        At 0, 90, 180 and 270 degrees.
-
-    Returns
-    -------
-    phase : array (...)
-        In rad, 0..2 pi.
-    albedo : array (...)
-        In the unit of the taps.
-
-    References
-    ----------
-    [Jayasuriya2017], Eq. 5.3, with both signs.
+    taps: (4, ...), at 0, 90, 180 and 270 degrees. Returns phase ((...), in rad, 0..2 pi), albedo ((...), in the unit of
+    the taps). Source: [Jayasuriya2017], Eq. 5.3, with both signs.
     """
     x, y = quadrature(taps)
     return np.mod(np.arctan2(y, x), 2 * np.pi), np.hypot(x, y)

@@ -16,15 +16,7 @@ GAIN_MAX = 64.0  # limit for a diode that receives nothing of a flat field (m = 
 def residual(weights: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
     """Flat-field residual of each pixel type.
 
-    Parameters
-    ----------
-    weights : float64 (types, 2, views, views)
-        View weights.
-
-    Returns
-    -------
-    float64 (types,)
-        k, -1..1.
+    weights: (types, 2, views, views), view weights. Returns (types,), k, -1..1.
     """
     a, b = weights.sum((2, 3)).T
     return (a - b) / (a + b)
@@ -33,15 +25,7 @@ def residual(weights: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
 def gains(k: npt.ArrayLike) -> npt.NDArray[np.float64]:
     """Capacitor ratio g = (1 + k) / (1 - k) that nulls a residual.
 
-    Parameters
-    ----------
-    k : array
-        Residual, -1..1.
-
-    Returns
-    -------
-    float64
-        g, limited to 1/64..64.
+    k: residual, -1..1. Returns g, limited to 1/64..64.
     """
     edge = (GAIN_MAX - 1) / (GAIN_MAX + 1)
     limited = np.clip(k, -edge, edge)
@@ -51,17 +35,7 @@ def gains(k: npt.ArrayLike) -> npt.NDArray[np.float64]:
 def optical_gains(tile: TileParameters, optics: OpticsParameters) -> npt.NDArray[np.float64]:
     """Capacitor ratio of each pixel type, computed from the optics.
 
-    Parameters
-    ----------
-    tile : TileParameters
-        Pixel types.
-    optics : OpticsParameters
-        Lens and gratings.
-
-    Returns
-    -------
-    float64 (types,)
-        g.
+    tile: pixel types. optics: lens and gratings. Returns (types,), g.
     """
     return gains(residual(view_weights(tile, optics)))
 
@@ -69,22 +43,8 @@ def optical_gains(tile: TileParameters, optics: OpticsParameters) -> npt.NDArray
 def measured_gains(samples: npt.NDArray[np.floating], tile: TileParameters) -> npt.NDArray[np.float64]:
     """Capacitor ratio of each pixel type, measured from a flat-field frame.
 
-    Parameters
-    ----------
-    samples : array (rows, cols, 2)
-        Diode pairs in any unit; pixels of 0 do not count.
-    tile : TileParameters
-        Pixel types.
-
-    Returns
-    -------
-    float64 (types,)
-        g; 1 for a type that an array smaller than a tile has no pixel of.
-
-    Raises
-    ------
-    ParameterError
-        If a type receives no light.
+    samples: (rows, cols, 2), diode pairs in any unit; pixels of 0 do not count. tile: pixel types. Returns (types,), g;
+    1 for a type that an array smaller than a tile has no pixel of. Raises ParameterError if a type receives no light.
     """
     rows, cols = samples.shape[:2]
     kinds = tile.type_map(rows, cols)

@@ -104,21 +104,8 @@ def _all_nodes(optics: OpticsParameters) -> tuple[npt.NDArray[np.float64], npt.N
 def view_weights(tile: TileParameters, optics: OpticsParameters) -> npt.NDArray[np.float64]:
     """View weights W, scaled so that the average diode measures 1 in a flat white scene.
 
-    Parameters
-    ----------
-    tile : TileParameters
-        Pixel types.
-    optics : OpticsParameters
-        Lens, gratings and views.
-
-    Returns
-    -------
-    float64 (types, 2, views, views)
-        W.
-
-    References
-    ----------
-    [Jayasuriya2017], Eq. 3.3.
+    tile: pixel types. optics: lens, gratings and views. Returns (types, 2, views, views), W. Source: [Jayasuriya2017],
+    Eq. 3.3.
     """
     raw = raw_weights(tile.types, optics)
     return raw / (raw.sum((1, 2, 3)).mean() / 2)
@@ -130,8 +117,9 @@ class FieldWeights:
 
     W of a pixel of this type at (row, col) is the sum over i, j of series[type, :, v, u, i, j] y[row, i] x[col, j].
 
-    series: (types, 2, views, views, terms, terms), coefficients. y: (rows, terms), polynomials at each row. x: (cols,
-    terms), polynomials at each column.
+    series: (types, 2, views, views, terms, terms), coefficients.
+    y: (rows, terms), polynomials at each row.
+    x: (cols, terms), polynomials at each column.
     """
 
     series: npt.NDArray[np.float64]

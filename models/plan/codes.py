@@ -7,17 +7,8 @@ from talbot.models.parameters import ELEMENTARY_CHARGE, AmpTiming, SensorParamet
 def codes_per_unit(sensor: SensorParameters, timing: AmpTiming) -> float:
     """Codes of the difference per relative photocurrent, before gain mismatch and full wells.
 
-    Parameters
-    ----------
-    sensor : SensorParameters
-        The sensor.
-    timing : AmpTiming
-        Integration times, common-mode resets, lead of the reset pointer.
-
-    Returns
-    -------
-    float
-        Codes per unit.
+    sensor: the sensor. timing: integration times, common-mode resets, lead of the reset pointer. Returns codes per
+    unit.
     """
     e = sensor.electrical
     seconds = sum(integration_cycles(timing)) / sensor.chip.f_clk

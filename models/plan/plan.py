@@ -14,10 +14,7 @@ from talbot.models.scene import Scene
 class LeftOut(NamedTuple):
     """Work that a plan leaves out.
 
-    Attributes
-    ----------
-    what, why, saved : str
-        The work, the reason, and the amount.
+    what, why, saved: the work, the reason, and the amount.
     """
 
     what: str
@@ -29,20 +26,12 @@ class LeftOut(NamedTuple):
 class Plan:
     """Work of one frame.
 
-    Attributes
-    ----------
-    angular : bool
-        The views differ and all are read; else one represents all.
-    polarized : bool
-        The light is polarized and weighted by the gratings.
-    taps : int
-        Sub-frames, 1 or 4.
-    captures : int
-        Passes of the capture operator, 1, 3 or 4.
-    read : bool (rows, cols)
-        Pixels that the frame reads.
-    left_out : tuple of LeftOut
-        Work that is left out.
+    angular: the views differ and all are read; else one represents all.
+    polarized: the light is polarized and weighted by the gratings.
+    taps: sub-frames, 1 or 4.
+    captures: passes of the capture operator, 1, 3 or 4.
+    read: (rows, cols), pixels that the frame reads.
+    left_out: work that is left out.
     """
 
     angular: bool
@@ -56,24 +45,8 @@ class Plan:
 def plan(scene: Scene, sensor: SensorParameters, frame: FrameParameters) -> Plan:
     """Plan one frame.
 
-    Parameters
-    ----------
-    scene : Scene
-        Of the sensor's size.
-    sensor : SensorParameters
-        The sensor.
-    frame : FrameParameters
-        Configuration of the frame.
-
-    Returns
-    -------
-    Plan
-        Its work.
-
-    Raises
-    ------
-    ParameterError
-        If the window is outside the array or selects no pixel.
+    scene: of the sensor's size. sensor: the sensor. frame: configuration of the frame. Returns Plan: its work. Raises
+    ParameterError if the window is outside the array or selects no pixel.
     """
     rows, cols = scene.shape
     read = Scan(sensor.array.rows, sensor.array.cols, sensor.chip.lanes, frame, sensor.tile).read

@@ -37,8 +37,9 @@ def features(channels: npt.ArrayLike) -> Floats:
 class KernelClassifier:
     """A trained classifier.
 
-    landmarks: (m, features), pictures that new ones are compared with. weights: (m, classes), of each landmark for each
-    class. width: inverse of twice the kernel's variance.
+    landmarks: (m, features), pictures that new ones are compared with.
+    weights: (m, classes), of each landmark for each class.
+    width: inverse of twice the kernel's variance.
     """
 
     landmarks: Floats

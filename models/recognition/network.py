@@ -230,8 +230,9 @@ def lenet(size: int, classes: int, first: Sequence[Layer] = ()) -> list[Layer]:
 class Network:
     """Layers, and the scale of their inputs.
 
-    layers: in their order. shape: height, width and channels of a picture. seed: of the weights, and of the draws of
-    training.
+    layers: in their order.
+    shape: height, width and channels of a picture.
+    seed: of the weights, and of the draws of training.
     """
 
     def __init__(self, layers: Sequence[Layer], shape: tuple[int, ...], seed: int = 1) -> None:

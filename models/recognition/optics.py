@@ -44,9 +44,11 @@ def kernels(sensor: SensorParameters, blur: float) -> Floats:
 class Display:
     """Pictures on a display before the sensor.
 
-    sensor: its array is replaced by one that the picture and a margin fill. shape: height and width of the pictures in
-    px, 2..256. scale: sensor px along an edge of a picture px, 1..32. blur: as in `kernels`. margin: dark picture px
-    around the picture, 0..32.
+    sensor: its array is replaced by one that the picture and a margin fill.
+    shape: height and width of the pictures in px, 2..256.
+    scale: sensor px along an edge of a picture px, 1..32.
+    blur: as in `kernels`.
+    margin: dark picture px around the picture, 0..32.
     """
 
     sensor: SensorParameters

@@ -22,17 +22,8 @@ def differences(pictures: npt.ArrayLike) -> tuple[Floats, Floats]:
 def integrate(dx: npt.ArrayLike, dy: npt.ArrayLike, screen: float = 0.0) -> Floats:
     """Pictures whose differences are nearest to some, by least squares.
 
-    Parameters
-    ----------
-    dx, dy : array (..., height, width)
-        As of `differences`; the first column and row are ignored.
-    screen : float
-        Weight of the squared intensity, 0 or more: what keeps errors from spreading.
-
-    Returns
-    -------
-    float64 (..., height, width)
-        Of mean 0.
+    dx, dy: (..., height, width), as of `differences`; the first column and row are ignored. screen: weight of the
+    squared intensity, 0 or more: what keeps errors from spreading. Returns (..., height, width), of mean 0.
     """
     dx, dy = np.array(dx, np.float64), np.array(dy, np.float64)
     dx[..., 0], dy[..., 0, :] = 0, 0

@@ -27,7 +27,8 @@ class Spread(NamedTuple):
 class Roc(NamedTuple):
     """Receiver operating characteristic: rates of false and of true alarms by falling threshold, and the area below.
 
-    false, true: (n,), from 0 to 1. area: of a random pair, the probability that the event scores higher; 0.5 is chance.
+    false, true: (n,), from 0 to 1.
+    area: of a random pair, the probability that the event scores higher; 0.5 is chance.
     """
 
     false: npt.NDArray[np.float64]
@@ -38,7 +39,7 @@ class Roc(NamedTuple):
 def roc(scores: npt.ArrayLike, events: npt.ArrayLike) -> Roc:
     """Compute the characteristic of a detector.
 
-    scores: (n,), large where it detects something. events: (n,), where there is something. Returns equal scores count
+    scores: (n,), large where it detects something. events: (n,), where there is something. Equal scores count
     half. Raises ParameterError where there are no events, or nothing else.
     """
     scores, events = np.asarray(scores, float), np.asarray(events, bool)

@@ -50,8 +50,10 @@ class Seen:
     """The input of both branches.
 
     pair: (2, rows, cols), both diodes of every pixel, 1 = the average diode in a flat white scene; the array begins
-    with a tile. sensor: tile and optics. noise: standard deviation of a sample, 1 = white; outside of `NOISE` its
-    nearer end. total, difference: (rows, cols), the sum image, and the differences less a uniform scene's.
+        with a tile.
+    sensor: tile and optics.
+    noise: standard deviation of a sample, 1 = white; outside of `NOISE` its nearer end.
+    total, difference: (rows, cols), the sum image, and the differences less a uniform scene's.
     """
 
     def __init__(self, pair: Floats, sensor: SensorParameters, noise: float) -> None:
@@ -92,7 +94,7 @@ class Branches:
     """The network with its weights.
 
     weights: ``<kind>/<name>`` of `KINDS` and `shapes`, each branch as it was taught alone and both as they were
-    together; ``phi``, the weights of all diodes over the views (types, 2, 5, 5) in the training.
+        together; ``phi``, the weights of all diodes over the views (types, 2, 5, 5) in the training.
     """
 
     def __init__(self, weights: Mapping[str, Floats]) -> None:

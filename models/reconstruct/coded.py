@@ -21,8 +21,9 @@ CHUNK = 1 << 14  # pixels at once
 class Coded(NamedTuple):
     """Depth of the light from within the gate.
 
-    depth: (...), in m, from the first to the last tap. amplitude: (...), a, in the unit of the taps, 0 or more. sure:
-    (...), where there is enough of it, and not at an end of the gate.
+    depth: (...), in m, from the first to the last tap.
+    amplitude: (...), a, in the unit of the taps, 0 or more.
+    sure: (...), where there is enough of it, and not at an end of the gate.
     """
 
     depth: Floats

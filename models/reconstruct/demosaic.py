@@ -13,19 +13,8 @@ def edge_images(
 ) -> npt.NDArray[Any]:
     """Images of the pixel types at tile resolution.
 
-    Parameters
-    ----------
-    values : array (rows, cols)
-        Samples. Tiles at the far edges may be partial.
-    tile : TileParameters
-        The tile.
-    read : bool (rows, cols), optional
-        Pixels that are read; None is all.
-
-    Returns
-    -------
-    array (types, tile rows, tile cols)
-        0 where nothing is read.
+    values: (rows, cols), samples. Tiles at the far edges may be partial. tile: the tile. read: (rows, cols), pixels
+    that are read; None is all. Returns (types, tile rows, tile cols), 0 where nothing is read.
     """
     rows, cols = values.shape
     high, wide = -(-rows // tile.rows), -(-cols // tile.cols)
@@ -42,19 +31,9 @@ def demosaic(
 ) -> npt.NDArray[np.floating]:
     """Interpolate every pixel type linearly between its own pixels.
 
-    Parameters
-    ----------
-    values : array (rows, cols)
-        Samples.
-    tile : TileParameters
-        The tile.
-    read : bool (rows, cols), optional
-        Pixels that are read, of each type whole rows by whole columns, as in every scan; None is all.
-
-    Returns
-    -------
-    array (types, rows, cols)
-        Constant outside a type's outermost pixels; 0 for a type without any pixel.
+    values: (rows, cols), samples. tile: the tile. read: (rows, cols), pixels that are read, of each type whole rows by
+    whole columns, as in every scan; None is all. Returns (types, rows, cols), constant outside a type's outermost
+    pixels; 0 for a type without any pixel.
     """
     rows, cols = values.shape
     kinds = tile.type_map(rows, cols)

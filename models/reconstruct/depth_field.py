@@ -43,8 +43,8 @@ BINS = 128  # of the histogram of phases
 class DepthField(NamedTuple):
     """A depth field and the disparity of its scene.
 
-    taps: (4, views, views, rows, cols), light field of every tap, 1 = white. disparity, spread: (rows, cols), in px per
-    view step, with its standard deviation.
+    taps: (4, views, views, rows, cols), light field of every tap, 1 = white.
+    disparity, spread: (rows, cols), in px per view step, with its standard deviation.
     """
 
     taps: Floats
@@ -97,8 +97,8 @@ def still(pairs: Floats, noise: float) -> bool:
 class Unwrapped(NamedTuple):
     """A phase with its turns.
 
-    turns: (rows, cols), phase / 2 pi and the whole turns before it, 0 or more; finite. sure: (rows, cols), where the
-    number of whole turns is known.
+    turns: (rows, cols), phase / 2 pi and the whole turns before it, 0 or more; finite.
+    sure: (rows, cols), where the number of whole turns is known.
     """
 
     turns: Floats

@@ -29,14 +29,9 @@ Ints = npt.NDArray[np.int64]
 class Solver:
     """Settings of the conjugate gradients.
 
-    Attributes
-    ----------
-    smoothness : float
-        Weight of the gradient, 1e-9..1e3.
-    iterations : int
-        Limit, 1..10000.
-    tolerance : float
-        Relative residual at which the iteration ends, 0..1.
+    smoothness: weight of the gradient, 1e-9..1e3.
+    iterations: limit, 1..10000.
+    tolerance: relative residual at which the iteration ends, 0..1.
     """
 
     smoothness: float = 3e-3
@@ -52,21 +47,12 @@ class Solver:
 class EdgeOperator:
     """D: from an image to the trimmed differences of all pixels, and back.
 
-    Parameters
-    ----------
-    sensor : SensorParameters
-        The sensor.
-    disparity : array (rows, cols)
-        Px per view step.
-    balance : array (types,)
-        Capacitor ratio g of each pixel type.
-    read : bool (rows, cols), optional
-        Pixels that have a sample; None is all.
+    sensor: the sensor.
+    disparity: (rows, cols), px per view step.
+    balance: (types,), capacitor ratio g of each pixel type.
+    read: (rows, cols), pixels that have a sample; None is all.
 
-    Raises
-    ------
-    ParameterError
-        For a disparity of a wrong shape, or not finite.
+    Raises ParameterError for a disparity of a wrong shape, or not finite.
     """
 
     def __init__(
@@ -89,15 +75,7 @@ class EdgeOperator:
     def forward(self, image: npt.ArrayLike) -> Floats:
         """Apply D.
 
-        Parameters
-        ----------
-        image : array (rows, cols)
-            Relative radiance.
-
-        Returns
-        -------
-        float64 (rows, cols)
-            Trimmed differences, 0 where nothing is read.
+        image: (rows, cols), relative radiance. Returns (rows, cols), trimmed differences, 0 where nothing is read.
         """
         out = np.zeros(self.shape)
         _gather(np.ascontiguousarray(image, float), self.disparity, self.kinds, self.weights, out)
@@ -106,15 +84,7 @@ class EdgeOperator:
     def transpose(self, samples: npt.ArrayLike) -> Floats:
         """Apply the transpose of D.
 
-        Parameters
-        ----------
-        samples : array (rows, cols)
-            Trimmed differences; pixels that are not read do not count.
-
-        Returns
-        -------
-        float64 (rows, cols)
-            Image.
+        samples: (rows, cols), trimmed differences; pixels that are not read do not count. Returns (rows, cols), image.
         """
         out = np.zeros(self.shape)
         _scatter(np.ascontiguousarray(samples, float), self.disparity, self.kinds, self.weights, out)
@@ -124,19 +94,8 @@ class EdgeOperator:
 def image_from_edges(samples: npt.ArrayLike, operator: EdgeOperator, solver: Solver = Solver()) -> Floats:
     """Reconstruct an image from edge samples.
 
-    Parameters
-    ----------
-    samples : array (rows, cols)
-        Decoded codes divided by the codes per unit of radiance (models.plan.codes_per_unit).
-    operator : EdgeOperator
-        D.
-    solver : Solver
-        Settings.
-
-    Returns
-    -------
-    float64 (rows, cols)
-        Relative radiance of mean 0.
+    samples: (rows, cols), decoded codes divided by the codes per unit of radiance (models.plan.codes_per_unit).
+    operator: D. solver: settings. Returns (rows, cols), relative radiance of mean 0.
     """
 
     def _normal(image: Floats) -> Floats:

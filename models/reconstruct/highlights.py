@@ -15,31 +15,11 @@ SPREAD_MIN = 0.05  # px per view step: no disparity is surer
 def without_highlights(disparity: Floats, spread: Floats, tags: Bools, sure: float = 0.5) -> tuple[Floats, Floats]:
     """Replace the disparity of tagged pixels by that of the reliable ones around them.
 
-    Parameters
-    ----------
-    disparity : array (rows, cols)
-        In px per view step.
-    spread : array (rows, cols)
-        Its standard deviation, 0 or more; infinite where it is not known.
-    tags : bool (rows, cols)
-        Pixels that are not to be believed, as of `polarization.specular_tags`.
-    sure : float
-        Greatest spread of a pixel that counts, greater than 0.
-
-    Returns
-    -------
-    tuple of array (rows, cols)
-        Disparity and spread; others are unchanged. Where no reliable pixel is around, the disparity stays and its
-        spread is infinite.
-
-    Raises
-    ------
-    ParameterError
-        For shapes that differ, or a ``sure`` that is not positive.
-
-    References
-    ----------
-    [Jayasuriya2017], Sec. 4.2.
+    disparity: (rows, cols), in px per view step. spread: (rows, cols), its standard deviation, 0 or more; infinite
+    where it is not known. tags: (rows, cols), pixels that are not to be believed, as of `polarization.specular_tags`.
+    sure: greatest spread of a pixel that counts, greater than 0. Returns (rows, cols), disparity and spread; others are
+    unchanged. Where no reliable pixel is around, the disparity stays and its spread is infinite. Raises ParameterError
+    for shapes that differ, or a ``sure`` that is not positive. Source: [Jayasuriya2017], Sec. 4.2.
     """
     if not disparity.shape == spread.shape == tags.shape:
         raise ParameterError(f"tags shape = {tags.shape}: must be {disparity.shape}, as disparity and spread")

@@ -15,17 +15,7 @@ FULL = 255.0  # LSB: both wells of a pair full
 def white_sum(sensor: SensorParameters, timing: AmpTiming = AmpTiming()) -> float:
     """Sum of a pair in a flat white scene, on average over the types, without full wells.
 
-    Parameters
-    ----------
-    sensor : SensorParameters
-        The sensor.
-    timing : AmpTiming
-        Integration time.
-
-    Returns
-    -------
-    float
-        In LSB.
+    sensor: the sensor. timing: integration time. Returns float: in LSB.
     """
     e = sensor.electrical
     seconds = integration_cycles(timing)[-1] / sensor.chip.f_clk  # a common-mode reset takes the sum away
@@ -42,19 +32,8 @@ def sum_noise(
 ) -> npt.NDArray[np.floating]:
     """Standard deviation of `sum_image` that physics and the converter leave at noise 1.
 
-    Parameters
-    ----------
-    image : array (rows, cols)
-        Relative radiance.
-    sensor : SensorParameters
-        The sensor.
-    timing : AmpTiming
-        Integration time.
-
-    Returns
-    -------
-    array (rows, cols)
-        Shot, read and fixed-pattern noise, and rounding to codes; 1 is white.
+    image: (rows, cols), relative radiance. sensor: the sensor. timing: integration time. Returns (rows, cols), shot,
+    read and fixed-pattern noise, and rounding to codes; 1 is white.
     """
     e = sensor.electrical
     white = white_sum(sensor, timing) * e.lsb_electrons
@@ -69,21 +48,9 @@ def diode_noise(
 ) -> npt.NDArray[np.floating]:
     """Standard deviation of a diode's code in a raw frame.
 
-    Parameters
-    ----------
-    light : array
-        On the diode, 1 = the average diode in a flat white scene.
-    sensor : SensorParameters
-        The sensor.
-    timing : AmpTiming
-        Integration time, without common-mode resets.
-    noise : float
-        Factor on shot, read and fixed-pattern noise, 0..100; rounding and the converter's own errors have none.
-
-    Returns
-    -------
-    array
-        In the unit of ``light``.
+    light: on the diode, 1 = the average diode in a flat white scene. sensor: the sensor. timing: integration time,
+    without common-mode resets. noise: factor on shot, read and fixed-pattern noise, 0..100; rounding and the
+    converter's own errors have none. Returns array: in the unit of ``light``.
     """
     e, c = sensor.electrical, sensor.converter
     white = white_sum(sensor, timing) * e.lsb_electrons / 2
@@ -103,25 +70,9 @@ def sum_image(
 ) -> npt.NDArray[np.floating]:
     """Relative radiance of every pixel from the sum of its pair; each type's share of the common mode is divided out.
 
-    Parameters
-    ----------
-    sums : array (rows, cols)
-        In LSB; clipped to 0..255.
-    sensor : SensorParameters
-        The sensor.
-    read : bool (rows, cols), optional
-        Pixels that are read; the others take the value of the nearest one that is. None is all.
-    timing : AmpTiming
-        Integration time.
-
-    Returns
-    -------
-    array (rows, cols)
-        0 or more; 1 is white.
-
-    References
-    ----------
-    [Jayasuriya2017], Eq. 3.6.
+    sums: (rows, cols), in LSB; clipped to 0..255. sensor: the sensor. read: (rows, cols), pixels that are read; the
+    others take the value of the nearest one that is. None is all. timing: integration time. Returns (rows, cols), 0 or
+    more; 1 is white. Source: [Jayasuriya2017], Eq. 3.6.
     """
     share = view_weights(sensor.tile, sensor.optics).sum((1, 2, 3)) / 2
     white = white_sum(sensor, timing) * share[sensor.tile.type_map(*sums.shape)]

@@ -48,8 +48,8 @@ FIT, MISFIT = 1.0, 1.8  # residual, of the noise, up to which they have it and f
 class Surfaces(NamedTuple):
     """Surfaces of a scene, the nearest first.
 
-    disparity: (rows + 2 margin, cols + 2 margin), of each, px per view step. label: (rows, cols), which one the middle
-    view shows.
+    disparity: (rows + 2 margin, cols + 2 margin), of each, px per view step.
+    label: (rows, cols), which one the middle view shows.
     """
 
     disparity: list[Floats]

@@ -15,27 +15,10 @@ def light_field_estimate(operator: CaptureOperator, pair: npt.NDArray[np.floatin
     though the columns of Phi overlap (all are positive); each view is therefore scaled such that the estimate of a
     uniform scene is exact.
 
-    Parameters
-    ----------
-    operator : CaptureOperator
-        Operator of all views; pixels that it does not read do not count.
-    pair : float32 or float64 (2, rows, cols)
-        Both diodes of every pixel.
-
-    Returns
-    -------
-    array (views, views, rows, cols)
-        l[v, u, y, x] in the unit and type of ``pair`` (a white diode's photocurrent = white); 0 in the corners that
-        the round pupil does not reach (`models.capture.cells`).
-
-    Raises
-    ------
-    ParameterError
-        For an operator of one view or a wrong shape.
-
-    References
-    ----------
-    [Jayasuriya2017], Sec. 3.3.2.
+    operator: operator of all views; pixels that it does not read do not count. pair: (2, rows, cols), both diodes of
+    every pixel. Returns (views, views, rows, cols), l[v, u, y, x] in the unit and type of ``pair`` (a white diode's
+    photocurrent = white); 0 in the corners that the round pupil does not reach (`models.capture.cells`). Raises
+    ParameterError for an operator of one view or a wrong shape. Source: [Jayasuriya2017], Sec. 3.3.2.
     """
     shape = operator.rows, operator.cols
     if not operator.angular:

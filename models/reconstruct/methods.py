@@ -32,9 +32,9 @@ DEFAULT = "linear"  # as fast as direct once its filters are there, and it has p
 class Found(NamedTuple):
     """The result of a method.
 
-    light_field: (views, views, rows, cols), l[v, u, y, x], white = 1; noise and error take it below 0. disparity,
-    spread: (rows, cols), in px per view step, and its standard deviation; None of a method that tells none. plain:
-    share of the windows that are left out, since their samples show no angular content.
+    light_field: (views, views, rows, cols), l[v, u, y, x], white = 1; noise and error take it below 0.
+    disparity, spread: (rows, cols), in px per view step, and its standard deviation; None of a method that tells none.
+    plain: share of the windows that are left out, since their samples show no angular content.
     """
 
     light_field: Values

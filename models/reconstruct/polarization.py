@@ -32,14 +32,10 @@ ORIENTATIONS = (0.0, 45.0, 90.0, -45.0)  # degrees, of `demosaiced`
 class Polarization(NamedTuple):
     """Linear polarization at every pixel.
 
-    Attributes
-    ----------
-    light : float64 (rows, cols)
-        S0, in the unit of the samples.
-    s1, s2 : float64 (rows, cols)
-        S1/S0 and S2/S0, of degree 0..1.
-    spread : float64 (rows, cols)
-        Standard deviation of S1/S0 and of S2/S0; infinite where the pixel is full or dark, or nothing is seen.
+    light: (rows, cols), S0, in the unit of the samples.
+    s1, s2: (rows, cols), S1/S0 and S2/S0, of degree 0..1.
+    spread: (rows, cols), standard deviation of S1/S0 and of S2/S0; infinite where the pixel is full or dark, or nothing
+        is seen.
     """
 
     light: Floats
@@ -66,23 +62,9 @@ class Polarization(NamedTuple):
 def demosaiced(sums: Floats, tile: TileParameters, diattenuation: float) -> tuple[Floats, Floats]:
     """S1/S0 and S2/S0 from the four orientations, each interpolated to every pixel: edges become polarization.
 
-    Parameters
-    ----------
-    sums : array (rows, cols)
-        Common mode of every pixel.
-    tile : TileParameters
-        Its types at 0, 45, 90 and -45 degrees count.
-    diattenuation : float
-        Of the gratings, 0.001..1.
-
-    Returns
-    -------
-    tuple of array (rows, cols)
-        S1/S0 and S2/S0, of degree 0..1; 0 where there is no light, or none of an orientation.
-
-    References
-    ----------
-    [Jayasuriya2017], Sec. 4.1.
+    sums: (rows, cols), common mode of every pixel. tile: its types at 0, 45, 90 and -45 degrees count. diattenuation:
+    of the gratings, 0.001..1. Returns (rows, cols), S1/S0 and S2/S0, of degree 0..1; 0 where there is no light, or none
+    of an orientation. Source: [Jayasuriya2017], Sec. 4.1.
     """
     check_real("diattenuation", diattenuation, 1e-3, 1)
     types = demosaic(np.asarray(sums, float), tile)
@@ -110,36 +92,12 @@ def polarization(
 ) -> Polarization:
     """Polarization at every pixel, corrected for edges.
 
-    Parameters
-    ----------
-    sums : array (rows, cols)
-        Common mode of every pixel, 1 = white.
-    tile : TileParameters
-        Orientation of every type.
-    diattenuation : float
-        Of the gratings, 0.001..1.
-    noise : array (rows, cols) or float
-        Standard deviation of a sum that is known before, greater than 0.
-    used : bool (rows, cols), optional
-        Pixels that were read and are not full; None is all. The spread of the others is infinite.
-    sigma : float
-        Of the weights around a pixel, 0.5..10 px.
-    passes : int
-        1..5; each but the first knows the polarization of the one before, and so tells an edge from it.
-
-    Returns
-    -------
-    Polarization
-        Finite everywhere.
-
-    Raises
-    ------
-    ParameterError
-        For a diattenuation or a noise out of range.
-
-    References
-    ----------
-    [Jayasuriya2017], Sec. 4.1 and 4.2: correction for the gradient in a tile.
+    sums: (rows, cols), common mode of every pixel, 1 = white. tile: orientation of every type. diattenuation: of the
+    gratings, 0.001..1. noise: (rows, cols), standard deviation of a sum that is known before, greater than 0. used:
+    (rows, cols), pixels that were read and are not full; None is all. The spread of the others is infinite. sigma: of
+    the weights around a pixel, 0.5..10 px. passes: 1..5; each but the first knows the polarization of the one before,
+    and so tells an edge from it. Returns finite everywhere. Raises ParameterError for a diattenuation or a noise out of
+    range. Source: [Jayasuriya2017], Sec. 4.1 and 4.2: correction for the gradient in a tile.
     """
     check_real("diattenuation", diattenuation, 1e-3, 1)
     check_real("sigma", sigma, 0.5, 10)
@@ -168,21 +126,9 @@ def polarization(
 def specular_tags(polarized: Polarization, threshold: float) -> npt.NDArray[np.bool_]:
     """Where a reflection is seen: as much polarized light as a lamp's mirror image has.
 
-    Parameters
-    ----------
-    polarized : Polarization
-        Full pixels have an infinite spread, and are not tagged.
-    threshold : float
-        Of the polarized light, 0..16, 1 = white.
-
-    Returns
-    -------
-    bool (rows, cols)
-        The tags.
-
-    References
-    ----------
-    [Jayasuriya2017], Sec. 4.2: |I0 - I90| and |I45 - I135| beyond a threshold.
+    polarized: full pixels have an infinite spread, and are not tagged. threshold: of the polarized light, 0..16, 1 =
+    white. Returns (rows, cols), the tags. Source: [Jayasuriya2017], Sec. 4.2: |I0 - I90| and |I45 - I135| beyond a
+    threshold.
     """
     check_real("threshold", threshold, 0, 16)
     return (polarized.degree > TAGGED * polarized.spread) & (polarized.degree * polarized.light > threshold)

@@ -9,22 +9,8 @@ from talbot.models.parameters import ParameterError
 def psnr_db(estimate: npt.ArrayLike, truth: npt.ArrayLike, peak: float = 1.0) -> float | None:
     """Peak signal-to-noise ratio, 10 log10(peak^2 / mean squared error).
 
-    Parameters
-    ----------
-    estimate, truth : array
-        Of one shape.
-    peak : float
-        Greater than 0.
-
-    Returns
-    -------
-    float or None
-        In dB; None where both are equal everywhere (the ratio is infinite).
-
-    Raises
-    ------
-    ParameterError
-        For different or empty shapes.
+    estimate, truth: of one shape. peak: greater than 0. Returns float or None: in dB; None where both are equal
+    everywhere (the ratio is infinite). Raises ParameterError for different or empty shapes.
     """
     estimate, truth = np.asarray(estimate, float), np.asarray(truth, float)
     if estimate.shape != truth.shape or not estimate.size:
@@ -38,16 +24,6 @@ def psnr_without_mean_db(
 ) -> float | None:
     """Peak signal-to-noise ratio after the removal of both means, for images reconstructed from differences.
 
-    Parameters
-    ----------
-    estimate, truth : array
-        Of one shape.
-    peak : float
-        Greater than 0.
-
-    Returns
-    -------
-    float or None
-        As in `psnr_db`.
+    estimate, truth: of one shape. peak: greater than 0. Returns float or None: as in `psnr_db`.
     """
     return psnr_db(estimate - np.mean(estimate), truth - np.mean(truth), peak)

@@ -17,14 +17,9 @@ from talbot.models.scene import Scene
 class Rebuilt:
     """A reconstructed image.
 
-    Attributes
-    ----------
-    image : float64 (rows, cols)
-        Relative radiance of mean 0.
-    psnr_db : float or None
-        Against the scene's centre view, means removed, peak 1 (white); None where equal.
-    method : str
-        Name in reports.
+    image: (rows, cols), relative radiance of mean 0.
+    psnr_db: against the scene's centre view, means removed, peak 1 (white); None where equal.
+    method: name in reports.
     """
 
     image: npt.NDArray[np.float64]
@@ -43,27 +38,9 @@ def rebuild(
 ) -> Rebuilt:
     """Reconstruct an image from decoded edge codes.
 
-    Parameters
-    ----------
-    codes : array of int (rows, cols)
-        Codes of a frame in edge mode.
-    read : bool (rows, cols)
-        Pixels that are read.
-    scene : Scene
-        Source of the disparity and of the true image.
-    sensor : SensorParameters
-        The sensor.
-    trim : array of int (types,)
-        Register values of the pixel types.
-    timing : AmpTiming
-        Of the frame.
-    solver : Solver
-        Settings.
-
-    Returns
-    -------
-    Rebuilt
-        Image and PSNR; a scene in focus has no edges, and its image is 0 everywhere.
+    codes: (rows, cols), codes of a frame in edge mode. read: (rows, cols), pixels that are read. scene: source of the
+    disparity and of the true image. sensor: the sensor. trim: (types,), register values of the pixel types. timing: of
+    the frame. solver: settings. Returns image and PSNR; a scene in focus has no edges, and its image is 0 everywhere.
     """
     disparity = np.zeros(scene.shape) if scene.disparity is None else scene.disparity
     operator = EdgeOperator(sensor, disparity, trim_gain(trim), read)

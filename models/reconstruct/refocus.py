@@ -34,17 +34,8 @@ def moved(image: Floats, down: float, right: float) -> Floats:
 def refocus(light_field: Floats, disparity: float) -> Floats:
     """Picture of a lens that is focused at a disparity.
 
-    Parameters
-    ----------
-    light_field : array (view rows, view cols, rows, cols)
-        l[v, u, y, x].
-    disparity : float
-        Of what is to be sharp, px per view step.
-
-    Returns
-    -------
-    array (rows, cols)
-        Mean of the views; linear between pixels, constant outside.
+    light_field: (view rows, view cols, rows, cols), l[v, u, y, x]. disparity: of what is to be sharp, px per view step.
+    Returns (rows, cols), mean of the views; linear between pixels, constant outside.
     """
     views = [moved(view, dv * disparity, du * disparity) for dv, du, view in _rays(light_field)]
     return np.asarray(sum(views[1:], views[0]) / len(views), light_field.dtype)
@@ -53,19 +44,10 @@ def refocus(light_field: Floats, disparity: float) -> Floats:
 def disparity_of(light_field: Floats, tried: npt.NDArray[np.float64]) -> tuple[Floats, Floats]:
     """Disparity at which the views agree best, around every pixel of the middle.
 
-    Parameters
-    ----------
-    light_field : array (view rows, view cols, rows, cols)
-        l[v, u, y, x], two views at least.
-    tried : float64 (disparities,)
-        Ascending and evenly spaced, 3 at least; between them a parabola tells the best.
-
-    Returns
-    -------
-    disparity : float64 (rows, cols)
-        In px per view step.
-    spread : float64 (rows, cols)
-        Its standard deviation: infinite where the light is uniform, or where an end of ``tried`` is the best.
+    light_field: (view rows, view cols, rows, cols), l[v, u, y, x], two views at least. tried: (disparities,), ascending
+    and evenly spaced, 3 at least; between them a parabola tells the best. Returns disparity ((rows, cols), in px per
+    view step), spread ((rows, cols), its standard deviation: infinite where the light is uniform, or where an end of
+    ``tried`` is the best).
     """
     from scipy.ndimage import gaussian_filter  # it imports for long
 
@@ -95,17 +77,9 @@ def disparity_of(light_field: Floats, tried: npt.NDArray[np.float64]) -> tuple[F
 def all_in_focus(light_field: Floats, disparity: Floats) -> Floats:
     """Picture with every pixel refocused at its own disparity.
 
-    Parameters
-    ----------
-    light_field : array (view rows, view cols, rows, cols)
-        l[v, u, y, x].
-    disparity : array (rows, cols)
-        Of the middle, px per view step.
-
-    Returns
-    -------
-    array (rows, cols)
-        Mean of the rays that meet in each pixel of the middle; linear between pixels, constant outside.
+    light_field: (view rows, view cols, rows, cols), l[v, u, y, x]. disparity: (rows, cols), of the middle, px per view
+    step. Returns (rows, cols), mean of the rays that meet in each pixel of the middle; linear between pixels, constant
+    outside.
     """
     from scipy.ndimage import map_coordinates  # it imports for long
 

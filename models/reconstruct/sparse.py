@@ -30,12 +30,16 @@ CHUNK = 2048  # patches that are coded together: as much as stays in the cache, 
 class Coding:
     """The parameters of the patches' code.
 
-    stride: px from patch to patch, 1..the patch's size. iterations: of ADMM, 1..10000. penalty: of the codes' absolute
-    values, each over its mean, against squares of samples over their noise, 0..1000. noise: standard deviation of a
-    sample, of white = 1: 1e-5..10. floor_sum, floor_difference: standard deviation of what the dictionary leaves
-    unexplained of the sum and of the difference of a pixel's diodes, over sqrt(2), 0..1: what is fine in a picture is
-    in its sums alone. atoms: how many atoms are used, the most used first; None is all. jobs: processes of joblib,
-    1..1024. Source: [Jayasuriya2017], Sec. 3.3.2.
+    stride: px from patch to patch, 1..the patch's size.
+    iterations: of ADMM, 1..10000.
+    penalty: of the codes' absolute values, each over its mean, against squares of samples over their noise, 0..1000.
+    noise: standard deviation of a sample, of white = 1: 1e-5..10.
+    floor_sum, floor_difference: standard deviation of what the dictionary leaves unexplained of the sum and of the
+        difference of a pixel's diodes, over sqrt(2), 0..1: what is fine in a picture is in its sums alone.
+    atoms: how many atoms are used, the most used first; None is all.
+    jobs: processes of joblib, 1..1024.
+
+    Source: [Jayasuriya2017], Sec. 3.3.2.
     """
 
     stride: int = 3
@@ -60,7 +64,8 @@ class Coding:
 class Lasso(NamedTuple):
     """Least squares with a penalty on absolute values, factored once for all right sides.
 
-    inverse: (atoms, atoms), of A'A + rho I. rho: step of ADMM, > 0.
+    inverse: (atoms, atoms), of A'A + rho I.
+    rho: step of ADMM, > 0.
     """
 
     inverse: Floats
@@ -96,8 +101,8 @@ class Lasso(NamedTuple):
 class Dictionary(NamedTuple):
     """The atoms of the patches.
 
-    atoms: (atoms, views, views, height, width), of norm 1, the first constant, then the most used first. sizes:
-    (atoms,), mean of the absolute value of each one's code, > 0.
+    atoms: (atoms, views, views, height, width), of norm 1, the first constant, then the most used first.
+    sizes: (atoms,), mean of the absolute value of each one's code, > 0.
     """
 
     atoms: Floats
@@ -119,7 +124,9 @@ class Dictionary(NamedTuple):
 class SparseEstimator:
     """Light fields of one sensor by sparse coding.
 
-    sensor: the sensor; its lens counts as telecentric. coding: how. dictionary: None is the one that is shipped.
+    sensor: the sensor; its lens counts as telecentric.
+    coding: how.
+    dictionary: None is the one that is shipped.
     """
 
     def __init__(

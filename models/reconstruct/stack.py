@@ -13,8 +13,9 @@ Floats = npt.NDArray[np.floating]
 class Stack:
     """Surfaces as views see them.
 
-    disparity: (rows + 2 margin, cols + 2 margin), of the surfaces, the nearest first, px per view step. steps:
-    (views,), places of the views down and across, in view steps. margin: px around the array.
+    disparity: (rows + 2 margin, cols + 2 margin), of the surfaces, the nearest first, px per view step.
+    steps: (views,), places of the views down and across, in view steps.
+    margin: px around the array.
     """
 
     def __init__(self, disparity: Sequence[Floats], steps: npt.NDArray[np.float64], margin: int) -> None:

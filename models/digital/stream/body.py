@@ -12,8 +12,10 @@ from talbot.models.parameters.stream_format import CRC, HEADER_BYTES, TRAILER_BY
 class Body:
     """Decoder of the bytes after a header into the frame's samples.
 
-    view: bytes of the stream. frame: receives samples and errors. sent: the header as it was sent. start: start of the
-    frame in ``view``; the frame's own by default.
+    view: bytes of the stream.
+    frame: receives samples and errors.
+    sent: the header as it was sent.
+    start: start of the frame in ``view``; the frame's own by default.
     """
 
     def __init__(self, view: npt.NDArray[np.uint8], frame: DecodedFrame, sent: bytes, start: int | None = None) -> None:

@@ -23,23 +23,8 @@ def decode_stream(data: bytes, tile: TileParameters = TileParameters()) -> list[
 
     Damage is reported in each frame's ``bad_rows`` and ``errors``.
 
-    Parameters
-    ----------
-    data : bytes-like
-        The stream.
-    tile : TileParameters
-        The sensor's tile.
-
-    Returns
-    -------
-    list of DecodedFrame
-        At least one.
-
-    Raises
-    ------
-    StreamError
-        When no frame starts anywhere, or the frames together need more than MEMORY_MAX bytes (then use
-        `iterate_frames`).
+    data: the stream. tile: the sensor's tile. Returns list of DecodedFrame: at least one. Raises StreamError when no
+    frame starts anywhere, or the frames together need more than MEMORY_MAX bytes (then use `iterate_frames`).
     """
     frames, size = [], 0
     for frame in iterate_frames(data, tile):
@@ -53,22 +38,8 @@ def decode_stream(data: bytes, tile: TileParameters = TileParameters()) -> list[
 def iterate_frames(data: bytes, tile: TileParameters = TileParameters()) -> Iterator[DecodedFrame]:
     """Decode the frames of a stream one by one.
 
-    Parameters
-    ----------
-    data : bytes-like
-        The stream.
-    tile : TileParameters
-        The sensor's tile.
-
-    Yields
-    ------
-    DecodedFrame
-        As in `decode_stream`.
-
-    Raises
-    ------
-    StreamError
-        When no frame starts anywhere.
+    data: the stream. tile: the sensor's tile. Yields DecodedFrame: as in `decode_stream`. Raises StreamError when no
+    frame starts anywhere.
     """
     data = bytes(data)
     at, last, limit = 0, None, SEARCH_MAX[0] + SEARCH_MAX[1] * len(data)

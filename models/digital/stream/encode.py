@@ -16,27 +16,10 @@ def encode_frame(
 ) -> bytes:
     """Encode one frame.
 
-    Parameters
-    ----------
-    header : StreamHeader
-        The frame's header.
-    samples : array of int (rows, cols, header.subs)
-        -128..127 in edge mode, where a code below the threshold is sent as zero; -1..1 in ternary mode; else 0..255.
-        Only pixels that the frame reads are used.
-    made, left_out : int
-        Conversions, 0..2**32-1.
-    tile : TileParameters
-        The sensor's tile.
-
-    Returns
-    -------
-    bytes
-        Header, rows and trailer.
-
-    Raises
-    ------
-    ParameterError
-        For a wrong shape, type or range.
+    header: the frame's header. samples: (rows, cols, header.subs), -128..127 in edge mode, where a code below the
+    threshold is sent as zero; -1..1 in ternary mode; else 0..255. Only pixels that the frame reads are used. made,
+    left_out: conversions, 0..2**32-1. tile: the sensor's tile. Returns header, rows and trailer. Raises ParameterError
+    for a wrong shape, type or range.
     """
     samples = np.asarray(samples)
     shape = header.rows, header.cols, header.subs
@@ -59,19 +42,8 @@ def encode_frame(
 def encode_payload(codes: npt.ArrayLike, edge: bool, base: int) -> bytes:
     """Payload of one segment, without its mark.
 
-    Parameters
-    ----------
-    codes : array of int (n,)
-        Samples of its rows in the order of the stream.
-    edge : bool
-        Run-length coded signed codes; else plain bytes.
-    base : int
-        See `payload.base_of`.
-
-    Returns
-    -------
-    bytes
-        At most row_bytes_max(n, edge).
+    codes: (n,), samples of its rows in the order of the stream. edge: run-length coded signed codes; else plain bytes.
+    base: see `payload.base_of`. Returns bytes: at most row_bytes_max(n, edge).
     """
     return _encode(codes, edge, base)[0]
 
@@ -79,19 +51,8 @@ def encode_payload(codes: npt.ArrayLike, edge: bool, base: int) -> bytes:
 def whole_bytes(codes: npt.ArrayLike, edge: bool, base: int) -> int:
     """Bytes of a segment that are complete before it is closed: their number decides whether it is.
 
-    Parameters
-    ----------
-    codes : array of int (n,)
-        Samples of its rows so far.
-    edge : bool
-        Run-length coded signed codes; else plain bytes.
-    base : int
-        See `payload.base_of`.
-
-    Returns
-    -------
-    int
-        0 or more.
+    codes: (n,), samples of its rows so far. edge: run-length coded signed codes; else plain bytes. base: see
+    `payload.base_of`. Returns 0 or more.
     """
     return _encode(codes, edge, base)[1]
 
@@ -106,21 +67,8 @@ def _encode(codes: npt.ArrayLike, edge: bool, base: int) -> tuple[bytes, int]:
 def encode_marked(row: int, codes: npt.ArrayLike, edge: bool, base: int) -> bytes:
     """Payload and mark of one segment.
 
-    Parameters
-    ----------
-    row : int
-        Index of its first row.
-    codes : array of int (n,)
-        Samples of its rows in the order of the stream.
-    edge : bool
-        Run-length coded signed codes; else plain bytes.
-    base : int
-        See `payload.base_of`.
-
-    Returns
-    -------
-    bytes
-        As in the stream.
+    row: index of its first row. codes: (n,), samples of its rows in the order of the stream. edge: run-length coded
+    signed codes; else plain bytes. base: see `payload.base_of`. Returns bytes: as in the stream.
     """
     payload = encode_payload(codes, edge, base)
     return payload + row_mark(payload, row)
@@ -129,17 +77,8 @@ def encode_marked(row: int, codes: npt.ArrayLike, edge: bool, base: int) -> byte
 def segments(header: StreamHeader, rows: Iterable[tuple[int, Sequence[int]]]) -> list[tuple[int, list[int], int]]:
     """Rows gathered to segments.
 
-    Parameters
-    ----------
-    header : StreamHeader
-        Of their frame.
-    rows : iterable of (int, sequence of int)
-        Index and samples of each row, in the order of the stream.
-
-    Returns
-    -------
-    list of (int, list of int, int)
-        Index of the first row, the samples, and the number of rows of each segment.
+    header: of their frame. rows: (int, sequence of int), index and samples of each row, in the order of the stream.
+    Returns (int, list of int, int), index of the first row, the samples, and the number of rows of each segment.
     """
     out: list[tuple[int, list[int], int]] = []
     full = True

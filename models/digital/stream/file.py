@@ -11,24 +11,8 @@ from talbot.models.parameters import TileParameters
 def decode_file(path: str | Path, tile: TileParameters = TileParameters()) -> list[DecodedFrame]:
     """Decode a file.
 
-    Parameters
-    ----------
-    path : path
-        The stream.
-    tile : TileParameters
-        The sensor's tile.
-
-    Returns
-    -------
-    list of DecodedFrame
-        At least one.
-
-    Raises
-    ------
-    StreamError
-        If there is no frame; the message names the file.
-    OSError
-        If the file cannot be read.
+    path: the stream. tile: the sensor's tile. Returns list of DecodedFrame: at least one. Raises StreamError if there
+    is no frame; the message names the file. Raises OSError if the file cannot be read.
     """
     if Path(path).is_char_device():  # some never end
         raise StreamError(f"file = {path}: must be a file, not a device")

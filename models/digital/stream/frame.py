@@ -15,26 +15,15 @@ from talbot.models.digital.stream.header import Layout, StreamHeader
 class DecodedFrame:
     """Result of decoding one frame.
 
-    Attributes
-    ----------
-    header : StreamHeader
-        The frame's header, corrected.
-    samples : int16 (rows, cols, header.subs)
-        Zero where nothing is read or the row is bad.
-    layout : Layout
-        Rows and samples of the frame.
-    start, stop : int
-        Position of its bytes.
-    bad_rows : list of int
-        Rows that are damaged or missing, ascending.
-    made, left_out : int or None
-        Conversions; None when the trailer is lost.
-    truncated : bool
-        The trailer's counts are decoded, the bytes after them end too early.
-    segments : int
-        Segments, each with a mark, that are decoded.
-    errors : list of str
-        One line for each error, corrected or not.
+    header: the frame's header, corrected.
+    samples: (rows, cols, header.subs), zero where nothing is read or the row is bad.
+    layout: rows and samples of the frame.
+    start, stop: position of its bytes.
+    bad_rows: rows that are damaged or missing, ascending.
+    made, left_out: conversions; None when the trailer is lost.
+    truncated: the trailer's counts are decoded, the bytes after them end too early.
+    segments: segments, each with a mark, that are decoded.
+    errors: one line for each error, corrected or not.
     """
 
     header: StreamHeader
@@ -67,15 +56,7 @@ class DecodedFrame:
     def save(self, path: str | Path) -> None:
         """Write samples, read, bad_rows, made, left_out (-1 when lost) and the header as JSON to an npz file.
 
-        Parameters
-        ----------
-        path : path
-            The file.
-
-        Raises
-        ------
-        OSError
-            If it cannot be written.
+        path: the file. Raises OSError if it cannot be written.
         """
         with open(path, "wb") as file:
             np.savez_compressed(

@@ -46,23 +46,14 @@ class StreamError(ParameterError):
 class StreamHeader:
     """Header of a frame: the chip, and the part of the configuration that the decoder needs.
 
-    Attributes
-    ----------
-    rows, cols : int
-        Size of the array in pixels, 1..1024 and 1..1536.
-    lanes : int
-        Converters, a power of two in 1..32.
-    tile_rows, tile_cols : int
-        Size of the tile in pixels, 1..4 and 1..6.
-    window, mode, phase, decimation, mask, threshold, frame_number, resync, calibration
-        As in FrameParameters.
-    exposure, n_cm, t_int : int
-        Lead of the reset pointer in rows, common-mode resets of a row and cycles of each integration, as in AmpTiming.
+    rows, cols: size of the array in pixels, 1..1024 and 1..1536.
+    lanes: converters, a power of two in 1..32.
+    tile_rows, tile_cols: size of the tile in pixels, 1..4 and 1..6.
+    window, mode, phase, decimation, mask, threshold, frame_number, resync, calibration: as in FrameParameters.
+    exposure, n_cm, t_int: lead of the reset pointer in rows, common-mode resets of a row and cycles of each
+        integration, as in AmpTiming.
 
-    Raises
-    ------
-    ParameterError
-        When a field is out of range.
+    Raises ParameterError when a field is out of range.
     """
 
     rows: int
@@ -97,21 +88,8 @@ class StreamHeader:
     ) -> Self:
         """Header that a chip sends for a frame.
 
-        Parameters
-        ----------
-        rows, cols : int
-            Size of the array in pixels.
-        lanes : int
-            Converters.
-        frame : FrameParameters
-            Configuration of the frame.
-        tile : TileParameters
-            The tile.
-
-        Returns
-        -------
-        StreamHeader
-            The header.
+        rows, cols: size of the array in pixels. lanes: converters. frame: configuration of the frame. tile: the tile.
+        Returns the header.
         """
         return cls(
             rows,
@@ -199,20 +177,8 @@ class StreamHeader:
     def layout(self, tile: TileParameters = TileParameters()) -> "Layout":
         """Positions of the samples of each row.
 
-        Parameters
-        ----------
-        tile : TileParameters
-            The sensor's tile.
-
-        Returns
-        -------
-        Layout
-            Of the frame.
-
-        Raises
-        ------
-        ParameterError
-            When the tile has another size, or the window is outside the array or selects no pixel.
+        tile: the sensor's tile. Returns Layout: of the frame. Raises ParameterError when the tile has another size, or
+        the window is outside the array or selects no pixel.
         """
         if (tile.rows, tile.cols) != (self.tile_rows, self.tile_cols):
             raise ParameterError(
@@ -226,10 +192,12 @@ class StreamHeader:
 class Layout:
     """Rows of a frame, and their samples in the order of the stream.
 
-    rows: (R,), rows that are read. kind: (R,), list of places of each row. counts: (R,), samples of each row. places:
-    (n,), for each kind the samples' index col * subs + sub in their row, one list after the other. start: (kinds + 1,),
-    start of each list in ``places``. order: (samples of a frame,), index of each in an array (rows, cols, subs), row
-    after row.
+    rows: (R,), rows that are read.
+    kind: (R,), list of places of each row.
+    counts: (R,), samples of each row.
+    places: (n,), for each kind the samples' index col * subs + sub in their row, one list after the other.
+    start: (kinds + 1,), start of each list in ``places``.
+    order: (samples of a frame,), index of each in an array (rows, cols, subs), row after row.
     """
 
     rows: npt.NDArray[np.int32]
@@ -278,7 +246,9 @@ def _correct(data: bytes) -> tuple[bytes, int | None] | None:
 class ReceivedHeader(NamedTuple):
     """A header after the correction of one byte.
 
-    header: its contents. sent: the header as it was sent. corrected: position of the wrong byte; None if there is none.
+    header: its contents.
+    sent: the header as it was sent.
+    corrected: position of the wrong byte; None if there is none.
     """
 
     header: StreamHeader

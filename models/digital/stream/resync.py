@@ -20,10 +20,14 @@ LONE_MAX = 2048  # positions times rows that are tried for a lone segment; a mar
 class Search:
     """The searches of one frame.
 
-    data: bytes of the stream. stop: start of the next frame, or the end. limit: tokens that may be decoded on trial;
-    the attribute counts down. layout: rows of the frame. edge: run-length coded signed codes; else plain bytes. base:
-    smallest magnitude of a coded value. segment: bytes of payload after which a row is a segment's last. where, value:
-    scratch arrays of a frame's length.
+    data: bytes of the stream.
+    stop: start of the next frame, or the end.
+    limit: tokens that may be decoded on trial; the attribute counts down.
+    layout: rows of the frame.
+    edge: run-length coded signed codes; else plain bytes.
+    base: smallest magnitude of a coded value.
+    segment: bytes of payload after which a row is a segment's last.
+    where, value: scratch arrays of a frame's length.
     """
 
     def __init__(

@@ -19,7 +19,8 @@ from talbot.models.parameters.stream_format import (
 class Trailer(NamedTuple):
     """Contents of a trailer.
 
-    made, left_out: conversions, 0..2**32-1. notes: what is wrong, one line each.
+    made, left_out: conversions, 0..2**32-1.
+    notes: what is wrong, one line each.
     """
 
     made: int

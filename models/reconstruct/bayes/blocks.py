@@ -22,8 +22,9 @@ Kind = tuple[int, int, int, int]
 class Blocks:
     """A period of a camera's pixels, of the sensor's a tile, is a block.
 
-    y, x: blocks down and across. camera: its samples are the array's. measured: (responses,), responses of the camera
-    that are read.
+    y, x: blocks down and across.
+    camera: its samples are the array's.
+    measured: (responses,), responses of the camera that are read.
     """
 
     y: Axis

@@ -23,8 +23,9 @@ Ints = npt.NDArray[np.int64]
 class Tables(NamedTuple):
     """Covariances for one disparity, or their mean over several.
 
-    samples: (2 height - 1, 2 width - 1, diodes, diodes), of two samples, at their distance. field: (2 height - 1, 2
-    width - 1, views * views, diodes), of a pixel's views with a sample, at the distance from the pixel to the sample.
+    samples: (2 height - 1, 2 width - 1, diodes, diodes), of two samples, at their distance.
+    field: (2 height - 1, 2 width - 1, views * views, diodes), of a pixel's views with a sample, at the distance from
+        the pixel to the sample.
     """
 
     samples: Floats
@@ -35,9 +36,11 @@ class Tables(NamedTuple):
 class Covariances:
     """Makes the tables.
 
-    weights: (diodes, pupil, pupil), weights of all diodes of a tile over the pupil. views: of the light field that is
-    to be given back, along the pupil's diameter. height, width: window in px. prior: the prior. side: side in px of the
-    square that every sample is the mean of.
+    weights: (diodes, pupil, pupil), weights of all diodes of a tile over the pupil.
+    views: of the light field that is to be given back, along the pupil's diameter.
+    height, width: window in px.
+    prior: the prior.
+    side: side in px of the square that every sample is the mean of.
     """
 
     weights: Floats

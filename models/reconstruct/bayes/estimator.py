@@ -41,16 +41,10 @@ UNLIKELY = 1e-3  # probability below which a disparity is left out of a mixture
 class Estimate(NamedTuple):
     """The result of `mixture` for a frame.
 
-    Attributes
-    ----------
-    light_field : float32 (views, views, rows, cols)
-        l[v, u, y, x], 1 = white.
-    disparity : float32 (rows, cols)
-        Mean of the disparity's probability, px per view step.
-    spread : float32 (rows, cols)
-        Its standard deviation: 0 is certain.
-    plain : float
-        Share of the windows, 0..1, that show no more than noise on a uniform scene: they take the linear estimate.
+    light_field: (views, views, rows, cols), l[v, u, y, x], 1 = white.
+    disparity: (rows, cols), mean of the disparity's probability, px per view step.
+    spread: (rows, cols), its standard deviation: 0 is certain.
+    plain: share of the windows, 0..1, that show no more than noise on a uniform scene: they take the linear estimate.
     """
 
     light_field: Floats
@@ -62,19 +56,13 @@ class Estimate(NamedTuple):
 class FieldEstimator:
     """Estimates light fields from frames of one sensor, or of another camera.
 
-    Parameters
-    ----------
-    sensor : SensorParameters or Projection
-        The sensor; its lens counts as telecentric. Samples of a camera stand for the pair of diodes in what follows.
-    views : int
-        Of the light field along the pupil's diameter.
-    prior : FieldPrior
-        What is known before.
-    pupil : int, optional
-        Points of the pupil at which the samples are taken to see the scene, along its diameter; None is as the views,
-        or the camera's own.
-    measured : bool (types,), optional
-        Pixel types that are read, or responses of a camera; None is all.
+    sensor: the sensor; its lens counts as telecentric. Samples of a camera stand for the pair of diodes in what
+        follows.
+    views: of the light field along the pupil's diameter.
+    prior: what is known before.
+    pupil: points of the pupil at which the samples are taken to see the scene, along its diameter; None is as the
+        views, or the camera's own.
+    measured: (types,), pixel types that are read, or responses of a camera; None is all.
     """
 
     def __init__(
@@ -103,20 +91,8 @@ class FieldEstimator:
     def linear(self, pair: Floats) -> Floats:
         """Best linear estimate.
 
-        Parameters
-        ----------
-        pair : array (2, rows, cols)
-            Both diodes of every pixel, 1 = the average diode in a flat white scene.
-
-        Returns
-        -------
-        float32 (views, views, rows, cols)
-            l[v, u, y, x], 1 = white.
-
-        Raises
-        ------
-        ParameterError
-            For a wrong shape.
+        pair: (2, rows, cols), both diodes of every pixel, 1 = the average diode in a flat white scene. Returns (views,
+        views, rows, cols), l[v, u, y, x], 1 = white. Raises ParameterError for a wrong shape.
         """
         groups = self._windows(pair)
         return self._linear(groups, groups)
@@ -202,10 +178,7 @@ class FieldEstimator:
     def prepare(self, mixture: bool = False) -> None:
         """Compute the tables of `linear` or `mixture` for the sensor in advance; they do so on demand otherwise.
 
-        Parameters
-        ----------
-        mixture : bool
-            Also what `mixture` needs, but for slants, which a scene tells.
+        mixture: also what `mixture` needs, but for slants, which a scene tells.
         """
         _ = self._ways
         if mixture:
@@ -291,15 +264,8 @@ class FieldEstimator:
     def told_by(self, pixels: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
         """Return where the mixture's disparity depends on any of some pixels.
 
-        Parameters
-        ----------
-        pixels : bool (rows, cols)
-            Dead or full ones, for example.
-
-        Returns
-        -------
-        bool (rows, cols)
-            True where one of them is in a window.
+        pixels: (rows, cols), dead or full ones, for example. Returns (rows, cols), True where one of them is in a
+        window.
         """
         y, x = self.blocks.y, self.blocks.x
         windows = sliding_window_view(pixels, (y.window, x.window))[np.ix_(y.firsts, x.firsts)]
@@ -309,15 +275,8 @@ class FieldEstimator:
     def condition(self, disparity: float | None = None) -> float:
         """Condition of the covariance of the samples in a window, noise included.
 
-        Parameters
-        ----------
-        disparity : float, optional
-            In px per view step; None is the mean over the prior's, that of `linear`.
-
-        Returns
-        -------
-        float
-            Greatest of all groups of windows.
+        disparity: in px per view step; None is the mean over the prior's, that of `linear`. Returns greatest of all
+        groups of windows.
         """
         tables = self.covariances.mean() if disparity is None else self.covariances.of(disparity)
         groups = {(down.phase, across.phase): (down, across) for down, across in self.blocks.groups}
@@ -327,22 +286,9 @@ class FieldEstimator:
     def mixture(self, pair: Floats, evidence: Floats | None = None) -> Estimate:
         """Mean over the disparities, each as probable as the samples make it.
 
-        Parameters
-        ----------
-        pair : array (2, rows, cols)
-            As in `linear`.
-        evidence : array (2, rows, cols), optional
-            Samples of the same scene that tell its disparity; None is ``pair``. For the taps of time of flight.
-
-        Returns
-        -------
-        Estimate
-            Light field and disparity.
-
-        Raises
-        ------
-        ParameterError
-            For a wrong shape.
+        pair: (2, rows, cols), as in `linear`. evidence: (2, rows, cols), samples of the same scene that tell its
+        disparity; None is ``pair``. For the taps of time of flight. Returns light field and disparity. Raises
+        ParameterError for a wrong shape.
         """
         groups = self._windows(pair)
         told = groups if evidence is None else self._windows(evidence)

@@ -21,7 +21,8 @@ class Residuals(NamedTuple):
     """The map of a window's samples to the errors of its block's differences, each over its standard deviation.
 
     matrix: (pixels * samples of each, samples), of the telling samples of a block's pixels, first of all pixels; 0 for
-    one that is not read. certain: (pixels,), logarithm of 1 over each error's variance, sum over a pixel.
+        one that is not read.
+    certain: (pixels,), logarithm of 1 over each error's variance, sum over a pixel.
     """
 
     matrix: Floats

@@ -22,8 +22,11 @@ Make = Callable[[int, Pair], Solver]
 class Hypotheses:
     """The hypotheses of a slant.
 
-    slant: by how much the disparity grows a pixel down and across. blocks: of the array. prior: what is known before.
-    read: (rows, cols), share of the pixels around each that are read. residuals: of every disparity, in every group.
+    slant: by how much the disparity grows a pixel down and across.
+    blocks: of the array.
+    prior: what is known before.
+    read: (rows, cols), share of the pixels around each that are read.
+    residuals: of every disparity, in every group.
     make: gives a disparity's solver.
     """
 

@@ -24,7 +24,8 @@ ROUNDED = 4  # px, to which the texture is enlarged: few sizes, whose roots are 
 class Plane(NamedTuple):
     """A plane of the scene, as the middle view sees it.
 
-    disparity: at the middle of a window, px per view step. slant: by how much it grows a pixel down and across.
+    disparity: at the middle of a window, px per view step.
+    slant: by how much it grows a pixel down and across.
     """
 
     disparity: float
@@ -45,20 +46,12 @@ class Plane(NamedTuple):
 class Window:
     """Samples of a window.
 
-    Attributes
-    ----------
-    size : tuple of int
-        Its rows and columns.
-    y, x : int64 (samples,)
-        Pixel of each, in it.
-    weights : float64 (samples, pupil, pupil)
-        Of each over the pupil.
-    block : tuple of int
-        First pixel of the block in it, down and across, then the block's pixels.
-    views : int
-        That are to be given back along the pupil's diameter.
-    side : int
-        Side in px of the square around y, x that every sample is the mean of; odd.
+    size: its rows and columns.
+    y, x: (samples,), pixel of each, in it.
+    weights: (samples, pupil, pupil), of each over the pupil.
+    block: first pixel of the block in it, down and across, then the block's pixels.
+    views: that are to be given back along the pupil's diameter.
+    side: side in px of the square around y, x that every sample is the mean of; odd.
     """
 
     size: tuple[int, int]
@@ -74,19 +67,8 @@ class Window:
     ) -> tuple[npt.NDArray[np.float64], Floats | None]:
         """Return the covariances of a plane.
 
-        Parameters
-        ----------
-        plane : Plane
-            What the window shows.
-        prior : FieldPrior
-            Its texture.
-        views : bool
-            Also those of the block's views.
-
-        Returns
-        -------
-        tuple of float64 (samples, samples), float32 (block's pixels * views**2, samples)
-            Of samples with samples, without noise, and of the views of the block with samples; None without them.
+        plane: what the window shows. prior: its texture. views: also those of the block's views. Returns (samples,
+        samples), of samples with samples, without noise, and of the views of the block with samples; None without them.
         """
         seen, view_points, index, first, size = self.texture(plane)
         root = _root(size[0], size[1], prior)
@@ -109,16 +91,9 @@ class Window:
     def texture(self, plane: Plane) -> tuple[Floats, Floats, Ints, list[int], list[int]]:
         """Find the part of the texture that a plane is seen in.
 
-        Parameters
-        ----------
-        plane : Plane
-            What the window shows.
-
-        Returns
-        -------
-        tuple
-            Where every ray of the window's pixels sees it, float64 (2, pixels, pupil**2), and every view of the
-            block's, (2, block's pixels, views**2); the pixel of each sample; first pixel down and across, and size.
+        plane: what the window shows. Returns tuple: where every ray of the window's pixels sees it, float64 (2, pixels,
+        pupil**2), and every view of the block's, (2, block's pixels, views**2); the pixel of each sample; first pixel
+        down and across, and size.
         """
         top, left, high, wide = self.block
         middle = (np.array(self.size)[:, None, None] - 1) / 2

@@ -20,40 +20,23 @@ STEPS = 4  # halves of an octave by which a frame's contrast may be below the pr
 class FieldPrior:
     """Gaussian prior of a window of the light field, given its disparity, and the disparities that are tried.
 
-    Attributes
-    ----------
-    level : float
-        Standard deviation of a window's mean radiance, 0.01..100.
-    contrast : float
-        Standard deviation of the radiance within, 0.001..100.
-    length : float
-        Distance at which its correlation falls to 1/e, 0.1..1000 px.
-    fineness : float
-        Exponent of the distance there, 0.1..2: the less, the more fine texture.
-    noise : float
-        Standard deviation of a sample, of white = 1: 1e-5..10.
-    far, near : float
-        Ends of the disparities in px per view step, -20..20.
-    disparities : int
-        How many are tried from far to near, 1..500.
-    between : int
-        More that the mixture tries between each two of these, 0..3.
-    slants : int
-        Slants of planes that the mixture tries at most, 0..32, in addition to planes that face the camera.
-    margin : int
-        Pixels around a block that its estimate uses, 0..16.
-    trust : float
-        Share of the evidence for a disparity that counts, 0.001..1: a scene is not the prior's texture.
-    pool : float
-        Standard deviation of the weights around a pixel with which its neighbours' evidence counts, 0.1..100 px, up to
-        a noise of `CLEAR`.
-    plain : float
-        Windows that differ from a uniform one by less than this, times the noise's variance, take the linear estimate,
-        0..1000: no disparity shows in them.
+    level: standard deviation of a window's mean radiance, 0.01..100.
+    contrast: standard deviation of the radiance within, 0.001..100.
+    length: distance at which its correlation falls to 1/e, 0.1..1000 px.
+    fineness: exponent of the distance there, 0.1..2: the less, the more fine texture.
+    noise: standard deviation of a sample, of white = 1: 1e-5..10.
+    far, near: ends of the disparities in px per view step, -20..20.
+    disparities: how many are tried from far to near, 1..500.
+    between: more that the mixture tries between each two of these, 0..3.
+    slants: slants of planes that the mixture tries at most, 0..32, in addition to planes that face the camera.
+    margin: pixels around a block that its estimate uses, 0..16.
+    trust: share of the evidence for a disparity that counts, 0.001..1: a scene is not the prior's texture.
+    pool: standard deviation of the weights around a pixel with which its neighbours' evidence counts, 0.1..100 px, up
+        to a noise of `CLEAR`.
+    plain: windows that differ from a uniform one by less than this, times the noise's variance, take the linear
+        estimate, 0..1000: no disparity shows in them.
 
-    References
-    ----------
-    [Levin2008].
+    Source: [Levin2008].
     """
 
     level: float = 0.5
@@ -112,17 +95,8 @@ class FieldPrior:
     def contrast_of(self, sums: npt.NDArray[np.floating], noise: float) -> float:
         """Contrast for a frame: this prior's, or less where the frame has little, in half octaves.
 
-        Parameters
-        ----------
-        sums : array (rows, cols)
-            Mean of both diodes of every pixel, 1 = white.
-        noise : float
-            Standard deviation of a diode.
-
-        Returns
-        -------
-        float
-            A quarter of `contrast` at the least: noise is then not taken for a texture's parallax.
+        sums: (rows, cols), mean of both diodes of every pixel, 1 = white. noise: standard deviation of a diode. Returns
+        a quarter of `contrast` at the least: noise is then not taken for a texture's parallax.
         """
         squares = [np.square(part[LAG:] - part[:-LAG]).ravel() for part in (sums, sums.T) if len(part) > LAG]
         if not squares:
@@ -136,14 +110,6 @@ class FieldPrior:
     def covariance(self, dy: Floats, dx: Floats) -> Floats:
         """Covariance of two points of a plane.
 
-        Parameters
-        ----------
-        dy, dx : array
-            Their distance in px; broadcastable.
-
-        Returns
-        -------
-        float64 array
-            Of the common shape.
+        dy, dx: their distance in px; broadcastable. Returns float64 array: of the common shape.
         """
         return self.contrast**2 * np.exp(-((np.hypot(dy, dx) / self.length) ** self.fineness)) + self.level**2

@@ -28,9 +28,11 @@ ROUNDING = 1e-6  # of a sample's variance: what float32 leaves, so that no covar
 class Ways(NamedTuple):
     """Covariances of a group of windows at every disparity.
 
-    shared: (disparities, samples, samples), covariance of the samples. mean: (samples, samples), mean of these over the
-    disparities. field: (disparities, pixels * views**2, samples), covariance of the block's views with them. residuals:
-    for the evidence. read: differences of the block that are read, 1 or more.
+    shared: (disparities, samples, samples), covariance of the samples.
+    mean: (samples, samples), mean of these over the disparities.
+    field: (disparities, pixels * views**2, samples), covariance of the block's views with them.
+    residuals: for the evidence.
+    read: differences of the block that are read, 1 or more.
     """
 
     shared: Floats
@@ -71,12 +73,8 @@ class Ways(NamedTuple):
 class Solver(NamedTuple):
     """An estimator of windows of one covariance.
 
-    Attributes
-    ----------
-    factor : tuple
-        `factor` of the samples' covariance.
-    field : float32 (pixels * views**2, samples)
-        Covariance of the block's views with them.
+    factor: `factor` of the samples' covariance.
+    field: (pixels * views**2, samples), covariance of the block's views with them.
     """
 
     factor: Factor

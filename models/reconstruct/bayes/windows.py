@@ -11,8 +11,10 @@ import numpy.typing as npt
 class Group(NamedTuple):
     """Blocks along an axis whose windows begin at the same place in a tile, and are placed alike around the block.
 
-    phase: first pixel of the windows, in the tile. offset: first pixel of the blocks, in their windows. blocks: index
-    of each block. windows: first pixel of each window.
+    phase: first pixel of the windows, in the tile.
+    offset: first pixel of the blocks, in their windows.
+    blocks: index of each block.
+    windows: first pixel of each window.
     """
 
     phase: int
@@ -29,8 +31,9 @@ Windows = Sequence[tuple[Group, Group, npt.NDArray[np.floating]]]
 class Axis:
     """Blocks and windows along one axis.
 
-    length: pixels of the array. period: pixels of a tile. block, window: pixels of a block, and of the window around
-    it.
+    length: pixels of the array.
+    period: pixels of a tile.
+    block, window: pixels of a block, and of the window around it.
     """
 
     length: int
