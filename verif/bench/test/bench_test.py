@@ -7,29 +7,10 @@ import pytest
 
 from talbot.base.command import main
 from talbot.base.records import from_json
-from talbot.models.chip import golden_frame
 from talbot.verif.bench import command, simulation
-from talbot.verif.bench.command import CHIP, SAME, BenchRun, summary
-from talbot.verif.bench.exposure import FRAMES, FRONT_END, SENSOR, samples
-from talbot.verif.bench.pymtl_frame import pymtl_stream
 from talbot.verif.results import BlockResults, Tests
 
 needs_icarus = pytest.mark.needs("iverilog")
-SMALL = "raw, a window"
-
-
-def streams_of(simulators, tmp_path):
-    """Return the bytes of one frame of the chip's bench in each simulator."""
-    for simulator in simulators:
-        file = tmp_path / simulator
-        tests = simulation.simulate(
-            simulation.DESIGNS[CHIP],
-            simulator,
-            tests=["the_shown_frame"],
-            environment={"BENCH_STREAM": str(file), "BENCH_FRAME": SMALL},
-        )
-        assert tests == [simulation.BenchTest("the_shown_frame", None)]
-        yield file.read_bytes()
 
 
 @needs_icarus
@@ -93,18 +74,3 @@ def test_a_simulation_without_an_end_is_stopped(monkeypatch):
 @pytest.mark.parametrize("design", simulation.DESIGNS.values(), ids=lambda design: design.block)
 def test_every_bench_exists(design):
     assert find_spec(design.module)
-
-
-def test_streams_that_differ_fail():
-    runs = {(CHIP, name): BenchRun([], "00") for name in ("pymtl", "icarus")}
-    assert summary(runs)[CHIP].open_points == []
-    runs[CHIP, "verilator"] = BenchRun([], None)
-    (point,) = summary(runs)[CHIP].open_points
-    assert SAME in point
-
-
-@needs_icarus
-@pytest.mark.slow
-def test_pymtl_icarus_and_verilator_give_the_same_bytes(tmp_path):
-    golden = golden_frame(samples(), SENSOR, FRAMES[SMALL], FRONT_END).stream
-    assert [*streams_of(simulation.SIMULATORS, tmp_path), pymtl_stream(FRAMES[SMALL])] == [golden] * 3
