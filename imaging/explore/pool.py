@@ -15,6 +15,7 @@ from typing import Any, NamedTuple, Self
 from joblib.executor import get_memmapping_executor
 
 from talbot.base.check import work_begins
+from talbot.base.jobs import restarts
 from talbot.models.parameters import ParameterError
 
 TRIES = 2
@@ -70,7 +71,8 @@ class Pool:
                 next_call = todo.popleft()
                 assert self._executor is not None
                 try:
-                    future = self._executor.submit(call, *arguments[next_call.number])
+                    with restarts():
+                        future = self._executor.submit(call, *arguments[next_call.number])
                 except BrokenExecutor:  # a process has died meanwhile: the calls that run say so
                     todo.appendleft(next_call)
                     broken = True

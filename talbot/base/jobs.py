@@ -75,13 +75,20 @@ def run(jobs: Iterable[Job], store: Path | str, title: str, workers: int = -1) -
     todo = [(job, file) for job, file, found in zip(jobs, files, before, strict=True) if not found]
     with _backend(workers):
         calls = (joblib.delayed(_keep)(job, file) for job, file in todo)
-        with warnings.catch_warnings():  # joblib restarts a process that has grown, and warns
-            warnings.filterwarnings("ignore", "A worker stopped while some jobs", UserWarning)
+        with restarts():
             # joblib has no types: pyright takes those of its defaults
             parallel = joblib.Parallel(return_as="generator_unordered", batch_size=1)  # pyright: ignore[reportArgumentType]
             for _ in each(parallel(calls), title, str, len(todo)):
                 pass
     return [(found or kept(file))[0] for file, found in zip(files, before, strict=True)]
+
+
+@contextlib.contextmanager
+def restarts() -> Iterator[None]:
+    """Joblib restarts a process that has grown, and warns: without the warning."""
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "A worker stopped while some jobs", UserWarning)
+        yield
 
 
 def kept(file: Path) -> list[Any]:

@@ -1,12 +1,13 @@
 """Jobs: results in order, each computed once, a failed run goes on from where it was."""
 
 import json
+import warnings
 from pathlib import Path
 
 import distributed
 import pytest
 
-from talbot.base.jobs import Job, run
+from talbot.base.jobs import Job, restarts, run
 from talbot.base.tools import ToolError
 from talbot.models.parameters import ParameterError
 
@@ -98,3 +99,12 @@ def test_on_a_cluster(tmp_path, monkeypatch):
     assert [r["number"] for r in results] == [0, 1, 2, 3] and all(r["worker"].startswith("tcp://") for r in results)
     monkeypatch.delenv("SCHEDULER")
     assert run(jobs, tmp_path / "store", "kept", workers=1) == results
+
+
+def test_a_process_that_is_restarted_is_no_warning():
+    with warnings.catch_warnings(record=True) as seen:
+        warnings.simplefilter("always")
+        with restarts():
+            warnings.warn("A worker stopped while some jobs were given to the executor.", UserWarning, stacklevel=1)
+            warnings.warn("another", UserWarning, stacklevel=1)
+    assert [str(warning.message) for warning in seen] == ["another"]
