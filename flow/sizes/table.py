@@ -24,15 +24,12 @@ def markdown(sizes: Sequence[Size]) -> str:
 
 
 def blocks_table(sizes: Sequence[Size]) -> str:
-    """Return the table of docs/results/blocks.md: function, latency, throughput and size of each block."""
+    """Return the table of docs/results/blocks.md: function and size of each block."""
     by_top = {s.top: s for s in sizes}
-    lines = [
-        "| block | what it does | latency | throughput | cells | flip-flops | gates |",
-        "|---|---|---|---|---:|---:|---:|",
-    ]
+    lines = ["| block | what it does | cells | flip-flops | gates |", "|---|---|---:|---:|---:|"]
     for top, about in BLOCKS.items():
         s, folder = by_top[top], FOLDERS.get(top) or re.sub("(?!^)(?=[A-Z])", "_", top).lower()
-        cells = [f"[{top}](../../rtl/{folder}/README.md)", *about]
+        cells = [f"[{top}](../../rtl/{folder}/README.md)", about]
         cells += [f"{s.cells:,}", f"{s.flip_flops:,}", f"{s.gates:,.0f}"]
         lines.append(f"| {' | '.join(cells)} |")
     lines += [
@@ -42,20 +39,19 @@ def blocks_table(sizes: Sequence[Size]) -> str:
     return "\n".join(lines)
 
 
-# top: what it does, latency, throughput; each block's README has the contract and its tests hold it
 BLOCKS = {
-    "AmpCtrl": ("amplifier control FSM", "a row: its durations", "-"),
-    "ReadoutSeq": ("rows, types, groups; what to leave out", "3 cycles to the first message", "1 step a cycle"),
-    "EdgeAdc": ("one SAR lane with a zero window", "3 cycles a zero, 11 a code", "a zero in 4 cycles, a code in 10"),
-    "AdcBank": ("8 lanes, results in order", "as its lanes", "1 sample a cycle"),
-    "QuadDividerRadix2": ("quadrature divider, restoring", "9 cycles", "1 in 10 cycles"),
-    "QuadDividerRadix4": ("the same, radix 4", "5 cycles", "1 in 6 cycles"),
-    "QuadDividerPipelined": ("the same, pipelined", "9 cycles", "1 a cycle"),
-    "Cordic": ("CORDIC vectoring, 10 iterations", "11 cycles", "1 in 12 cycles"),
-    "PhasePath": ("four taps to phase and amplitude", "-", "as its divider"),
-    "RunLength": ("encoder of the byte stream", "-", "1 sample and 1 byte a cycle"),
-    "RegFile": ("registers behind SPI mode 0", "a byte: 8 SPI clocks", "-"),
-    "AspChip": ("the whole digital chip", "a frame", "1 sample a cycle"),
+    "AmpCtrl": "amplifier control FSM",
+    "ReadoutSeq": "rows, types, groups; what to leave out",
+    "EdgeAdc": "one SAR lane with a zero window",
+    "AdcBank": "8 lanes, results in order",
+    "QuadDividerRadix2": "quadrature divider, restoring",
+    "QuadDividerRadix4": "the same, radix 4",
+    "QuadDividerPipelined": "the same, pipelined",
+    "Cordic": "CORDIC vectoring, 10 iterations",
+    "PhasePath": "four taps to phase and amplitude",
+    "RunLength": "encoder of the byte stream",
+    "RegFile": "registers behind SPI mode 0",
+    "AspChip": "the whole digital chip",
 }
 # Folders whose name is not the top's in snake case
 FOLDERS = dict.fromkeys([top for top in BLOCKS if top.startswith("QuadDivider") or top == "Cordic"], "quad_divider")
