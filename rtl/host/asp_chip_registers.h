@@ -97,22 +97,21 @@
 #define ASP_BUSY_DEFAULT 0x0u
 #define ASP_BUSY_MASK 0x01u
 
-/* done (w1c): A frame ended. Writing 1 or a start clears it. */
+/* done (w1c): A frame ended. */
 #define ASP_DONE_ADDRESS 0x03u
 #define ASP_DONE_SHIFT 1u
 #define ASP_DONE_WIDTH 1u
 #define ASP_DONE_DEFAULT 0x0u
 #define ASP_DONE_MASK 0x02u
 
-/* cfg_err (w1c): No frame started: nothing to read, or the window is inverted or out of range. Writing 1 or a */
-/* start clears it. */
+/* cfg_err (w1c): No frame started: nothing to read, or the window is inverted or out of range. */
 #define ASP_CFG_ERR_ADDRESS 0x03u
 #define ASP_CFG_ERR_SHIFT 2u
 #define ASP_CFG_ERR_WIDTH 1u
 #define ASP_CFG_ERR_DEFAULT 0x0u
 #define ASP_CFG_ERR_MASK 0x04u
 
-/* amp_err (w1c): The amplifier control refused a zero duration. Writing 1 or a start clears it. */
+/* amp_err (w1c): The amplifier control refused a zero duration. */
 #define ASP_AMP_ERR_ADDRESS 0x03u
 #define ASP_AMP_ERR_SHIFT 3u
 #define ASP_AMP_ERR_WIDTH 1u
@@ -120,14 +119,14 @@
 #define ASP_AMP_ERR_MASK 0x08u
 
 /* refused (w1c): A write was refused: configuration while it is locked, a start, or a loop-back byte without */
-/* `loop_enable` or before the one ahead of it left. Writing 1 clears it. */
+/* `loop_enable` or before the one ahead of it left. */
 #define ASP_REFUSED_ADDRESS 0x03u
 #define ASP_REFUSED_SHIFT 4u
 #define ASP_REFUSED_WIDTH 1u
 #define ASP_REFUSED_DEFAULT 0x0u
 #define ASP_REFUSED_MASK 0x10u
 
-/* aborted (w1c): An abort was written. Writing 1 or a start clears it. */
+/* aborted (w1c): An abort was written. */
 #define ASP_ABORTED_ADDRESS 0x03u
 #define ASP_ABORTED_SHIFT 5u
 #define ASP_ABORTED_WIDTH 1u

@@ -11,10 +11,10 @@ from talbot.models.parameters.registers import Field, RegisterMap
 NOTE = (
     "Generated from models/parameters/registers/asp_chip.rdl by talbot document. Byte addresses; a field of more than "
     "a byte is little-endian. Access: ro read only, rw read and write (the configuration), wo write only (reads 0), "
-    "w1c sticky, cleared by writing 1. A register without a name has that of its field. Addresses and bits that are "
-    "not listed read 0 and ignore writes."
+    "w1c sticky, cleared by writing 1; then the value after reset, if not 0. A register without a name has that of its "
+    "field. Addresses and bits that are not listed read 0 and ignore writes."
 )
-COLUMNS = "address[bits] register", "field", "access", "reset", "meaning"
+COLUMNS = "address[bits] register", "field", "access", "meaning"
 
 
 @dataclass(frozen=True)
@@ -34,8 +34,7 @@ class Row:
         return (
             f"0x{f.address:02X}{index}[{bits}]" + (f" {register}" if register != f.name else ""),
             f.name,
-            f.access,
-            f"{f.reset:#x}" if f.reset > 9 else f"{f.reset}",
+            f"{f.access}, {f.reset:#x}" if f.reset > 9 else f"{f.access}, {f.reset}" if f.reset else f.access,
             f.description,
         )
 
