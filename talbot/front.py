@@ -71,7 +71,7 @@ GROUPS: dict[str, dict[str, Command]] = {
         "cocotb": Command("cocotb benches in Icarus and in Verilator", "verif.bench.command"),
         "coverage": Command("line, branch, toggle and state coverage, test plans", "verif.coverage.command"),
         "mutate": Command("bugs planted in the RTL, each of which a test must detect", "verif.mutation.command"),
-        "fuzz": Command("a million random inputs for the decoder and the host", "verif.fuzz.command"),
+        "fuzz": Command("random inputs for decoder and host, sessions at the chip's pins", "verif.fuzz.command"),
         "stuck-at": Command("stuck-at faults that a test at the chip's pins detects", "verif.stuck_at.command"),
         "replay": Command("port traces of a block's tests, replayed into other Verilog", "rtl.replay.command", False),
     },

@@ -9,6 +9,9 @@ from talbot.base.sources import code
 from talbot.base.tools import ToolError, meanwhile
 from talbot.base.verilator import FAST, compile_program, has_headers, runtime, verilate, verilator_version
 from talbot.imaging.simulate.build import Build
+from talbot.models.parameters import NO_DIVIDER
+from talbot.rtl.contract import FILE as CONTRACT
+from talbot.rtl.contract import contract
 
 FRAME = Path(__file__).parent
 READ = FRAME / "read_words.cpp"  # in place of Verilator's VL_FREAD_I, in all that is compiled here
@@ -54,9 +57,10 @@ def program_of(
 ) -> Path:
     """Path of the program of module ``top`` of the Verilog and ``sources``, with ``main`` around it: from the cache.
 
+    It stops in a cycle in which the chip breaks a line of the interface contract (docs/chip.md).
     options: of Verilator; cxx: of g++. note: called with a line of text before each long step. Raises ToolError.
     """
-    key = digest(code(__name__), *sources, READ, main, build, top, options, cxx, verilator_version())
+    key = digest(code(__name__), *sources, READ, CONTRACT, main, build, top, options, cxx, verilator_version())
 
     def make(work: Path) -> None:
         if build.waves == "fst" and not has_headers(PACKED):
@@ -65,9 +69,10 @@ def program_of(
             )
         with meanwhile(runtime) as objects:  # a compiler runs while Python exports
             note("exporting the chip's Verilog")
-            chip = build.chip_verilog(work)
+            chip, checks = build.chip_verilog(work), work / CONTRACT.name
+            checks.write_text(contract(build.lanes, build.divider != NO_DIVIDER), encoding="utf-8")
             note("translating it with Verilator")
-            model = verilate(work / "obj", top, [chip, *sources], [*VERILATOR_FLAGS, *options])
+            model = verilate(work / "obj", top, [chip, checks, *sources], [*VERILATOR_FLAGS, *options])
             note("compiling the simulator")
             unit = work / "obj" / "unit.o"
             compile_program(unit, [*model, READ, main], [*CXX_FLAGS, *cxx, *_defined(build.waves), "-c"])

@@ -15,6 +15,8 @@ from talbot.base.paths import BUILD, PACKAGE, ROOT
 from talbot.base.tools import ToolError
 from talbot.base.verilator import verilator_folder
 from talbot.models.parameters import SensorParameters
+from talbot.rtl.contract import FILE as CONTRACT
+from talbot.rtl.contract import contract
 from talbot.rtl.export import translate
 from talbot.rtl.harness.icarus import MISSING, installed
 from talbot.rtl.harness.ports import ports_of
@@ -96,6 +98,13 @@ def sources(design: Design) -> dict[str, str]:
     return {f"{design.block}.v": translate(design.block, design.sensor), **front_end, f"{TOP}.v": flat(design)}
 
 
+def checks(design: Design, simulator: str) -> dict[str, str]:
+    """Return what checks the interface contract of the chip, in Verilator: Verilog by file name."""
+    chip = design.sensor.chip
+    checked = design.block == "AspChip" and simulator == "verilator"
+    return {CONTRACT.name: contract(chip.lanes, chip.has_phase_path)} if checked else {}
+
+
 def simulate(design: Design, simulator: str, seed: int = 1, tests: Sequence[str] = ()) -> list[BenchTest]:
     """Build the design if it is new and run its tests.
 
@@ -103,7 +112,7 @@ def simulate(design: Design, simulator: str, seed: int = 1, tests: Sequence[str]
     """
     if simulator == "icarus" and not installed():
         raise BenchError(MISSING)
-    texts = sources(design)
+    texts = checks(design, simulator) | sources(design)
     folder = CACHE / f"{design.block}.{simulator}.{digest(BUILD_ARGS[simulator], *texts.values())}"
     folder.mkdir(parents=True, exist_ok=True)
     for name, text in texts.items():

@@ -1,7 +1,8 @@
-"""A million inputs for the decoder, and every byte of real frames changed: build/verify/fuzz.json.
+"""Inputs for the decoder, sessions at the chip's pins, and every byte of real frames changed: build/verify/fuzz.json.
 
-An input depends on the seed, its batch and its number alone. The bytes of a failing one are kept in build/verify/fuzz/;
---only decodes a single input.
+An input of the decoder depends on the seed, its batch and its number alone. The bytes of a failing one are kept in
+build/verify/fuzz/; --only decodes a single input. Sessions are guided by coverage: build/verify/fuzz/chip has their
+corpus and those that fail; --session runs one of these.
 """
 
 import sys
@@ -17,11 +18,15 @@ from talbot.base.jobs import Job
 from talbot.base.jobs import run as run_jobs
 from talbot.base.records import from_json
 from talbot.models.parameters import check_int
+from talbot.rtl.contract import FILE as CONTRACT
 from talbot.verif.fuzz.batch import BATCH, Batch, make_input, run_batch, try_input
+from talbot.verif.fuzz.chip.guided import Search, again, search
+from talbot.verif.fuzz.chip.program import CHIPS, MAIN
 from talbot.verif.fuzz.resync import AROUND, FRAMES, sweep
 from talbot.verif.results import OUT, SEED, BlockResults, Fuzz, Resync, Sweep, write_step
 
 CHANGES = 16  # wrong values tried at each byte of a real frame
+CYCLES = 10_000_000  # of all chips
 
 
 def batches(inputs: int, seed: int, folder: Path) -> list[Job]:
@@ -37,6 +42,23 @@ def sweeps(count: int, seed: int) -> list[Job]:
         for name in FRAMES
         for around in AROUND
     ]
+
+
+def searches(cycles: int, seed: int, folder: Path) -> list[Job]:
+    """Return the jobs of ``cycles`` cycles at the chip's pins."""
+    share = -(-cycles // len(CHIPS))
+    return [
+        Job(f"chip-{number}", search, (name, share, seed, folder / "chip"), (name, share, seed, MAIN, CONTRACT))
+        for number, name in enumerate(CHIPS)
+    ]
+
+
+def summarize_chip(seed: int, done: Sequence[Search]) -> dict[str, BlockResults]:
+    """Return the results of the searches, for the block AspChip."""
+    counts = {name: sum(getattr(one, name) for one in done) for name in ("cycles", "points", "corpus")}
+    failures = [line for one in done for line in one.failures]
+    fuzz = Fuzz(sum(one.sessions for one in done), len(failures), seed, kinds=counts)
+    return {"AspChip": BlockResults(fuzz=fuzz, open_points=failures)} if done else {}
 
 
 def summarize(seed: int, done: Sequence[Batch], swept: Sequence[Sweep]) -> dict[str, BlockResults]:
@@ -78,6 +100,10 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--changes", type=int, default=CHANGES, help="wrong values at each byte of the real frames, 0..255"
     )
+    parser.add_argument("--cycles", type=int, default=CYCLES, help="of sessions at the chip's pins")
+    parser.add_argument(
+        "--session", type=Path, metavar="FILE", help="run one session, a file of build/verify/fuzz/chip"
+    )
     parser.add_argument("--only", nargs=2, type=int, metavar=("BATCH", "INPUT"), help="one input by itself")
     parser.add_argument("--out", type=Path, default=OUT, help="folder of fuzz.json")
 
@@ -88,6 +114,9 @@ def run(options: Namespace) -> int:
     check_int("inputs", options.inputs, 0, 10**9)
     check_int("seed", options.seed, 0, 2**32 - 1)
     check_int("changes", options.changes, 0, 255)
+    check_int("cycles", options.cycles, 0, 10**12)
+    if options.session:
+        return failures(again(options.session))
     if options.only:
         return show(options.seed, *options.only)
     for mark in folder.glob("at.*"):
@@ -97,13 +126,16 @@ def run(options: Namespace) -> int:
         done = from_json(list[Batch], run_jobs(planned, folder, "fuzz"))
         jobs = sweeps(options.changes, options.seed) if options.changes else []
         swept = from_json(list[Sweep], run_jobs(jobs, folder, "resync"))
+        guided = searches(options.cycles, options.seed, folder) if options.cycles else []
+        searched = from_json(list[Search], run_jobs(guided, folder, "chip"))
     except TerminatedWorkerError:
         where = "; ".join(running(folder))
         return failures([f"a process ended (crash or timeout) at: {where}; seed {options.seed}: see --only"])
-    for job, result in [*zip(planned, done, strict=True), *zip(jobs, swept, strict=True)]:
+    every = zip((*planned, *jobs, *guided), (*done, *swept, *searched), strict=True)
+    for job, result in every:
         if result.failures:
             job.file(folder).unlink(missing_ok=True)  # failures are tried again
-    results = summarize(options.seed, done, swept)
+    results = summarize(options.seed, done, swept) | summarize_chip(options.seed, searched)
     write_step("fuzz", results, options.out)
     return report(results)
 
@@ -125,7 +157,10 @@ def report(results: Mapping[str, BlockResults]) -> int:
             failures += part.failures if part else 0
         if fuzz := entry.fuzz:
             slowest = f", slowest {1e3 * fuzz.seconds_max:.0f} ms" if fuzz.seconds_max else ""
-            print(f"{block}: {fuzz.inputs:,} inputs, {fuzz.failures} failures{slowest}, seed {fuzz.seed}")
+            inputs = f"{fuzz.inputs:,} inputs"
+            if "cycles" in (kinds := fuzz.kinds):
+                inputs = f"{fuzz.inputs:,} sessions, {kinds['cycles']:,} cycles, {kinds['points']:,} points reached"
+            print(f"{block}: {inputs}, {fuzz.failures} failures{slowest}, seed {fuzz.seed}")
         if resync := entry.resync:
             print(f"resynchronisation: {resync.tried:,} wrong bytes, {resync.failures} lose more than a row")
         for point in entry.open_points:

@@ -47,6 +47,7 @@ def figures(by_block: Mapping[str, BlockResults]) -> str:
     mutants = [entry.mutants for entry in entries if entry.mutants]
     stuck = [entry.stuck_at for entry in entries if entry.stuck_at]
     fuzz = [entry.fuzz for entry in entries if entry.fuzz]
+    cycles = sum(f.kinds.get("cycles", 0) for f in fuzz)
     tests = sum(entry.tests.passed for entry in entries)
     lowest = [value for entry in entries for value in entry.coverage.values() if value is not None]
     points = sum(len(entry.open_points) for entry in entries)
@@ -57,6 +58,7 @@ def figures(by_block: Mapping[str, BlockResults]) -> str:
         f"{sum(m.killed for m in mutants):,} of {sum(m.killable for m in mutants):,} mutants killed" if mutants else "",
         *(f"{s.share:.1f} ± {s.margin:.1f} % of stuck-at faults detected" for s in stuck),
         f"{sum(f.inputs for f in fuzz):,} inputs, {sum(f.failures for f in fuzz)} failures" if fuzz else "",
+        f"{cycles:,} cycles of guided sessions" if cycles else "",
         f"{points} open points",
     ]
     return ", ".join(part for part in parts if part)

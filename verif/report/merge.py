@@ -33,6 +33,8 @@ def figures(entry: BlockResults) -> dict[str, float | None]:
         "stuck_at.share": entry.stuck_at and entry.stuck_at.share,
         "open_points": len(entry.open_points),
     }
+    if entry.fuzz and "cycles" in entry.fuzz.kinds:
+        values["fuzz.cycles"] = entry.fuzz.kinds["cycles"]
     for name, part in (("fuzz", entry.fuzz), ("resync", entry.resync)):
         if part:
             values |= {f"{name}.{key}": value for key, value in vars(part).items() if isinstance(value, int)}

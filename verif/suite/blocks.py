@@ -29,6 +29,7 @@ FOLDERS = (
     ("imaging/simulate", ("AspChip",)),
     ("verif/faults", ("AspChip",)),
     ("models/digital/stream", (DECODER,)),
+    ("verif/fuzz/chip", ("AspChip",)),
     ("verif/fuzz", (DECODER,)),
     ("models/parameters", (HOST,)),
     ("rtl/host", (HOST,)),

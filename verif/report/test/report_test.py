@@ -28,6 +28,7 @@ GOOD = BlockResults(
 FUZZ = {
     "Decoder": BlockResults(fuzz=Fuzz(10**6, 0, 1), resync=Resync(10**6, 0, 0, [])),
     "Host": BlockResults(fuzz=Fuzz(10**6, 0, 1)),
+    "AspChip": BlockResults(fuzz=Fuzz(900, 0, 1, kinds={"cycles": 10**7})),
 }
 
 
