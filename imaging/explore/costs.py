@@ -100,12 +100,12 @@ def measured(requests: Sequence[FrameRequest], results: Sequence[GoldenResult]) 
     return {"energy_uj": 1e6 * energy, "bytes": size, "frames_per_s": 1 / seconds}
 
 
-def light_uj(request: FrameRequest, frames: int = 1) -> float:
-    """Electrical energy of the source of time of flight in ``frames`` frames of four taps, as `make sim` counts it."""
+def light_uj(request: FrameRequest) -> float:
+    """Electrical energy of the source of time of flight in a frame of four taps, as `make sim` counts it."""
     sensor, timing = request.sensor, request.frame.exposing
     array, lens = sensor.array, sensor.optics.camera
     lit = array.rows * 4 * timing.t_int * (timing.n_cm + 1) / sensor.chip.f_clk
     power = LightParameters().power(
         sensor.electrical.white_current, array.pitch, array.rows * array.cols, lens.nu_max, lens.magnification
     )
-    return 1e6 * power * lit * frames
+    return 1e6 * power * lit

@@ -37,12 +37,7 @@ def instants(scene: Scene, sensor: SensorParameters, plan: Plan, timing: AmpTimi
 
 
 def moving_currents(
-    scene: Scene,
-    sensor: SensorParameters,
-    plan: Plan,
-    timing: AmpTiming,
-    dtype: str = "float64",
-    regions: Sequence[Region] | None = None,
+    scene: Scene, sensor: SensorParameters, plan: Plan, timing: AmpTiming, regions: Sequence[Region] | None = None
 ) -> npt.NDArray[np.floating]:
     """Photocurrents of a frame, each row's the mean over the time in which it integrates.
 
@@ -50,16 +45,16 @@ def moving_currents(
     rows that integrate in it. A scene that does not move is captured once.
 
     scene: of the sensor's size. sensor: the sensor. plan: plan of the same scene and sensor. timing: of the frame as it
-    exposes. dtype: 'float32' or 'float64'. regions: as in `currents`. Returns (taps, 2, rows, cols), as of `currents`.
+    exposes. regions: as in `currents`. Returns (taps, 2, rows, cols), as of `currents`.
     Raises ParameterError as `currents` and `instants`.
     """
     if scene.moved is None or not scene.speed:
-        return currents(scene, sensor, plan, dtype, regions)
+        return currents(scene, sensor, plan, regions)
     count = instants(scene, sensor, plan, timing)
     read = np.flatnonzero(plan.read.any(1))
     starts, span = windows(timing, read.size)
     begin, total = np.array(starts), starts[-1] + span
-    out = np.zeros((1, 2, *scene.shape), dtype)
+    out = np.zeros((1, 2, *scene.shape))
     ends = np.linspace(0, total, count + 1)
     for first, last in zip(ends[:-1], ends[1:]):
         share = np.clip(np.minimum(begin + span, last) - np.maximum(begin, first), 0, None) / span
@@ -67,6 +62,6 @@ def moving_currents(
         seen[read[share > 0]] = plan.read[read[share > 0]]
         if seen.any():
             now = scene.moved((first + last) / 2 / sensor.chip.f_clk)
-            part = currents(now, sensor, replace(plan, read=seen), dtype, regions)
-            out[:, :, read] += part[:, :, read] * share[:, None].astype(dtype)
+            part = currents(now, sensor, replace(plan, read=seen), regions)
+            out[:, :, read] += part[:, :, read] * share[:, None]
     return out

@@ -43,18 +43,12 @@ def cells(views: int) -> npt.NDArray[np.bool_]:
     return np.hypot(edge[:, None], edge) < 1
 
 
-def integrate(
-    scene: Scene,
-    sensor: SensorParameters,
-    region: Region,
-    waves: Sequence[Wave | None] = (None,),
-    dtype: str = "float64",
-) -> Floats:
+def integrate(scene: Scene, sensor: SensorParameters, region: Region, waves: Sequence[Wave | None] = (None,)) -> Floats:
     """Photocurrents of a region.
 
     scene: of the sensor's size. sensor: the sensor. region: views and pixels. waves: factors of the light, each a
-    separate integral; None is 1. dtype: 'float32' or 'float64'. Returns (waves, 2, rows, cols), 1 = a diode's average
-    in a flat white scene; 0 outside the region.
+    separate integral; None is 1. Returns (waves, 2, rows, cols), 1 = a diode's average in a flat white scene; 0 outside
+    the region.
     """
     field = field_weights(sensor, scene.views if region.views == 1 else region.views)
     field = field.summed if region.views == 1 else field
@@ -65,7 +59,7 @@ def integrate(
     rows = np.flatnonzero(region.pixels.any(1))
 
     def _some(part: Ints) -> Floats:
-        out = np.zeros((len(waves), 2, *scene.shape), dtype)
+        out = np.zeros((len(waves), 2, *scene.shape))
         for v, u in part:
             place = (v - middle) * step, (u - middle) * step
             light, surface = see(*place)

@@ -19,11 +19,9 @@ def psnr_db(estimate: npt.ArrayLike, truth: npt.ArrayLike, peak: float = 1.0) ->
     return None if error == 0 else 10 * float(np.log10(peak**2 / error))
 
 
-def psnr_without_mean_db(
-    estimate: npt.NDArray[np.floating], truth: npt.NDArray[np.floating], peak: float = 1.0
-) -> float | None:
+def psnr_without_mean_db(estimate: npt.NDArray[np.floating], truth: npt.NDArray[np.floating]) -> float | None:
     """Peak signal-to-noise ratio after the removal of both means, for images reconstructed from differences.
 
-    estimate, truth: of one shape. peak: greater than 0. Returns float or None: as in `psnr_db`.
+    estimate, truth: of one shape. Returns float or None: as in `psnr_db`, of peak 1.
     """
-    return psnr_db(estimate - np.mean(estimate), truth - np.mean(truth), peak)
+    return psnr_db(estimate - np.mean(estimate), truth - np.mean(truth))

@@ -147,7 +147,7 @@ def front(points: Iterable[tuple[float, float, str]]) -> list[tuple[float, float
     return best[::-1]
 
 
-def place_labels(axes: Axes, points: Sequence[tuple[float, float, str]], size: float = 7) -> None:
+def place_labels(axes: Axes, points: Sequence[tuple[float, float, str]]) -> None:
     """Write the labels of ``points`` (x, y, label or '') next to them, over no other label, point or line."""
     if not any(label for _, _, label in points):
         return
@@ -165,7 +165,7 @@ def place_labels(axes: Axes, points: Sequence[tuple[float, float, str]], size: f
     for (x, y, label), own in zip(points, taken[: len(points)], strict=True):
         for dx, dy, across, up in PLACES if label else ():
             text = axes.annotate(
-                label, (x, y), (dx, dy), textcoords="offset points", fontsize=size, ha=across, va=up, in_layout=False
+                label, (x, y), (dx, dy), textcoords="offset points", fontsize=7, ha=across, va=up, in_layout=False
             )
             box = text.get_window_extent(canvas.get_renderer())
             free = inside.x0 <= box.x0 and box.x1 <= inside.x1 and inside.y0 <= box.y0 and box.y1 <= inside.y1

@@ -67,14 +67,9 @@ def add_sensor(parser: ArgumentParser, replaced: Mapping[str, str] | None = None
             parser.add_argument(f"--{option}", type=type(default), help=note)
 
 
-def sensor_asked(
-    options: Namespace, varied: Varied, replaced: Mapping[str, str] | None = None, standard: SensorParameters = STANDARD
-) -> SensorParameters:
-    """Return the sensor of the options of `add_sensor`. Raises ParameterError.
-
-    standard: without a file.
-    """
-    sensor = read_sensor(options.sensor) if options.sensor else standard
+def sensor_asked(options: Namespace, varied: Varied, replaced: Mapping[str, str] | None = None) -> SensorParameters:
+    """Return the sensor of the options of `add_sensor`. Raises ParameterError."""
+    sensor = read_sensor(options.sensor) if options.sensor else STANDARD
     parts: dict[str, Any] = {}
     for option, name in (replaced or {}).items():
         value, (part, _, key) = getattr(options, option.replace("-", "_")), name.partition(".")
