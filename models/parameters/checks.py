@@ -15,19 +15,8 @@ class ParameterError(ValueError):
 def check_int(field: str, value: object, low: int, high: int) -> None:
     """Check that a value is an integer in a range.
 
-    Parameters
-    ----------
-    field : str
-        Name in the message.
-    value : object
-        Checked value; bool is not accepted.
-    low, high : int
-        Allowed range, both ends included.
-
-    Raises
-    ------
-    ParameterError
-        For any other value.
+    field: name in the message. value: checked value; bool is not accepted. low, high: allowed range, both ends
+    included. Raises ParameterError for any other value.
     """
     if isinstance(value, bool) or not isinstance(value, Integral) or not low <= int(value) <= high:
         raise ParameterError(f"{field} = {value!r}: must be an integer in {low}..{high}")
@@ -36,21 +25,9 @@ def check_int(field: str, value: object, low: int, high: int) -> None:
 def check_real(field: str, value: object, low: float, high: float, unit: str = "") -> None:
     """Check that a value is a finite real number in a range.
 
-    Parameters
-    ----------
-    field : str
-        Name in the message.
-    value : object
-        Checked value; bool is not accepted.
-    low, high : float
-        Allowed range, both ends included.
-    unit : str
-        Of the value, behind the range in the message; none by default.
-
-    Raises
-    ------
-    ParameterError
-        For any other value.
+    field: name in the message. value: checked value; bool is not accepted. low, high: allowed range, both ends
+    included. unit: of the value, behind the range in the message; none by default. Raises ParameterError for any other
+    value.
     """
     if (
         isinstance(value, bool)
@@ -65,19 +42,8 @@ def check_real(field: str, value: object, low: float, high: float, unit: str = "
 def check_choice(field: str, value: object, allowed: Collection[object]) -> None:
     """Check that a value is one of a few.
 
-    Parameters
-    ----------
-    field : str
-        Name in the message.
-    value : object
-        Checked value.
-    allowed : collection
-        All allowed values, in the order of the message.
-
-    Raises
-    ------
-    ParameterError
-        For any other value.
+    field: name in the message. value: checked value. allowed: all allowed values, in the order of the message. Raises
+    ParameterError for any other value.
     """
     if value not in allowed:
         raise ParameterError(f"{field} = {value!r}: must be one of {', '.join(map(str, allowed))}")

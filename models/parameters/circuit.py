@@ -24,21 +24,9 @@ DRAWN = Path(__file__).with_name("circuit_drawn.json")
 def circuit_converter(table: Path = TABLE) -> ConverterParameters:
     """Imperfections of the lane as the circuit has them.
 
-    Parameters
-    ----------
-    table : path
-        JSON: "parameters" has fields of `ConverterParameters`, in DRAWN the amplifier's alone; "sources" and "errors"
-        (LSB) say where each is from, and how far it is from ngspice's.
-
-    Returns
-    -------
-    ConverterParameters
-        Of the default seed.
-
-    Raises
-    ------
-    ParameterError
-        For a value out of range.
+    table: JSON: "parameters" has fields of `ConverterParameters`, in DRAWN the amplifier's alone; "sources" and
+    "errors" (LSB) say where each is from, and how far it is from ngspice's. Returns ConverterParameters: of the default
+    seed. Raises ParameterError for a value out of range.
     """
     return ConverterParameters(**json.loads(table.read_text(encoding="utf-8"))["parameters"])
 
@@ -46,22 +34,9 @@ def circuit_converter(table: Path = TABLE) -> ConverterParameters:
 def circuit_electrical(electrical: ElectricalParameters, table: Path = TABLE) -> ElectricalParameters:
     """Return a sensor's electrical parameters with noise and mismatch of the column amplifiers.
 
-    Parameters
-    ----------
-    electrical : ElectricalParameters
-        With the read noise of a pixel alone.
-    table : path
-        JSON: "diodes" has RMS values in LSB of a diode: a column's noise, offsets of columns and of pixels.
-
-    Returns
-    -------
-    ElectricalParameters
-        Read noise, offsets of columns and of pixels in electrons.
-
-    Raises
-    ------
-    ParameterError
-        For a value out of range.
+    electrical: with the read noise of a pixel alone. table: JSON: "diodes" has RMS values in LSB of a diode: a column's
+    noise, offsets of columns and of pixels. Returns read noise, offsets of columns and of pixels in electrons. Raises
+    ParameterError for a value out of range.
     """
     diodes = json.loads(table.read_text(encoding="utf-8"))["diodes"]
     electrons = {name: electrical.lsb_electrons * rms for name, rms in diodes.items()}
@@ -110,32 +85,16 @@ class ColumnCurves:
     def delivered(self, diodes: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
         """Return the values of both diodes at the lanes.
 
-        Parameters
-        ----------
-        diodes : ndarray
-            Charges (..., 2), of a full well, 0..1.
-
-        Returns
-        -------
-        ndarray
-            (..., 2), of a full well: monotone cubics through the curves' points, the last one beyond `fills`.
+        diodes: charges (..., 2), of a full well, 0..1. Returns (..., 2), of a full well: monotone cubics through the
+        curves' points, the last one beyond `fills`.
         """
         return self._along(diodes, self.a, self.b) + self._along(diodes[..., ::-1], self.a_other, self.b_other)
 
     def summed(self, diodes: npt.NDArray[np.float64], later: bool = False) -> npt.NDArray[np.float64]:
         """Return each diode's part of a sum.
 
-        Parameters
-        ----------
-        diodes : ndarray
-            Charges (..., 2), of a full well, 0..1.
-        later : bool
-            In a tap after the first.
-
-        Returns
-        -------
-        ndarray
-            (..., 2), of a full well, as `delivered` has it.
+        diodes: charges (..., 2), of a full well, 0..1. later: in a tap after the first. Returns (..., 2), of a full
+        well, as `delivered` has it.
         """
         return self._along(diodes, *((self.later_a, self.later_b) if later else (self.sum_a, self.sum_b)))
 
@@ -148,17 +107,8 @@ class ColumnCurves:
     def samples(self, diodes: npt.NDArray[np.float64], mode: str) -> npt.NDArray[np.float64]:
         """Return a front end's samples of charges: lanes of each diode, or parts of a sum.
 
-        Parameters
-        ----------
-        diodes : ndarray
-            (taps, rows, cols, 2) in LSB, DIODE where a well is full.
-        mode : str
-            edge, ternary and raw: of each diode; image and tof: of sums.
-
-        Returns
-        -------
-        ndarray
-            (taps, rows, cols, 2) in LSB.
+        diodes: (taps, rows, cols, 2) in LSB, DIODE where a well is full. mode: edge, ternary and raw: of each diode;
+        image and tof: of sums. Returns (taps, rows, cols, 2) in LSB.
         """
         fills = diodes / DIODE
         if mode in (*SIGNED, "raw"):
@@ -170,20 +120,8 @@ class ColumnCurves:
 def circuit_columns(table: Path = TABLE) -> ColumnCurves:
     """Return the column amplifiers as the circuit has them.
 
-    Parameters
-    ----------
-    table : path
-        JSON: "columns" has the fields of `ColumnCurves`; DRAWN: as the layout has them.
-
-    Returns
-    -------
-    ColumnCurves
-        At the typical corner.
-
-    Raises
-    ------
-    ParameterError
-        For a value out of range.
+    table: JSON: "columns" has the fields of `ColumnCurves`; DRAWN: as the layout has them. Returns ColumnCurves: at the
+    typical corner. Raises ParameterError for a value out of range.
     """
     written = json.loads(table.read_text(encoding="utf-8"))["columns"]
     values: dict[str, Any] = {

@@ -24,15 +24,7 @@ def phase_thresholds(n_frac: int) -> tuple[int, ...]:
     r + 1/2 >= 2^n_frac * tan(2 pi (k - 1/2) / 256). No tangent there is rational, so there is no tie. The last
     thresholds saturate with the ratio, so that a ratio of 1 always reaches 32.
 
-    Parameters
-    ----------
-    n_frac : int
-        Fraction bits of the ratio, 4..16.
-
-    Returns
-    -------
-    tuple of int
-        T_1..T_32, ascending, 0..2^n_frac - 1.
+    n_frac: fraction bits of the ratio, 4..16. Returns T_1..T_32, ascending, 0..2^n_frac - 1.
     """
     k = np.arange(1, OCTANT + 1)
     edges = 2**n_frac * np.tan(2 * np.pi * (k - 0.5) / TURN) - 0.5
@@ -43,15 +35,8 @@ def phase_thresholds(n_frac: int) -> tuple[int, ...]:
 def cordic_angles(iterations: int) -> tuple[int, ...]:
     """Angles of the CORDIC steps, atan(2^-i) for i = 1..iterations.
 
-    Parameters
-    ----------
-    iterations : int
-        Steps, 4..16, and as many fraction bits.
-
-    Returns
-    -------
-    tuple of int
-        In LSB of the phase with ``iterations`` fraction bits, rounded to nearest.
+    iterations: steps, 4..16, and as many fraction bits. Returns tuple of int: in LSB of the phase with ``iterations``
+    fraction bits, rounded to nearest.
     """
     i = np.arange(1, iterations + 1)
     return tuple(int(a) for a in np.rint(np.arctan(2.0**-i) * (TURN / (2 * np.pi)) * 2**iterations))

@@ -50,20 +50,8 @@ class LineParameters:
 def drawn_lines(table: Path = LINES) -> LineParameters:
     """Row and column lines as extracted from the drawn array.
 
-    Parameters
-    ----------
-    table : path
-        JSON: "parameters" has the fields of `LineParameters`; "lines" each line at the corners of wires.
-
-    Returns
-    -------
-    LineParameters
-        The larger of the two row lines and of the two column lines, typical.
-
-    Raises
-    ------
-    ParameterError
-        For a value out of range.
+    table: JSON: "parameters" has the fields of `LineParameters`; "lines" each line at the corners of wires. Returns the
+    larger of the two row lines and of the two column lines, typical. Raises ParameterError for a value out of range.
     """
     return LineParameters(**json.loads(table.read_text(encoding="utf-8"))["parameters"])
 
@@ -71,22 +59,9 @@ def drawn_lines(table: Path = LINES) -> LineParameters:
 def drawn_electrical(electrical: ElectricalParameters, table: Path = PIXEL) -> ElectricalParameters:
     """Return a sensor's electrical parameters with those of the drawn pixel's circuit and its column.
 
-    Parameters
-    ----------
-    electrical : ElectricalParameters
-        Of which amplifiers, light and time of flight stay.
-    table : path
-        JSON: "parameters" has fields of `ElectricalParameters`; "sources" says where each is from.
-
-    Returns
-    -------
-    ElectricalParameters
-        Full well, swing, dark current, gain FPN, noise and offsets are those that ngspice has.
-
-    Raises
-    ------
-    ParameterError
-        For a value out of range.
+    electrical: of which amplifiers, light and time of flight stay. table: JSON: "parameters" has fields of
+    `ElectricalParameters`; "sources" says where each is from. Full well, swing, dark current, gain FPN, noise and
+    offsets of the result are those that ngspice has. Raises ParameterError for a value out of range.
     """
     return circuit_electrical(replace(electrical, **json.loads(table.read_text(encoding="utf-8"))["parameters"]))
 
@@ -94,17 +69,7 @@ def drawn_electrical(electrical: ElectricalParameters, table: Path = PIXEL) -> E
 def drawn_sources(electrical: ElectricalParameters, table: Path = PIXEL) -> dict[str, str]:
     """Return the sources of the parameters of a sensor with the drawn pixel.
 
-    Parameters
-    ----------
-    electrical : ElectricalParameters
-        Of any sensor.
-    table : path
-        As of `drawn_electrical`.
-
-    Returns
-    -------
-    dict of str to str
-        Source by name; none for other pixels.
+    electrical: of any sensor. table: as of `drawn_electrical`. Returns source by name; none for other pixels.
     """
     if electrical != drawn_electrical(electrical, table):
         return {}
@@ -118,16 +83,9 @@ def drawn_sources(electrical: ElectricalParameters, table: Path = PIXEL) -> dict
 def drawn_curves(table: Path = CURVES) -> Mapping[tuple[float, float, float], npt.NDArray[np.float64]]:
     """Angular responses of drawn pixels along their own gratings, light without polarization.
 
-    Parameters
-    ----------
-    table : path
-        JSON: "curves" has the beta, gamma_deg, alpha, sines and shares of each type.
-
-    Returns
-    -------
-    mapping of (beta, gamma in degrees, alpha in rad) to float64 (3, n)
-        Sine of the angle in air, ascending; share of the light on the pixel that reaches each diode. Gamma is 0 or
-        more: of -gamma they are those of gamma.
+    table: JSON: "curves" has the beta, gamma_deg, alpha, sines and shares of each type. Returns (beta, gamma in
+    degrees, alpha in rad), sine of the angle in air, ascending; share of the light on the pixel that reaches each
+    diode. Gamma is 0 or more: of -gamma they are those of gamma.
     """
     curves = json.loads(table.read_text(encoding="utf-8"))["curves"]
     return {(c["beta"], c["gamma_deg"], c["alpha"]): np.array([c["sines"], *c["shares"]]) for c in curves}

@@ -108,15 +108,7 @@ class CircuitEnergy:
     def frame(self, events: Events) -> dict[str, float]:
         """Energy of the analog parts in one frame.
 
-        Parameters
-        ----------
-        events : Events
-            What the frame did; the columns of pixels that are left out run, too.
-
-        Returns
-        -------
-        dict of str to float
-            Part to energy in J.
+        events: what the frame did; the columns of pixels that are left out run, too. Returns part to energy in J.
         """
         idle = max(events.strobes - events.decisions, 0)
         return {
@@ -188,16 +180,8 @@ class EnergyParameters:
     def frame(self, events: Events) -> dict[str, tuple[float, float]]:
         """Energy of one frame by part, in both readings of the converters' power.
 
-        Parameters
-        ----------
-        events : Events
-            What the frame did.
-
-        Returns
-        -------
-        dict of str to (float, float)
-            Part to energy in J: lower reading (every sample was converted), higher (edges alone were). ``timing`` and
-            ``digital`` are two sources for one part.
+        events: what the frame did. Returns part to energy in J: lower reading (every sample was converted), higher
+        (edges alone were). ``timing`` and ``digital`` are two sources for one part.
         """
         each = 1 / (self.frame_rate * self.pixels)
         every = self.adcs * each / DECISIONS * events.decisions
@@ -214,15 +198,8 @@ class EnergyParameters:
     def total(self, events: Events) -> tuple[float, float]:
         """Energy of one frame, from the lowest to the highest reading of every part.
 
-        Parameters
-        ----------
-        events : Events
-            What the frame did.
-
-        Returns
-        -------
-        (float, float)
-            In J: the digital part is the smaller of its two sources in the first, the larger in the second.
+        events: what the frame did. Returns (float, float): in J: the digital part is the smaller of its two sources in
+        the first, the larger in the second.
         """
         parts = self.frame(events)
         both = parts.pop("timing")[0], parts.pop("digital")[0]
@@ -232,15 +209,7 @@ class EnergyParameters:
     def switched(self, events: DigitalEvents) -> float:
         """Switching energy of the digital part, glitches included.
 
-        Parameters
-        ----------
-        events : DigitalEvents
-            What it did.
-
-        Returns
-        -------
-        float
-            In J.
+        events: what it did. Returns float: in J.
         """
         each = self.cycle, self.row, self.sample, self.decision, self.byte, self.division
         return self.glitches * sum(energy * count for energy, count in zip(each, events, strict=True))
@@ -290,20 +259,9 @@ class LightParameters:
     def field(self, white_current: float, pitch: float, nu_max: float) -> float:
         """Irradiance that the source gives a white field in the focal plane.
 
-        Parameters
-        ----------
-        white_current : float
-            Photocurrent of one diode in A.
-        pitch : float
-            Of the pixels in m.
-        nu_max : float
-            Tangent of the lens's rim at the sensor, the angle theta: irradiance there is sin(theta)**2 times the
-            transmission times the field's own, which is white.
-
-        Returns
-        -------
-        float
-            In W/m^2.
+        white_current: photocurrent of one diode in A. pitch: of the pixels in m. nu_max: tangent of the lens's rim at
+        the sensor, the angle theta: irradiance there is sin(theta)**2 times the transmission times the field's own,
+        which is white. Returns float: in W/m^2.
         """
         sensor = white_current / (self.responsivity * self.fill * pitch**2)
         return sensor * (1 + nu_max**2) / (self.transmission * nu_max**2)
@@ -311,20 +269,7 @@ class LightParameters:
     def power(self, white_current: float, pitch: float, pixels: int, nu_max: float, magnification: float) -> float:
         """Return the electrical power of a source that lights exactly a white field in the focal plane.
 
-        Parameters
-        ----------
-        white_current, pitch : float
-            As in `field`.
-        pixels : int
-            Of the array.
-        nu_max : float
-            As in `field`.
-        magnification : float
-            Of the lens.
-
-        Returns
-        -------
-        float
-            In W.
+        white_current, pitch: as in `field`. pixels: of the array. nu_max: as in `field`. magnification: of the lens.
+        Returns float: in W.
         """
         return self.field(white_current, pitch, nu_max) * pixels * (pitch / magnification) ** 2 / self.efficiency

@@ -14,15 +14,7 @@ EXPOSURE_MAX = 1023  # rows
 def mode_of(code: int) -> str:
     """Mode that the register's code selects.
 
-    Parameters
-    ----------
-    code : int
-        0..7. The chip decodes bit 2 in edge mode alone: 5 to 7 are as 1 to 3.
-
-    Returns
-    -------
-    str
-        One of MODES.
+    code: 0..7. The chip decodes bit 2 in edge mode alone: 5 to 7 are as 1 to 3. Returns one of MODES.
     """
     return MODES[code if code < len(MODES) else code & 3]
 

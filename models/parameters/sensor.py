@@ -75,15 +75,7 @@ class SensorParameters:
     def check_window(self, window: Window) -> None:
         """Check that a window is inside the array.
 
-        Parameters
-        ----------
-        window : Window
-            Tiles to read.
-
-        Raises
-        ------
-        ParameterError
-            For a window that reaches past the last tile.
+        window: tiles to read. Raises ParameterError for a window that reaches past the last tile.
         """
         for axis, count in (("row", self.tile_rows), ("col", self.tile_cols)):
             last = getattr(window, f"{axis}1")

@@ -27,20 +27,8 @@ BYTES_MAX = 1 << 20
 def read_sensor(path: str | Path) -> SensorParameters:
     """Read a sensor file.
 
-    Parameters
-    ----------
-    path : path
-        The file, TOML.
-
-    Returns
-    -------
-    SensorParameters
-        The sensor.
-
-    Raises
-    ------
-    ParameterError
-        For a file that is missing or no TOML, an unknown key, or a value out of range.
+    path: the file, TOML. Returns the sensor. Raises ParameterError for a file that is missing or no TOML, an unknown
+    key, or a value out of range.
     """
     path = Path(path)
     if not path.is_file():
@@ -60,23 +48,9 @@ def read_sensor(path: str | Path) -> SensorParameters:
 def sensor_of(table: Mapping[str, Any], base: SensorParameters = STANDARD) -> SensorParameters:
     """Sensor of nested tables.
 
-    Parameters
-    ----------
-    table : mapping of str to any
-        As in the file: {'array': {'rows': 64}, 'optics': {'m': 0.5, 'camera': {'focus': 0.3}}}. A part may also be the
-        object itself: {'tile': TileParameters.small(2, 2)}.
-    base : SensorParameters
-        Has the values that are left out.
-
-    Returns
-    -------
-    SensorParameters
-        The sensor.
-
-    Raises
-    ------
-    ParameterError
-        For an unknown key, or a value out of range: with what the key means.
+    table: as in the file: {'array': {'rows': 64}, 'optics': {'m': 0.5, 'camera': {'focus': 0.3}}}. A part may also be
+    the object itself: {'tile': TileParameters.small(2, 2)}. base: has the values that are left out. Returns the sensor.
+    Raises ParameterError for an unknown key, or a value out of range: with what the key means.
     """
     return _part(base, table, "")
 
@@ -84,20 +58,8 @@ def sensor_of(table: Mapping[str, Any], base: SensorParameters = STANDARD) -> Se
 def sensor_text(sensor: SensorParameters = STANDARD) -> str:
     """Text of a sensor file.
 
-    Parameters
-    ----------
-    sensor : SensorParameters
-        The sensor.
-
-    Returns
-    -------
-    str
-        TOML, every key with its meaning, unit and range; None is a comment.
-
-    Raises
-    ------
-    ParameterError
-        For a pixel type with a response that does not name its source: a function has no text.
+    sensor: the sensor. Returns TOML, every key with its meaning, unit and range; None is a comment. Raises
+    ParameterError for a pixel type with a response that does not name its source: a function has no text.
     """
     return "# A sensor of Talbot. Any key may be left out: it has the value of `talbot sensor` then.\n" + "".join(
         line + "\n" for line in _lines(sensor, "")
@@ -108,17 +70,8 @@ def sensor_text(sensor: SensorParameters = STANDARD) -> str:
 def keys(kind: type[Any] = SensorParameters, prefix: str = "") -> dict[str, str]:
     """Every key of the file.
 
-    Parameters
-    ----------
-    kind : type
-        Class of the part.
-    prefix : str
-        Its name with a dot behind it, '' for the whole.
-
-    Returns
-    -------
-    dict of str to str
-        Full name ('optics.camera.focus') to meaning, unit and range.
+    kind: class of the part. prefix: its name with a dot behind it, '' for the whole. Returns full name
+    ('optics.camera.focus') to meaning, unit and range.
     """
     meanings: dict[str, str] = {}
     for name, text in _meanings(kind).items():
@@ -130,17 +83,8 @@ def keys(kind: type[Any] = SensorParameters, prefix: str = "") -> dict[str, str]
 def values(part: Any, prefix: str = "") -> dict[str, Any]:
     """Values of the fields that are no tables.
 
-    Parameters
-    ----------
-    part : SensorParameters or a part of it
-        The sensor.
-    prefix : str
-        The part's name with a dot behind it, '' for the whole.
-
-    Returns
-    -------
-    dict of str to any
-        Full name ('optics.camera.focus') to value.
+    part: the sensor. prefix: the part's name with a dot behind it, '' for the whole. Returns full name
+    ('optics.camera.focus') to value.
     """
     out: dict[str, Any] = {}
     for item in fields(part):
@@ -152,19 +96,8 @@ def values(part: Any, prefix: str = "") -> dict[str, Any]:
 def nearest(key: str, known: Iterable[str], cutoff: float = 0.7) -> str:
     """Return the hint of an error for an unknown key.
 
-    Parameters
-    ----------
-    key : str
-        The key.
-    known : iterable of str
-        Names that there are, full ones perhaps.
-    cutoff : float
-        How like the key the nearest must be, 0..1.
-
-    Returns
-    -------
-    str
-        'did you mean ...?', or all names.
+    key: the key. known: names that there are, full ones perhaps. cutoff: how like the key the nearest must be, 0..1.
+    Returns 'did you mean ...?', or all names.
     """
     known = [*known]
     ends = {name.rpartition(".")[2]: name for name in known}

@@ -28,19 +28,8 @@ class Sourced(NamedTuple):
 def sourced(default: Any, source: str, unit: str = "") -> Any:
     """Dataclass field with a default and its source.
 
-    Parameters
-    ----------
-    default : any
-        The default.
-    source : str
-        Bibliography key and place, 'our choice', or 'assumed'.
-    unit : str
-        Of the value, '' of a pure number.
-
-    Returns
-    -------
-    any
-        As of `dataclasses.field`.
+    default: the default. source: bibliography key and place, 'our choice', or 'assumed'. unit: of the value, '' of a
+    pure number. Returns any: as of `dataclasses.field`.
     """
     return field(default=default, metadata={"source": source, "unit": unit})
 
@@ -48,15 +37,8 @@ def sourced(default: Any, source: str, unit: str = "") -> Any:
 def sources(parameters: Any) -> list[Sourced]:
     """Values of a parameter object and the sources of their defaults, of the fields that have one.
 
-    Parameters
-    ----------
-    parameters : dataclass
-        Instance of a class of which some fields are `sourced`.
-
-    Returns
-    -------
-    list of Sourced
-        In the order of the fields.
+    parameters: instance of a class of which some fields are `sourced`. Returns list of Sourced: in the order of the
+    fields.
     """
     rows = []
     for item in (item for item in fields(parameters) if "source" in item.metadata):

@@ -108,15 +108,7 @@ class TileParameters:
     def small(cls, rows: int, cols: int) -> Self:
         """Tile of the first pixel types, in the order that they have in the thesis's tile.
 
-        Parameters
-        ----------
-        rows, cols : int
-            Pixels, 1..4 and 1..6.
-
-        Returns
-        -------
-        TileParameters
-            With rows * cols pixel types.
+        rows, cols: pixels, 1..4 and 1..6. Returns TileParameters: with rows * cols pixel types.
         """
         check_int("tile rows", rows, 1, 4)
         check_int("tile cols", cols, 1, 6)
@@ -127,20 +119,8 @@ class TileParameters:
     def of_rows(cls, rows: Iterable[Iterable[PixelType]]) -> Self:
         """Tile of these pixel types, as they stand.
 
-        Parameters
-        ----------
-        rows : iterable of iterable of PixelType
-            1..4 rows of 1..6 types each; a type may stand in several places.
-
-        Returns
-        -------
-        TileParameters
-            Its types in this order, row by row.
-
-        Raises
-        ------
-        ParameterError
-            For rows of different lengths, or too many.
+        rows: 1..4 rows of 1..6 types each; a type may stand in several places. Returns TileParameters: its types in
+        this order, row by row. Raises ParameterError for rows of different lengths, or too many.
         """
         table = [tuple(row) for row in rows]
         widths = {len(row) for row in table}
@@ -156,15 +136,7 @@ class TileParameters:
     def type_map(self, rows: int, cols: int) -> npt.NDArray[np.int64]:
         """Pixel type of every pixel.
 
-        Parameters
-        ----------
-        rows, cols : int
-            Size of the array in pixels.
-
-        Returns
-        -------
-        int64 (rows, cols)
-            Index into `types`; it cannot be written.
+        rows, cols: size of the array in pixels. Returns (rows, cols), index into `types`; it cannot be written.
         """
         return _type_map(self.order, self.cols, rows, cols)
 

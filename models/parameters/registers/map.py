@@ -134,32 +134,15 @@ class RegisterMap:
     def with_resets(self, resets: Mapping[str, int]) -> "RegisterMap":
         """Return the same map with other values after reset.
 
-        Parameters
-        ----------
-        resets : mapping of str to int
-            Key to value, as `array_resets` has them.
-
-        Returns
-        -------
-        RegisterMap
-            The map of a chip of another sensor.
+        resets: key to value, as `array_resets` has them. Returns the map of a chip of another sensor.
         """
         return RegisterMap(tuple(replace(f, reset=resets.get(f.key, f.reset)) for f in self.fields))
 
     def image(self, fields: Iterable[Field], values: Mapping[str, int] | None = None) -> dict[int, int]:
         """Contents of the bytes that hold some fields.
 
-        Parameters
-        ----------
-        fields : iterable of Field
-            Fields to store.
-        values : mapping of str to int, optional
-            Key to value, cut to the field's width; the reset value where a key is missing.
-
-        Returns
-        -------
-        dict of int to int
-            Address to byte.
+        fields: fields to store. values: key to value, cut to the field's width; the reset value where a key is missing.
+        Returns address to byte.
         """
         values = values or {}
         out: dict[int, int] = {}
@@ -172,10 +155,7 @@ class RegisterMap:
     def writable(self) -> dict[int, int]:
         """Bits that a host can set in the configuration.
 
-        Returns
-        -------
-        dict of int to int
-            Address to mask of the byte.
+        Returns address to mask of the byte.
         """
         return self.image(self.configuration, {f.key: -1 for f in self.configuration})
 
@@ -212,15 +192,7 @@ def _fields(register: "RegNode") -> Iterator[Field]:
 def compiled(resets: Mapping[str, int] | None = None) -> "AddrmapNode":
     """Compile asp_chip.rdl: the chip's address map, for exporters of other formats.
 
-    Parameters
-    ----------
-    resets : mapping of str to int, optional
-        Values after reset that replace those of the source, by field.
-
-    Returns
-    -------
-    AddrmapNode
-        The chip.
+    resets: values after reset that replace those of the source, by field. Returns the chip.
     """
     from systemrdl.compiler import RDLCompiler  # imported where it is needed: it is slow
 
@@ -275,17 +247,8 @@ def array_resets(
 ) -> dict[str, int]:
     """Values after reset that follow the array: the identity and the window.
 
-    Parameters
-    ----------
-    rows, cols, lanes, tile_rows, tile_cols : int
-        Pixels, converters, pixels of a tile.
-    divider : str
-        One of DIVIDERS, or NO_DIVIDER.
-
-    Returns
-    -------
-    dict of str to int
-        By field.
+    rows, cols, lanes, tile_rows, tile_cols: pixels, converters, pixels of a tile. divider: one of DIVIDERS, or
+    NO_DIVIDER. Returns dict of str to int: by field.
     """
     return {
         "row1": -(-rows // tile_rows) - 1,
