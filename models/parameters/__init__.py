@@ -33,6 +33,8 @@ from talbot.models.parameters.room import RoomParameters
 from talbot.models.parameters.sensor import SensorParameters
 from talbot.models.parameters.sensor_file import STANDARD, read_sensor, sensor_of, sensor_text
 from talbot.models.parameters.sources import sources
+from talbot.models.parameters.spectra import LIGHTS, SURFACES, Spectrum, light, surface
+from talbot.models.parameters.spectral import SpectralParameters
 from talbot.models.parameters.tile import PixelType, Response, TileParameters
 
 __all__ = [
@@ -48,6 +50,7 @@ __all__ = [
     "FOCUS_MAX",
     "LANES",
     "LIFE_SIZE",
+    "LIGHTS",
     "LightParameters",
     "LineParameters",
     "MODES",
@@ -56,6 +59,7 @@ __all__ = [
     "SPI_INPUTS",
     "SHORT_TIMING",
     "SIGNED",
+    "SURFACES",
     "STANDARD",
     "AmpTiming",
     "ArrayParameters",
@@ -72,6 +76,8 @@ __all__ = [
     "Response",
     "RoomParameters",
     "SensorParameters",
+    "SpectralParameters",
+    "Spectrum",
     "TileParameters",
     "Window",
     "check_choice",
@@ -84,9 +90,11 @@ __all__ = [
     "drawn_curves",
     "drawn_electrical",
     "drawn_lines",
+    "light",
     "mode_of",
     "read_sensor",
     "sensor_of",
     "sensor_text",
     "sources",
+    "surface",
 ]

@@ -9,6 +9,7 @@ from talbot.models.parameters.chip import ChipParameters
 from talbot.models.parameters.electrical import ConverterParameters, ElectricalParameters
 from talbot.models.parameters.frame import Window
 from talbot.models.parameters.optics import OpticsParameters
+from talbot.models.parameters.spectral import SpectralParameters
 from talbot.models.parameters.tile import TileParameters
 
 CORNER = 1.75  # tangent under which a lens at most sees the array's corners, and these the lens: 60 degrees
@@ -35,6 +36,8 @@ class SensorParameters:
         Imperfections of the converters.
     chip : ChipParameters
         Build-time parameters of the digital chip.
+    spectral : SpectralParameters
+        Gratings, quantum efficiency and filter by wavelength.
     """
 
     tile: TileParameters = TileParameters()
@@ -43,6 +46,7 @@ class SensorParameters:
     electrical: ElectricalParameters = ElectricalParameters()
     converter: ConverterParameters = ConverterParameters()
     chip: ChipParameters = ChipParameters()
+    spectral: SpectralParameters = SpectralParameters()
 
     def __post_init__(self) -> None:
         if max(self.tile_rows, self.tile_cols) > 256:
