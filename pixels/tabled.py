@@ -82,18 +82,19 @@ def rows(alpha: float, fit: Fit) -> tuple[int, int]:
     return first, (first + 2) % 4
 
 
-def _nearest(beta: float, pixel: str) -> float:
+def nearest_beta(beta: float, pixel: str) -> float:
+    """Return the beta of ``pixel``'s gratings that is nearest to ``beta``."""
     return min(gratings(pixel).geometries, key=lambda b: abs(b - beta))
 
 
 def _betas(sensor: SensorParameters, pixel: str) -> list[float]:
     betas = {kind.beta for kind in sensor.tile.types if kind.response is None}
     for beta in betas:
-        near = _nearest(beta, pixel)
+        near = nearest_beta(beta, pixel)
         if abs(near - beta) > REACHED * near:
             known = ", ".join(f"{b:g}" for b in gratings(pixel).geometries)
             raise ParameterError(f"beta = {beta:g}: must be one of {known}, which pixel = {pixel!r} has")
-    return sorted({_nearest(beta, pixel) for beta in betas})
+    return sorted({nearest_beta(beta, pixel) for beta in betas})
 
 
 def _table(pixel: str, beta: float, note: Callable[[str], None] = lambda text: None) -> Path:
@@ -123,7 +124,7 @@ def _response(kind: PixelType, pixel: str) -> TableResponse:
     if pixel in DRAWN_CURVES:
         values = _drawn(kind, pixel, along, across)
     else:
-        design, table = _loaded(pixel, _nearest(kind.beta, pixel))
+        design, table = _loaded(pixel, nearest_beta(kind.beta, pixel))
         values = table[[*rows(kind.alpha, design.fit)]]
     return TableResponse(along, across, np.maximum(values, 0.0), kind.gamma, f"{SOURCE}{pixel}")
 
@@ -134,7 +135,7 @@ def _drawn(kind: PixelType, pixel: str, along: Floats, across: Floats) -> Floats
     Its curve is solved for rays across the lines. Of others counts how far they walk in that direction on their way
     through the oxide, which is where the phase comes from.
     """
-    chosen, beta = gratings(pixel), _nearest(kind.beta, pixel)
+    chosen, beta = gratings(pixel), nearest_beta(kind.beta, pixel)
     curves = {(g, a): curve for (b, g, a), curve in drawn_curves(DRAWN_CURVES[pixel]).items() if b == beta}
     angles = sorted({g for g, _ in curves})
     if abs(kind.gamma_deg) not in angles:

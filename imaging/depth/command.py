@@ -14,6 +14,7 @@ from talbot.models.parameters import LIFE_SIZE, STANDARD, ElectricalParameters
 from talbot.models.pixel.time_of_flight import SPEED_OF_LIGHT
 
 FIXED = {"mode": "tof", "views": "auto"}  # of the capture: as many as `capture` takes
+FIXED |= {"light": None, "reflectance": "gray", "irradiance": None}  # the source's
 STEPS = ("setup", "capture", "build", "frames", "field", "unwrap", "report")
 F_MOD, CONTRAST, AMBIENT = 100e6, 0.7, 0.2
 FILE = "or of the sensor file"

@@ -23,9 +23,11 @@ from talbot.models.parameters import (
     COLS_MAX,
     EXPOSURE_MAX,
     LANES,
+    LIGHTS,
     MODES,
     ROWS_MAX,
     STANDARD,
+    SURFACES,
     CameraParameters,
     ParameterError,
     SensorParameters,
@@ -57,6 +59,7 @@ NUMBERS = (
     Number("cols", "pixels", 1, COLS_MAX, note=VIEWS),
     Number("decimation", "log2 of the tile step", 0, 3, "0"),
     Number("lux", "illuminance of white, except in time of flight", 1e-3, 1e6, "500", kind=float),
+    Number("irradiance", "of white in W/m2, instead of lux, with light", 1e-6, 1e4, note="by lux", kind=float),
     Number("exposure", "rows by which the reset pointer leads", 0, EXPOSURE_MAX, "auto", "auto", "as the light asks"),
     Number("lanes", "converters, a power of two", min(LANES), max(LANES), note=OF_SENSOR["lanes"]),
     Number("noise", "times the physical noise", 0, 100, "1.0", kind=float),
@@ -117,7 +120,11 @@ def add_frame_arguments(
     add_numbers("threshold", "rows", "cols")
     add("--types", default="all", help="pixel types: 0x<mask>, numbers 0..23, or groups " + ", ".join(text.TYPE_GROUPS))
     add("--window", default="full", help="tiles to read, inclusive: row0:row1,col0:col1")
-    add_numbers("decimation", "lux", "exposure", "lanes")
+    add_numbers("decimation", "lux", "irradiance")
+    lights, surfaces = ", ".join((*LIGHTS, "laser:NM")), ", ".join(SURFACES)
+    add("--light", help=f"spectrum of the light, one of {lights} (default: one wavelength, that of the pixels)")
+    add("--reflectance", default="gray", help=f"of all surfaces of the scene, with light: one of {surfaces}")
+    add_numbers("exposure", "lanes")
     add("--phase", action="store_true", help="tof mode: phase and amplitude from the chip's divider")
     add("--converter", help="circuit (INL, offset, noise as ngspice has them), or ideal (default: circuit)")
     add(
@@ -217,7 +224,7 @@ def request_of(a: Namespace, sensor: SensorParameters | None = None, sequence: b
     rows = numbers.get("rows", sensor.array.rows)
     known = read_calibration(typed["calibration"]) if typed.get("calibration") else None
     waves = (0, min(3, rows - 1)) if a.waves == "1" else span("waves", a.waves, 0, rows - 1) if a.waves else None
-    names = ("scene", "depth", "mode", "phase", "out", "waves_format", "converter")
+    names = ("scene", "depth", "mode", "phase", "out", "waves_format", "converter", "light", "reflectance")
     plain = {name: typed[name] for name in names if name in typed}
     if field is not None:
         plain["scene"] = field

@@ -189,7 +189,7 @@ def exposure_of(result: GoldenResult) -> dict[str, Any]:
     rows = np.flatnonzero(result.golden.read.any(1)) if measured else []
     light: dict[str, float] = {}
     if request.frame.mode != "tof":
-        light = request.room.white(sensor.array.pitch, sensor.optics.nu_max)._asdict()
+        light = request.room.white(sensor.array.pitch, sensor.optics.nu_max, spectral=sensor.spectral)._asdict()
     electrons = e.white_current * cycles[0] / sensor.chip.f_clk / ELEMENTARY_CHARGE
     held = min(electrons, e.full_well)
     return (

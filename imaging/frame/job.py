@@ -77,7 +77,7 @@ def see(request: FrameRequest) -> tuple[Scene, Plan]:
 
 def _loaded(request: FrameRequest) -> Scene:
     """Return the scene; that of a request which names none is kept, with the functions that render it."""
-    sampling = Sampling.of(request.sensor)
+    sampling = replace(Sampling.of(request.sensor), light=request.wavelengths)
     if request.scene == FrameRequest.scene and request.depth is None:
         return Scene(**kept("scenes", _parts, request.scene, sampling))
     return load(request.scene, sampling, request.depth)

@@ -20,6 +20,7 @@ from talbot.imaging.frame.report import Views, render
 from talbot.imaging.frame.result import FrameResult, GoldenResult, in_codes
 from talbot.imaging.simulate.frame import WAVES
 from talbot.models.parameters import (
+    LIGHTS,
     SIGNED,
     STANDARD,
     CircuitEnergy,
@@ -248,9 +249,15 @@ def assumptions(result: FrameResult) -> list[Sourced]:
         "circuits": CircuitEnergy(),
         "light source": LightParameters(),
     }
+    lamp, of_lamp = result.request.room.spectrum, ("efficacy", "wavelength", "quantum_efficiency")
+    if lamp is not None:
+        parts["spectral"] = sensor.spectral
     drawn = drawn_sources(electrical)
     rows = [row._replace(name=f"{part} {row.name}") for part, group in parts.items() for row in sources(group)]
     rows = [row._replace(source=drawn.get(row.name.removeprefix("electrical "), row.source)) for row in rows]
+    if lamp is not None:  # these follow from the spectrum
+        rows = [row for row in rows if row.name not in [f"room {name}" for name in of_lamp]]
+        rows.append(Sourced("room spectrum", lamp.name, "", "[CIE15]" if lamp.name in LIGHTS else "set"))
     circuit = sensor.converter == STANDARD.converter
     rows += [
         row._replace(name=f"converter {row.name}", source=source if circuit else row.source)

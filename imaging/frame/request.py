@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from talbot.base.paths import results_of
+from talbot.base.progress import line
 from talbot.imaging.frame.arguments import named
 from talbot.imaging.simulate.frame import WAVES
 from talbot.models import parameters
@@ -80,6 +81,14 @@ class FrameRequest:
         return self.sensor if self.frame.mode == "tof" else self.room.lit(self.sensor)
 
     @property
+    def wavelengths(self) -> tuple[tuple[float, float], ...]:
+        """Wavelengths of the light in m and their weights in the electrons; none of light without a spectrum."""
+        if self.room.spectrum is None:
+            return ()
+        nodes, weights = self.sensor.spectral.electrons(self.room.spectrum, self.room.reflectance)
+        return tuple(zip(nodes.tolist(), weights.tolist(), strict=True))
+
+    @property
     def of_frame(self) -> "FrameRequest":
         """Fields that decide a frame of a loaded scene: kept results depend on no file."""
         return replace(self, scene=self.name, depth=None, waves=None, waves_format=WAVES[0], out=None)
@@ -103,6 +112,9 @@ def request(
     converter: str | None = None,
     sensor: SensorParameters = STANDARD,
     lux: float = RoomParameters().illuminance,
+    light: str | None = None,
+    reflectance: str = "gray",
+    irradiance: float | None = None,
     exposure: int | None = None,
     timing: Mapping[str, int] | None = None,
     window: Cut | None = None,
@@ -111,30 +123,49 @@ def request(
 ) -> FrameRequest:
     """Return a FrameRequest for ``sensor``, with these fields replaced: rows, cols, lanes, camera, converter.
 
-    converter: circuit or ideal. lux: illuminance of white. timing: phases that are not the default, fields of AmpTiming
-    but exposure. exposure: rows by which the reset pointer leads, or None for as many as give the signal of
-    RoomParameters. Where it leads, t_int is so long that no row waits for the converters; a t_int in timing stays as it
-    is, and the pointer then leads by no row where exposure is None. In time of flight it never leads.
+    converter: circuit or ideal. lux: illuminance of white. light: name of its spectrum (`parameters.light`), in which
+    the pixels then respond, None for one wavelength. reflectance: name of the scene's surfaces. irradiance: of white in
+    W/m^2, instead of lux. timing: phases that are not the default, fields of AmpTiming but exposure. exposure: rows by
+    which the reset pointer leads, or None for as many as give the signal of RoomParameters. Where it leads, t_int is so
+    long that no row waits for the converters; a t_int in timing stays as it is, and the pointer then leads by no row
+    where exposure is None. In time of flight it never leads.
     window: the window to read, from the full one (all of it).
     rest: fields of FrameRequest and FrameParameters. Raises ParameterError.
     """
     parameters.check_choice("converter", converter, (None, *CONVERTERS))
-    sensor = SensorParameters(
-        sensor.tile,
-        _with(sensor.array, rows=rows, cols=cols),
-        _with(sensor.optics, camera=camera),
-        sensor.electrical,
-        CONVERTERS[converter] if converter else sensor.converter,
-        _with(sensor.chip, lanes=lanes),
+    sensor = replace(
+        sensor,
+        array=_with(sensor.array, rows=rows, cols=cols),
+        optics=_with(sensor.optics, camera=camera),
+        converter=CONVERTERS[converter] if converter else sensor.converter,
+        chip=_with(sensor.chip, lanes=lanes),
     )
     full = sensor.full_window
     options = {field.name: rest.pop(field.name) for field in fields(FrameRequest) if field.name in rest}
     phases = dict(timing or {})
     frame = FrameParameters(window=window(full) if window else full, mask=mask, timing=AmpTiming(**phases), **rest)
-    frame_request = FrameRequest(sensor=sensor, frame=frame, room=RoomParameters(illuminance=lux), **options)
+    lamp = parameters.light(light) if light is not None else None
+    room = RoomParameters(illuminance=lux, spectrum=lamp, reflectance=reflectance, irradiance=irradiance)
+    frame_request = FrameRequest(sensor=_in_light(sensor, room, frame.mode), frame=frame, room=room, **options)
     if isinstance(frame_request.scene, LightField):
         _tell_changes(frame_request.scene, sensor.array.rows, sensor.array.cols)
     return replace(frame_request, frame=replace(frame, timing=_timing(frame_request, exposure, "t_int" in phases)))
+
+
+def _in_light(sensor: SensorParameters, room: RoomParameters, mode: str) -> SensorParameters:
+    """Return the sensor as its pixels respond in the light of a frame. Raises ParameterError."""
+    if room.spectrum is None:
+        if sensor.spectral.filter_width and mode != "tof":
+            width = sensor.spectral.filter_width
+            raise ParameterError(f"spectral.filter_width = {width!r}: must be 0 without a light (light = d65)")
+        return sensor
+    if mode == "tof":
+        raise ParameterError(
+            f"light = {room.spectrum.name!r}: must be left out with mode = tof, which has its source's"
+        )
+    from talbot.pixels.lit import in_light  # it imports the solver
+
+    return in_light(sensor, room.spectrum, room.reflectance, line)
 
 
 def light_field_of(scene: str | LightField) -> LightField | None:

@@ -34,6 +34,8 @@ class Sampling:
         Of the pixels, 1e-7..1e-3 m.
     dtype : str
         'float32' or 'float64', the type of the light field.
+    light : tuple of (float, float)
+        Wavelengths in m and their weights in the electrons, of sum 1; empty is one wavelength, a scene's own.
     """
 
     rows: int = 384
@@ -42,6 +44,7 @@ class Sampling:
     camera: CameraParameters = CameraParameters()
     pitch: float = ArrayParameters.pitch
     dtype: str = "float64"
+    light: tuple[tuple[float, float], ...] = ()
 
     def __post_init__(self) -> None:
         check_int("rows", self.rows, 1, 1536)

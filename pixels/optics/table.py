@@ -33,3 +33,14 @@ def angle_table(
         note(f"{geometry.diffraction} at {geometry.period_um:g} um, {1e3 * wavelength:.0f} nm")
         shares.append(respond(geometry, rays[0], wavelength, rays[1], ORDERS).unpolarized[0])
     return np.mean(shares, 0).reshape(4, *along.shape)
+
+
+def spectral_curves(
+    geometry: PixelGeometry, wavelengths_um: Floats, note: Callable[[str], None] = lambda text: None
+) -> Floats:
+    """Shares (wavelengths, 2, 4, along) of the light on the pixel for rays in the plane across the lines.
+
+    Polarizations and diodes as in `Response`.
+    """
+    note(f"{geometry.diffraction} at {geometry.period_um:g} um, {len(wavelengths_um)} wavelengths")
+    return respond(geometry, np.deg2rad(along_degrees()), wavelengths_um, orders=ORDERS).shares

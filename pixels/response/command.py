@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from talbot.base.progress import Steps
 from talbot.base.sensor import Varied, add_sensor, labelled, sensor_asked
-from talbot.models.parameters import ParameterError, check_choice
+from talbot.models.parameters import LIGHTS, ParameterError, check_choice, light
 from talbot.pixels.optics.geometry import PITCHES_UM
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ NUMBERS = {
     "pitch_um": ("pitch of the pixels", *PITCHES_UM),
 }
 VARIED = Varied(
-    used=("tile", "array.pitch", "optics.camera", "optics.views"),
+    used=("tile", "array.pitch", "optics.camera", "optics.views", "spectral"),
     limits={"array.pitch": (1e-6 * PITCHES_UM[0], 1e-6 * PITCHES_UM[1])},
 )
 WAVELENGTH_UM = 0.55
@@ -41,6 +41,8 @@ def add_arguments(parser: ArgumentParser) -> None:
     for name, said in (METALS | numbers).items():
         parser.add_argument(f"--{name.replace('_', '-')}", help=f"{said}, {note}")
     parser.add_argument("--wavelength-um", help=f"of light, 0.35..1, {note} (default: {WAVELENGTH_UM})")
+    lights = ", ".join((*LIGHTS, "laser:NM"))
+    parser.add_argument("--light", help=f"over which the response is averaged, one of {lights}, {note}")
     parser.add_argument(
         "--out", type=Path, help="folder for the results (default: build/pixel/<pdk>, or build/pixel/one)"
     )
@@ -61,9 +63,10 @@ def run(options: Namespace) -> int:
             raise ParameterError("beta = 0: must be greater than 0, for gratings")
     check_choice("kind", options.kind, (*KINDS, "all"))
     stack = optical_stack(options.pdk, options.heights)
+    lamp = None if options.light is None else light(options.light)
     if chosen := _one(options, sensor.array.pitch_um):
         out = options.out or RESULTS / "pixel" / labelled("one", options)
-        _print_one(one.make(*chosen, out), out)
+        _print_one(one.make(*chosen, out, lamp, sensor.spectral), out)
         return 0
     kinds = offered(stack, KINDS if options.kind == "all" else (options.kind,), sensor.array.pitch_um)
     out = options.out or RESULTS / "pixel" / labelled(options.pdk, options)
@@ -80,7 +83,11 @@ def _one(options: Namespace, pitch_um: float) -> "tuple[PixelGeometry, float] | 
 
     given = {name: getattr(options, name) for name in (*METALS, *NUMBERS) if getattr(options, name) is not None}
     if not given and options.wavelength_um is None:
+        if options.light is not None:
+            raise ParameterError(f"light = {options.light!r}: must be with a geometry, the search is at one wavelength")
         return None
+    if options.light is not None and options.wavelength_um is not None:
+        raise ParameterError(f"wavelength_um = {options.wavelength_um}: must be left out with light")
     kind = "amplitude" if options.kind == "all" else options.kind
     values: dict[str, Any] = {"analyzer": None} if kind == "interleaved" else {}
     values |= {"pitch_um": pitch_um}
@@ -90,8 +97,8 @@ def _one(options: Namespace, pitch_um: float) -> "tuple[PixelGeometry, float] | 
 
 
 def _print_one(s: dict[str, Any], folder: Path) -> None:
-    light = f"{1e3 * s['wavelength_um']:.0f} nm"
-    print(f"{s['process']}: {s['kind']} pixel, {_metals(s)}, period {s['period_um']:g} um, at {light}")
+    seen = f"in {s['light']}" if s["light"] else f"at {1e3 * s['wavelength_um']:.0f} nm"
+    print(f"{s['process']}: {s['kind']} pixel, {_metals(s)}, period {s['period_um']:g} um, {seen}")
     print(f"  alpha {s['alpha']:.2f} rad, beta {s['beta']:.1f}, {_figures(s)}")
     print(f"  {s['wall_s']:.1f} s; look at {folder / 'response.npz'}")
 

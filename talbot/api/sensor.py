@@ -58,6 +58,9 @@ class Settings(TypedDict, total=False):
     phase: bool
     noise_floor: int
     lux: float
+    light: str | None
+    reflectance: str
+    irradiance: float | None
     exposure: int | None
     timing: Mapping[str, int]
     overlap: bool
@@ -160,6 +163,9 @@ class Sensor:
         threshold: in edge mode, |code| below it is left out, 0..127 (10). phase: in tof mode, phase and amplitude from
         the chip's divider (False); noise_floor: amplitude below which a phase is not valid, 0..255 (0).
         lux: illuminance of white, 0.001..1e6 (500); time of flight has another light, white_current.
+        light: its spectrum, 'd65', 'a', 'led', 'e' or 'laser:650' (None: one wavelength, that of the pixels).
+        reflectance: of all surfaces, 'gray', 'red', 'green' or 'blue'. irradiance: of white in W/m2, 1e-6..1e4,
+        instead of lux.
         exposure: rows by which the reset pointer leads, 0..1023, or None for as many as that light asks for.
         timing: cycles of the amplifier's phases, {'t_int': 512, ...}: t_reset, t_int, t_cm, t_settle, t_read, t_guard,
         1..65535, and n_cm, common-mode resets, 0..255; with t_int given, an exposure of None is 0 rows.

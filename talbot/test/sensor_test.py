@@ -36,6 +36,7 @@ ODD = {
     "electrical.ambient_current": "1e-12",
     "chip.lanes": "4",
     "chip.divider": '"cordic"',
+    "spectral.filter_width": "4e-8",
 }
 
 

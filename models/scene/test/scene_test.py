@@ -131,3 +131,12 @@ def test_bad_scenes(changes, field):
 def test_bad_samplings(changes):
     with pytest.raises(ParameterError, match=next(iter(changes))):
         Sampling(**changes)
+
+
+def test_a_stressed_sheet_in_two_wavelengths_has_their_mean():
+    """Retardance falls with the wavelength; the light that is left polarized adds up."""
+    lines = ((550e-9, 1.0),), ((450e-9, 1.0),), ((550e-9, 0.3), (450e-9, 0.7))
+    own, blue, both = (load("stress", Sampling(24, 30, light=light)).polarization for light in lines)
+    np.testing.assert_allclose(load("stress", Sampling(24, 30)).polarization, own)
+    np.testing.assert_allclose(both, 0.3 * own + 0.7 * blue)
+    assert np.abs(own - blue).max() > 0.1
