@@ -26,6 +26,7 @@ from talbot.imaging.tradeoff import (
     polarization,
     precision,
     pupil,
+    spectra,
     threshold,
     views,
 )
@@ -68,6 +69,7 @@ SWEEPS: dict[str, Sweep] = {
     "light_field_sensor": light_field_sensor,
     "depth": depth,
     "polarization": polarization,
+    "spectra": spectra,
 }
 
 

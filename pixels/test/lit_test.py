@@ -1,5 +1,6 @@
 """Pixels in light with a spectrum, against sums over lasers and over the solver's wavelengths."""
 
+from argparse import ArgumentParser
 from dataclasses import replace
 
 import numpy as np
@@ -13,6 +14,7 @@ from talbot.pixels import lit
 from talbot.pixels.designs import gratings
 from talbot.pixels.lit import in_light, shares_on_grid
 from talbot.pixels.optics.response import bare_share, respond
+from talbot.pixels.response import command
 from talbot.pixels.tabled import pixel_of, tabled
 
 NU = np.linspace(-0.4, 0.4, 41)
@@ -80,3 +82,11 @@ def test_a_light_is_refused_where_no_wavelength_is_known():
     with pytest.raises(ParameterError, match="light = 'd65': must be left out with responses of a file or a function"):
         in_light(replace(STANDARD, tile=replace(STANDARD.tile, types=types)), light("d65"))
     assert pixel_of(drawn) == "sky130"
+
+
+@pytest.mark.parametrize("words", [["--light=d65"], ["--light=d65", "--diffraction=met4", "--wavelength-um=0.5"]])
+def test_a_search_and_a_wavelength_have_no_light(words):
+    parser = ArgumentParser()
+    command.add_arguments(parser)
+    with pytest.raises(ParameterError, match="must be with a geometry|must be left out with light"):
+        command.run(parser.parse_args(words))

@@ -39,7 +39,8 @@ def tradeoff(name: str, *, quick: bool = False) -> Tradeoff:
     """Measure one of the trade-offs of `make tradeoff`.
 
     name: divider, threshold, fixed_pattern, exposure, light, lens, views, pupil, precision, noise, light_field,
-    light_field_sensor, depth or polarization. quick: fewer points of a smaller array. Raises ParameterError, ToolError.
+    light_field_sensor, depth, polarization or spectra. quick: fewer points of a smaller array.
+    Raises ParameterError, ToolError.
     """
     check_choice("name", name, list(SWEEPS))
     rows = measured(name, quick)
