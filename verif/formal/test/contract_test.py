@@ -46,27 +46,12 @@ def test_the_chip_keeps_every_assumption_in_every_cycle(recorder):
     assert list(recorder.violations()) == []
 
 
-def sends(cycle, kind):
-    """Whether PhasePath is offered a message of a kind, 1 ROW or 2 SAMPLE."""
-    return cycle["recv__val"] and cycle["recv__msg"] >> 10 == kind
-
-
 @pytest.mark.slow
 @pytest.mark.needs("verilator")
 @pytest.mark.parametrize(
     "name, changes, label",
     [
-        (
-            "phase_path",
-            lambda c: {"recv__msg": c["recv__msg"] ^ 1 << 9} if c["on"] and c["recv__val"] else {},
-            "a_taps",
-        ),
-        ("phase_path", lambda c: {"on": 1 - c["on"]} if sends(c, 2) else {}, "a_constant"),
-        ("phase_path", lambda c: {"recv__msg": 1 << 10} if sends(c, 2) and c["recv__msg"] & 1 else {}, "a_mark"),
-        ("adc_bank", lambda c: {"threshold": c["threshold"] ^ 1} if c["step__val"] else {}, "a_config"),
         ("readout_seq_7x31_2", lambda c: {"mask": c["mask"] ^ 1} if c["step__rdy"] else {}, "a_config"),
-        ("readout_seq_7x31_2", lambda c: {"bank_idle": 0, "amp_done": 1}, "a_amp"),
-        ("asp_chip_front", lambda c: {"seq_busy": 0}, "a_begin"),
         ("byte_queue", lambda c: {"put": 1}, "a_put"),
         ("payload", lambda c: {"push": 1, "flush": 1}, "a_control"),
         ("edge_adc", lambda c: {"threshold": c["threshold"] ^ 1} if c["out__rdy"] else {}, "a_config"),
