@@ -18,21 +18,9 @@ _ROWS = np.array([row.split() for row in _TABLE.replace("\n", "|").split("|") if
 
 
 def silicon_index(wavelength: npt.ArrayLike) -> npt.NDArray[np.complex128]:
-    """Complex refractive index n + i k of silicon.
+    """Complex refractive index n + i k of silicon [Green2008].
 
-    Parameters
-    ----------
-    wavelength : array
-        In m, 350e-9..1000e-9; beyond them the index is that of the nearest end.
-
-    Returns
-    -------
-    complex128
-        Of the shape of the wavelengths.
-
-    References
-    ----------
-    [Green2008].
+    wavelength: in m, 350e-9..1000e-9; beyond them the index is that of the nearest end.
     """
     at, n, k = _ROWS
     nm = 1e9 * np.asarray(wavelength, float)
@@ -42,17 +30,7 @@ def silicon_index(wavelength: npt.ArrayLike) -> npt.NDArray[np.complex128]:
 def absorbed(wavelength: npt.ArrayLike, depth: float) -> npt.NDArray[np.float64]:
     """Share of the light in silicon that is absorbed down to a depth: 1 - exp(-4 pi k depth / wavelength).
 
-    Parameters
-    ----------
-    wavelength : array
-        In m, 350e-9..1000e-9.
-    depth : float
-        In m.
-
-    Returns
-    -------
-    float64
-        0..1, of the shape of the wavelengths.
+    wavelength: in m, 350e-9..1000e-9. depth: in m.
     """
     at = np.asarray(wavelength, float)
     return -np.expm1(-4 * np.pi * silicon_index(at).imag * depth / at)

@@ -108,17 +108,7 @@ def _tables() -> dict[str, Spectrum]:
 
 
 def eye() -> Spectrum:
-    """Return the eye's luminous efficiency V(wavelength), of the photopic observer of 1924.
-
-    Returns
-    -------
-    Spectrum
-        380..780 nm in steps of 5 nm.
-
-    References
-    ----------
-    [CIE15].
-    """
+    """Return the eye's luminous efficiency V(wavelength), of the photopic observer of 1924 [CIE15]."""
     return _tables()["eye"]
 
 
@@ -126,24 +116,8 @@ def eye() -> Spectrum:
 def light(name: str) -> Spectrum:
     """Light by name.
 
-    Parameters
-    ----------
-    name : str
-        d65 (daylight), a (incandescent), led (white phosphor LED of 4103 K, LED-B3), e (equal energy), or laser:NM.
-
-    Returns
-    -------
-    Spectrum
-        380..780 nm, or one wavelength.
-
-    Raises
-    ------
-    ParameterError
-        For another name, or a laser outside 380..1000 nm.
-
-    References
-    ----------
-    [CIE15]; illuminant A by its definition, a Planckian radiator.
+    name: d65 (daylight), a (incandescent), led (white phosphor LED of 4103 K, LED-B3), e (equal energy) [CIE15], of 380
+    to 780 nm; or laser:NM, one wavelength of 380..1000 nm. Raises ParameterError for another name or laser.
     """
     kind, colon, number = name.partition(":")
     if kind == "laser" and colon:
@@ -167,24 +141,10 @@ def light(name: str) -> Spectrum:
 
 @lru_cache(maxsize=8)
 def surface(name: str) -> Spectrum:
-    """Reflectance of a surface by name, relative to that of a gray surface of the same radiance in a picture.
+    """Reflectance of a surface by name, 0..1 from 380 to 1000 nm, relative to a gray one of the same radiance.
 
-    Red, green and blue add up to 1 at every wavelength: logistic edges of 10 nm at 490 and 590 nm.
-
-    Parameters
-    ----------
-    name : str
-        Gray, red, green or blue.
-
-    Returns
-    -------
-    Spectrum
-        380..1000 nm in steps of 1 nm, 0..1.
-
-    Raises
-    ------
-    ParameterError
-        For another name.
+    Red, green and blue add up to 1 at every wavelength: logistic edges of 10 nm at 490 and 590 nm. Raises
+    ParameterError for another name.
     """
     if name not in SURFACES:
         raise ParameterError(f"reflectance = {name!r}: must be one of {', '.join(SURFACES)}")
