@@ -74,7 +74,8 @@ def whole(tmp_path_factory):
 PARTS = 4
 
 
-@pytest.mark.parametrize("part", [pytest.param(n, marks=[pytest.mark.slow] * (n > 0)) for n in range(PARTS)])
+@pytest.mark.slow
+@pytest.mark.parametrize("part", range(PARTS))
 def test_at_a_random_moment(tmp_path, whole, part):
     """In each quarter of the run once; which signal, and whether the whole group gets it, is drawn."""
     names, seconds = whole

@@ -192,6 +192,7 @@ def test_the_front(whole):
     assert findings.thesis.full["figures"]["error"] == pytest.approx(7 / 40 + 4 / 48 + 0.01)
 
 
+@pytest.mark.slow
 def test_workers_do_not_change_results_and_seeds_do(whole, tmp_path):
     findings, _ = whole
     assert facts(search(plan(workers=2), tmp_path / "two.sqlite")) == facts(findings)

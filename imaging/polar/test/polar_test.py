@@ -43,6 +43,7 @@ def test_psi_is_within_the_thesis_at_a_quarter_polarized_and_physical_noise():
     assert s["psi_error_deg"] < 1.12 and s["sure"] > 0.99
 
 
+@pytest.mark.slow
 def test_highlights_are_tagged_and_the_sunlit_card_is_not():
     s = read_polarization(golden_result(request(scene="specular", rows=144, cols=144, mode="raw")), 0.1).summary
     assert s["f1"] > 0.9 > s["baselines"]["f1_bright"]

@@ -139,6 +139,7 @@ def own(kind):
     return rho
 
 
+@pytest.mark.slow
 def test_responses_that_are_not_of_the_formula(tmp_path):
     """Tables leave a quarter of what Eq. 3.1 leaves, at angles between the samples, and survive their file."""
     tile = replace(TILE, types=tuple(replace(kind, response=own(kind)) for kind in TILE.types))

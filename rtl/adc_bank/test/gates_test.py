@@ -92,10 +92,8 @@ class Pair:
         banks.tick(val, step, comparator, rdy, reset)
 
 
-@pytest.mark.parametrize(
-    "lanes, copies, cycles",
-    [(8, 4096, 70)] + [pytest.param(lanes, WIDE, 150, marks=pytest.mark.slow) for lanes in (1, 2, 4, 16, 32)],
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("lanes, copies, cycles", [(8, 4096, 70), *((lanes, WIDE, 150) for lanes in (1, 2, 4, 16, 32))])
 def test_any_steps_any_stalls_and_any_resets(lanes, copies, cycles):
     """Every pattern of `en` at 8 lanes, some hundred times; the configuration changes while a bank is empty."""
     random, pair = np.random.default_rng(lanes), Pair(lanes, copies)

@@ -86,6 +86,7 @@ def test_a_step_from_an_unreachable_state_is_shown_as_such(tmp_path, monkeypatch
     assert replay.failures("byte_queue", trace.cycles, trace.start) == []  # the invariant excludes the state
 
 
+@pytest.mark.slow
 def test_a_proof_that_holds_has_no_trace(tmp_path, capsys):
     assert main(command, ["--proof", "scan_queue", "--show", "--out", str(tmp_path)]) == 0
     assert capsys.readouterr().out == "scan_queue = proven: no trace\n"

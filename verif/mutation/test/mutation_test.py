@@ -54,6 +54,7 @@ def test_the_sample_is_seeded_and_spread(small):
     assert parts == {"A": 40, "B": 10}
 
 
+@pytest.mark.slow
 def test_equivalence(small):
     """Against simulation of all short inputs: a mutant that differs there is never called equivalent."""
     ports, every, text = small

@@ -156,6 +156,7 @@ def test_evaluated():
     assert "-20.0 %" in shown and "-20.0 %" in printed and "1.100 times" in printed
 
 
+@pytest.mark.slow
 def test_events_of_a_golden_frame():
     frame = EnergyFrame("x", mode="tof", phase=True, first=(48, 8), last=(48, 9))
     asked, samples, front_end = frame.shot(np.full((4, 384, 384, 2), 30.0), [7] * 24)

@@ -25,6 +25,7 @@ def test_every_input_through_the_verilog(radix4):
     assert found.worst < 0.75 and found.cycles == X.size * found.interval
 
 
+@pytest.mark.slow
 def test_finds_one_wrong_threshold(radix4):
     """A table entry that is one too high gives wrong phases for one ratio, and no other mismatch."""
     text, top = radix4

@@ -134,6 +134,7 @@ def test_a_mean_along_a_level_plane_is_the_pool_and_a_slanted_ridge_stays():
 
 
 @pytest.mark.parametrize("slant", [(0.0, SLANT), pytest.param((-SLANT, 0.0), marks=pytest.mark.slow)])
+@pytest.mark.slow
 def test_a_slanted_plane_is_better_by_slanted_hypotheses(slant):
     """A wall in steep view, finely textured; its pixels have the disparities of the truth."""
     truth, disparity = _field(28, 36, *slant)
