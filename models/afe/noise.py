@@ -12,7 +12,7 @@ NOISE_SCALE = float(1 / np.sqrt(4 * (256**2 - 1) / 12))  # a count -> unit varia
 MOST = 4 * 255 // 2  # counts either way
 
 
-def _mix(x: npt.NDArray[np.uint32]) -> npt.NDArray[np.uint32]:
+def mix(x: npt.NDArray[np.uint32]) -> npt.NDArray[np.uint32]:
     """Bijection of uint32 arrays with low bias: C. Wellons, "Prospecting for hash functions", lowbias32 (2018)."""
     x = x ^ (x >> np.uint32(16))
     x = x * np.uint32(0x7FEB352D)
@@ -27,8 +27,8 @@ def noise_counts(seed: int, index: npt.ArrayLike, decision: npt.ArrayLike) -> np
     seed: 0..2**32-1. index: sample number, 0..2**28-1. decision: 0..15, broadcastable to ``index``. Returns -510..510,
     variance 1 / NOISE_SCALE**2, close to Gaussian up to 3.45 sigma, where it ends.
     """
-    key = _mix(np.array([seed], np.uint32))
+    key = mix(np.array([seed], np.uint32))
     word = np.atleast_1d(np.asarray(index)).astype(np.uint32) * np.uint32(DECISIONS)
-    h = _mix(key ^ (word + np.asarray(decision).astype(np.uint32)))
+    h = mix(key ^ (word + np.asarray(decision).astype(np.uint32)))
     total = (h & 255) + (h >> 8 & 255) + (h >> 16 & 255) + (h >> 24)
     return total.astype(np.int32).reshape(np.broadcast_shapes(np.shape(index), np.shape(decision))) - MOST

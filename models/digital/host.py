@@ -2,7 +2,9 @@
 
 from collections.abc import Iterable, Sequence
 
-from talbot.models.parameters import MODES, FrameParameters, ParameterError, check_int
+from talbot.models.digital.amp_ctrl import TAPS
+from talbot.models.digital.scan import Scan
+from talbot.models.parameters import MODES, FrameParameters, ParameterError, SensorParameters, check_int
 from talbot.models.parameters.registers import register_map, trim_range
 
 WRITE = 0x80  # bit 7 of the command byte; the rest is the address
@@ -100,3 +102,22 @@ def decode_status(replies: Sequence[bytes]) -> dict[str, int | bool]:
         **{f.name: bool(status[0] >> f.shift & 1) for f in chip.fields if f.register == "status"},
         **{f.name: int.from_bytes(counters[f.byte - base : f.byte - base + 8], "little") for f in chip.counters},
     }
+
+
+def cycles_at_most(frame: FrameParameters, sensor: SensorParameters) -> int:
+    """Limit of docs/host.md for the cycles of a frame, with a link that never stalls.
+
+    frame: configuration. sensor: the sensor. Raises ParameterError if the window is outside the array or selects no
+    pixel.
+    """
+    t, lanes = frame.timing, sensor.chip.lanes
+    scan = Scan(*sensor.shape, lanes, frame, sensor.tile)
+    taps = TAPS if frame.mode == "tof" else 1
+    exposure = t.t_guard + taps * (
+        t.t_reset + (t.n_cm + 1) * (t.t_int + t.t_guard) + t.n_cm * (t.t_cm + t.t_guard) + 2 * t.t_guard
+        + t.t_settle + t.t_read
+    )  # fmt: skip
+    types = max(len(scan.columns_of(row)) for row in range(sensor.tile.rows))
+    steps = types * (frame.window.col1 // lanes - frame.window.col0 // lanes + 1) * scan.subs
+    step = max(10, 4 * lanes if frame.phase else lanes + 2)
+    return 200 + (scan.row_list.size + t.exposure) * (exposure + steps * step + 40)

@@ -6,10 +6,8 @@ import numpy as np
 import pytest
 
 from talbot.models.chip import golden_frame
-from talbot.models.digital.amp_ctrl import TAPS
-from talbot.models.digital.host import command, frame_values
+from talbot.models.digital.host import command, cycles_at_most, frame_values
 from talbot.models.digital.pattern import PatternEnd
-from talbot.models.digital.scan import Scan
 from talbot.models.parameters import (
     SHORT_TIMING,
     AmpTiming,
@@ -52,20 +50,6 @@ def golden(frame):
     return golden_frame(np.zeros(0), SENSOR, frame, PatternEnd(ROWS, COLS))
 
 
-def cycles_at_most(frame):
-    """The bound of docs/host.md, with a link that never stalls."""
-    t, scan = frame.timing, Scan(ROWS, COLS, LANES, frame)
-    taps = TAPS if frame.mode == "tof" else 1
-    exposure = t.t_guard + taps * (
-        t.t_reset + (t.n_cm + 1) * (t.t_int + t.t_guard) + t.n_cm * (t.t_cm + t.t_guard) + 2 * t.t_guard
-        + t.t_settle + t.t_read
-    )  # fmt: skip
-    types = max(len(scan.columns_of(row)) for row in range(SENSOR.tile.rows))
-    steps = types * (frame.window.col1 // LANES - frame.window.col0 // LANES + 1) * scan.subs
-    step = max(10, 4 * LANES if frame.phase else LANES + 2)
-    return 200 + scan.row_list.size * (exposure + steps * step + 40)
-
-
 @pytest.fixture(scope="module")
 def bench():
     return Bench(SENSOR)
@@ -103,7 +87,7 @@ def check(host, frame=SHORT):
     status = host.status()
     assert status.pop("done") and not any(status.values())
     counters = host.counters()
-    assert 0 < counters.pop("cycles") <= cycles_at_most(frame)
+    assert 0 < counters.pop("cycles") <= cycles_at_most(frame, SENSOR)
     assert counters == {"conversions_made": expected.made, "conversions_left_out": expected.left_out}
 
 

@@ -10,33 +10,26 @@ from types import SimpleNamespace
 import numpy as np
 import numpy.typing as npt
 
+from talbot.models.afe.noise import mix
 from talbot.models.chip import golden_frame
+from talbot.models.digital.host import cycles_at_most
 from talbot.models.digital.pattern import PatternEnd
 from talbot.models.digital.registers import RegisterBank
 from talbot.models.digital.scan import pixels_read
-from talbot.models.parameters import SAMPLES_PER_PIXEL, SIGNED, AmpTiming, FrameParameters, ParameterError
+from talbot.models.parameters import SAMPLES_PER_PIXEL, SIGNED, AmpTiming, ParameterError
 from talbot.models.parameters import SensorParameters as Sensor
-from talbot.models.parameters.registers import array_resets, register_map
+from talbot.models.parameters.registers import array_resets
 from talbot.rtl.amp_ctrl.ports import TIMING
 from talbot.rtl.asp_chip.asp_chip_fl import frame_of
 from talbot.verif.fuzz.checks import Broken, demand
 from talbot.verif.fuzz.chip.program import Byte, Observed, Run
-from talbot.verif.fuzz.chip.sessions import Operation, Session
+from talbot.verif.fuzz.chip.sessions import CHIP, SETTINGS, STATUS, Operation, Session
 
-CHIP = register_map()
-STATUS, COUNTERS = CHIP["busy"].byte, CHIP.counters
+COUNTERS = CHIP.counters
 STATE = range(CHIP.state[0].address, CHIP.state[0].address + CHIP.state[0].size)
 ERRORS = sum(1 << CHIP[name].shift for name in ("cfg_err", "amp_err"))
 SYNC = 256
-SETTINGS = [f for f in CHIP.configuration if f.name != "trim"]
 UNKNOWN = -1  # value of a counter that depends on time
-
-
-def mixed(value: npt.NDArray[np.uint32]) -> npt.NDArray[np.uint32]:
-    """Return the hash of main.cpp."""
-    value = (value ^ value >> np.uint32(16)) * np.uint32(0x7FEB352D)
-    value = (value ^ value >> np.uint32(15)) * np.uint32(0x846CA68B)
-    return value ^ value >> np.uint32(16)
 
 
 @dataclass(frozen=True)
@@ -52,7 +45,7 @@ class SceneEnd(PatternEnd):
         place = np.full((), self.scene, np.uint32)
         for index, step in ((row, 0x9E3779B1), (col, 0x85EBCA6B), (sub, 0xC2B2AE35)):
             place = place + index.astype(np.uint32) * np.uint32(step)
-        number = mixed(place)
+        number = mix(place)
         high = (number >> np.uint32(8)).astype(np.float64)
         if mode not in SIGNED:
             return high % 272 - 8
@@ -63,7 +56,7 @@ class SceneEnd(PatternEnd):
 @lru_cache(4096)
 def expected_frame(sensor: Sensor, scene: int, settings: tuple[int, ...], trims: tuple[int, ...]) -> "Frame":
     """Return what a start brings. settings: values of SETTINGS. trims: signed."""
-    cfg = SimpleNamespace(**{f.name: value for f, value in zip(SETTINGS, settings, strict=True)})
+    cfg = SimpleNamespace(**dict(zip(SETTINGS, settings, strict=True)))
     rows, cols, tile = sensor.array.rows, sensor.array.cols, sensor.tile
     try:
         frame = frame_of(cfg, sensor.chip.has_phase_path)
@@ -73,18 +66,7 @@ def expected_frame(sensor: Sensor, scene: int, settings: tuple[int, ...], trims:
         return Frame(errors=("cfg_err", "amp_err") if str(error).startswith("t_") else ("cfg_err",))
     end = PatternEnd(rows, cols, tile) if cfg.test_pattern else SceneEnd(rows, cols, tile, scene, trims)
     golden = golden_frame(np.zeros(0), sensor, frame, end)
-    return Frame(golden.stream, golden.made, golden.left_out, limit=cycles_at_most(sensor, frame))
-
-
-def cycles_at_most(sensor: Sensor, frame: FrameParameters) -> int:
-    """Return the limit of docs/host.md for a frame, without stalls of the link."""
-    t, window, lanes = frame.timing, frame.window, sensor.chip.lanes
-    taps = 4 if frame.mode == "tof" else 1
-    slot = t.t_reset + (t.n_cm + 1) * (t.t_int + t.t_guard) + t.n_cm * (t.t_cm + t.t_guard)
-    rows = min((window.row1 - window.row0 + 1) * sensor.tile.rows, sensor.array.rows) + t.exposure
-    steps = sensor.tile.cols * (window.col1 // lanes - window.col0 // lanes + 1) * SAMPLES_PER_PIXEL[frame.mode]
-    step = max(10, 4 * lanes if frame.phase else lanes + 2)
-    return 200 + rows * (t.t_guard + taps * (slot + 2 * t.t_guard + t.t_settle + t.t_read) + steps * step + 40)
+    return Frame(golden.stream, golden.made, golden.left_out, limit=cycles_at_most(frame, sensor))
 
 
 @dataclass(frozen=True)
@@ -157,7 +139,7 @@ class Chip:
             self.frame, self.counters = None, [0] * len(COUNTERS)
             self.expected = self.expected[:taken]
         if start:
-            settings = tuple(self.bank.value(f.key) for f in SETTINGS)
+            settings = tuple(self.bank.value(key) for key in SETTINGS)
             trims = (self.bank.value(f.key) for f in CHIP.trims)
             half = 1 << CHIP.trims[0].width - 1
             self.frame = expected_frame(self.sensor, self.scene, settings, tuple((t ^ half) - half for t in trims))

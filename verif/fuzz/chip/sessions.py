@@ -5,13 +5,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from talbot.models.digital.host import command, read_transfer, write_transfers
+from talbot.models.digital.host import WRITE, command, read_transfer, write_transfers
 from talbot.models.parameters import SensorParameters
 from talbot.models.parameters.registers import register_map
 
 Rng = np.random.Generator
 CHIP = register_map()
-WRITE = 0x80
+STATUS = CHIP["busy"].byte
 LENGTH = 24  # operations of a session at most
 WAIT = 20_000  # cycles for a frame at most
 DURATIONS = ("t_reset", "t_int", "t_cm", "t_settle", "t_read", "t_guard")
@@ -133,11 +133,12 @@ class Maker:
         """Start a frame and wait for its end, or for a time."""
         start, rng = transfer(command("start")), self.rng
         wait = Operation("E", WAIT) if rng.random() < 0.6 else Operation("W", int(rng.exponential(500)))
-        return [start, wait, transfer(read_transfer(3, 1)), *self.counters(0.3)]
+        return [start, wait, transfer(read_transfer(STATUS, 1)), *self.counters()]
 
-    def counters(self, share: float = 1.0) -> list[Operation]:
-        """Read the counters."""
-        return [transfer(read_transfer(88, 24))] if self.rng.random() < share else []
+    def counters(self) -> list[Operation]:
+        """Read the counters, or nothing."""
+        size = sum(f.bytes for f in CHIP.counters)
+        return [transfer(read_transfer(CHIP.counters[0].byte, size))] if self.rng.random() < 0.3 else []
 
     def traffic(self) -> list[Operation]:
         """Read anything, cut anywhere."""
