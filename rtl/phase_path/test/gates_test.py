@@ -12,7 +12,6 @@ from talbot.rtl.messages import END, FRAME, ROW, SAMPLE
 from talbot.rtl.phase_path import PhasePath
 
 CHIPS = [
-    ChipParameters(8, "radix4", 8),
     ChipParameters(1, "radix2", 13),
     ChipParameters(2, "cordic", 8, 7),
     *(ChipParameters(lanes, divider) for lanes, divider in product((1, 2, 4, 8), ("radix4", "pipelined"))),
