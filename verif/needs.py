@@ -329,8 +329,9 @@ def pytest_sessionfinish(session: pytest.Session) -> None:
     if not reporter or hasattr(config, "workerinput"):
         return
     if file := config.option.passed:
-        file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text("".join(f"{report.nodeid}\n" for report in reporter.stats.get("passed", ())), "utf-8")
+        from talbot.base.files import write
+
+        write(file, "".join(f"{report.nodeid}\n" for report in reporter.stats.get("passed", ())))
     if config.option.complete and session.exitstatus == 0:
         session.exitstatus = int(bool(gaps(reporter)))
 
