@@ -85,7 +85,7 @@ def run(jobs: Iterable[Job], store: Path | str, title: str, workers: int = -1) -
 
 @contextlib.contextmanager
 def restarts() -> Iterator[None]:
-    """Joblib restarts a process that has grown, and warns: without the warning."""
+    """Leave out the warning with which joblib restarts a process that has grown."""
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "A worker stopped while some jobs", UserWarning)
         yield
