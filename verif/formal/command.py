@@ -105,13 +105,12 @@ def plan(proofs: Iterable[Proof], every_size: bool = False) -> list[tuple[Proof,
     ]
 
 
-def collect(planned: Iterable[tuple[Proof, Sequence[Piece]]], store: Path, workers: int = -1) -> list[Outcome]:
+def collect(planned: Sequence[tuple[Proof, Sequence[Piece]]], store: Path, workers: int = -1) -> list[Outcome]:
     """Run every job of ``planned``.
 
     store: folder of the kept results. workers: processes, -1 for all cores.
     """
     first_of = firsts(manifest.every())
-    planned = list(planned)
     results = iter(run_jobs([piece.job for _, parts in planned for piece in parts], store, "formal", workers))
     outcomes, conjuncts = [], {}
     for proof, parts in planned:
@@ -235,20 +234,21 @@ def shown(options: Namespace, proofs: Sequence[Proof]) -> int:
 
 def run(options: Namespace) -> int:
     """Run the proofs; returns 1 if something is not proven, else 0."""
-    proofs = chosen(manifest.every(), options)
+    every = manifest.every()
+    proofs = chosen(every, options)
     if options.show:
         return shown(options, proofs)
-    if options.record and (options.changed or len(proofs) < len(manifest.every())):
-        raise ParameterError("record = True: must be with all proofs")
+    if options.record and (options.changed or options.every_size or len(proofs) < len(every)):
+        raise ParameterError("record = True: must be with all proofs, without every-size")
     planned = plan(proofs, options.every_size)
     if options.changed:
-        every, planned = planned, record.unproven(planned)
-        print(f"{len(every) - len(planned)} of {len(every)} proofs are in the record, {record.RECORD.name}")
+        planned = record.unproven(planned)
+        print(f"{len(proofs) - len(planned)} of {len(proofs)} proofs are in the record, {record.RECORD.name}")
     outcomes = collect(planned, options.out / "formal", options.workers)
     if not options.changed:
         write_step("formal", summary(outcomes), options.out)
     print(table(outcomes))
-    general = [*owners.problems(manifest.every(), owners.contract()), *sizes.problems(manifest.every())]
+    general = [*owners.problems(every, owners.contract()), *sizes.problems(every)]
     for engine in sorted({e for proof in proofs for e in proof.engines} - {"boolector"}):
         if not located(engine):
             print(f"{engine} = not found: second engine skipped; make tools installs it", file=sys.stderr)

@@ -43,9 +43,9 @@ def read(record: Path = RECORD) -> dict[str, str]:
     return dict(line.split(" ", 1) for line in lines if line and not line.startswith("#"))
 
 
-def keep(digests: Mapping[str, str], record: Path = RECORD) -> None:
-    """Write the record."""
-    write(record, HEAD + "".join(f"{name} {value}\n" for name, value in digests.items()))
+def keep(proven: Mapping[str, str], record: Path = RECORD) -> None:
+    """Write the record. proven: wrapper -> digest."""
+    write(record, HEAD + "".join(f"{name} {value}\n" for name, value in proven.items()))
 
 
 def _name(proof: Proof) -> str:

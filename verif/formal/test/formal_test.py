@@ -87,7 +87,7 @@ def test_the_record_leaves_out_what_has_not_changed(queue, tmp_path):
     assert record.unproven(planned, tmp_path / "none.txt") == planned
 
 
-@pytest.mark.parametrize("argument", [["--changed"], ["--proof", "byte_queue"]])
+@pytest.mark.parametrize("argument", [["--changed"], ["--every-size"], ["--proof", "byte_queue"]])
 def test_a_part_of_the_proofs_is_no_record(argument, tmp_path, capsys):
     assert main(command, ["--record", *argument, "--out", str(tmp_path)]) == 2
     assert "record = True: must be with all proofs" in capsys.readouterr().err
