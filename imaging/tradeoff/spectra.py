@@ -36,9 +36,9 @@ def points(quick: bool) -> list[Point]:
     """Pixel, light, width of the filter in nm, rows of the array. Lasers are at the pixels' own wavelength."""
     if quick:
         return [(IDEAL, "laser:550", 0, 24), (IDEAL, "d65", 0, 24)]
-    own = {IDEAL: "laser:550", ENDLESS: "laser:575"}
+    lasers = {IDEAL: "laser:550", ENDLESS: "laser:575"}
     each = [(name, 0) for name in LAMPS] + [("d65", width) for width in WIDTHS if width]
-    return [(pixel, name, width, 96) for pixel in own for name, width in [(own[pixel], 0), *each]]
+    return [(pixel, name, width, 96) for pixel in lasers for name, width in [(lasers[pixel], 0), *each]]
 
 
 def measure(point: Point) -> dict[str, Any]:
@@ -55,19 +55,23 @@ def measure(point: Point) -> dict[str, Any]:
         row |= {f"m_{beta:g}": depth, f"beta_{beta:g}": frequency}
     d = float(np.mean([one.diattenuation for one in fits.values()])) if fits else sensor.optics.diattenuation
     polar = replace(sensor, optics=replace(sensor.optics, diattenuation=abs(d)))
-    given = {"rows": size, "cols": size, "mode": "raw", "light": name}
-    frame = request(**given, sensor=sensor)
+    settings = {"rows": size, "cols": size, "mode": "raw", "light": name}
+    frame = request(**settings, sensor=sensor)
     white = frame.room.white(sensor.array.pitch, sensor.optics.nu_max, spectral=spectral)
-    stress = see(request(**given, sensor=sensor, scene="stress"))[0].seen_polarization
+    stress = see(request(**settings, sensor=sensor, scene="stress"))[0].seen_polarization
     row |= {"d": d, "electrons": 1e-6 * white.electrons} | _field(frame, sensor)
-    row |= _polar(request(**given, sensor=polar, scene="specular"))
+    row |= _polar(request(**settings, sensor=polar, scene="specular"))
     return row | {"stress": float(np.hypot(*stress).mean())}
 
 
 def _fits(lamp: Spectrum, spectral: SpectralParameters) -> dict[float, Fit]:
     """Return Eq. 3.1 fitted to the gratings for each beta in this light."""
-    own, geometries = gratings(ENDLESS).wavelength_um, gratings(ENDLESS).geometries
-    return {beta: fit(response_in_light(one, own, lamp, spectral)) for beta, one in geometries.items()}
+    chosen = gratings(ENDLESS)
+    responses = {
+        beta: response_in_light(geometry, chosen.wavelength_um, lamp, spectral)
+        for beta, geometry in chosen.geometries.items()
+    }
+    return {beta: fit(response) for beta, response in responses.items()}
 
 
 def _field(frame: FrameRequest, plain: SensorParameters) -> dict[str, float | None]:

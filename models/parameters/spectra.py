@@ -59,28 +59,11 @@ class Spectrum:
             raise ParameterError(f"{self.name} = 0 everywhere: must have light at a wavelength")
 
     def at(self, wavelength: npt.ArrayLike) -> Floats:
-        """Value at wavelengths.
-
-        Parameters
-        ----------
-        wavelength : array
-            In m.
-
-        Returns
-        -------
-        float64
-            Of the same shape.
-        """
+        """Value at ``wavelength`` in m, of the same shape."""
         return np.interp(np.asarray(wavelength, np.float64), self.wavelengths, self.values, 0.0, 0.0)
 
     def quadrature(self) -> tuple[Floats, Floats]:
-        """Wavelengths of the sums that represent integrals over this light, and the share of its power at each.
-
-        Returns
-        -------
-        tuple of float64 (n,)
-            In m; and shares, of sum 1.
-        """
+        """Wavelengths in m (n,) of the sums that represent integrals over this light, and shares of its power (n,)."""
         if len(self.wavelengths) == 1:
             return np.array(self.wavelengths), np.ones(1)
         first, last = (round(1e9 * end) for end in (self.wavelengths[0], self.wavelengths[-1]))

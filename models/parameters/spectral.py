@@ -62,18 +62,7 @@ class SpectralParameters:
         check_real("filter_peak", self.filter_peak, 0.01, 1)
 
     def transmission(self, wavelength: npt.ArrayLike) -> Floats:
-        """Transmission of the filter.
-
-        Parameters
-        ----------
-        wavelength : array
-            In m.
-
-        Returns
-        -------
-        float64
-            0..1; 1 without a filter.
-        """
+        """Transmission of the filter, 0..1; 1 without one. wavelength: in m."""
         at = np.asarray(wavelength, float)
         if not self.filter_width:
             return np.ones(at.shape)
@@ -82,19 +71,7 @@ class SpectralParameters:
     def efficiency(self, wavelength: npt.ArrayLike) -> Floats:
         """Quantum efficiency of the bare diode, in proportion to the share absorbed in the collection depth.
 
-        Parameters
-        ----------
-        wavelength : array
-            In m.
-
-        Returns
-        -------
-        float64
-            0..1.
-
-        References
-        ----------
-        [Green2008].
+        wavelength: in m. Returns 0..1. Source: [Green2008].
         """
         depth = self.collection_depth
         share = absorbed(wavelength, depth) / absorbed(self.wavelength, depth)
@@ -108,17 +85,7 @@ class SpectralParameters:
         orders and the straight one, pi wavelength z / (n d**2): k = n beta**2 own wavelength / (4 pi**2 z) is the
         distance in half Talbot lengths at the own wavelength, where m is at its peak.
 
-        Parameters
-        ----------
-        beta : float
-            Of the type.
-        wavelength : array
-            In m.
-
-        Returns
-        -------
-        float64
-            -1..1; below 0 the fringes are inverted.
+        beta: of the type. wavelength: in m. Returns -1..1; below 0 the fringes are inverted.
         """
         orders = OXIDE * beta**2 * self.wavelength / (4 * np.pi**2 * self.grating_distance)
         return np.cos(np.pi * orders * (np.asarray(wavelength, float) / self.wavelength - 1))
@@ -126,22 +93,9 @@ class SpectralParameters:
     def electrons(self, lamp: Spectrum, reflectance: str = "gray") -> tuple[Floats, Floats]:
         """Weights of the wavelengths in a diode's electrons, for averages of a response over them.
 
-        Parameters
-        ----------
-        lamp : Spectrum
-            The light.
-        reflectance : str
-            Name of the surface that it falls on.
-
-        Returns
-        -------
-        tuple of float64 (n,)
-            Wavelengths in m; power times reflectance, filter, quantum efficiency and wavelength, of sum 1.
-
-        Raises
-        ------
-        ParameterError
-            Where less than 1e-6 of the photons become electrons.
+        lamp: the light. reflectance: name of the surface that it falls on. Returns wavelengths in m (n,), and weights
+        (n,) of sum 1: power times reflectance, filter, quantum efficiency and wavelength. Raises ParameterError where
+        less than 1e-6 of the photons become electrons.
         """
         nodes, shares = lamp.quadrature()
         photons = shares * nodes
@@ -152,19 +106,9 @@ class SpectralParameters:
         return nodes, seen / seen.sum()
 
     def depth(self, beta: float, lamp: Spectrum, reflectance: str = "gray") -> float:
-        """Factor on the modulation depth of a type in a light: the mean of `modulation` over `electrons`.
+        """Factor on the modulation depth of a type in a light, -1..1: the mean of `modulation` over `electrons`.
 
-        Parameters
-        ----------
-        beta : float
-            Of the type.
-        lamp, reflectance
-            As in `electrons`.
-
-        Returns
-        -------
-        float
-            -1..1.
+        beta: of the type. lamp, reflectance: as in `electrons`.
         """
         nodes, weights = self.electrons(lamp, reflectance)
         return float(weights @ self.modulation(beta, nodes))

@@ -15,8 +15,8 @@ from talbot.models.scene.targets import places, uniform
 Floats = npt.NDArray[np.float64]
 
 HOLE = 0.18  # radius of the hole in the sheet, of the array's shorter side
-RETARDANCE = np.deg2rad(75.0)  # of the sheet far from the hole, where the stress is even, at
-OWN = 550e-9  # m; at others it is in proportion to 1 / wavelength
+RETARDANCE = np.deg2rad(75.0)  # of the sheet far from the hole, where the stress is even
+RETARDED = 550e-9  # m, the wavelength of that retardance; at others it is in proportion to 1 / wavelength
 INDEX = 1.5  # of refraction, of the balls
 LAMP = 7.0  # radiance of the lamps that the balls mirror
 LAMP_RADIUS = np.deg2rad(24.0)
@@ -71,10 +71,11 @@ def stress(sampling: Sampling, degrees: float = 30.0) -> Scene:
     delay, axis = kirsch(y, x, HOLE * min(sampling.shape))
     psi = np.deg2rad(degrees)
     # Along the axis' own direction light keeps its plane; across it the cosine of the retardance is left.
-    left = np.cos(delay)
+    across_kept = np.cos(delay)
     if sampling.light:
-        left = sum((weight * np.cos(delay * OWN / w) for w, weight in sampling.light if weight), np.zeros(delay.shape))
-    along, across = np.cos(2 * (psi - axis)), np.sin(2 * (psi - axis)) * left
+        parts = (weight * np.cos(delay * RETARDED / w) for w, weight in sampling.light if weight)
+        across_kept = sum(parts, np.zeros(delay.shape))
+    along, across = np.cos(2 * (psi - axis)), np.sin(2 * (psi - axis)) * across_kept
     cosine, sine = np.cos(2 * axis), np.sin(2 * axis)
     stokes = np.stack([along * cosine - across * sine, along * sine + across * cosine])
     return uniform("stress", sampling, 0.6, stokes)
