@@ -67,11 +67,10 @@ def measure(point: Point) -> dict[str, Any]:
 def _fits(lamp: Spectrum, spectral: SpectralParameters) -> dict[float, Fit]:
     """Return Eq. 3.1 fitted to the gratings for each beta in this light."""
     chosen = gratings(ENDLESS)
-    responses = {
-        beta: response_in_light(geometry, chosen.wavelength_um, lamp, spectral)
-        for beta, geometry in chosen.geometries.items()
-    }
-    return {beta: fit(response) for beta, response in responses.items()}
+    fits = {}
+    for beta, geometry in chosen.geometries.items():
+        fits[beta] = fit(response_in_light(geometry, chosen.wavelength_um, lamp, spectral))
+    return fits
 
 
 def _field(frame: FrameRequest, plain: SensorParameters) -> dict[str, float | None]:
