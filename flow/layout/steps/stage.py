@@ -51,7 +51,7 @@ CROWDED = 2.5  # violations a net after the first iteration: 1.4 to 1.8 ended, 3
 HOPELESS = 8, 0.3  # after so many iterations, more than this share of the first violations
 ROUTING = "[INFO DRT-0187]"  # the line with which detailed routing begins
 # An iteration that takes so many times as long as the longest of the first ones, and as LEAST_S, is about a few
-# violations that no route of their tiles mends. It gets EACH_S for each of them: those that ended took 15 to 30 s
+# violations that no route of their tiles mends. It gets EACH_S more for each of them: those that ended took 15 to 70 s
 STUBBORN, SLOW, LEAST_S, EACH_S = 5, 3.0, 60.0, 45.0
 
 
@@ -226,15 +226,16 @@ def net_count(log: str) -> int:
 def diverges(counts: Sequence[int], seconds: Sequence[float] = (), nets: int = 0) -> bool:
     """Whether detailed routing will not end.
 
-    counts: violations after each iteration. seconds: of processors, of each iteration and of the next by now. nets: of
-    the design, 0 if unknown.
+    counts: violations after each iteration. seconds: of processors, of each iteration; the last has not ended where
+    there are more than counts, else what follows it is in its seconds. nets: of the design, 0 if unknown.
     """
     if nets and counts and counts[0] > CROWDED * nets:
         return True
     number, share = HOPELESS
-    left = EACH_S * counts[-1] if counts else 0.0
-    if len(seconds) > STUBBORN and seconds[-1] > max(SLOW * max(*seconds[:STUBBORN], LEAST_S), left):
-        return True
+    if len(seconds) > max(STUBBORN, len(counts)):
+        most = SLOW * max(*seconds[:STUBBORN], LEAST_S) + (EACH_S * counts[-1] if counts else 0.0)
+        if seconds[-1] > most:
+            return True
     if len(counts) > number and counts[-1] > share * counts[0]:
         return True
     return len(counts) > PATIENCE and min(counts[-PATIENCE:]) >= min(counts[:-PATIENCE])
