@@ -62,15 +62,15 @@ def search(
     scale, ktc = scales
     for n in range(v.size):
         i, level = index[n], levels[lane[n]]
-        held = v[n] + ktc * _counts(key, i, KTC_DECISION) + offset[lane[n]]
-        decision = 0
+        held = v[n] + ktc * _counts(key, i, np.int64(KTC_DECISION)) + offset[lane[n]]
+        decision = np.int64(0)  # a literal would be a type, and `_passes` compiled again for each
         codes[n], converted[n] = 0, True
         if window:
-            above = _passes(held, level[BIPOLAR + window], scale, key, i, 0)
-            if not above and _passes(held, level[BIPOLAR + 1 - window], scale, key, i, 1):
+            above = _passes(held, level[BIPOLAR + window], scale, key, i, decision)
+            if not above and _passes(held, level[BIPOLAR + 1 - window], scale, key, i, decision + 1):
                 converted[n] = False
                 continue
-            decision = 2
+            decision += 2
         dac = 0
         for bit in range(BITS - 1, -1, -1):
             if _passes(held, level[dac | 1 << bit], scale, key, i, decision):

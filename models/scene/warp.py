@@ -38,16 +38,19 @@ def splat(target: Floats, disparity: Floats, use: Bools, scale: float, offset: f
     rows, cols = target.shape
     for y in range(disparity.shape[0]):
         for x in range(disparity.shape[1]):
-            if not use[y, x]:
-                continue
             d = disparity[y, x]
             ty, tx = y - dv * d, x + (scale * d + offset) - du * d
-            if not (-2 < ty < rows + 1 and -2 < tx < cols + 1):
+            if not use[y, x] or not (-2 < ty < rows + 1 and -2 < tx < cols + 1):
                 continue
-            for r in range(max(0, int(np.ceil(ty - FOOTPRINT))), min(rows, int(np.floor(ty + FOOTPRINT)) + 1)):
-                for c in range(max(0, int(np.ceil(tx - FOOTPRINT))), min(cols, int(np.floor(tx + FOOTPRINT)) + 1)):
-                    if d > target[r, c]:
-                        target[r, c] = d
+            top, bottom = max(0, int(np.ceil(ty - FOOTPRINT))), min(rows - 1, int(np.floor(ty + FOOTPRINT)))
+            left, right = max(0, int(np.ceil(tx - FOOTPRINT))), min(cols - 1, int(np.floor(tx + FOOTPRINT)))
+            if top > bottom or left > right:
+                continue
+            # A footprint is one or two pixels wide and high. Two loops would take a third longer
+            target[top, left] = max(target[top, left], d)
+            target[top, right] = max(target[top, right], d)
+            target[bottom, left] = max(target[bottom, left], d)
+            target[bottom, right] = max(target[bottom, right], d)
 
 
 @njit(cache=True, nogil=True)
@@ -289,7 +292,7 @@ def claim(surface: Floats, disparity: Floats, last: int, right: float, offset: f
     for y in range(surface.shape[0]):
         for x in range(surface.shape[1]):
             d = disparity[y, x]
-            if d > NO_SURFACE and surface[y, x] == NO_SURFACE and 0 <= x + right * d + offset <= last:
+            if surface[y, x] == NO_SURFACE and d > NO_SURFACE and 0 <= x + right * d + offset <= last:
                 surface[y, x], out[y, x] = d, True
     return out
 
@@ -326,7 +329,7 @@ def background(surface: Floats, mask: Bools, dv: float, du: float) -> Places:
             for sign in (-1, 1):
                 i = 1
                 while True:
-                    r, c = int(np.round(y + sign * i * sy)), int(np.round(x + sign * i * sx))
+                    r, c = int(np.rint(y + sign * i * sy)), int(np.rint(x + sign * i * sx))
                     if r < 0 or r >= rows or c < 0 or c >= cols:
                         break
                     if surface[r, c] > NO_SURFACE:
