@@ -7,24 +7,26 @@ set_propagated_clock [all_clocks]
 routing_layers
 
 # Legal places, and routes of the cells that are new or moved; first a larger cell or a buffer for each driver that is
-# beyond a limit on the present routes. Returns how many. args: of estimate_parasitics
-proc place_and_reroute {args} {
-  global_route -start_incremental -allow_congestion
-  set helped [help_drivers]
-  legalize
-  optimize_mirroring
-  global_route -end_incremental -allow_congestion
-  estimate_parasitics -global_routing {*}$args
-  return $helped
+# beyond a limit on the present routes. New routes bring others beyond it: a few turns.
+proc help_and_reroute {} {
+  for {set turn 0; set helped 1} {$helped && $turn < 6} {incr turn} {
+    global_route -start_incremental -allow_congestion
+    set helped [help_drivers]
+    legalize
+    optimize_mirroring
+    global_route -end_incremental -allow_congestion
+    estimate_parasitics -global_routing
+  }
 }
 
 # repair_design estimates loads from the shortest wires: where a global route is longer, around congestion, a load stays
-# beyond the driver's limit. Such a driver becomes the next larger of its kind; without one, a buffer halves the way.
+# beyond the driver's limit. Such a driver becomes the next larger of its kind; without one, a buffer halves the way, or
+# drives the port.
 proc help_drivers {} {
   set beyond [beyond_limits]
   set helped 0
   foreach net [[ord::get_db_block] getNets] {
-    if {[llength [$net getBTerms]] || ![is_beyond $net $beyond]} { continue }
+    if {![is_beyond $net $beyond]} { continue }
     foreach driver [drivers $net] {
       set larger [larger_cell $driver]
       if {$larger ne "NULL"} {
@@ -50,17 +52,18 @@ proc buffer_halfway {net} {
   set name halfway_[$net getName]
   set inst [odb::dbInst_create $block [[ord::get_db] findMaster [lindex $clock_buffers 0]] $name]
   set second [odb::dbNet_create $block ${name}_net]
+  set is_port [llength [$net getBTerms]]
   set corners {}
   foreach pin [$net getITerms] {
     lappend corners [list {*}[$pin getAvgXY]]
-    if {[$pin isInputSignal]} {
+    if {[expr {$is_port ? [$pin isOutputSignal] : [$pin isInputSignal]}]} {
       $pin disconnect
       $pin connect $second
     }
   }
   foreach pin [$inst getITerms] {
-    if {[$pin isInputSignal]} { $pin connect $net }
-    if {[$pin isOutputSignal]} { $pin connect $second }
+    if {[$pin isInputSignal]} { $pin connect [expr {$is_port ? $second : $net}] }
+    if {[$pin isOutputSignal]} { $pin connect [expr {$is_port ? $net : $second}] }
   }
   foreach axis {1 2} middle {x y} {
     set all [lsort -real [lmap at $corners { lindex $at $axis }]]
@@ -181,10 +184,14 @@ global_route -allow_congestion -congestion_iterations $congestion_iterations
 estimate_parasitics -global_routing
 set load_margin [expr {2 * $load_margin}]
 repair_loads
-for {set turn 0} {[place_and_reroute] && $turn < 3} {incr turn} {}
+help_and_reroute
 repair_hold
-place_and_reroute -spef_file global.spef
+help_and_reroute
+# A slew that is just below its limit by these estimates is beyond it by the real wires
+set longest_slew [sta::max_slew_check_limit]
+set_max_transition [expr {0.9 * $longest_slew}] [current_design]
 raise_thresholds $setup_margin
+set_max_transition $longest_slew [current_design]
 measured estimated_beyond [dict size [beyond_limits]]
 
 # A design that is late now stops here, before the hours of detailed routing
