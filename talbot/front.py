@@ -59,7 +59,6 @@ GROUPS: dict[str, dict[str, Command]] = {
         "verilog": Command("the chip and each block as SystemVerilog, with FuseSoC cores", "rtl.export"),
         "sizes": Command("cells and gate equivalents of every block", "flow.sizes.command"),
         "layout": Command("Verilog to a checked GDS: the chip, a block or the die", "flow.layout.command"),
-        "layout-energy": Command("switching energy of the chip's layout, event by event", "flow.layout.energy.command"),
         "openroad": Command("scripts and layout of a design by OpenROAD", "flow.openroad.command"),
         "cells": Command("characterize standard cells: transistors to Liberty and LEF", "cells.command"),
         "handoff": Command("one reproducible archive of a finished layout", "flow.handoff.command"),

@@ -8,7 +8,7 @@ from talbot.models.parameters.electrical import ELEMENTARY_CHARGE, PHOTON
 from talbot.models.parameters.sources import sourced
 
 TABLE = "[Jayasuriya2017], Table 6.1"
-LAYOUT = "make layout-energy, tt, 1.8 V: flow/layout"
+LAYOUT = "flow/layout, tt, 1.8 V: make layout-energy of commit bbb7078d"
 CIRCUITS = "make analog, tt_027C_1v80: pixels/datasheet"
 DECISIONS = 8  # comparator decisions of one full conversion
 WINDOW = 2  # of the window comparison
