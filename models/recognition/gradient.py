@@ -18,15 +18,8 @@ Bools = npt.NDArray[np.bool_]
 def contrast(pictures: npt.ArrayLike) -> npt.NDArray[np.float64]:
     """Largest difference among a pixel, its left and its top neighbour.
 
-    Parameters
-    ----------
-    pictures : array (..., height, width)
-        Intensity, any unit. The first row and column have themselves as the neighbour that they lack.
-
-    Returns
-    -------
-    float64 (..., height, width)
-        max(\\|P - L\\|, \\|P - T\\|, \\|L - T\\|).
+    pictures: (..., height, width), intensity, any unit. The first row and column have themselves as the neighbour that
+    they lack. Returns (..., height, width): max(|P - L|, |P - T|, |L - T|).
     """
     p = np.asarray(pictures, np.float64)
     left = np.concatenate([p[..., :1], p[..., :-1]], -1)

@@ -16,17 +16,7 @@ PLANE = 3.72  # m of the scene: where pictures without depth stand, 1 px a view 
 def scaled(metres: npt.ArrayLike, camera: CameraParameters) -> npt.NDArray[np.float64]:
     """Convert metres of a scene to metres in front of the camera.
 
-    Parameters
-    ----------
-    metres : array
-        In m of the scene.
-    camera : CameraParameters
-        The camera.
-
-    Returns
-    -------
-    float64
-        In m; at most FOCUS_MAX.
+    metres: array, in m of the scene. camera: the camera. Returns float64: in m; at most FOCUS_MAX.
     """
     return np.minimum(np.asarray(metres, float) / camera.scale, FOCUS_MAX)
 
@@ -34,15 +24,7 @@ def scaled(metres: npt.ArrayLike, camera: CameraParameters) -> npt.NDArray[np.fl
 def per_inverse_metre(sampling: Sampling) -> float:
     """Disparity of a surface by how much nearer it is than the focal plane.
 
-    Parameters
-    ----------
-    sampling : Sampling
-        Views and camera.
-
-    Returns
-    -------
-    float
-        In px per view step for each 1/m.
+    sampling: views and camera. Returns float: in px per view step for each 1/m.
     """
     camera = sampling.camera
     return camera.principal_distance**2 * 2 * camera.nu_max / sampling.views / sampling.pitch
@@ -51,17 +33,8 @@ def per_inverse_metre(sampling: Sampling) -> float:
 def disparity(depth: npt.ArrayLike, sampling: Sampling) -> npt.NDArray[np.float64]:
     """Disparity of a depth against the focal plane.
 
-    Parameters
-    ----------
-    depth : array
-        In m from the camera.
-    sampling : Sampling
-        Views and camera.
-
-    Returns
-    -------
-    float64
-        In px per view step, positive towards the camera.
+    depth: array, in m from the camera. sampling: views and camera. Returns float64: in px per view step, positive
+    towards the camera.
     """
     return per_inverse_metre(sampling) * (1 / np.asarray(depth, float) - 1 / sampling.camera.focus)
 
@@ -69,19 +42,8 @@ def disparity(depth: npt.ArrayLike, sampling: Sampling) -> npt.NDArray[np.float6
 def depth(disparity_: npt.ArrayLike, sampling: Sampling, reference: float | None = None) -> npt.NDArray[np.float64]:
     """Depth of a disparity.
 
-    Parameters
-    ----------
-    disparity_ : array
-        In px per view step, positive towards the camera.
-    sampling : Sampling
-        Views and camera.
-    reference : float, optional
-        Depth of disparity 0 in m from the camera; None is the focal plane.
-
-    Returns
-    -------
-    float64
-        In m; FOCUS_MAX at and beyond infinity.
+    disparity_: array, in px per view step, positive towards the camera. sampling: views and camera. reference: depth of
+    disparity 0 in m from the camera; None is the focal plane. Returns float64: in m; FOCUS_MAX at and beyond infinity.
     """
     start = 1 / (sampling.camera.focus if reference is None else reference)
     inverse = np.asarray(disparity_, float) / per_inverse_metre(sampling) + start

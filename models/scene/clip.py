@@ -69,23 +69,10 @@ class Clip:
 def open_clip(source: str | Path | Iterable[npt.ArrayLike], sampling: Sampling) -> Clip:
     """Open a sequence of pictures.
 
-    Parameters
-    ----------
-    source : path or iterable of arrays
-        A folder of pictures of one kind and size in the order of their numbers, an animated picture, or a video; or
-        arrays (height, width) or (height, width, 3): uint8 and uint16 are sRGB codes, floats linear radiance, 0..16.
-    sampling : Sampling
-        Array; much larger pictures are reduced.
-
-    Returns
-    -------
-    Clip
-        The sequence.
-
-    Raises
-    ------
-    ParameterError
-        For what is missing, damaged or no sequence, and for a video without the package av.
+    source: path or iterable of arrays, a folder of pictures of one kind and size in the order of their numbers, an
+    animated picture, or a video; or arrays (height, width) or (height, width, 3): uint8 and uint16 are sRGB codes,
+    floats linear radiance, 0..16. sampling: array; much larger pictures are reduced. Returns Clip: the sequence. Raises
+    ParameterError for what is missing, damaged or no sequence, and for a video without the package av.
     """
     if not isinstance(source, str | Path | Iterable):
         raise ParameterError(f"frames = {source!r}: must be a folder, an animated picture, a video, or arrays")

@@ -13,17 +13,9 @@ Floats = npt.NDArray[np.floating]
 def depth_of_surface(depth: Floats, disparity: Floats | None) -> Callable[[Floats], Floats]:
     """Depth as a function of disparity: inverse depth is affine in it.
 
-    Parameters
-    ----------
-    depth : array (rows, cols)
-        Depth of the centre view in m.
-    disparity : array (rows, cols) or None
-        Disparity of the centre view in px per view step; None is the same depth in all views.
-
-    Returns
-    -------
-    callable
-        From the disparity map of a view, (rows, cols), to its depth in m.
+    depth: (rows, cols), depth of the centre view in m. disparity: array (rows, cols) or None, disparity of the centre
+    view in px per view step; None is the same depth in all views. Returns callable: from the disparity map of a view,
+    (rows, cols), to its depth in m.
     """
     line = None if disparity is None else _inverse_depth(disparity, depth)
     if line is None:

@@ -26,25 +26,10 @@ BYTES_MAX = 2**30  # of an array in an .npz
 def read_depth(path: str | Path, sampling: Sampling, picture_shape: tuple[int, int]) -> npt.NDArray[np.float64]:
     """Read a depth file.
 
-    Parameters
-    ----------
-    path : path
-        The file.
-    sampling : Sampling
-        Size of the array, and views.
-    picture_shape : (int, int)
-        Height and width of the picture that the file belongs to. The crop is the same; the resolution may differ, the
-        proportions by 2 % at most.
-
-    Returns
-    -------
-    float64 (rows, cols)
-        Depth in m from the camera.
-
-    Raises
-    ------
-    ParameterError
-        For a file that is missing or damaged, a wrong shape, or a value out of range.
+    path: the file. sampling: size of the array, and views. picture_shape: (int, int), height and width of the picture
+    that the file belongs to. The crop is the same; the resolution may differ, the proportions by 2 % at most. Returns
+    (rows, cols): depth in m from the camera. Raises ParameterError for a file that is missing or damaged, a wrong
+    shape, or a value out of range.
     """
     values, kind = _read(Path(path))
     if values.ndim != 2 or 0 in values.shape:

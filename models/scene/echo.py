@@ -60,15 +60,7 @@ class Echo:
     def cropped(self, top: int, left: int, rows: int, cols: int) -> "Echo":
         """Part of the picture.
 
-        Parameters
-        ----------
-        top, left, rows, cols : int
-            In px, multiples of a histogram's but for the end.
-
-        Returns
-        -------
-        Echo
-            Of this size.
+        top, left, rows, cols: in px, multiples of a histogram's but for the end. Returns Echo: of this size.
         """
         high, wide = self._fine
         near = slice(top // high, -(-(top + rows) // high)), slice(left // wide, -(-(left + cols) // wide))
@@ -83,16 +75,8 @@ class Echo:
     def returned(self, correlation: Correlation) -> Returned:
         """Return the correlation of all light of a view.
 
-        Parameters
-        ----------
-        correlation : callable
-            Of depths, whatever their shape.
-
-        Returns
-        -------
-        callable
-            From depth (rows, cols), disparity (rows, cols) and offset (dv, du) of a view to the mean of the correlation
-            over its light, (rows, cols).
+        correlation: of depths, whatever their shape. Returns callable: from depth (rows, cols), disparity (rows, cols)
+        and offset (dv, du) of a view to the mean of the correlation over its light, (rows, cols).
         """
         other, some = self.late @ np.asarray(correlation(self.bins)), self.late.sum(-1) > 0
         (rows, cols), (high, wide) = self.share.shape[2:], self._fine

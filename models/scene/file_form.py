@@ -51,20 +51,7 @@ FORMS = {
 def is_video(path: Path) -> bool:
     """Return whether a file begins as a container of videos does.
 
-    Parameters
-    ----------
-    path : Path
-        The file.
-
-    Returns
-    -------
-    bool
-        By its first bytes; HEIC is none.
-
-    Raises
-    ------
-    OSError
-        If it cannot be read.
+    path: the file. Returns bool: by its first bytes; HEIC is none. Raises OSError if it cannot be read.
     """
     with path.open("rb") as file:
         head = file.read(HEAD)
@@ -74,20 +61,8 @@ def is_video(path: Path) -> bool:
 def form_of(path: Path) -> str | None:
     """Return the form of a file that is no picture, and the required form.
 
-    Parameters
-    ----------
-    path : Path
-        The file.
-
-    Returns
-    -------
-    str or None
-        For a message, ``an HDF5 file: must be ...``; None where its first bytes tell nothing.
-
-    Raises
-    ------
-    OSError
-        If it cannot be read.
+    path: the file. Returns str or None: for a message, ``an HDF5 file: must be ...``; None where its first bytes tell
+    nothing. Raises OSError if it cannot be read.
     """
     with path.open("rb") as file:
         head = file.read(HEAD)

@@ -28,21 +28,8 @@ FIELDS = (
 def leaves(sampling: Sampling, seed: float = 0.0) -> Scene:
     """Dead leaves.
 
-    Parameters
-    ----------
-    sampling : Sampling
-        Array, views and camera.
-    seed : float
-        Of the scene, a whole number, 0..1e9.
-
-    Returns
-    -------
-    Scene
-        All views, with disparity and depth.
-
-    References
-    ----------
-    [Lee2001].
+    sampling: array, views and camera. seed: of the scene, a whole number, 0..1e9. Returns Scene: all views, with
+    disparity and depth. [Lee2001].
     """
     table = _ellipses(sampling, np.random.default_rng(int(seed)))
     y, x = (place.ravel() for place in places(sampling))

@@ -26,15 +26,7 @@ REC709 = np.array([0.2126, 0.7152, 0.0722])
 def native(values: npt.NDArray[Any]) -> npt.NDArray[Any]:
     """Change an array to this machine's byte order.
 
-    Parameters
-    ----------
-    values : array
-        Of either order.
-
-    Returns
-    -------
-    array
-        ``values`` itself where it has it.
+    values: array, of either order. Returns array: ``values`` itself where it has it.
     """
     return values if values.dtype.isnative else values.astype(values.dtype.newbyteorder("="))
 
@@ -138,15 +130,7 @@ class LightField:
     def view(self, v: int, u: int) -> npt.NDArray[np.float64]:
         """Radiance of a view.
 
-        Parameters
-        ----------
-        v, u : int
-            Its row and column.
-
-        Returns
-        -------
-        float64 (height, width)
-            Linear luminance, -16..16.
+        v, u: its row and column. Returns (height, width): linear luminance, -16..16.
         """
         codes = self.values[v, u]
         if codes.dtype == np.uint8:
@@ -157,15 +141,8 @@ class LightField:
     def scene(self, sampling: Sampling) -> Scene:
         """Return the light field before a sensor.
 
-        Parameters
-        ----------
-        sampling : Sampling
-            Array; its number of views is not used.
-
-        Returns
-        -------
-        Scene
-            Of the array's size: the largest centred part with its proportions. Light below 0 is 0, which a note says.
+        sampling: array; its number of views is not used. Returns Scene: of the array's size: the largest centred part
+        with its proportions. Light below 0 is 0, which a note says.
         """
         if self.grid != (self.views, self.views):
             return self.squared().scene(sampling)
@@ -217,10 +194,7 @@ class LightField:
     def squared(self) -> "LightField":
         """Return the middle square of the views.
 
-        Returns
-        -------
-        LightField
-            Of `views` x `views`; its middle view is the grid's.
+        Returns LightField: of `views` x `views`; its middle view is the grid's.
         """
         top, left = (count // 2 - self.views // 2 for count in self.grid)
         part = np.s_[..., top : top + self.views, left : left + self.views, :, :]
@@ -239,10 +213,7 @@ class LightField:
     def own_size(self) -> tuple[int, int]:
         """Rows and columns of a sensor that sees it pixel for pixel.
 
-        Returns
-        -------
-        (int, int)
-            Those of a view; reduced to `SIZE_MAX` with its proportions where it is larger.
+        Returns (int, int): those of a view; reduced to `SIZE_MAX` with its proportions where it is larger.
         """
         factor = max(1.0, *(size / most for size, most in zip(self.shape, SIZE_MAX, strict=True)))
         rows, cols = (max(1, int(size / factor)) for size in self.shape)
@@ -251,15 +222,7 @@ class LightField:
     def cropped(self, rows: int, cols: int) -> "LightField":
         """Return the middle of the picture.
 
-        Parameters
-        ----------
-        rows, cols : int
-            At most height and width.
-
-        Returns
-        -------
-        LightField
-            Of this size, pixel for pixel.
+        rows, cols: at most height and width. Returns LightField: of this size, pixel for pixel.
         """
         top, left = (2 * ((array - n) // 4) for array, n in zip(self.shape, (rows, cols), strict=True))
         part = np.s_[..., top : top + rows, left : left + cols]

@@ -46,15 +46,8 @@ LENSLET = 14  # their views along each axis
 def named(scene: str) -> Callable[[], LightField] | None:
     """Return the reader of a scene's name on the command line, where it is a light field's.
 
-    Parameters
-    ----------
-    scene : str
-        A folder, a .npy or .npz file, a lenslet image, image:views, or image:rows x columns of views.
-
-    Returns
-    -------
-    callable or None
-        Reads it; None for another kind of scene.
+    scene: a folder, a .npy or .npz file, a lenslet image, image:views, or image:rows x columns of views. Returns
+    callable or None: reads it; None for another kind of scene.
     """
     tiled = TILED.fullmatch(scene)
     if tiled and not Path(scene).exists():
@@ -68,23 +61,9 @@ def named(scene: str) -> Callable[[], LightField] | None:
 def read_light_field(path: str | Path, views: Any = None) -> LightField:
     """Read a light field.
 
-    Parameters
-    ----------
-    path : path
-        As the head of this file lists.
-    views : int or (int, int), optional
-        Views along each axis, or rows of views and views in a row, 1..31; of one image alone: tiles must have it,
-        lenslet images have 14.
-
-    Returns
-    -------
-    LightField
-        With the file's or folder's name.
-
-    Raises
-    ------
-    ParameterError
-        For what is missing, damaged, incomplete or of a wrong shape or type.
+    path: as the head of this file lists. views: int or (int, int), views along each axis, or rows of views and views in
+    a row, 1..31; of one image alone: tiles must have it, lenslet images have 14. Returns LightField: with the file's or
+    folder's name. Raises ParameterError for what is missing, damaged, incomplete or of a wrong shape or type.
     """
     path = Path(path)
     numpy = path.suffix.lower() in SUFFIXES
@@ -116,28 +95,13 @@ def read_light_field(path: str | Path, views: Any = None) -> LightField:
 def write_light_field(light_field: LightField, path: str | Path, white: float = 1.0) -> str:
     """Write a light field in the form of the path's name.
 
-    Parameters
-    ----------
-    light_field : LightField
-        The light field. Pictures take its codes as they are; linear radiance of 0..white becomes sRGB codes, gray of 16
-        bits, colours of 8, and is clipped to that.
-    path : path
-        x.npy, x.npz, an image file (16 bits: .png, .tif), or a folder without a dot in its name, which is created.
-        Disparity goes into .npz and folders alone, depth, Stokes parameters and highlights into .npz.
-    white : float
-        Radiance of a picture's largest code, 0.001..16: what is read from it is the radiance over ``white``.
-
-    Returns
-    -------
-    str
-        What was clipped, in a line; empty where nothing was, as in .npy and .npz.
-
-    Raises
-    ------
-    ParameterError
-        For 16-bit colours in pictures, another kind of file, and a white out of range.
-    OSError
-        If it cannot be written.
+    light_field: the light field. Pictures take its codes as they are; linear radiance of 0..white becomes sRGB codes,
+    gray of 16 bits, colours of 8, and is clipped to that. path: x.npy, x.npz, an image file (16 bits: .png, .tif), or a
+    folder without a dot in its name, which is created. Disparity goes into .npz and folders alone, depth, Stokes
+    parameters and highlights into .npz. white: radiance of a picture's largest code, 0.001..16: what is read from it is
+    the radiance over ``white``. Returns str: what was clipped, in a line; empty where nothing was, as in .npy and .npz.
+    Raises ParameterError for 16-bit colours in pictures, another kind of file, and a white out of range. Raises OSError
+    if it cannot be written.
     """
     path, values = Path(path), light_field.values
     check_real("white", white, 1e-3, RADIANCE_MAX)

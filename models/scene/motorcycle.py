@@ -23,19 +23,7 @@ DOFFS_PX = 31.086
 def motorcycle(sampling: Sampling) -> Scene:
     """Motorcycle scene: the left picture is the centre view; the right one fills what edges hide.
 
-    Parameters
-    ----------
-    sampling : Sampling
-        Array, views and camera.
-
-    Returns
-    -------
-    Scene
-        With disparity and depth.
-
-    References
-    ----------
-    [Scharstein2014].
+    sampling: array, views and camera. Returns Scene: with disparity and depth. [Scharstein2014].
     """
     left, right = (of_skimage.codes(f"motorcycle_{side}") for side in ("left", "right"))
     with np.load(of_skimage.folder() / "motorcycle_disp.npz") as file:

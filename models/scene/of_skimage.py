@@ -11,15 +11,7 @@ from PIL import Image
 def folder() -> Path:
     """Folder of scikit-image's pictures.
 
-    Returns
-    -------
-    Path
-        The folder.
-
-    Raises
-    ------
-    ModuleNotFoundError
-        Without scikit-image.
+    Returns Path: the folder. Raises ModuleNotFoundError without scikit-image.
     """
     spec = find_spec("skimage")
     if spec is None or not spec.submodule_search_locations:
@@ -30,22 +22,8 @@ def folder() -> Path:
 def codes(name: str) -> npt.NDArray[np.uint8]:
     """Codes of a picture.
 
-    Parameters
-    ----------
-    name : str
-        Of the file, without suffix.
-
-    Returns
-    -------
-    array (rows, cols) or (rows, cols, 3)
-        Codes 0..255.
-
-    Raises
-    ------
-    ModuleNotFoundError
-        Without scikit-image.
-    FileNotFoundError
-        For a picture that it does not ship.
+    name: of the file, without suffix. Returns (rows, cols) or (rows, cols, 3): codes 0..255. Raises ModuleNotFoundError
+    without scikit-image. Raises FileNotFoundError for a picture that it does not ship.
     """
     files = [folder() / f"{name}{suffix}" for suffix in (".png", ".jpg")]
     path = next((file for file in files if file.exists()), None)

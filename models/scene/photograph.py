@@ -19,17 +19,7 @@ PHOTOGRAPHS = ("astronaut", "camera", "chelsea", "coffee", "coins", "moon", "pag
 def photograph(name: str, sampling: Sampling) -> Scene:
     """Photograph of scikit-image, on a plane.
 
-    Parameters
-    ----------
-    name : str
-        One of PHOTOGRAPHS.
-    sampling : Sampling
-        Array, views and camera.
-
-    Returns
-    -------
-    Scene
-        With constant disparity and depth.
+    name: one of PHOTOGRAPHS. sampling: array, views and camera. Returns Scene: with constant disparity and depth.
     """
     return scene_of(name, resample.linear(of_skimage.codes(name)), sampling)
 
@@ -37,24 +27,9 @@ def photograph(name: str, sampling: Sampling) -> Scene:
 def picture(path: str | Path, sampling: Sampling, depth: str | Path | None = None) -> Scene:
     """Image file as a scene.
 
-    Parameters
-    ----------
-    path : path
-        The image.
-    sampling : Sampling
-        Array, views and camera.
-    depth : path, optional
-        A depth file (models/scene/depth_file.py); None is a plane.
-
-    Returns
-    -------
-    Scene
-        With disparity and depth.
-
-    Raises
-    ------
-    ParameterError
-        For a file that is missing, damaged or of a wrong shape.
+    path: the image. sampling: array, views and camera. depth: a depth file (models/scene/depth_file.py); None is a
+    plane. Returns Scene: with disparity and depth. Raises ParameterError for a file that is missing, damaged or of a
+    wrong shape.
     """
     luminance = read_luminance(path, *sampling.shape)
     metres = None if depth is None else read_depth(depth, sampling, luminance.shape)
@@ -66,21 +41,9 @@ def scene_of(
 ) -> Scene:
     """Linear luminance as a scene.
 
-    Parameters
-    ----------
-    name : str
-        Name in reports.
-    luminance : array (height, width)
-        0..16, 1 = diffuse white. The largest centred part with the array's proportions is taken.
-    sampling : Sampling
-        Array, views and camera.
-    depth : float64 (rows, cols), optional
-        In m from the camera; None is the plane of pictures without depth.
-
-    Returns
-    -------
-    Scene
-        With disparity and depth.
+    name: name in reports. luminance: (height, width), 0..16, 1 = diffuse white. The largest centred part with the
+    array's proportions is taken. sampling: array, views and camera. depth: (rows, cols), in m from the camera; None is
+    the plane of pictures without depth. Returns Scene: with disparity and depth.
     """
     rows, cols = sampling.shape
     height, width = luminance.shape

@@ -52,23 +52,9 @@ def read_luminance(path: str | Path, rows: int, cols: int) -> npt.NDArray[np.flo
 
     Codes are sRGB; floating-point pictures (TIFF) are linear. Transparency shows white.
 
-    Parameters
-    ----------
-    path : path
-        The image.
-    rows, cols : int
-        Size of the array. A much larger picture is reduced in whole boxes.
-
-    Returns
-    -------
-    float32 (height, width)
-        0..1.
-
-    Raises
-    ------
-    ParameterError
-        If the file is missing, no image, damaged, too large, of a kind that is not read, of more than one picture, or
-        holds NaN or infinity.
+    path: the image. rows, cols: size of the array. A much larger picture is reduced in whole boxes. Returns float32
+    (height, width): 0..1. Raises ParameterError if the file is missing, no image, damaged, too large, of a kind that is
+    not read, of more than one picture, or holds NaN or infinity.
     """
     return luminance_of(read_pixels(path, "scene", (rows, cols)), path, rows, cols)
 
@@ -76,24 +62,9 @@ def read_luminance(path: str | Path, rows: int, cols: int) -> npt.NDArray[np.flo
 def luminance_of(pixels: Pixels, path: str | Path, rows: int, cols: int) -> npt.NDArray[np.float32]:
     """Linear luminance of a picture.
 
-    Parameters
-    ----------
-    pixels : Pixels
-        The picture.
-    path : path
-        Its file, for the messages.
-    rows, cols : int
-        Size of the array. A much larger picture is reduced in whole boxes.
-
-    Returns
-    -------
-    float32 (height, width)
-        0..1.
-
-    Raises
-    ------
-    ParameterError
-        If it holds NaN, infinity or values out of range.
+    pixels: the picture. path: its file, for the messages. rows, cols: size of the array. A much larger picture is
+    reduced in whole boxes. Returns float32 (height, width): 0..1. Raises ParameterError if it holds NaN, infinity or
+    values out of range.
     """
     values, white = _checked(pixels, path)
     height, width = values.shape[:2]
@@ -108,22 +79,9 @@ def luminance_of(pixels: Pixels, path: str | Path, rows: int, cols: int) -> npt.
 def read_codes(path: str | Path, field: str) -> npt.NDArray[np.uint8] | npt.NDArray[np.uint16]:
     """Read the gray codes of a picture as stored, upright, for depth maps.
 
-    Parameters
-    ----------
-    path : path
-        The image.
-    field : str
-        Name in the messages.
-
-    Returns
-    -------
-    uint8 or uint16 (height, width)
-        Codes; of fewer than 8 bits, as codes of 8.
-
-    Raises
-    ------
-    ParameterError
-        If the file is missing, no image, damaged, too large, a floating-point picture, or coloured.
+    path: the image. field: name in the messages. Returns uint8 or uint16 (height, width): codes; of fewer than 8 bits,
+    as codes of 8. Raises ParameterError if the file is missing, no image, damaged, too large, a floating-point picture,
+    or coloured.
     """
     pixels = read_pixels(path, field)
     if pixels.values.dtype.kind == "f":
@@ -140,23 +98,9 @@ def read_codes(path: str | Path, field: str) -> npt.NDArray[np.uint8] | npt.NDAr
 def read_picture(path: str | Path, low: float = 0.0, high: float = 1.0) -> npt.NDArray[Any]:
     """Read a picture as stored, upright: gray or RGB codes, or linear values.
 
-    Parameters
-    ----------
-    path : path
-        The image.
-    low, high : float
-        Range of floating-point values.
-
-    Returns
-    -------
-    uint8, uint16 or float32 (height, width) or (height, width, 3)
-        Transparency shows white.
-
-    Raises
-    ------
-    ParameterError
-        If the file is missing, no image, damaged, too large, of a kind that is not read, of more than one picture, or
-        holds NaN or infinity.
+    path: the image. low, high: range of floating-point values. Returns uint8, uint16 or float32 (height, width) or
+    (height, width, 3): transparency shows white. Raises ParameterError if the file is missing, no image, damaged, too
+    large, of a kind that is not read, of more than one picture, or holds NaN or infinity.
     """
     return _checked(read_pixels(path, "scene"), path, low, high).scaled()
 
@@ -164,22 +108,8 @@ def read_picture(path: str | Path, low: float = 0.0, high: float = 1.0) -> npt.N
 def header_of(path: str | Path, field: str) -> Header:
     """Read the header of an image file.
 
-    Parameters
-    ----------
-    path : path
-        The image.
-    field : str
-        Name in the messages.
-
-    Returns
-    -------
-    Header
-        Size and number of pictures.
-
-    Raises
-    ------
-    ParameterError
-        If the file is missing, no image, too large, or a form that is not read.
+    path: the image. field: name in the messages. Returns Header: size and number of pictures. Raises ParameterError if
+    the file is missing, no image, too large, or a form that is not read.
     """
     with _opened(path, field) as (picture, pages):
         if pages is not None:
@@ -194,24 +124,8 @@ def header_of(path: str | Path, field: str) -> Header:
 def read_pixels(path: str | Path, field: str, size: tuple[int, int] | None = None) -> Pixels:
     """Read a file of one picture.
 
-    Parameters
-    ----------
-    path : path
-        The image.
-    field : str
-        Name in the messages.
-    size : (int, int), optional
-        Rows and columns of the array, for which a JPEG is decoded at a fraction of its size.
-
-    Returns
-    -------
-    Pixels
-        Upright, on white.
-
-    Raises
-    ------
-    ParameterError
-        As `read_luminance`.
+    path: the image. field: name in the messages. size: (int, int), rows and columns of the array, for which a JPEG is
+    decoded at a fraction of its size. Returns Pixels: upright, on white. Raises ParameterError as `read_luminance`.
     """
     with _opened(path, field) as (picture, pages):
         count = len(pages) if pages is not None else _frames_of(picture)
@@ -231,22 +145,8 @@ def read_pixels(path: str | Path, field: str, size: tuple[int, int] | None = Non
 def read_frames(path: str | Path, field: str) -> Iterator[tuple[Pixels, float]]:
     """Read all pictures of an animation or a TIFF stack.
 
-    Parameters
-    ----------
-    path : path
-        The image.
-    field : str
-        Name in the messages.
-
-    Yields
-    ------
-    (Pixels, float)
-        Upright, on white, and how long it is shown in s; 0 where the file does not say.
-
-    Raises
-    ------
-    ParameterError
-        If it is damaged.
+    path: the image. field: name in the messages. Yields (Pixels, float): upright, on white, and how long it is shown in
+    s; 0 where the file does not say. Raises ParameterError if it is damaged.
     """
     with _opened(path, field) as (picture, pages):
         for number in range(len(pages) if pages is not None else _frames_of(picture)):
@@ -403,19 +303,7 @@ def _reduced(values: npt.NDArray[Any], factor: int) -> npt.NDArray[Any]:
 def decode16(unit: npt.NDArray[np.floating]) -> npt.NDArray[Any]:
     """Linear light of sRGB codes.
 
-    Parameters
-    ----------
-    unit : array (...)
-        Codes over the largest one, 0..1.
-
-    Returns
-    -------
-    array (...)
-        0..1.
-
-    References
-    ----------
-    [IEC61966-2-1].
+    unit: (...), codes over the largest one, 0..1. Returns (...): 0..1. [IEC61966-2-1].
     """
     return np.where(unit <= 0.04045, unit / 12.92, ((unit + 0.055) / 1.055) ** 2.4)
 
@@ -423,18 +311,6 @@ def decode16(unit: npt.NDArray[np.floating]) -> npt.NDArray[Any]:
 def encode16(light: npt.NDArray[np.floating]) -> npt.NDArray[Any]:
     """SRGB codes of linear light: the inverse of `decode16`.
 
-    Parameters
-    ----------
-    light : array (...)
-        0..1.
-
-    Returns
-    -------
-    array (...)
-        Codes over the largest one, 0..1, not rounded.
-
-    References
-    ----------
-    [IEC61966-2-1].
+    light: (...), 0..1. Returns (...): codes over the largest one, 0..1, not rounded. [IEC61966-2-1].
     """
     return np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)

@@ -28,10 +28,7 @@ class Pixels(NamedTuple):
     def scaled(self) -> npt.NDArray[Any]:
         """Codes of 8 or of 16 bits, or linear values.
 
-        Returns
-        -------
-        uint8, uint16 or float32 (height, width) or (height, width, 3)
-            255 or 65535 is white, 1 of float32.
+        Returns uint8, uint16 or float32 (height, width) or (height, width, 3): 255 or 65535 is white, 1 of float32.
         """
         if self.values.dtype.kind == "f":
             return self.values.astype(np.float32)
@@ -44,17 +41,7 @@ class Pixels(NamedTuple):
 def upright(values: npt.NDArray[Any], orientation: int) -> npt.NDArray[Any]:
     """Turn a picture as EXIF and TIFF say.
 
-    Parameters
-    ----------
-    values : array (height, width, ...)
-        As stored.
-    orientation : int
-        1..8; any other is 1.
-
-    Returns
-    -------
-    array
-        A view, as it is seen.
+    values: (height, width, ...), as stored. orientation: 1..8; any other is 1. Returns array: a view, as it is seen.
     """
     if orientation in (5, 6, 7, 8):
         values = values.swapaxes(0, 1)
@@ -68,21 +55,9 @@ def over_white(
 ) -> npt.NDArray[Any]:
     """Lay a transparent picture on white.
 
-    Parameters
-    ----------
-    values : array (height, width) or (height, width, 3)
-        Codes or linear values.
-    alpha : float array (height, width)
-        0..1, 1 is opaque.
-    white : float
-        Value of white.
-    associated : bool
-        Whether ``values`` are multiplied by alpha.
-
-    Returns
-    -------
-    array
-        Of the values' shape and type.
+    values: (height, width) or (height, width, 3), codes or linear values. alpha: float array (height, width), 0..1, 1
+    is opaque. white: value of white. associated: whether ``values`` are multiplied by alpha. Returns array: of the
+    values' shape and type.
     """
     alpha = alpha.reshape(alpha.shape + (1,) * (values.ndim - 2))
     mixed = (values if associated else values * alpha) + (1 - alpha) * white
@@ -94,15 +69,8 @@ def over_white(
 def deep_pixels(opened: Callable[[], Image.Image]) -> Pixels | None:
     """Read colours, or gray with alpha, of 16 bits, of which Pillow keeps the upper 8: its decoder runs twice.
 
-    Parameters
-    ----------
-    opened : callable
-        Gives the picture, PNG or TIFF, not loaded.
-
-    Returns
-    -------
-    Pixels or None
-        Of uint16, turned as Pillow's; None of another picture.
+    opened: gives the picture, PNG or TIFF, not loaded. Returns Pixels or None: of uint16, turned as Pillow's; None of
+    another picture.
     """
     with opened() as picture:
         mode = _rawmode(picture)
@@ -143,17 +111,8 @@ def _decoded(opened: Callable[[], Image.Image], rawmode: str) -> npt.NDArray[np.
 def image_pixels(picture: Image.Image, white: float = 255) -> Pixels:
     """Pixels of a picture that Pillow has decoded.
 
-    Parameters
-    ----------
-    picture : Image
-        Loaded; what it says of transparency is of `rawmode`'s codes.
-    white : float
-        Largest code of the file's gray, to which ``transparency`` belongs.
-
-    Returns
-    -------
-    Pixels
-        As Pillow has turned them; integers of 32 bits are not checked.
+    picture: loaded; what it says of transparency is of `rawmode`'s codes. white: largest code of the file's gray, to
+    which ``transparency`` belongs. Returns Pixels: as Pillow has turned them; integers of 32 bits are not checked.
     """
     clear = picture.info.get("transparency")
     if picture.mode == "F":

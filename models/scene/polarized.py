@@ -28,17 +28,8 @@ BALLS = ((-0.20, -0.18, 0.27, 2.9, 0.45, 0.5), (0.22, 0.16, 0.24, 2.5, 0.3, 2.4)
 def polarized(sampling: Sampling, degree: float = 25.0) -> Scene:
     """Uniform scene of polarized light whose plane turns by pi from left to right.
 
-    Parameters
-    ----------
-    sampling : Sampling
-        Array, views and camera.
-    degree : float
-        Degree of polarization in percent, 0..100.
-
-    Returns
-    -------
-    Scene
-        One view, with polarization.
+    sampling: array, views and camera. degree: degree of polarization in percent, 0..100. Returns Scene: one view, with
+    polarization.
     """
     psi = np.broadcast_to(np.pi * (np.arange(sampling.cols) + 0.5) / sampling.cols, sampling.shape)
     stokes = degree / 100 * np.stack([np.cos(2 * psi), np.sin(2 * psi)])
@@ -51,21 +42,8 @@ def stress(sampling: Sampling, degrees: float = 30.0) -> Scene:
     Stress is Kirsch's solution; retardance is in proportion to the difference of the principal stresses, the axes are
     theirs. The gratings are the second polarizer. What the sheet makes circular of the light has no plane.
 
-    Parameters
-    ----------
-    sampling : Sampling
-        Array, views and camera.
-    degrees : float
-        Angle of the polarizer's light.
-
-    Returns
-    -------
-    Scene
-        One view, with polarization.
-
-    References
-    ----------
-    [Jayasuriya2017], Sec. 4.2; [Kirsch1898].
+    sampling: array, views and camera. degrees: angle of the polarizer's light. Returns Scene: one view, with
+    polarization. [Jayasuriya2017], Sec. 4.2; [Kirsch1898].
     """
     y, x = places(sampling)
     delay, axis = kirsch(y, x, HOLE * min(sampling.shape))
@@ -84,21 +62,8 @@ def stress(sampling: Sampling, degrees: float = 30.0) -> Scene:
 def kirsch(y: Floats, x: Floats, radius: float) -> tuple[Floats, Floats]:
     """Retardance and fast axis of a sheet with a hole that is pulled along x.
 
-    Parameters
-    ----------
-    y, x : array
-        From the middle of the hole, broadcastable.
-    radius : float
-        Of the hole, in the same unit.
-
-    Returns
-    -------
-    tuple of array
-        Retardance in rad, 0 in the hole, and the axis in rad from x towards y.
-
-    References
-    ----------
-    [Kirsch1898].
+    y, x: array, from the middle of the hole, broadcastable. radius: of the hole, in the same unit. Returns tuple of
+    array: retardance in rad, 0 in the hole, and the axis in rad from x towards y. [Kirsch1898].
     """
     around = np.arctan2(y, x) + 0 * x
     rho = radius / np.maximum(np.hypot(y, x), radius)
@@ -115,15 +80,8 @@ def specular(sampling: Sampling) -> Scene:
     A highlight is Fresnel's reflection, polarized across the plane of incidence, and brighter than what is diffuse
     around it. The card is diffuse and fills the pixels' wells.
 
-    Parameters
-    ----------
-    sampling : Sampling
-        Array, views and camera.
-
-    Returns
-    -------
-    Scene
-        All views, with disparity, depth, polarization of every view and where the highlights are.
+    sampling: array, views and camera. Returns Scene: all views, with disparity, depth, polarization of every view and
+    where the highlights are.
     """
     n, shape = sampling.views, sampling.shape
     field, stokes = np.empty((n, n, *shape), sampling.dtype), np.empty((2, n, n, *shape))

@@ -48,24 +48,9 @@ NUMBERS = {
 def load(scene: str | LightField, sampling: Sampling, depth: str | Path | None = None) -> Scene:
     """Load a scene by name, or from an image file, or the files of a light field.
 
-    Parameters
-    ----------
-    scene : str or LightField
-        A name in `scenes`, `name:number`, a path (models/scene/README.md), or the light field itself.
-    sampling : Sampling
-        Array, views and camera.
-    depth : path, optional
-        Depth file of an image file.
-
-    Returns
-    -------
-    Scene
-        The scene.
-
-    Raises
-    ------
-    ParameterError
-        For an unknown name, a number out of range, or a file that cannot be read.
+    scene: str or LightField, a name in `scenes`, `name:number`, a path (models/scene/README.md), or the light field
+    itself. sampling: array, views and camera. depth: depth file of an image file. Returns Scene: the scene. Raises
+    ParameterError for an unknown name, a number out of range, or a file that cannot be read.
     """
     if isinstance(scene, str) and scene not in scenes and (read := named(scene)):
         return load(read(), sampling, depth)

@@ -12,17 +12,7 @@ Box = tuple[float, float, float, float]  # left, upper, right, lower in px
 def centre_box(height: int, width: int, rows: int, cols: int) -> Box:
     """Largest centred part of a picture with the proportions of the array.
 
-    Parameters
-    ----------
-    height, width : int
-        Size of the picture in px.
-    rows, cols : int
-        Size of the array in px.
-
-    Returns
-    -------
-    Box
-        In px of the picture.
+    height, width: size of the picture in px. rows, cols: size of the array in px. Returns Box: in px of the picture.
     """
     step = min(height / rows, width / cols)
     h, w = min(step * rows, height), min(step * cols, width)
@@ -32,19 +22,8 @@ def centre_box(height: int, width: int, rows: int, cols: int) -> Box:
 def resize(values: npt.NDArray[np.floating], rows: int, cols: int, box: Box | None = None) -> npt.NDArray[np.float64]:
     """Reduce a picture by averaging, without overshoot, or enlarge it by linear interpolation.
 
-    Parameters
-    ----------
-    values : array (height, width)
-        The picture.
-    rows, cols : int
-        Size of the result.
-    box : Box, optional
-        Part to take; the whole picture by default.
-
-    Returns
-    -------
-    float64 (rows, cols)
-        Means over the area of each pixel.
+    values: (height, width), the picture. rows, cols: size of the result. box: part to take; the whole picture by
+    default. Returns (rows, cols): means over the area of each pixel.
     """
     picture = Image.fromarray(np.ascontiguousarray(values, np.float32))
     height, width = values.shape
@@ -57,19 +36,8 @@ def resize(values: npt.NDArray[np.floating], rows: int, cols: int, box: Box | No
 def pick(values: npt.NDArray[Any], rows: int, cols: int, box: Box | None = None) -> npt.NDArray[np.float64]:
     """Nearest value at the middle of every pixel: nothing is mixed across a depth edge.
 
-    Parameters
-    ----------
-    values : array (height, width)
-        The picture.
-    rows, cols : int
-        Size of the result.
-    box : Box, optional
-        Part to take; the whole picture by default.
-
-    Returns
-    -------
-    float64 (rows, cols)
-        Values of the picture.
+    values: (height, width), the picture. rows, cols: size of the result. box: part to take; the whole picture by
+    default. Returns (rows, cols): values of the picture.
     """
     height, width = values.shape
     left, upper, right, lower = box or (0, 0, width, height)
@@ -81,19 +49,7 @@ def pick(values: npt.NDArray[Any], rows: int, cols: int, box: Box | None = None)
 def linear(codes: npt.NDArray[np.uint8]) -> npt.NDArray[np.float32]:
     """Linear luminance of sRGB codes.
 
-    Parameters
-    ----------
-    codes : uint8 (rows, cols) or (rows, cols, 3)
-        Gray or colour.
-
-    Returns
-    -------
-    float32 (rows, cols)
-        0..1.
-
-    References
-    ----------
-    [IEC61966-2-1].
+    codes: (rows, cols) or (rows, cols, 3), gray or colour. Returns float32 (rows, cols): 0..1. [IEC61966-2-1].
     """
     steps = np.arange(256) / 255
     decoded = np.where(steps <= 0.04045, steps / 12.92, ((steps + 0.055) / 1.055) ** 2.4).astype(np.float32)

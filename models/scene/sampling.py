@@ -57,17 +57,7 @@ class Sampling:
     def of(cls, sensor: SensorParameters, dtype: str = "float64") -> Self:
         """Sampling of a sensor.
 
-        Parameters
-        ----------
-        sensor : SensorParameters
-            The sensor.
-        dtype : str
-            'float32' or 'float64'.
-
-        Returns
-        -------
-        Sampling
-            With the sensor's array, views and camera.
+        sensor: the sensor. dtype: 'float32' or 'float64'. Returns Sampling: with the sensor's array, views and camera.
         """
         array, optics = sensor.array, sensor.optics
         return cls(array.rows, array.cols, optics.views, optics.camera, array.pitch, dtype)

@@ -172,15 +172,8 @@ class Scene:
     def view(self, mask: Bools) -> View:
         """Any view of the scene at some pixels.
 
-        Parameters
-        ----------
-        mask : bool (rows, cols)
-            Pixels to compute; the others are undefined.
-
-        Returns
-        -------
-        View
-            A view of the light field itself where the scene has no others.
+        mask: bool (rows, cols), pixels to compute; the others are undefined. Returns View: a view of the light field
+        itself where the scene has no others.
         """
         if callable(self.render):
             return self.render(mask)
@@ -202,19 +195,8 @@ class Scene:
 def check_values(field: str, values: npt.NDArray[Any], low: float, high: float) -> None:
     """Check that every element of an array is finite and in a range.
 
-    Parameters
-    ----------
-    field : str
-        Name in the message.
-    values : array
-        Checked values.
-    low, high : float
-        Allowed range, both ends included.
-
-    Raises
-    ------
-    ParameterError
-        For any other element.
+    field: name in the message. values: array, checked values. low, high: allowed range, both ends included. Raises
+    ParameterError for any other element.
     """
     # min and max propagate NaN, so that two passes are enough.
     smallest, largest = float(np.min(values)), float(np.max(values))

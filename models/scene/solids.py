@@ -42,15 +42,7 @@ class Facet(NamedTuple):
 def cornell(sampling: Sampling) -> Scene:
     """Box whose open end fills the picture, with two blocks in it; all walls are textured.
 
-    Parameters
-    ----------
-    sampling : Sampling
-        Array, views and camera.
-
-    Returns
-    -------
-    Scene
-        All views, with disparity and depth.
+    sampling: array, views and camera. Returns Scene: all views, with disparity and depth.
     """
     near, far = (float(camera.scaled(z, sampling.camera)) for z in (NEAR, FAR))
     wide, high = (near * n / 2 / _focal(sampling) for n in (sampling.cols, sampling.rows))
@@ -74,15 +66,8 @@ def cornell(sampling: Sampling) -> Scene:
 def fence(sampling: Sampling) -> Scene:
     """Fence in the focal plane that hides half of a wall behind it.
 
-    Parameters
-    ----------
-    sampling : Sampling
-        Array, views and camera.
-
-    Returns
-    -------
-    Scene
-        All views, with disparity, depth, and the depth of the wall behind the fence.
+    sampling: array, views and camera. Returns Scene: all views, with disparity, depth, and the depth of the wall behind
+    the fence.
     """
     focus, f = sampling.camera.focus, _focal(sampling)
     bar, wide, high = BARS * focus / f, *(2 * focus * n / f for n in (sampling.cols, sampling.rows))

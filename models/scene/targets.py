@@ -26,17 +26,7 @@ SATURATED = 8.0  # radiance: fills the wells several times over
 def flat(sampling: Sampling, level: float = 50.0) -> Scene:
     """Uniform scene.
 
-    Parameters
-    ----------
-    sampling : Sampling
-        Array, views and camera.
-    level : float
-        Percent of white, 0..1600.
-
-    Returns
-    -------
-    Scene
-        One view.
+    sampling: array, views and camera. level: percent of white, 0..1600. Returns Scene: one view.
     """
     return uniform("flat", sampling, level / 100)
 
@@ -44,15 +34,7 @@ def flat(sampling: Sampling, level: float = 50.0) -> Scene:
 def saturated(sampling: Sampling) -> Scene:
     """Uniform scene that fills every well.
 
-    Parameters
-    ----------
-    sampling : Sampling
-        Array, views and camera.
-
-    Returns
-    -------
-    Scene
-        One view.
+    sampling: array, views and camera. Returns Scene: one view.
     """
     return uniform("saturated", sampling, SATURATED)
 
@@ -60,15 +42,7 @@ def saturated(sampling: Sampling) -> Scene:
 def black(sampling: Sampling) -> Scene:
     """Scene without light.
 
-    Parameters
-    ----------
-    sampling : Sampling
-        Array, views and camera.
-
-    Returns
-    -------
-    Scene
-        One view.
+    sampling: array, views and camera. Returns Scene: one view.
     """
     return uniform("black", sampling, 0.0)
 
@@ -76,15 +50,7 @@ def black(sampling: Sampling) -> Scene:
 def point(sampling: Sampling) -> Scene:
     """Point of light in the middle of the array.
 
-    Parameters
-    ----------
-    sampling : Sampling
-        Array, views and camera.
-
-    Returns
-    -------
-    Scene
-        All views; one view in focus.
+    sampling: array, views and camera. Returns Scene: all views; one view in focus.
     """
     return _on_plane("point", sampling, lambda y, x: np.exp(-(x**2 + y**2) / (2 * POINT_SIGMA**2)))
 
@@ -92,17 +58,7 @@ def point(sampling: Sampling) -> Scene:
 def edge(sampling: Sampling, degrees: float = 20.0) -> Scene:
     """Straight edge from dark (0.05) to bright (0.95), one px wide.
 
-    Parameters
-    ----------
-    sampling : Sampling
-        Array, views and camera.
-    degrees : float
-        Angle from vertical.
-
-    Returns
-    -------
-    Scene
-        All views; one view in focus.
+    sampling: array, views and camera. degrees: angle from vertical. Returns Scene: all views; one view in focus.
     """
     c, s = np.cos(np.deg2rad(degrees)), np.sin(np.deg2rad(degrees))
     return _on_plane("edge", sampling, lambda y, x: 0.5 + 0.9 * np.clip(x * c + y * s, -0.5, 0.5))
@@ -113,17 +69,7 @@ def moving(sampling: Sampling, speed: float = 5000.0) -> Scene:
 
     At the frame's start it is a quarter of the array left of the middle.
 
-    Parameters
-    ----------
-    sampling : Sampling
-        Array, views and camera.
-    speed : float
-        To the right, 0..1e6 px/s.
-
-    Returns
-    -------
-    Scene
-        All views; one view in focus.
+    sampling: array, views and camera. speed: to the right, 0..1e6 px/s. Returns Scene: all views; one view in focus.
     """
 
     def _at(seconds: float) -> Scene:
@@ -136,15 +82,7 @@ def moving(sampling: Sampling, speed: float = 5000.0) -> Scene:
 def tilted(sampling: Sampling) -> Scene:
     """Plane turned about a vertical axis through the reference plane, with a woven texture.
 
-    Parameters
-    ----------
-    sampling : Sampling
-        Array, views and camera.
-
-    Returns
-    -------
-    Scene
-        All views, with disparity and depth.
+    sampling: array, views and camera. Returns Scene: all views, with disparity and depth.
     """
     y, x = places(sampling)
     # The slope stays below that of the outermost rays.
@@ -173,17 +111,7 @@ def tilted(sampling: Sampling) -> Scene:
 def places(sampling: Sampling) -> tuple[Floats, Floats]:
     """Place of every pixel, px from the middle of the array.
 
-    Parameters
-    ----------
-    sampling : Sampling
-        The array.
-
-    Returns
-    -------
-    y : float64 (rows, 1)
-        Down.
-    x : float64 (1, cols)
-        To the right.
+    sampling: the array. Returns y (rows, 1): down; x (1, cols): to the right.
     """
     rows, cols = sampling.shape
     return np.arange(rows, dtype=float)[:, None] - (rows - 1) / 2, np.arange(cols, dtype=float)[None, :] - (
@@ -194,17 +122,8 @@ def places(sampling: Sampling) -> tuple[Floats, Floats]:
 def plane(sampling: Sampling) -> tuple[Floats, Floats]:
     """Return the plane of pictures without depth.
 
-    Parameters
-    ----------
-    sampling : Sampling
-        Array, views and camera.
-
-    Returns
-    -------
-    disparity : float64 (rows, cols)
-        In px per view step.
-    depth : float64 (rows, cols)
-        In m from the camera.
+    sampling: array, views and camera. Returns disparity (rows, cols): in px per view step; depth (rows, cols): in m
+    from the camera.
     """
     depth = np.full(sampling.shape, camera.scaled(camera.PLANE, sampling.camera))
     return camera.disparity(depth, sampling), depth
@@ -213,21 +132,8 @@ def plane(sampling: Sampling) -> tuple[Floats, Floats]:
 def uniform(name: str, sampling: Sampling, radiance: float, polarization: Floats | None = None) -> Scene:
     """Scene of one radiance.
 
-    Parameters
-    ----------
-    name : str
-        Name in reports.
-    sampling : Sampling
-        Array, views and camera.
-    radiance : float
-        0..16.
-    polarization : float64 (2, rows, cols), optional
-        S1/S0 and S2/S0.
-
-    Returns
-    -------
-    Scene
-        One view.
+    name: name in reports. sampling: array, views and camera. radiance: 0..16. polarization: (2, rows, cols), S1/S0 and
+    S2/S0. Returns Scene: one view.
     """
     image = np.full(sampling.shape, radiance, sampling.dtype)
     return Scene(name, sampling.views, image[None, None], image, depth=plane(sampling)[1], polarization=polarization)

@@ -31,22 +31,8 @@ COLOURS = {0: 1, 1: 1, RGB: 3, PALETTE: 1, CMYK: 4, YCBCR: 3}
 def tiff_pages(path: Path, field: str) -> Iterator[list[tuple[int, TiffPage]]]:
     """Pages of a TIFF that are pictures: no thumbnails, no masks.
 
-    Parameters
-    ----------
-    path : Path
-        The file.
-    field : str
-        Name in the messages.
-
-    Yields
-    ------
-    list of (int, TiffPage)
-        Number in the file and page, one or more.
-
-    Raises
-    ------
-    ParameterError
-        For a raw photograph, and a stack in one directory (ImageJ's of more than 4 GiB).
+    path: the file. field: name in the messages. Yields list of (int, TiffPage): number in the file and page, one or
+    more. Raises ParameterError for a raw photograph, and a stack in one directory (ImageJ's of more than 4 GiB).
     """
     with TiffFile(path) as tiff:
         every: list[tuple[int, Any]] = list(enumerate(tiff.pages))
@@ -64,15 +50,7 @@ def tiff_pages(path: Path, field: str) -> Iterator[list[tuple[int, TiffPage]]]:
 def tiff_shape(page: TiffPage) -> tuple[int, int]:
     """Height and width of a page as it is seen.
 
-    Parameters
-    ----------
-    page : TiffPage
-        The page.
-
-    Returns
-    -------
-    (int, int)
-        In px.
+    page: the page. Returns (int, int): in px.
     """
     height, width = page.imagelength, page.imagewidth
     return (width, height) if tiff_orientation(page) in (5, 6, 7, 8) else (height, width)
@@ -81,15 +59,7 @@ def tiff_shape(page: TiffPage) -> tuple[int, int]:
 def tiff_orientation(page: TiffPage) -> int:
     """Return the orientation of a page.
 
-    Parameters
-    ----------
-    page : TiffPage
-        The page.
-
-    Returns
-    -------
-    int
-        1..8.
+    page: the page. Returns int: 1..8.
     """
     return int(_tag(page, 274, 1))
 
@@ -97,26 +67,8 @@ def tiff_orientation(page: TiffPage) -> int:
 def tiff_pixels(path: Path, field: str, number: int, page: TiffPage) -> Pixels:
     """Read a page.
 
-    Parameters
-    ----------
-    path : Path
-        The file.
-    field : str
-        Name in the messages.
-    number : int
-        Of the page in the file.
-    page : TiffPage
-        The page.
-
-    Returns
-    -------
-    Pixels
-        Upright, on white.
-
-    Raises
-    ------
-    ParameterError
-        For a kind that is not read.
+    path: the file. field: name in the messages. number: of the page in the file. page: the page. Returns Pixels:
+    upright, on white. Raises ParameterError for a kind that is not read.
     """
     _check(path, field, page)
     if page.photometric == YCBCR:

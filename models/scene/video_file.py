@@ -32,20 +32,8 @@ ASPECT_MAX = 10  # of a pixel, or its inverse
 class Video:
     """A video that can be decoded to its end.
 
-    Parameters
-    ----------
-    path : Path
-        The file.
-
-    Attributes
-    ----------
-    seconds : list of float
-        How long each frame is shown.
-
-    Raises
-    ------
-    ParameterError
-        Without the package av, and for a video that is damaged, has no frames, or is HDR.
+    path: the file. seconds: how long each frame is shown. Raises ParameterError without the package av, and for a video
+    that is damaged, has no frames, or is HDR.
     """
 
     def __init__(self, path: Path) -> None:
@@ -69,20 +57,8 @@ class Video:
     def read(self, sampling: Sampling) -> Iterator[npt.NDArray[np.floating]]:
         """Decode the frames.
 
-        Parameters
-        ----------
-        sampling : Sampling
-            Array; much larger pictures are reduced.
-
-        Yields
-        ------
-        float (height, width)
-            Linear luminance, 0..1, of square pixels, upright.
-
-        Raises
-        ------
-        ParameterError
-            If the video is damaged.
+        sampling: array; much larger pictures are reduced. Yields (height, width): linear luminance, 0..1, of square
+        pixels, upright. Raises ParameterError if the video is damaged.
         """
         with self._stream() as (stream, frames):
             aspect = float(stream.sample_aspect_ratio or 1)

@@ -17,14 +17,9 @@ KEPT = 64 << 20  # bytes of shifted pictures at most
 class Second:
     """The other picture of a stereo pair: it shows some of what the outer views show and the first picture hides.
 
-    Parameters
-    ----------
-    image : float64 (rows, cols)
-        Rectified, taken from the right of the first.
-    disparity : float64 (rows, cols)
-        Disparity of the first picture, px per view step.
-    scale, offset : float
-        A pixel of disparity d is ``scale * d + offset`` px to the left in this picture.
+    image: (rows, cols), rectified, taken from the right of the first. disparity: (rows, cols), disparity of the first
+    picture, px per view step. scale, offset: a pixel of disparity d is ``scale * d + offset`` px to the left in this
+    picture.
     """
 
     def __init__(self, image: Floats, disparity: Floats, scale: float, offset: float) -> None:
@@ -43,17 +38,8 @@ class Second:
     def claim(self, surface: Floats, dv: float, du: float) -> Bools:
         """Fill the holes of a view's disparity map in place where this picture shows their contents.
 
-        Parameters
-        ----------
-        surface : float64 (rows, cols)
-            Disparity map of the view; NO_SURFACE is a hole.
-        dv, du : float
-            Offset of the view in view steps.
-
-        Returns
-        -------
-        bool (rows, cols)
-            Pixels filled.
+        surface: (rows, cols), disparity map of the view; NO_SURFACE is a hole. dv, du: offset of the view in view
+        steps. Returns bool (rows, cols): pixels filled.
         """
         shown = np.full(surface.shape, warp.NO_SURFACE)
         warp.splat(shown, *self.own, self.scale, self.offset, dv, du)
@@ -71,27 +57,10 @@ def view(
 ) -> tuple[Floats, Floats]:
     """Compute one view from the centre picture.
 
-    Parameters
-    ----------
-    image : float64 (rows, cols)
-        The centre picture.
-    disparity : float64 (rows, cols)
-        Its disparity, px per view step.
-    dv, du : float
-        Offset of the view in view steps.
-    second : Second, optional
-        The other picture of a pair.
-    use : bool (rows, cols), optional
-        Pixels of the picture that show one surface alone; None is all.
-    mask : bool (rows, cols), optional
-        Pixels of the view to compute; None is all.
-
-    Returns
-    -------
-    image : float64 (rows, cols)
-        The view.
-    disparity : float64 (rows, cols)
-        Its disparity map.
+    image: (rows, cols), the centre picture. disparity: (rows, cols), its disparity, px per view step. dv, du: offset of
+    the view in view steps. second: the other picture of a pair. use: bool (rows, cols), pixels of the picture that show
+    one surface alone; None is all. mask: bool (rows, cols), pixels of the view to compute; None is all. Returns image
+    (rows, cols): the view; disparity (rows, cols): its disparity map.
     """
     if dv == 0 and du == 0:
         return image.copy(), disparity.copy()
@@ -118,16 +87,9 @@ def view(
 class Pictured:
     """All views of a picture with disparity, computed where they are wanted.
 
-    Parameters
-    ----------
-    image, disparity : float64 (rows + 2 margin, cols + 2 margin)
-        The centre picture and its disparity, px per view step.
-    sampling : Sampling
-        Array and views.
-    second : Second, optional
-        The other picture of a pair.
-    margin : int
-        Px around the array that only the outer views need.
+    image, disparity: (rows + 2 margin, cols + 2 margin), the centre picture and its disparity, px per view step.
+    sampling: array and views. second: the other picture of a pair. margin: px around the array that only the outer
+    views need.
     """
 
     def __init__(
@@ -145,15 +107,8 @@ class Pictured:
     def __call__(self, mask: Bools) -> View:
         """Views at some pixels.
 
-        Parameters
-        ----------
-        mask : bool (rows, cols)
-            Pixels to compute; the others are undefined.
-
-        Returns
-        -------
-        View
-            Of an offset of at most views / 2 steps.
+        mask: bool (rows, cols), pixels to compute; the others are undefined. Returns View: of an offset of at most
+        views / 2 steps.
         """
         whole = np.zeros(self.image.shape, bool)
         whole[self.inner] = mask
@@ -176,12 +131,7 @@ class Shifted:
     The same values as of `Pictured`, in a fraction of its time: what views of one row or column of the pupil have in
     common is kept.
 
-    Parameters
-    ----------
-    image : float64 (rows, cols)
-        The centre picture.
-    disparity : float
-        Of the plane, px per view step.
+    image: (rows, cols), the centre picture. disparity: of the plane, px per view step.
     """
 
     def __init__(self, image: Floats, disparity: float) -> None:
@@ -192,15 +142,7 @@ class Shifted:
     def __call__(self, mask: Bools) -> View:
         """Views at some pixels.
 
-        Parameters
-        ----------
-        mask : bool (rows, cols)
-            Pixels to compute; the others are undefined.
-
-        Returns
-        -------
-        View
-            Of any offset.
+        mask: bool (rows, cols), pixels to compute; the others are undefined. Returns View: of any offset.
         """
         rows = np.flatnonzero(mask.any(1))
         return lambda dv, du: (self._view(dv, du, rows), self.surface)

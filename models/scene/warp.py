@@ -22,18 +22,9 @@ JUMP = 0.25  # px per view step: a larger step between neighbours is a border of
 def splat(target: Floats, disparity: Floats, use: Bools, scale: float, offset: float, dv: float, du: float) -> None:
     """Warp a disparity map into a z-buffer; the largest disparity (the nearest surface) wins.
 
-    Parameters
-    ----------
-    target : float64 (rows, n)
-        The z-buffer.
-    disparity : float64 (rows, cols)
-        Px per view step.
-    use : bool (rows, cols)
-        Pixels to warp.
-    scale, offset : float
-        A pixel of disparity d is ``scale * d + offset`` px further to the right before the step.
-    dv, du : float
-        View steps.
+    target: (rows, n), the z-buffer. disparity: (rows, cols), px per view step. use: bool (rows, cols), pixels to warp.
+    scale, offset: a pixel of disparity d is ``scale * d + offset`` px further to the right before the step. dv, du:
+    view steps.
     """
     rows, cols = target.shape
     for y in range(disparity.shape[0]):
@@ -60,15 +51,7 @@ def unmixed(disparity: Floats) -> Bools:
     A pixel of a farther surface that touches a nearer one shows a mixture of both; used, it would draw the outline of
     the nearer one onto the farther.
 
-    Parameters
-    ----------
-    disparity : float64 (rows, cols)
-        Px per view step.
-
-    Returns
-    -------
-    bool (rows, cols)
-        False for such a mixture.
+    disparity: (rows, cols), px per view step. Returns bool (rows, cols): False for such a mixture.
     """
     rows, cols = disparity.shape
     out = np.ones((rows, cols), np.bool_)
@@ -87,12 +70,7 @@ def fill_rows(disparity: Floats, hole: Bools) -> None:
 
     A row without any known pixel takes the smallest known disparity of all (0 if none is known).
 
-    Parameters
-    ----------
-    disparity : float64 (rows, cols)
-        Px per view step.
-    hole : bool (rows, cols)
-        Pixels to fill.
+    disparity: (rows, cols), px per view step. hole: bool (rows, cols), pixels to fill.
     """
     rows, cols = disparity.shape
     lowest = np.inf
@@ -123,19 +101,7 @@ def fill_rows(disparity: Floats, hole: Bools) -> None:
 def cubic_weights(t: float) -> tuple[float, float, float, float]:
     """Weights of cubic convolution at -1, 0, 1 and 2.
 
-    Parameters
-    ----------
-    t : float
-        Position, 0..1.
-
-    Returns
-    -------
-    tuple of four floats
-        Their sum is 1.
-
-    References
-    ----------
-    [Keys1981], Eq. 15.
+    t: position, 0..1. Returns tuple of four floats: their sum is 1. [Keys1981], Eq. 15.
     """
     t2, t3 = t * t, t * t * t
     return (-0.5 * t + t2 - 0.5 * t3, 1 - 2.5 * t2 + 1.5 * t3, 0.5 * t + 2 * t2 - 1.5 * t3, -0.5 * t2 + 0.5 * t3)
@@ -145,21 +111,7 @@ def cubic_weights(t: float) -> tuple[float, float, float, float]:
 def cubic(image: Floats, y: float, x: float) -> float:
     """Interpolate an image by cubic convolution, the border pixels repeated outwards.
 
-    Parameters
-    ----------
-    image : float64 (rows, cols)
-        The image.
-    y, x : float
-        Position in px.
-
-    Returns
-    -------
-    float
-        Value there.
-
-    References
-    ----------
-    [Keys1981].
+    image: (rows, cols), the image. y, x: position in px. Returns float: value there. [Keys1981].
     """
     rows, cols = image.shape
     y, x = min(max(y, 0.0), rows - 1.0), min(max(x, 0.0), cols - 1.0)
@@ -188,14 +140,8 @@ def _taps(place: float, size: int) -> tuple[int, tuple[float, float, float, floa
 def shift_columns(out: Floats, image: Floats, places: Floats) -> None:
     """Interpolate along the rows of an image as `cubic` does.
 
-    Parameters
-    ----------
-    out : float64 (rows, cols)
-        Receives the result.
-    image : float64 (rows, n)
-        The image.
-    places : float64 (cols,)
-        Column of the image that each column of the result shows, px.
+    out: (rows, cols), receives the result. image: (rows, n), the image. places: (cols,), column of the image that each
+    column of the result shows, px.
     """
     last = image.shape[1] - 1
     at, weight = np.empty((4, places.size), np.int64), np.empty((4, places.size))
@@ -217,18 +163,8 @@ def shift_columns(out: Floats, image: Floats, places: Floats) -> None:
 def shift_rows(out: Floats, image: Floats, places: Floats, rows: Places, high: float) -> None:
     """Interpolate along the columns of an image as `cubic` does, limited as by `fetch`.
 
-    Parameters
-    ----------
-    out : float64 (rows, cols)
-        Receives the result.
-    image : float64 (n, cols)
-        The image.
-    places : float64 (rows,)
-        Row of the image that each row of the result shows, px.
-    rows : int64 (m,)
-        Rows of the result to compute.
-    high : float
-        Largest value; the smallest is 0.
+    out: (rows, cols), receives the result. image: (n, cols), the image. places: (rows,), row of the image that each row
+    of the result shows, px. rows: (m,), rows of the result to compute. high: largest value; the smallest is 0.
     """
     last = image.shape[0] - 1
     for y in rows:
@@ -246,22 +182,10 @@ def fetch(
 ) -> None:
     """Sample a picture for a view with a known disparity map.
 
-    Parameters
-    ----------
-    out : float64 (rows, cols)
-        Receives the view where it is wanted and has a surface.
-    image : float64 (rows, cols)
-        The picture.
-    surface : float64 (rows, cols)
-        Disparity map of the view; NO_SURFACE is no surface.
-    mask : bool (rows, cols)
-        Pixels to sample.
-    dv, du : float
-        From the view to the picture in view steps.
-    right : float
-        Px to the right in the adjacent picture.
-    high : float
-        Largest value; the smallest is 0.
+    out: (rows, cols), receives the view where it is wanted and has a surface. image: (rows, cols), the picture.
+    surface: (rows, cols), disparity map of the view; NO_SURFACE is no surface. mask: bool (rows, cols), pixels to
+    sample. dv, du: from the view to the picture in view steps. right: px to the right in the adjacent picture. high:
+    largest value; the smallest is 0.
     """
     for y in range(out.shape[0]):
         for x in range(out.shape[1]):
@@ -274,19 +198,9 @@ def fetch(
 def claim(surface: Floats, disparity: Floats, last: int, right: float, offset: float) -> Bools:
     """Fill the holes of a view's disparity map in place with the surfaces of another picture.
 
-    Parameters
-    ----------
-    surface, disparity : float64 (rows, cols)
-        Disparity map of the view, and the other picture's; NO_SURFACE is a hole.
-    last : int
-        Last column of the other picture.
-    right, offset : float
-        A pixel of disparity d shows what is ``right * d + offset`` px to the right in the other picture.
-
-    Returns
-    -------
-    bool (rows, cols)
-        Pixels filled.
+    surface, disparity: (rows, cols), disparity map of the view, and the other picture's; NO_SURFACE is a hole. last:
+    last column of the other picture. right, offset: a pixel of disparity d shows what is ``right * d + offset`` px to
+    the right in the other picture. Returns bool (rows, cols): pixels filled.
     """
     out = np.zeros(surface.shape, np.bool_)
     for y in range(surface.shape[0]):
@@ -303,19 +217,9 @@ def background(surface: Floats, mask: Bools, dv: float, du: float) -> Places:
 
     The search runs both ways along the direction of the view's step; the farther of the two surfaces is taken.
 
-    Parameters
-    ----------
-    surface : float64 (rows, cols)
-        Disparity map of the view; NO_SURFACE is no surface.
-    mask : bool (rows, cols)
-        Pixels of interest.
-    dv, du : float
-        Offset of the view in view steps; not both 0.
-
-    Returns
-    -------
-    int64 (n, 4)
-        Row and column of the pixel, then of the one behind it; pixels without any are left out.
+    surface: (rows, cols), disparity map of the view; NO_SURFACE is no surface. mask: bool (rows, cols), pixels of
+    interest. dv, du: offset of the view in view steps; not both 0. Returns (n, 4): row and column of the pixel, then of
+    the one behind it; pixels without any are left out.
     """
     rows, cols = surface.shape
     length = max(abs(dv), abs(du))

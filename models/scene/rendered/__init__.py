@@ -45,10 +45,7 @@ RENDERED = {
 def manifest() -> dict[str, Any]:
     """Return each file's command and SHA-256, by name.
 
-    Returns
-    -------
-    dict
-        Of dicts.
+    Returns dict of dicts.
     """
     return json.loads((FOLDER / MANIFEST).read_text(encoding="utf-8"))
 
@@ -56,17 +53,8 @@ def manifest() -> dict[str, Any]:
 def rendered(name: str, sampling: Sampling) -> Scene:
     """Return a rendered scene.
 
-    Parameters
-    ----------
-    name : str
-        Of `RENDERED`.
-    sampling : Sampling
-        Array and camera; the views are the file's.
-
-    Returns
-    -------
-    Scene
-        Its middle, pixel for pixel, or enlarged.
+    name: of `RENDERED`. sampling: array and camera; the views are the file's. Returns Scene: its middle, pixel for
+    pixel, or enlarged.
     """
     field, (size, lens) = read_light_field(FOLDER / f"{name}.npz"), RENDERED[name]
     larger = max(sampling.shape) > size
