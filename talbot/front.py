@@ -92,7 +92,6 @@ GROUPS: dict[str, dict[str, Command]] = {
         "cells-report": Command("the characterizer compared with a foundry's tables", "cells.report.command"),
         "cells-compact": Command("draw and check the cell library Compact", "cells.compact.command"),
         "layout-timing": Command("measure the shipped cell timing again in ngspice", "flow.layout.measure_cells"),
-        "openroad-fit": Command("Tiny Tapeout projects against their tiles' area", "flow.openroad.fit"),
         "clean": Command("delete build/ and dist/"),
     },
 }

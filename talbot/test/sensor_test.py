@@ -15,7 +15,7 @@ WITHOUT = {
     *("sensor", "index", "site"),
     *("stability",),  # its cases have sensors of their own
     *("cells", "cells-report", "cells-compact"),
-    *("openroad-compare", "openroad-fit", "layout-compare", "layout-timing"),
+    *("openroad-compare", "layout-compare", "layout-timing"),
     *("verify", "formal", "suite", "cocotb", "coverage", "mutate", "fuzz", "stuck-at", "replay"),
 }
 TAKING = [name for name in COMMANDS if name not in WITHOUT]

@@ -207,10 +207,7 @@ FILE = "<file>"  # for this one, whose path may have a space
         (f"sim --rows={'7,' * 2500}", "...': must be an integer in 1..1024"),
         (f"sim --{'x' * 5000}", "..."),
         ("draw", "invalid choice: 'draw'"),
-        *(
-            (f"{name} --document {FILE}", "must have the comments")
-            for name in ("sizes", "openroad-fit", "openroad-compare")
-        ),
+        *((f"{name} --document {FILE}", "must have the comments") for name in ("sizes", "openroad-compare")),
         ("stuck-at --sample=-1", "sample = -1: must be an integer in 0..1000000000"),
         ("decode nowhere.bin", "file = nowhere.bin: No such file"),
         ("decode /dev/zero --out build/zero.npz", "file = /dev/zero: must be a file, not a device"),

@@ -6,7 +6,6 @@ the edge for every number of tiles; precheck/pin_check.py) and src/config.json o
 
 from talbot.platforms.frame import Frame
 from talbot.platforms.sky130 import layers
-from talbot.platforms.sky130.cells import SITE
 
 SIZES_UM = {"1x1": (161.00, 111.52), "1x2": (161.00, 225.76), "2x2": (334.88, 225.76), "4x4": (682.64, 511.36)}
 BYTES = "ui_in", "uio_in", "uo_out", "uio_out", "uio_oe"
@@ -31,7 +30,6 @@ ANALOG_UM, ANALOG_FIRST_UM = (145.36, 225.76), 131.10
 ANALOG_PORTS = tuple((name, round(ANALOG_FIRST_UM - k * PITCH_UM, 2)) for k, name in enumerate(PORTS))
 ANALOG_PINS = tuple((f"ua[{k}]", round(136.62 - 19.32 * k, 2)) for k in range(8))  # at the south edge
 ANALOG_PIN_UM = 0.90, 1.00
-MARGIN_SITES, MARGIN_ROWS = 12, 2
 FULL = 0.60  # cells' area by core area for which the default density is meant
 
 CONFIG = {
@@ -58,10 +56,3 @@ CONFIG = {
     "MAGIC_DEF_LABELS": False,
     "MAGIC_WRITE_LEF_PINONLY": True,
 }
-
-
-def core_um2(tiles: str) -> float:
-    """Return the area for cells in ``tiles`` tiles."""
-    width, height = SIZES_UM[tiles]
-    columns, rows = round(width / SITE.width_um) - MARGIN_SITES, round(height / SITE.height_um) - MARGIN_ROWS
-    return columns * SITE.width_um * rows * SITE.height_um
