@@ -17,6 +17,7 @@ pytestmark = pytest.mark.needs("openroad", "layout")
 KNOWN, BITS = openroad_platform("sky130"), 40
 CELL = f"  {KNOWN.library}__{{}} {{}} ({{}});"
 REPORT = "source common.tcl\nopen_stage cts\nwrite_verilog cts.v\n"
+HALVE = "foreach net {y q[7]} { buffer_halfway [[ord::get_db_block] findNet $net] }\nwrite_verilog halved.v\n"
 
 
 @pytest.fixture(scope="module")
@@ -51,6 +52,20 @@ def test_every_register_stays_and_the_clock_has_a_tree(folder):
     text = (folder / "cts.v").read_text()
     assert len(re.findall(r"__dfxtp_\d+ r\d+ ", text)) == BITS
     assert 1 <= len(re.findall(r"__clkbuf_\d+ clkbuf", text)) <= 6
+
+
+def test_a_buffer_halves_the_way_and_drives_the_port(folder):
+    procedures, _, _ = (SCRIPTS / "loads.tcl").read_text().partition("\nglobal_route ")
+    opened = procedures.replace("open_stage repair", "open_stage cts")
+    (folder / "halve.tcl").write_text(f"{opened}\n{HALVE}")
+    done = finish(openroad.command("halve.tcl"), cwd=folder, log=folder / "halve.log")
+    assert done.returncode == 0, done.stdout
+    text = (folder / "halved.v").read_text()
+    buffer, inside = (
+        {*re.findall(r"\.(\w)\(([^)]*)\)", cell)} for cell in re.findall(r"halfway_\S+ +\(([^;]*);", text)
+    )
+    assert buffer == {("A", "halfway_y_net"), ("X", "y")} and ".X(halfway_y_net)" in text
+    assert {pin for pin, _ in inside} == {"A", "X"} and ("X", "y") not in inside
 
 
 def test_a_stage_prints_its_figures(folder):
