@@ -37,7 +37,7 @@ def read_sensor(path: str | Path) -> SensorParameters:
         raise ParameterError(f"sensor = {str(path)!r}: must have at most {BYTES_MAX} bytes")
     try:
         table = tomllib.loads(path.read_bytes().decode("utf-8-sig"))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:  # ValueError: of an integer with thousands of digits, too
         raise ParameterError(f"sensor = {str(path)!r}: must be a TOML file ({error})") from None
     try:
         return sensor_of(table)

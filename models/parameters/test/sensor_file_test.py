@@ -98,6 +98,7 @@ def test_what_is_wrong_is_named(table, said):
     "content, said",
     [
         (b"[array", "must be a TOML file"),
+        (b"[array]\nrows = " + b"9" * 5000, "must be a TOML file"),
         (b"\xff\xfe", "must be a TOML file"),
         (b"[array]\nrows = 0", r"array.rows = 0: must be .* \(in .*sensor.toml\)"),
         (b"#" * (1 << 21), "at most 1048576 bytes"),
