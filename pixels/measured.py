@@ -5,7 +5,6 @@ lines; ``angles`` in rad, ``wavelengths`` in m, ``polarizations`` and ``types`` 
 2, angles, across): the responses at angles ``across`` in rad along the lines, too. Any unit that all types share.
 """
 
-import zipfile
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -14,6 +13,7 @@ import numpy as np
 
 from talbot.models.parameters import ParameterError, PixelType
 from talbot.models.pixel import TableResponse
+from talbot.models.scene.file_form import ARRAY_ERRORS
 from talbot.pixels.optics.solve import Floats
 from talbot.pixels.optics.table import ACROSS_DEGREES
 from talbot.platforms.materials import refractive_index
@@ -55,7 +55,7 @@ def read_responses(path: str, types: Sequence[PixelType], source: str) -> tuple[
             replace(kind, response=TableResponse(along, across, table, kind.gamma, f"{source}{path}"))
             for kind, table in zip(types, values, strict=True)
         )
-    except (OSError, ValueError, KeyError, zipfile.BadZipFile) as error:
+    except ARRAY_ERRORS as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else error
         raise ParameterError(
             f"pixel = {path!r}: must be a response.npz of talbot pixel or talbot calibrate ({reason})"

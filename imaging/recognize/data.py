@@ -6,7 +6,6 @@ import zlib
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from zipfile import BadZipFile
 
 import numpy as np
 import numpy.typing as npt
@@ -14,6 +13,7 @@ from PIL import Image, UnidentifiedImageError
 
 from talbot.models import recognition
 from talbot.models.parameters import ParameterError
+from talbot.models.scene.file_form import ARRAY_ERRORS
 from talbot.models.scene.resample import linear
 
 DIGITS = Path(recognition.__file__).with_name("digits.npz")  # [Kaynak1998]
@@ -104,7 +104,7 @@ def _npz(path: Path) -> Pictures:
         with np.load(path, allow_pickle=False) as file:
             arrays = {name: file[name] for name in file.files}
         images, labels = arrays["images"], arrays["labels"].astype(np.int64)
-    except (OSError, ValueError, KeyError, BadZipFile, TypeError) as error:
+    except ARRAY_ERRORS as error:
         raise ParameterError(f"data = {str(path)!r}: must have the arrays images and labels ({error})") from None
     test = arrays.get("test")
     return Pictures(path.stem, images, labels, None if test is None else test.astype(bool))

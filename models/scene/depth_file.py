@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 from talbot.models.parameters import ParameterError
 from talbot.models.scene import camera, resample
+from talbot.models.scene.file_form import ARRAY_ERRORS
 from talbot.models.scene.picture_file import read_codes
 from talbot.models.scene.sampling import Sampling
 from talbot.models.scene.scene import check_values
@@ -80,7 +81,7 @@ def _read(path: Path) -> tuple[npt.NDArray[np.generic], str]:
                 if kind is None:
                     raise ParameterError(f"depth = {str(path)!r}: must hold an array named depth or disparity")
                 values = archive[kind]
-    except (OSError, ValueError, EOFError, KeyError, zipfile.BadZipFile, SyntaxError) as error:
+    except ARRAY_ERRORS as error:
         if isinstance(error, ParameterError):
             raise
         raise ParameterError(f"depth = {str(path)!r}: must be a NumPy array file ({type(error).__name__})") from None

@@ -1,9 +1,24 @@
 """Names of the forms of files that are no pictures, or none that is read, from their first bytes."""
 
 import re
+import zipfile
+import zlib
 from pathlib import Path
 
 HEAD = 4096  # bytes that are looked at
+# What numpy.load and zipfile raise for a damaged or encrypted file, an odd compression, and a header of impossible size
+ARRAY_ERRORS = (
+    OSError,
+    ValueError,
+    EOFError,
+    KeyError,
+    TypeError,
+    SyntaxError,
+    RuntimeError,
+    OverflowError,
+    MemoryError,
+)
+ARRAY_ERRORS += (zipfile.BadZipFile, zlib.error)
 TO_PICTURE = "save it as PNG or TIFF"
 TO_ARRAY = "save the array as .npy or .npz"
 DEVELOP = "a raw photograph ({}): must be developed first, as TIFF or PNG of 16 bits"

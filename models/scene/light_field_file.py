@@ -25,6 +25,7 @@ from PIL import Image
 
 from talbot.models.parameters import ParameterError, check_int, check_real
 from talbot.models.scene.echo import Echo
+from talbot.models.scene.file_form import ARRAY_ERRORS
 from talbot.models.scene.light_field import LightField
 from talbot.models.scene.picture_file import FLOAT_MAX, encode16, read_picture
 from talbot.models.scene.scene import RADIANCE_MAX
@@ -230,7 +231,7 @@ def _numpy(path: Path) -> LightField:
                         )
                     more |= {"stokes": np.stack(stokes)} if stokes else {}
                     more |= _echo({name: archive[name] for name in ECHO if name in archive}, path)
-    except (OSError, ValueError, EOFError, KeyError, zipfile.BadZipFile, SyntaxError) as error:
+    except ARRAY_ERRORS as error:
         if isinstance(error, ParameterError):
             raise
         objects = "Object arrays" in str(error) or "Python objects" in str(error)

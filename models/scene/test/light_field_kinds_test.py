@@ -1,5 +1,8 @@
 """Light fields of every array, grid and file: the same scene, or one line that says what is wrong."""
 
+import io
+import zipfile
+
 import numpy as np
 import pytest
 from PIL import Image
@@ -123,3 +126,45 @@ def test_depth_in_integers_has_no_unit(tmp_path):
     np.testing.assert_allclose(
         load(str(tmp_path / "p.png"), Sampling(*SHAPE), depth=str(tmp_path / "d.npy")).depth, 3 / 14.5, rtol=1e-6
     )
+
+
+def _encrypted(data):
+    data[6] |= 1
+    data[data.find(b"PK\1\2") + 8] |= 1
+
+
+def _odd_compression(data):
+    data[8] = data[data.find(b"PK\1\2") + 10] = 97
+
+
+def _bad_stream(data):
+    data[75:85] = b"\xff" * 10  # within the array's compressed bytes
+
+
+@pytest.mark.parametrize("spoil", [_encrypted, _odd_compression, _bad_stream])
+def test_archives_that_zipfile_does_not_read(tmp_path, spoil):
+    path = tmp_path / "x.npz"
+    np.savez_compressed(path, depth=np.ones((3, 3, *SHAPE)))
+    data = bytearray(path.read_bytes())
+    spoil(data)
+    path.write_bytes(data)
+    with pytest.raises(ParameterError, match="scene = .*must be a NumPy array file"):
+        read_light_field(path)
+    Image.fromarray(CODES[0, 0]).save(tmp_path / "x.png")
+    with pytest.raises(ParameterError, match="depth = .*must be a NumPy array file"):
+        load(str(tmp_path / "x.png"), Sampling(*SHAPE), depth=str(path))
+
+
+@pytest.mark.parametrize("shape", [(9, 9, 100_000, 100_000), (3, -3, 6, 8)])
+@pytest.mark.parametrize("suffix", [".npy", ".npz"])
+def test_headers_of_impossible_size(tmp_path, suffix, shape):
+    header = io.BytesIO()
+    np.lib.format.write_array_header_1_0(header, {"descr": "<f8", "fortran_order": False, "shape": shape})
+    data, path = header.getvalue() + bytes(3000), tmp_path / ("x" + suffix)
+    if suffix == ".npy":
+        path.write_bytes(data)
+    else:
+        with zipfile.ZipFile(path, "w") as archive:
+            archive.writestr("light_field.npy", data)
+    with pytest.raises(ParameterError, match="must be a NumPy array file"):
+        read_light_field(path)
