@@ -107,7 +107,8 @@ def write_light_field(light_field: LightField, path: str | Path, white: float = 
     path, values = Path(path), light_field.values
     check_real("white", white, 1e-3, RADIANCE_MAX)
     if path.suffix.lower() == ".npy":
-        np.save(path, values)
+        with path.open("wb") as file:  # numpy adds a suffix to the name X.NPY
+            np.save(file, values)
     elif path.suffix.lower() == ".npz":
         arrays = {name: getattr(light_field, name) for name in MAPS}
         if light_field.stokes is not None:
@@ -116,11 +117,14 @@ def write_light_field(light_field: LightField, path: str | Path, white: float = 
             echo = light_field.echo
             arrays |= dict(zip(ECHO, (echo.share, echo.late, np.array([echo.start, echo.width])), strict=True))
         present = {name: array for name, array in arrays.items() if array is not None}
-        np.savez_compressed(path, allow_pickle=False, light_field=values, **present)
+        with path.open("wb") as file:
+            np.savez_compressed(file, allow_pickle=False, light_field=values, **present)
     elif re.fullmatch(rf"\.(?:{PICTURES})", path.suffix, re.I):
         tiles = _codes(values, white).swapaxes(1, 2)
         high, tall, wide, broad, *colours = tiles.shape
         picture = Image.fromarray(tiles.reshape(high * tall, wide * broad, *colours))
+        if picture.mode == "I;16" and path.suffix.lower() == ".webp":  # Pillow writes white
+            raise ParameterError(f"path = {path.name!r}: must be .png or .tif, for 16 bits")
         try:
             picture.save(path)
         except OSError as error:

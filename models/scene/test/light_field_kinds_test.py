@@ -168,3 +168,11 @@ def test_headers_of_impossible_size(tmp_path, suffix, shape):
             archive.writestr("light_field.npy", data)
     with pytest.raises(ParameterError, match="must be a NumPy array file"):
         read_light_field(path)
+
+
+def test_names_and_forms_of_written_files(tmp_path):
+    for name in ("X.NPY", "X.NPZ"):
+        write_light_field(LightField(CODES), tmp_path / name)
+        np.testing.assert_array_equal(read_light_field(tmp_path / name).values, CODES)
+    with pytest.raises(ParameterError, match="path = 'x.webp': must be .png or .tif, for 16 bits"):
+        write_light_field(LightField(CODES / 255), tmp_path / "x.webp")
