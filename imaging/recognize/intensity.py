@@ -28,6 +28,10 @@ SCENE = 64  # px, of a photograph or a rendered scene
 SHOWN, SHEET = 6, 100  # pictures on the page, in a file of JPEG
 BINARY, EDGES = "binary frame", "Canny edges"
 SMALL, JPEG = "plain image in as many bytes, enlarged", "JPEG in as many bytes"
+POISSON, TERNARY = f"{BINARY}, Poisson", "ternary differences along x and y, Poisson"
+LEARNED = {source: f"{source}, kernel regression" for source in (BINARY, EDGES)}
+PLAIN_EDGES = f"{EDGES} as they are"
+OF_BINARY, OF_IMAGE = (POISSON, LEARNED[BINARY]), (LEARNED[EDGES], PLAIN_EDGES, SMALL, JPEG)  # by what the sensor takes
 
 
 def collections(data: Pictures) -> list[Pictures]:
@@ -66,10 +70,10 @@ def recover(base: Setting, data: Pictures) -> dict[str, Any]:
             active = gradient.spatial(light, threshold)
             dx, dy = (np.sign(d) * (np.abs(d) > threshold) for d in differences(light))
             estimates = {
-                f"{BINARY}, Poisson": smooth(active, SPREAD),
-                "ternary differences along x and y, Poisson": integrate(dx, dy, SCREEN),
+                POISSON: smooth(active, SPREAD),
+                TERNARY: integrate(dx, dy, SCREEN),
                 **_learned(truth, train, {BINARY: active, EDGES: edges}),
-                f"{EDGES} as they are": edges,
+                PLAIN_EDGES: edges,
                 "gray": np.zeros(truth.shape),
             }
             share.append(float(active[test].mean()))
@@ -108,7 +112,7 @@ def _learned(
     for name, bits in frames.items():
         x = bits.reshape(len(bits), -1).astype(np.float32)
         added = kernel.regress(x[train], residual, ridge=RIDGE).scores(x)
-        out[f"{name}, kernel regression"] = mean + added.reshape(truth.shape)
+        out[LEARNED[name]] = mean + added.reshape(truth.shape)
     return out | {"mean of the pictures to learn from": np.broadcast_to(mean, truth.shape)}
 
 
@@ -163,10 +167,10 @@ def _figures(pairs: list[tuple[float | None, float | None]]) -> dict[str, Any]:
 
 def _cost(name: str, bits: int, joules: float, image: tuple[float, float]) -> dict[str, Any]:
     """Bytes and energy of a method: of nothing, of a frame of one bit, of two ternary differences, of an image."""
-    if name.startswith(BINARY):
+    if name in OF_BINARY:
         return {"bytes": bits, "energy_uj": [1e6 * joules] * 2}
-    if name.startswith("ternary"):
+    if name == TERNARY:
         return {"bytes": 4 * bits, "energy_uj": [0.0, 0.0]}  # no model
-    if name.startswith((EDGES, SMALL, JPEG)):
+    if name in OF_IMAGE:
         return {"bytes": bits, "energy_uj": [1e6 * e for e in image]}
     return {"bytes": 0, "energy_uj": [0.0, 0.0]}
