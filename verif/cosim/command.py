@@ -53,7 +53,6 @@ def add_arguments(parser: ArgumentParser) -> None:
         help="that are transistors: all, of the columns and lanes; lanes (in edge mode); none",
     )
     add("--extracted", action="store_true", help="each row again, with the drawn circuits and their parasitics")
-    add("--study", action="store_true", help="error against run time on one sample, relative to an off-line reference")
     add("--faults", action="store_true", help="faults planted in the circuit, and what the codes say of each, too")
     add("--out", type=Path, help="folder for the results (default: build/cosim)")
 
@@ -62,14 +61,14 @@ def run(options: Namespace) -> int:
     """Read the rows, write the page and print the figures; 1 where a code is beyond its limit, a fault not found."""
     from talbot.base.files import check_folder, staged
     from talbot.base.paths import RESULTS
-    from talbot.verif.cosim import page, study
+    from talbot.verif.cosim import page, planted
     from talbot.verif.cosim.accuracy import Accuracy
     from talbot.verif.cosim.job import STEPS, model_alone, rows, summary
     from talbot.verif.cosim.row import MODES, RowRequest
 
     sensor = sensor_asked(options, VARIED)
-    if options.sensor and (options.study or options.faults):
-        raise ParameterError(f"sensor = {str(options.sensor)!r}: must be left out with study and faults")
+    if options.sensor and options.faults:
+        raise ParameterError(f"sensor = {str(options.sensor)!r}: must be left out with faults")
     check_choice("amplifiers", options.amplifiers, AMPLIFIERS)
     columns = options.amplifiers == "all"
     modes = options.modes.split(",") if options.modes else [mode for mode in MODES if columns or mode != "raw"]
@@ -97,10 +96,8 @@ def run(options: Namespace) -> int:
     with Steps(STEPS, lines=True) as steps:
         done = rows(asked, steps.note)
         found: dict[str, Any] = {"rows": [summary(row) for row in done], "model": model_alone(asked[0])}
-        steps.note("study")
-        found["study"] = study.accuracy(steps.note) if options.study else []
-        found["left_out"] = study.leaving_out(steps.note) if options.study else []
-        found["faults"] = study.faults(steps.note) if options.faults else []
+        steps.note("faults")
+        found["faults"] = planted.faults(steps.note) if options.faults else []
         steps.note("report")
         with staged(out, page.names(MODES)) as part:
             page.write(part, done, found)
@@ -133,16 +130,6 @@ def _print(s: dict[str, Any], folder: Path) -> None:
             f"{row['differing_decisions']} of {row['decisions']} decisions; "
             f"slowest {1e9 * row['slowest_decision_s']:.2f} ns; {row['circuit_cycles']} cycles of "
             f"{row['transistors']} transistors in {row['seconds']:.1f} s, {row['processor_seconds']:.1f} of a processor"
-        )
-    for line in s["study"]:
-        error = (
-            f"decisions {1e12 * line['largest_error_s']:.1f} ps off at most, " if line.get("largest_error_s") else ""
-        )
-        print(f"  {line['name']}: {error}{line['time_points']} time points, {line['seconds']:.1f} s")
-    for line in s["left_out"]:
-        print(
-            f"  left out: {line['name']}: {line['seconds']:.1f} s of processor instead of {line['seconds_with']:.1f}, "
-            f"error {line['error_lsb']:.4f} LSB at the lane"
         )
     for line in s["faults"]:
         print(f"  planted: {line['planted']}; found: {line['name']} (codes {line['error']} LSB from it in all)")

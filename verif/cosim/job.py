@@ -10,7 +10,7 @@ from talbot.imaging.frame.hardware import simulate
 from talbot.verif.cosim import extracted, lockstep
 from talbot.verif.cosim.row import Row, RowRequest, read_row
 
-STEPS = ("build", "rows", "study", "report")
+STEPS = ("build", "rows", "faults", "report")
 
 
 def rows(asked: Sequence[RowRequest], note: Callable[[str], None]) -> list[Row]:

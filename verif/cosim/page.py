@@ -32,7 +32,7 @@ def write(folder: Path, rows: Sequence[Row], s: Mapping[str, Any]) -> None:
     sections = [
         Section("Rows", ABOUT, head=HEAD, rows=[_line(one) for one in s["rows"]]),
         *(_codes(row) for row in rows),
-        *_studies(s),
+        *_planted(s),
         Section("Waves of the first conversion", WAVES, charts=[_waves(rows[0])]),
     ]
     text = render(
@@ -70,32 +70,9 @@ def _codes(row: Row) -> Section:
     return Section(f"Codes: {row.request.name}", head=(*head, "first decision that differs"), rows=lines)
 
 
-def _studies(s: Mapping[str, Any]) -> list[Section]:
-    """Error against run time, and faults, where they were asked for."""
+def _planted(s: Mapping[str, Any]) -> list[Section]:
+    """Return the section on planted faults, where they were simulated."""
     sections = []
-    if s["study"]:
-        head = ("", "s", "time points", "decisions", "largest error, ps", "rms, ps", "code", "attempts")
-        lines = [_studied(line) for line in s["study"]]
-        sections.append(Section("Error against run time", STUDY, head=head, rows=lines))
-    if s["left_out"]:
-        head = (
-            "left out",
-            "s of processor",
-            "with it",
-            "cycles",
-            "with it",
-            "transistors",
-            "with it",
-            "error, LSB",
-            "codes",
-        )
-        keys = ("cycles", "cycles_with", "transistors", "transistors_with")
-        lines = [
-            (x["name"], f"{x['seconds']:.1f}", f"{x['seconds_with']:.1f}", *(str(x[key]) for key in keys))
-            + (f"{x['error_lsb']:.4f}", "; ".join(", ".join(map(str, codes)) for codes in x["codes"]))
-            for x in s["left_out"]
-        ]
-        sections.append(Section("Leaving out", head=head, rows=lines))
     if s["faults"]:
         head = ("planted", "found", "codes from it, LSB", "from the next", "from a sound circuit")
         errors = ("error", "next_error", "sound_error")
@@ -104,20 +81,7 @@ def _studies(s: Mapping[str, Any]) -> list[Section]:
     return sections
 
 
-STUDY = (
-    "One sample. Times of the comparator's decisions against those of the same drive off-line: piecewise linear "
-    "sources in ngspice alone, with tight tolerances and the resistances of the transistors' bodies."
-)
 FAULTS = "Found: of all faults of the dictionary, the one whose codes, computed from charge alone, are the nearest."
-
-
-def _studied(line: Mapping[str, Any]) -> tuple[str, ...]:
-    def ps(key: str) -> str:
-        return f"{1e12 * line[key]:.2f}" if line.get(key) is not None else ""
-
-    numbers = (str(line.get(key, "")) for key in ("code", "attempts"))
-    times = (f"{line['seconds']:.1f}", str(line["time_points"]), str(line.get("decisions", "")))
-    return (line["name"], *times, ps("largest_error_s"), ps("rms_error_s"), *numbers)
 
 
 def _why(x: Sample) -> str:
