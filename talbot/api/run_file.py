@@ -65,6 +65,7 @@ def read_run(path: Path) -> tuple[GoldenResult, dict[str, Any]]:
     try:
         with gzip.open(file) as opened:
             name, result, summary = _Reader(opened).load()
+            opened.read()  # to the end, where gzip checks its CRC
         if name != FORMAT or not isinstance(result, GoldenResult):
             raise pickle.UnpicklingError(f"holds {name!r}")
     except ParameterError:

@@ -177,10 +177,14 @@ def test_files_that_hold_no_run(tmp_path):
     (tmp_path / "text.run").write_text("no run")
     with gzip.open(tmp_path / "other.run", "wb") as file:
         pickle.dump((1, 2, 3), file)
+    data = bytearray((tmp_path / "other.run").read_bytes())
+    data[-8] ^= 1
+    (tmp_path / "damaged.run").write_bytes(data)
     for name, said in (
         ("program", "holds subprocess.run"),
         ("text", "gzip"),
         ("other", "holds 1"),
+        ("damaged", "CRC"),
         ("none", "no such"),
     ):
         with pytest.raises(talbot.ParameterError, match=f"path = .*{name}.run': .*{said}"):
