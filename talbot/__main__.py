@@ -13,6 +13,7 @@ from talbot.base.supervise import supervised  # noqa: E402
 
 def main() -> int:
     """Run the command of this process's arguments; returns the exit status."""
+    environment.open_standard_files()
     environment.start_again()
     return supervised(lambda: failure.reported("talbot", _command))
 

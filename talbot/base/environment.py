@@ -40,6 +40,16 @@ def clean(environment: Mapping[str, str] = os.environ) -> dict[str, str]:
     return kept | FIXED | with_unpacked(environment)
 
 
+def open_standard_files() -> None:
+    """Open /dev/null for input, output and errors where they are closed: a file that is opened would take the place."""
+    for number, name in enumerate(("stdin", "stdout", "stderr")):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.set_inheritable(os.open(os.devnull, os.O_RDWR), True)  # it has the lowest free number, this one
+            setattr(sys, name, os.fdopen(number, "w" if number else "r", encoding="utf-8", closefd=False))
+
+
 def with_unpacked(environment: Mapping[str, str]) -> dict[str, str]:
     """Return the variables that find the tools of requirements/tools.sh; {} without them."""
     folder = os.path.join(_cache(environment), "talbot", "tools")

@@ -93,6 +93,13 @@ def test_where_python_reads_no_variables_it_does_not_start_again_for_ever(hostil
     assert talbot("--version", python=python, **hostile).stdout.startswith("talbot ")
 
 
+@pytest.mark.parametrize("closed", ["<&-", ">&-", "2>&-", "<&- >&- 2>&-"])
+def test_a_closed_standard_file_is_no_error(tmp_path, closed):
+    words = [sys.executable, "-m", "talbot", "sensor", "--out", str(tmp_path / "sensor.toml")]
+    done = subprocess.run(["sh", "-c", f'"$@" {closed}', "sh", *words], capture_output=True, text=True)
+    assert done.returncode == 0 and not done.stderr and (tmp_path / "sensor.toml").read_text().startswith("#")
+
+
 def test_the_folder_of_the_program_itself_stays_on_the_path(tmp_path):
     """A checkout that is reached by PYTHONPATH alone."""
     program = "from talbot.base.environment import start_again; start_again();" + PRINT
