@@ -17,8 +17,9 @@ ARRAY_ERRORS = (
     RuntimeError,
     OverflowError,
     MemoryError,
+    zipfile.BadZipFile,
+    zlib.error,
 )
-ARRAY_ERRORS += (zipfile.BadZipFile, zlib.error)
 TO_PICTURE = "save it as PNG or TIFF"
 TO_ARRAY = "save the array as .npy or .npz"
 DEVELOP = "a raw photograph ({}): must be developed first, as TIFF or PNG of 16 bits"
