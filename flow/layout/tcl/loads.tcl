@@ -50,10 +50,15 @@ proc buffer_halfway {net} {
   global clock_buffers
   set block [ord::get_db_block]
   set name halfway_[$net getName]
+  while {[$block findInst $name] ne "NULL"} { append name _ }
   set inst [odb::dbInst_create $block [[ord::get_db] findMaster [lindex $clock_buffers 0]] $name]
   set second [odb::dbNet_create $block ${name}_net]
   set is_port [llength [$net getBTerms]]
   set corners {}
+  foreach port [$net getBTerms] {
+    set box [$port getBBox]
+    lappend corners [list 1 [expr {([$box xMin] + [$box xMax]) / 2}] [expr {([$box yMin] + [$box yMax]) / 2}]]
+  }
   foreach pin [$net getITerms] {
     lappend corners [list {*}[$pin getAvgXY]]
     if {[expr {$is_port ? [$pin isOutputSignal] : [$pin isInputSignal]}]} {
