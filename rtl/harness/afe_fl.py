@@ -31,7 +31,7 @@ class AfeFL(Component):
 
         @update_ff
         def sample():
-            if s.hold:
+            if s.hold & ~s.reset:  # gates have no values before their first reset, and any address
                 v = s.values[int(s.mode)]
                 for lane in range(lanes):
                     if s.en[lane]:
