@@ -189,12 +189,12 @@ global_route -allow_congestion -congestion_iterations $congestion_iterations
 estimate_parasitics -global_routing
 set load_margin [expr {2 * $load_margin}]
 repair_loads
-help_and_reroute
-repair_hold
-help_and_reroute
 # A slew that is just below its limit by these estimates is beyond it by the real wires
 set longest_slew [sta::max_slew_check_limit]
 set_max_transition [expr {0.9 * $longest_slew}] [current_design]
+help_and_reroute
+repair_hold
+help_and_reroute
 raise_thresholds $setup_margin
 set_max_transition $longest_slew [current_design]
 measured estimated_beyond [dict size [beyond_limits]]
