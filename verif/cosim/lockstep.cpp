@@ -16,7 +16,6 @@
 //                  then lines "source bit low high half rise fall": volts at 0 and 1 of a bit of `controls`, delays (s) of
 //                  its edges; with half = 1 it is high while clk is low
 //                  the bit of vlight0 .. vlight3, the light of each tap, is -1
-//   +whole=1       with light: every cycle of an integration is simulated
 //   +cycles=FILE   what was asked and answered in each cycle of the circuit, as text
 //   +points=FILE   every time point, binary doubles: time and the saved vectors, whose names are the first line
 //   +lockstep=FILE what it took, as JSON
@@ -66,7 +65,7 @@ std::set<double> corners;        // s, of what turns: begins and ends of ramps t
 std::uint64_t ticks = 0, analog = 0, period_number = 0, limit = 1000000000, rejected = 0, accepted = 0;
 std::size_t event = 0;           // the next one
 bool begun = false;              // a ramp, right now
-bool started = false, was_busy = false, pixels = false, whole = false;
+bool started = false, was_busy = false, pixels = false;
 std::uint64_t pending = 0;       // cycles of integration whose charge the circuit has not got
 unsigned shining = 0;            // the tap that they are of
 Source* light[4] = {};           // of each tap, 1 at the photocurrents' own strength
@@ -126,7 +125,7 @@ bool busy() { return AFE(running); }
 // light `2 * cycles` times as strong shines for half the period: the same charge.
 bool quiet() {
   if (AFE(converting) || (pixels && AFE(phases))) return false;
-  return !pixels || (whole ? !AFE(integrating) : AFE(integrating) || pending == 0);
+  return !pixels || AFE(integrating) || pending == 0;
 }
 
 // The frame is over: the rest of the host's script needs no circuit.
@@ -233,16 +232,14 @@ void clock_edge(double time) {
   started = true;
   do {
     tick();
-    if (pixels && !whole && AFE(integrating)) {
+    if (pixels && AFE(integrating)) {
       ++pending;
       shining = AFE(tap);
     }
     if (was_busy && !busy() && quiet()) finish();
     was_busy |= busy();
   } while (quiet());
-  if (whole)
-    for (unsigned t = 0; t < 4; ++t) turn(*light[t], AFE(integrating) && AFE(tap) == t, time);
-  else if (pending && !AFE(integrating)) {
+  if (pending && !AFE(integrating)) {
     light[shining]->high = 2.0 * static_cast<double>(pending);
     turn(*light[shining], true, time);
     pending = 0;
@@ -266,7 +263,7 @@ void happen() {
   else if (events[event] == high)
     for (Source& s : sources)
       if (s.half) turn(s, bit_of(AFE(controls), s.bit), now);
-  if (events[event] == 0.5 * period && pixels && !whole)
+  if (events[event] == 0.5 * period && pixels)
     for (Source* s : light) turn(*s, false, now);
   do
     if (++event == events.size()) {
@@ -346,7 +343,6 @@ bool read_drive(const std::string& name) {
   for (unsigned t = 0; t < 4; ++t)
     if (const auto found = by_name.find("vlight" + std::to_string(t)); found != by_name.end()) light[t] = found->second;
   pixels = light[0] && light[1] && light[2] && light[3];
-  whole = pixels && !argument("whole=").empty();
   const std::set<double> at = {0.0, high, 0.5 * period};
   events.assign(at.begin(), at.end());
   return true;

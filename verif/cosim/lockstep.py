@@ -85,21 +85,18 @@ def run(
     front_end: FrontEnd,
     timing: Timing,
     accuracy: Accuracy,
-    whole: bool = False,
     max_cycles: int = 1_000_000,
     note: Callable[[str], None] = lambda text: None,
 ) -> Run:
     """Run a frame; where ngspice fails, again with the next of ``accuracy.ladder``.
 
-    decks: the parts of the circuit. whole: see `RowRequest`. note: called now and then with how far it is. Raises
+    decks: the parts of the circuit. note: called now and then with how far it is. Raises
     ToolError after the last.
     """
     why = ""
     for attempt, tried in enumerate(accuracy.ladder, 1):
         try:
-            return _run(
-                *(binary, decks(tried), frame, samples, front_end, timing, tried, attempt, whole, max_cycles, note)
-            )
+            return _run(*(binary, decks(tried), frame, samples, front_end, timing, tried, attempt, max_cycles, note))
         except ToolError as error:
             if f"status {GAVE_UP}" not in str(error):
                 raise
@@ -116,7 +113,6 @@ def _run(
     timing: Timing,
     accuracy: Accuracy,
     attempt: int,
-    whole: bool,
     max_cycles: int,
     note: Callable[[str], None],
 ) -> Run:
@@ -134,7 +130,7 @@ def _run(
             )
         begun = any(deck.flat or any(line.startswith(".ic ") for line in deck.lines) for deck in decks)
         more = [f"+{file}={folder / file}" for file in ("deck", "drive", "cycles", "points", "lockstep")]
-        more += [f"+parts={len(decks)}", *(["+whole=1"] if whole else []), *(["+uic=1"] if begun else [])]
+        more += [f"+parts={len(decks)}", *(["+uic=1"] if begun else [])]
         with _watched(folder / "cycles.0", note):
             done = run_frame(
                 *(binary, folder / "samples", folder / "converter", script), max_cycles=max_cycles, more=more

@@ -72,13 +72,12 @@ def _codes(row: Row) -> Section:
 
 def _planted(s: Mapping[str, Any]) -> list[Section]:
     """Return the section on planted faults, where they were simulated."""
-    sections = []
-    if s["faults"]:
-        head = ("planted", "found", "codes from it, LSB", "from the next", "from a sound circuit")
-        errors = ("error", "next_error", "sound_error")
-        lines = [(f["planted"], f["name"], *(str(f[key]) for key in errors)) for f in s["faults"]]
-        sections.append(Section("Planted faults", FAULTS, head=head, rows=lines))
-    return sections
+    if not s["faults"]:
+        return []
+    head = ("planted", "found", "codes from it, LSB", "from the next", "from a sound circuit")
+    errors = ("error", "next_error", "sound_error")
+    lines = [(f["planted"], f["name"], *(str(f[key]) for key in errors)) for f in s["faults"]]
+    return [Section("Planted faults", FAULTS, head=head, rows=lines)]
 
 
 FAULTS = "Found: of all faults of the dictionary, the one whose codes, computed from charge alone, are the nearest."

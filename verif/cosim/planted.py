@@ -14,11 +14,11 @@ COARSE = Accuracy(reltol=1e-3, chgtol=1e-15)  # codes that a fault moves by far 
 FAULTY = RowRequest(mode="edge", cols=12, lanes=2, types=2, amplifier=True, columns=True, accuracy=COARSE)
 
 
-def faults(note: Callable[[str], None], asked: RowRequest = FAULTY) -> list[dict[str, Any]]:
-    """Return the diagnosis of each of PLANTED in the circuit of ``asked``. Raises ToolError."""
+def faults(note: Callable[[str], None]) -> list[dict[str, Any]]:
+    """Return the diagnosis of each of PLANTED in the circuit of FAULTY. Raises ToolError."""
     lines = []
     for fault in (None, *PLANTED):
-        found = diagnose(read_row(replace(asked, fault=fault)))
-        lines.append({"planted": fault.name if fault else "no fault", **found._asdict()})
-        note(f"{lines[-1]['planted']}: found: {found.name}")
+        diagnosis = diagnose(read_row(replace(FAULTY, fault=fault)))
+        lines.append({"planted": fault.name if fault else "no fault", **diagnosis._asdict()})
+        note(f"{lines[-1]['planted']}: found: {diagnosis.name}")
     return lines

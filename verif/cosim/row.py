@@ -63,8 +63,6 @@ class RowRequest:
         Pixels and column amplifiers are in the circuit; else ideal voltages.
     t_int : int
         Cycles of integration, 1..65535.
-    whole : bool
-        Every cycle of the integration is simulated, not one instead of all.
     amplifier : bool
         The lanes' difference amplifiers are in the circuit: edge mode with its pixels, or any with ``columns``; strobes
         as early as a lane times them.
@@ -89,7 +87,6 @@ class RowRequest:
     everything: bool = False
     pixels: bool = True
     t_int: int = 20000
-    whole: bool = False
     amplifier: bool = False
     columns: bool = False
     extracted: bool = False
@@ -316,7 +313,7 @@ def read_row(asked: RowRequest, note: Callable[[str], None] = lambda text: None,
     sensor, frame = asked.frame
     binary, decks = program or lockstep.program(sensor, note), cache(asked.decks)
     run = lockstep.run(
-        *(binary, decks, frame, asked.delivered, asked.front_end, asked.clock, asked.accuracy, asked.whole),
+        *(binary, decks, frame, asked.delivered, asked.front_end, asked.clock, asked.accuracy),
         note=lambda text: note(f"{asked.name}: {text}"),
     )
     codes = decode_stream(run.stream, sensor.tile)[0].samples[0]
