@@ -232,10 +232,9 @@ def diverges(counts: Sequence[int], seconds: Sequence[float] = (), nets: int = 0
     if nets and counts and counts[0] > CROWDED * nets:
         return True
     number, share = HOPELESS
-    if len(seconds) > max(STUBBORN, len(counts)):
-        most = SLOW * max(*seconds[:STUBBORN], LEAST_S) + (EACH_S * counts[-1] if counts else 0.0)
-        if seconds[-1] > most:
-            return True
+    stubborn = EACH_S * counts[-1] if counts else 0.0
+    if len(seconds) > max(STUBBORN, len(counts)) and seconds[-1] > SLOW * max(*seconds[:STUBBORN], LEAST_S) + stubborn:
+        return True
     if len(counts) > number and counts[-1] > share * counts[0]:
         return True
     return len(counts) > PATIENCE and min(counts[-PATIENCE:]) >= min(counts[:-PATIENCE])

@@ -54,6 +54,7 @@ proc buffer_halfway {net} {
   set inst [odb::dbInst_create $block [[ord::get_db] findMaster [lindex $clock_buffers 0]] $name]
   set second [odb::dbNet_create $block ${name}_net]
   set is_port [llength [$net getBTerms]]
+  lassign [expr {$is_port ? [list $second $net] : [list $net $second]}] before after
   set corners {}
   foreach port [$net getBTerms] {
     set box [$port getBBox]
@@ -61,14 +62,14 @@ proc buffer_halfway {net} {
   }
   foreach pin [$net getITerms] {
     lappend corners [list {*}[$pin getAvgXY]]
-    if {[expr {$is_port ? [$pin isOutputSignal] : [$pin isInputSignal]}]} {
+    if {$is_port ? [$pin isOutputSignal] : [$pin isInputSignal]} {
       $pin disconnect
       $pin connect $second
     }
   }
   foreach pin [$inst getITerms] {
-    if {[$pin isInputSignal]} { $pin connect [expr {$is_port ? $second : $net}] }
-    if {[$pin isOutputSignal]} { $pin connect [expr {$is_port ? $net : $second}] }
+    if {[$pin isInputSignal]} { $pin connect $before }
+    if {[$pin isOutputSignal]} { $pin connect $after }
   }
   foreach axis {1 2} middle {x y} {
     set all [lsort -real [lmap at $corners { lindex $at $axis }]]
