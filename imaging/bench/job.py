@@ -13,11 +13,9 @@ from talbot.base.table import markdown_table
 from talbot.imaging.bench import simulated as bench
 from talbot.imaging.bench.chip import Measured, check_tile, measured
 from talbot.imaging.bench.readings import Readings, joined, read, text_of
-from talbot.models.calibrate import Sweep, fit_pupil, fit_types
-from talbot.models.parameters import STANDARD, ParameterError, PixelType, SensorParameters
-from talbot.pixels.designs import DRAWN, RAISED
+from talbot.models.parameters import ParameterError, PixelType, SensorParameters
 from talbot.pixels.measured import SUFFIX
-from talbot.pixels.tabled import pixel_of, tabled
+from talbot.pixels.tabled import pixel_of
 from talbot.pixels.test_chip.places import COLS, COVERED, PLAIN, REFERENCE, by_type
 
 SIMULATED = "simulated"
@@ -146,29 +144,6 @@ def expected(sensor: SensorParameters, lux: float, holes: int) -> str:
                 )
             )
     return markdown_table(("light", "pixels", "pA of a diode", "exposure", "fall of a pad, mV"), rows, 2)
-
-
-def heights(holes: int) -> str:
-    """Return a table of what a bench measures without noise at both of SKY130's tables of heights."""
-    columns, tangents = [], bench.angles(holes)
-    for name in (DRAWN[0], DRAWN[0] + RAISED):
-        signals = by_type(bench.relative(tabled(STANDARD, name), tangents))
-        sweep = Sweep(tangents, signals[:, None], np.zeros((1, signals.shape[1], 2)), np.ones(signals.shape[1]))
-        fits = fit_types(sweep, fit_pupil(sweep)._replace(axis=np.zeros(2)))
-        columns.append([fit.kind for fit in fits])
-    types = STANDARD.tile.types
-    rows = []
-    for beta, alpha in sorted({(kind.beta, kind.alpha) for kind in types}):
-        chosen = [k for k, kind in enumerate(types) if (kind.beta, kind.alpha) == (beta, alpha)]
-        cells = [
-            f"{min(part):.{digits}f}..{max(part):.{digits}f}"
-            for column in columns
-            for name, digits in (("beta", 1), ("m", 2))
-            for part in [[getattr(column[k], name) or 0.0 for k in chosen]]
-        ]
-        rows.append((f"{beta:g}, {np.rad2deg(alpha):.0f}", *cells))
-    head = ("beta, alpha as drawn", "beta, first table", "m", "beta, second table", "m")
-    return markdown_table(head, rows, 1)
 
 
 def _groups(sensor: SensorParameters) -> list[tuple[str, list[tuple[int, int]]]]:

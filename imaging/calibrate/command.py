@@ -87,8 +87,8 @@ def _bench(options: Namespace, typed: dict[str, Any], holes: int) -> int:
     label = "-".join(Path(file).stem for file in options.bench)
     rest = {name: value for name, value in typed.items() if name not in ("bench", "document")}
     folder = Path(options.out or results_of("calibrate") / name_of(rest | {"scene": label}))
-    marks = "expected readings", "tables of heights"
-    for mark in marks if options.document else ():
+    mark = "expected readings"
+    if options.document:
         marked(options.document, mark)
     numbers = {number.field: number.value(options) for number in NUMBERS if number.field in ("noise", "seed", "lux")}
     simulation = job.Simulation(holes, **numbers) if simulated else None
@@ -97,10 +97,7 @@ def _bench(options: Namespace, typed: dict[str, Any], holes: int) -> int:
     with Steps(BENCH_STEPS, lines=True) as progress:
         summary = job.make(folder, sensor, files, simulation, progress.note, typed)
         if options.document:
-            for mark, text in zip(
-                marks, (job.expected(sensor, numbers["lux"], holes), job.heights(holes)), strict=True
-            ):
-                insert(options.document, mark, text)
+            insert(options.document, mark, job.expected(sensor, numbers["lux"], holes))
     _print_bench(summary, folder)
     return 0
 

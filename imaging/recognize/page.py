@@ -106,8 +106,11 @@ TABLES_OF = {"gestures": gesture_table, "intensity": intensity_table}  # of a do
 
 
 def lines(s: dict[str, Any]) -> str:
-    """Return the table as Markdown."""
-    return markdown_table(HEAD, rows(s), 1)
+    """Return the table as Markdown, without other thresholds, and without ``same_bytes`` where it is ``image``."""
+    chosen = {name: row for name, row in s["rows"].items() if name in TEXTS}
+    if chosen.get("same_bytes") == chosen.get("image"):
+        chosen.pop("same_bytes", None)
+    return markdown_table(HEAD, rows(s | {"rows": chosen}), 1)
 
 
 def about(s: dict[str, Any]) -> str:

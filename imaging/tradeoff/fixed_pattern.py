@@ -15,7 +15,7 @@ from talbot.imaging.frame import job
 from talbot.imaging.frame.request import request
 from talbot.models.afe import FrontEnd, trim_codes, trim_gain
 
-THRESHOLDS = 4, 8, 10, 12, 16, 20
+THRESHOLDS = 8, 10, 12, 20
 LIGHTS = 2, 50, 100  # % of white
 FITTED = "tile", "column", "offset"
 Values = npt.NDArray[np.float64]

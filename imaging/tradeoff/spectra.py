@@ -1,9 +1,9 @@
 """What white light costs: pixels of Eq. 3.1 and infinite gratings of SKY130 in light with a spectrum, through a filter
-(width in nm) or none. m and beta: fitted to the response in this light; d: diattenuation, of Eq. 3.1 the parameter, of
-gratings the mean of the three betas. Electrons: of white at 500 lux on a diode, in millions a second. Light field:
-`linear` on the motorcycle, with the response of this light and with that of one wavelength (unaware), and the sum image
-in every view; psi: mean error on `specular` with this d, and the share of its polarized pixels where it is reliable
-(seen); stress: mean degree of polarization of `stress`, whose retardance is in proportion to 1 / wavelength."""
+(width in nm) or none. m: of each beta, fitted to the response in this light; d: diattenuation, of Eq. 3.1 the
+parameter, of gratings the mean of the three betas. Electrons: of white at 500 lux on a diode, in millions a second.
+Light field: `linear` on the motorcycle, with the response of this light and with that of one wavelength (unaware), and
+the sum image in every view; psi: mean error on `specular` with this d, and the share of its polarized pixels where it
+is reliable (seen)."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -13,7 +13,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from talbot.base.charts import curves
-from talbot.imaging.frame.job import golden_result, see
+from talbot.imaging.frame.job import golden_result
 from talbot.imaging.frame.light_field import estimate
 from talbot.imaging.frame.quality import clear_psnr_db
 from talbot.imaging.frame.request import FrameRequest, request
@@ -51,17 +51,14 @@ def measure(point: Point) -> dict[str, Any]:
     types = {kind.beta: kind for kind in in_light(sensor, lamp).tile.types}
     row: dict[str, Any] = {"pixel": pixel, "light": name, "filter_nm": width or "none"}
     for beta in (12.0, 18.0, 24.0):
-        depth, frequency = (fits[beta].m, fits[beta].beta) if fits else (types[beta].m, beta)
-        row |= {f"m_{beta:g}": depth, f"beta_{beta:g}": frequency}
+        row[f"m_{beta:g}"] = fits[beta].m if fits else types[beta].m
     d = float(np.mean([one.diattenuation for one in fits.values()])) if fits else sensor.optics.diattenuation
     polar = replace(sensor, optics=replace(sensor.optics, diattenuation=abs(d)))
     settings = {"rows": size, "cols": size, "mode": "raw", "light": name}
     frame = request(**settings, sensor=sensor)
     white = frame.room.white(sensor.array.pitch, sensor.optics.nu_max, spectral=spectral)
-    stress = see(request(**settings, sensor=sensor, scene="stress"))[0].seen_polarization
     row |= {"d": d, "electrons": 1e-6 * white.electrons} | _field(frame, sensor)
-    row |= _polar(request(**settings, sensor=polar, scene="specular"))
-    return row | {"stress": float(np.hypot(*stress).mean())}
+    return row | _polar(request(**settings, sensor=polar, scene="specular"))
 
 
 def _fits(lamp: Spectrum, spectral: SpectralParameters) -> dict[float, Fit]:

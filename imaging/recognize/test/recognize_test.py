@@ -10,7 +10,7 @@ from PIL import Image
 
 from talbot.api.recognize import recognize
 from talbot.commands import main
-from talbot.imaging.recognize import chip, gestures, intensity, study
+from talbot.imaging.recognize import chip, gestures, intensity, page, study
 from talbot.imaging.recognize.data import load, picture
 from talbot.imaging.recognize.job import Study, as_trained
 from talbot.imaging.recognize.study import Setting, evaluate, noisy, reduced, see
@@ -192,6 +192,14 @@ def test_tables_of_gestures_and_intensity_enter_a_document(tmp_path, monkeypatch
     faces = s["intensity"]["faces"]
     assert faces["gray"]["ssim"] < faces["ternary differences along x and y, Poisson"]["ssim"] < 1
     assert "| temporal binary gradients (Eq. A.2) |" in text and "| JPEG in as many bytes | - |" in text
+
+
+def test_the_table_of_a_document_has_one_threshold_and_no_row_twice():
+    row = {"accuracy": 0.5, "accuracy_std": 0.0, "bytes": 9, "energy_uj": (1.0, 2.0), "network_uj": 1.0}
+    s = {"types": 12, "threshold": 10, "rows": dict.fromkeys(("asp", "asp_5", "image", "same_bytes"), row)}
+    assert len(page.rows(s)) == 4 and len(page.lines(s).splitlines()) == 2 + 2
+    s["rows"]["same_bytes"] = row | {"bytes": 8}
+    assert len(page.lines(s).splitlines()) == 2 + 3
 
 
 def labelled(n=30):
