@@ -27,6 +27,7 @@ PARTS = {
     "Verification": ("verif",),
     "Project": (
         "talbot",
+        "docs/glossary",
         "docs/limits",
         "CONTRIBUTING",
         "CHANGELOG",
