@@ -63,6 +63,9 @@ def light(codes):
         ("clip.mpg", "mpeg2video"),
         ("clip.wmv", "wmv2"),
         ("clip.flv", "flv"),
+        ("clip.y4m", "rawvideo"),
+        ("clip.ogv", "libvpx"),
+        ("clip.mxf", "mpeg2video"),
         ("clip.bin", "mpeg4"),
     ],
 )
@@ -186,10 +189,10 @@ def with_cover(path):
         container.mux(sound.encode())
 
 
-def cut(name, **options):
+def cut(share=2 / 3, **options):
     def make(path):
         write(path, pictures(40), **options)
-        path.write_bytes(path.read_bytes()[: path.stat().st_size * 2 // 3])
+        path.write_bytes(path.read_bytes()[: int(path.stat().st_size * share)])
 
     return make
 
@@ -198,10 +201,17 @@ def cut(name, **options):
     "name, make, said",
     [
         ("clip.mp4", with_cover, "must have a video stream"),
-        ("clip.mp4", cut("clip.mp4"), "the video is damaged"),
-        ("clip.mp4", cut("clip.mp4", movflags="faststart"), "the video is damaged .of"),
-        ("clip.avi", cut("clip.avi"), r"the video is damaged \(of \d+ bytes \d+ are there\)"),
-        ("clip.mkv", cut("clip.mkv"), r"the video is damaged \(of \d+ bytes \d+ are there\)"),
+        ("clip.mp4", cut(), "the video is damaged"),
+        ("clip.mp4", cut(movflags="faststart"), "the video is damaged .of"),
+        ("clip.avi", cut(), r"the video is damaged \(of \d+ bytes \d+ are there\)"),
+        ("clip.mkv", cut(), r"the video is damaged \(of \d+ bytes \d+ are there\)"),
+        ("clip.wmv", cut(codec="wmv2"), r"the video is damaged \(of \d+ bytes \d+ are there\)"),
+        ("clip.mxf", cut(codec="mpeg2video"), r"the video is damaged \(of \d+ bytes \d+ are there\)"),
+        ("clip.ogv", cut(codec="libvpx"), r"the video is damaged \(of \d+ bytes \d+ are there\)"),
+        ("clip.mp4", cut(0.5, movflags="frag_keyframe+empty_moov", g="5"), r"damaged \(of \d+ bytes \d+ are there\)"),
+        ("clip.y4m", cut(0.63, codec="rawvideo"), r"the video is damaged \(the file ends early; frames read: 25\)"),
+        ("clip.ts", cut(0.9, codec="libx264"), r"the video is damaged \(the file ends early; frames read: \d\d\)"),
+        ("clip.m2ts", cut(0.8, codec="libx264"), r"the video is damaged \(the file ends early; frames read: \d\d\)"),
         ("clip.MTS", lambda path: path.write_bytes(b""), "the video is damaged"),
     ],
 )
