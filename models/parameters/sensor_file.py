@@ -42,7 +42,7 @@ def read_sensor(path: str | Path) -> SensorParameters:
     try:
         return sensor_of(table)
     except ParameterError as error:
-        raise ParameterError(f"{error} (in {path})") from None
+        raise ParameterError(printable(f"{error} (in {path})")) from None
 
 
 def sensor_of(table: Mapping[str, Any], base: SensorParameters = STANDARD) -> SensorParameters:
@@ -105,6 +105,14 @@ def nearest(key: str, known: Iterable[str], cutoff: float = 0.7) -> str:
     return f"; did you mean {ends.get(near[0], near[0])}?" if near else f": {', '.join(known)}"
 
 
+def printable(text: str) -> str:
+    """Show what has no glyph as Python writes it: line ends, controls of a terminal, bytes of a name that is no UTF-8.
+
+    text: any. Returns str: one line.
+    """
+    return "".join(character if character.isprintable() else repr(character)[1:-1] for character in text)
+
+
 @cache
 def _meanings(kind: type[Any]) -> dict[str, str]:
     """Field to its text in the class's docstring, in one line."""
@@ -144,9 +152,8 @@ def _check_keys(table: Any, known: Mapping[str, str], where: str, everywhere: Ma
     for key in table.keys() - known.keys():
         elsewhere = key in {full.rpartition(".")[2] for full in everywhere}  # right, but in another table
         near = nearest(key, everywhere if elsewhere else known)
-        raise ParameterError(
-            f"{where}{key} = {table[key]!r}: must be a key of {f'[{name}]' if name else 'a sensor'}{near}"
-        )
+        of = f"[{name}]" if name else "a sensor"
+        raise ParameterError(printable(f"{where}{key} = {table[key]!r}: must be a key of {of}{near}"))
 
 
 def _tile(table: Mapping[str, Any]) -> TileParameters:

@@ -21,7 +21,7 @@ from talbot.base.files import check_folder
 from talbot.base.paths import BUILD
 from talbot.base.tools import ToolError
 from talbot.models.parameters import ParameterError
-from talbot.models.parameters.sensor_file import nearest
+from talbot.models.parameters.sensor_file import nearest, printable
 
 # A value too long to be read in an error's line, quoted or a word: its beginning, the rest
 LONG = re.compile(r"""('[^']{80})[^']{80,}(?=')|("[^"]{80})[^"]{80,}(?=")|(\S{160})\S{160,}?(?=:?(?:\s|$))""")
@@ -187,5 +187,5 @@ def _near(word: str, known: Sequence[str]) -> str:
 
 def _report(program: str, message: str) -> None:
     """One line; of a long value in it, the beginning."""
-    text = LONG.sub(lambda match: f"{match[match.lastindex or 0]}...", " ".join(message.split()))
+    text = LONG.sub(lambda match: f"{match[match.lastindex or 0]}...", printable(" ".join(message.split())))
     print(f"{program}: error: {text}", file=sys.stderr)

@@ -101,13 +101,16 @@ def test_what_is_wrong_is_named(table, said):
         (b"[array]\nrows = " + b"9" * 5000, "must be a TOML file"),
         (b"\xff\xfe", "must be a TOML file"),
         (b"[array]\nrows = 0", r"array.rows = 0: must be .* \(in .*sensor.toml\)"),
+        (b'"a\\nrows = 3" = 1', r"^a\\nrows = 3 = 1: must be a key of a sensor"),
+        (b'[array]\n"\\u001b[2K\\u202e" = 1', r"^array\.\\x1b\[2K\\u202e = 1: must be a key of \[array\]"),
         (b"#" * (1 << 21), "at most 1048576 bytes"),
     ],
 )
 def test_files_that_are_no_sensor(tmp_path, content, said):
     (tmp_path / "sensor.toml").write_bytes(content)
-    with pytest.raises(ParameterError, match=said):
+    with pytest.raises(ParameterError, match=said) as caught:
         read_sensor(tmp_path / "sensor.toml")
+    assert str(caught.value).isprintable()
     for path in (tmp_path / "none.toml", tmp_path):
         with pytest.raises(ParameterError, match="no such file"):
             read_sensor(path)
