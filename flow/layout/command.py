@@ -4,6 +4,7 @@ import json
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
+from talbot.base.arguments import number_of
 from talbot.base.command import failures
 from talbot.base.paths import RESULTS
 from talbot.base.progress import Steps
@@ -37,9 +38,11 @@ def add_arguments(parser: ArgumentParser) -> None:
     add("--top", help="its module")
     add("--clock", help="its clock, whose rising edge alone registers take (default: clk)")
     add("--reset", help="its synchronous reset, active at 0 if the name ends in _n (default: none)")
-    add("--period-ns", type=float, help="its clock period, 0.5..10000 ns (default: 20)")
+    add("--period-ns", type=number_of, help="its clock period, 0.5..10000 ns (default: 20)")
     add("--pdk", default=PROCESSES[0], help=f"process, one of {', '.join(PROCESSES)}")
-    add("--utilization", type=float, help="cells' area by core area where the search begins (default: the design's)")
+    add(
+        "--utilization", type=number_of, help="cells' area by core area where the search begins (default: the design's)"
+    )
     cells = "characterized cells at a corner (again for further corners; default: those shipped)"
     add("--liberty", type=Path, action="append", default=[], help=cells)
     add("--analog", type=Path, help=f"folder with <block>.lef and .gds in place of {SENSOR}'s black boxes")

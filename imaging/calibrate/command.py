@@ -59,7 +59,8 @@ def run(options: Namespace) -> int:
     options.out = options.out or results_of("calibrate") / ("" if standard else name_of(typed))
     if not options.sensor:
         for name, side in SIDES.items():
-            setattr(options, name, getattr(options, name) or side)
+            if getattr(options, name) is None:
+                setattr(options, name, side)
     frame_request = request_of(options)
     check_folder("out", frame_request.folder, page.NAMES)
     with Steps(STEPS, lines=True) as progress:

@@ -9,7 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from talbot.base.arguments import Number, real, span
+from talbot.base.arguments import Number, number_of, span
 from talbot.base.cache import digest
 from talbot.base.paths import results_of
 from talbot.base.progress import Steps
@@ -253,7 +253,7 @@ def camera_of(a: Namespace, camera: CameraParameters) -> CameraParameters:
     """Return the ``camera`` with the changes of the options ``a``."""
     field = {"focal": "focal_length", "pupil": "exit_pupil"}
     texts = {name: getattr(a, name) for name in (option.replace("-", "_") for option in CAMERA)}
-    chosen = {field.get(n, n): real(n, v, 0, float("inf")) for n, v in texts.items() if v is not None}
+    chosen: dict[str, Any] = {field.get(n, n): number_of(v) for n, v in texts.items() if v is not None}
     return replace(camera, **chosen)
 
 

@@ -4,6 +4,7 @@ from argparse import ArgumentParser, Namespace
 from pathlib import Path
 from typing import Any
 
+from talbot.base.arguments import number_of
 from talbot.base.jobs import worker_count
 from talbot.base.progress import Steps
 from talbot.base.sensor import Varied, add_sensor, labelled, sensor_asked
@@ -19,8 +20,8 @@ def add_arguments(parser: ArgumentParser) -> None:
     add_sensor(parser)
     add("--pdk", default="sky130", help="process, sky130")
     add("--corners", default="all", help="all (tt, ss, ff at -40, 25, 85 degrees), typical, or some: tt_25,ss_-40")
-    add("--gate", type=float, default=5.0, help="V of an active reset line, 1..5.5; 3.3 is a soft reset")
-    add("--sink", type=float, default=5e-6, help="A of a column's sink, 1e-7..1e-3")
+    add("--gate", type=number_of, default=5.0, help="V of an active reset line, 1..5.5; 3.3 is a soft reset")
+    add("--sink", type=number_of, default=5e-6, help="A of a column's sink, 1e-7..1e-3")
     add("--workers", type=worker_count, default=-1, help="processes; -1: all cores")
     add("--table", type=Path, help="also write what `make sim AFE=circuit` takes: models/parameters/pixel.json")
     add("--out", type=Path, help="folder for the results (default: build/pixel-circuit/<pdk>)")

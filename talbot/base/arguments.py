@@ -34,7 +34,7 @@ class Number:
     def value(self, options: Namespace) -> Any:
         """Return the number in ``options``, None for ``word`` or nothing. Raises ParameterError."""
         text = getattr(options, self.field)
-        if text is None or text == self.word:
+        if text is None or text == (self.word or None):
             return None
         if self.kind is int:
             return integer(self.field, text, int(self.low), int(self.high), also=self.word and f" or {self.word}")
@@ -53,19 +53,39 @@ def span(field: str, text: str, low: int, high: int) -> tuple[int, int]:
 
 def real(field: str, text: str, low: float, high: float) -> float:
     """Return a number in [low, high]."""
-    try:
-        value = float(text)
-    except ValueError:
-        value = float("nan")
-    if not low <= value <= high:
+    value = number_of(text)
+    if not isinstance(value, float) or not low <= value <= high:
         raise ParameterError(f"{field} = {text!r}: must be a number in [{low}, {high}]")
     return value
+
+
+def number_of(text: str) -> float | str:
+    """Return a number; ``text`` itself where it is none, for a check that names it."""
+    try:
+        return float(_plain(text))
+    except ValueError:
+        return text
+
+
+def whole_of(text: str) -> int | str:
+    """Return an integer; ``text`` itself where it is none, for a check that names it."""
+    try:
+        return int(_plain(text))
+    except ValueError:
+        return text
+
+
+def _plain(text: str) -> str:
+    """Return ``text``. Raises ValueError for what Python alone reads as a number: 1_000, digits of other scripts."""
+    if "_" in text or not text.isascii():
+        raise ValueError(text)
+    return text
 
 
 def integer(field: str, text: str, low: int, high: int, base: int = 10, also: str = "") -> int:
     """Return an integer in low..high; also: what else the field may be, for the error."""
     try:
-        value = int(text, base)
+        value = int(_plain(text), base)
     except ValueError:
         value = None
     if value is None or not low <= value <= high:

@@ -6,11 +6,13 @@ from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
 
+from talbot.base.arguments import number_of, whole_of
 from talbot.models.parameters import STANDARD, ParameterError, SensorParameters, TileParameters, read_sensor
 from talbot.models.parameters.sensor_file import keys, values
 
 HELP = "sensor file; talbot sensor writes one to start from"
 SHOWN = 60  # characters of a value in an error
+READ = {int: whole_of, float: number_of, str: str}  # texts of options
 
 
 @dataclass(frozen=True)
@@ -64,7 +66,7 @@ def add_sensor(parser: ArgumentParser, replaced: Mapping[str, str] | None = None
             parser.add_argument(f"--{option}", help=f"{meaning}; with commas (default: the sensor file's)")
         else:
             note = f"{meaning} (default: the sensor file's, {default})"
-            parser.add_argument(f"--{option}", type=type(default), help=note)
+            parser.add_argument(f"--{option}", type=READ[type(default)], help=note)
 
 
 def sensor_asked(options: Namespace, varied: Varied, replaced: Mapping[str, str] | None = None) -> SensorParameters:

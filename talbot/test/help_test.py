@@ -32,6 +32,13 @@ def test_a_default_is_named_once_in_words_and_from_here(name, monkeypatch):
     assert str(ROOT) not in text and "(default: (" not in text and "(default: [" not in text
 
 
+@pytest.mark.parametrize("name", COMMANDS)
+def test_a_number_is_refused_with_its_range(name):
+    """Argparse's own types name none: `base.arguments` reads the text, and a check of the value names it."""
+    (commands,) = (action for action in parser(name)._actions if isinstance(action, _SubParsersAction))
+    assert not [action.dest for action in commands.choices[name]._actions if action.type in (int, float)]
+
+
 def test_what_a_default_looks_like(monkeypatch):
     assert "(default: build/verify)" in help_of("verify", monkeypatch)
     assert "(default: motorcycle)" in help_of("sim", monkeypatch)

@@ -8,9 +8,11 @@ from argparse import ArgumentParser, Namespace
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
+from talbot.base.arguments import whole_of
 from talbot.base.jobs import Job, worker_count
 from talbot.base.jobs import run as run_jobs
 from talbot.base.records import from_json
+from talbot.models.parameters import check_int
 from talbot.rtl.harness.icarus import MISSING, installed
 from talbot.verif.bench.cross import ARRAYS, Crossed, crossed, every
 from talbot.verif.bench.simulation import DESIGNS, SIMULATORS, BenchError, BenchTest, simulate
@@ -70,13 +72,14 @@ def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot cocotb`."""
     parser.add_argument("--block", action="append", choices=DESIGNS, help="may be repeated; default: all")
     parser.add_argument("--simulator", action="append", choices=SIMULATORS, help="default: both")
-    parser.add_argument("--seed", type=int, default=SEED, help="of the tests' random numbers")
+    parser.add_argument("--seed", type=whole_of, default=SEED, help="of the tests' random numbers")
     parser.add_argument("--out", type=Path, default=OUT, help="folder of bench.json and of the kept results")
     parser.add_argument("--workers", type=worker_count, default=-1, help="processes, -1 for all cores")
 
 
 def run(options: Namespace) -> int:
     """Return 0, 1 when a test failed."""
+    check_int("seed", options.seed, 0, 2**32 - 1)
     simulators = options.simulator or list(SIMULATORS)
     if "icarus" in simulators and not installed():
         raise BenchError(MISSING)

@@ -13,6 +13,7 @@ from pathlib import Path
 
 from joblib.externals.loky.process_executor import TerminatedWorkerError
 
+from talbot.base.arguments import whole_of
 from talbot.base.command import failures
 from talbot.base.jobs import Job
 from talbot.base.jobs import run as run_jobs
@@ -95,16 +96,16 @@ def running(folder: Path) -> list[str]:
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot fuzz`."""
-    parser.add_argument("--inputs", type=int, default=1_000_000, help="for the decoder")
-    parser.add_argument("--seed", type=int, default=SEED, help="default: %(default)s")
+    parser.add_argument("--inputs", type=whole_of, default=1_000_000, help="for the decoder")
+    parser.add_argument("--seed", type=whole_of, default=SEED, help="default: %(default)s")
     parser.add_argument(
-        "--changes", type=int, default=CHANGES, help="wrong values at each byte of the real frames, 0..255"
+        "--changes", type=whole_of, default=CHANGES, help="wrong values at each byte of the real frames, 0..255"
     )
-    parser.add_argument("--cycles", type=int, default=CYCLES, help="of sessions at the chip's pins")
+    parser.add_argument("--cycles", type=whole_of, default=CYCLES, help="of sessions at the chip's pins")
     parser.add_argument(
         "--session", type=Path, metavar="FILE", help="run one session, a file of build/verify/fuzz/chip"
     )
-    parser.add_argument("--only", nargs=2, type=int, metavar=("BATCH", "INPUT"), help="one input by itself")
+    parser.add_argument("--only", nargs=2, type=whole_of, metavar=("BATCH", "INPUT"), help="one input by itself")
     parser.add_argument("--out", type=Path, default=OUT, help="folder of fuzz.json")
 
 
@@ -118,6 +119,8 @@ def run(options: Namespace) -> int:
     if options.session:
         return failures(again(options.session))
     if options.only:
+        for number in options.only:
+            check_int("only", number, 0, 10**9)
         return show(options.seed, *options.only)
     for mark in folder.glob("at.*"):
         mark.unlink(missing_ok=True)

@@ -12,12 +12,13 @@ from dataclasses import asdict, dataclass
 from itertools import islice
 from pathlib import Path
 
+from talbot.base.arguments import number_of, whole_of
 from talbot.base.jobs import Job
 from talbot.base.jobs import run as run_jobs
 from talbot.base.paths import PACKAGE
 from talbot.base.records import from_json
 from talbot.base.sources import code
-from talbot.models.parameters import ParameterError
+from talbot.models.parameters import check_int, check_real
 from talbot.rtl.replay import load
 from talbot.rtl.tops import TOPS
 from talbot.verif.coverage.testplan import folder_of
@@ -158,15 +159,15 @@ def summary(mutants: Sequence[Mutant], judged: Sequence[Judgement]) -> BlockResu
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot mutate`."""
     parser.add_argument("--only", nargs="+", choices=TOPS, metavar="BLOCK", help=f"of {', '.join(TOPS)}")
-    parser.add_argument("--seed", type=int, default=SEED, help="of the sample")
-    parser.add_argument("--factor", type=float, default=1.0, help="of the sample's size")
+    parser.add_argument("--seed", type=whole_of, default=SEED, help="of the sample")
+    parser.add_argument("--factor", type=number_of, default=1.0, help="of the sample's size")
     parser.add_argument("--out", type=Path, default=OUT, help="folder of mutation.json")
 
 
 def run(options: Namespace) -> int:
     """Return 0, 1 with survivors."""
-    if not 0 < options.factor <= 100:
-        raise ParameterError(f"factor = {options.factor}: must be in 0..100")
+    check_real("factor", options.factor, 1e-3, 100)
+    check_int("seed", options.seed, 0, 2**32 - 1)
     summaries = try_mutants(options.only or TOPS, options.out / "mutation", options.factor, options.seed)
     write_step("mutation", summaries, options.out)
     whole = Counter()

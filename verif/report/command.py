@@ -12,9 +12,11 @@ from dataclasses import asdict
 from pathlib import Path
 from time import perf_counter
 
+from talbot.base.arguments import whole_of
 from talbot.base.check import work_begins
 from talbot.base.command import failures
 from talbot.base.files import marked, staged
+from talbot.models.parameters import check_int
 from talbot.verif.report import document, limits
 from talbot.verif.report.merge import summarize
 from talbot.verif.report.page import render
@@ -49,7 +51,7 @@ def add_arguments(parser: ArgumentParser) -> None:
         help=f"run these alone, and read the kept results of the others; of {', '.join(BY_NAME)}",
     )
     parser.add_argument("--read", action="store_true", help="run nothing: report on the kept results")
-    parser.add_argument("--seed", type=int, default=SEED, help="of tests, benches and fuzz")
+    parser.add_argument("--seed", type=whole_of, default=SEED, help="of tests, benches and fuzz")
     parser.add_argument("--out", type=Path, default=OUT, help="folder of the results and the report")
     parser.add_argument("--document", type=Path, help="Markdown file whose tables of steps and sizes to write")
 
@@ -57,6 +59,7 @@ def add_arguments(parser: ArgumentParser) -> None:
 def run(options: Namespace) -> int:
     """Return 0, 1 where a point is open."""
     start, out = perf_counter(), options.out
+    check_int("seed", options.seed, 0, 2**32 - 1)
     held = limits.read()
     if options.document:
         for name in ("steps", "sizes"):

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from talbot.base.arguments import whole_of
 from talbot.base.command import failures
 from talbot.base.jobs import Job
 from talbot.base.jobs import run as run_jobs
@@ -83,8 +84,8 @@ def measure(sample: int, seed: int) -> Measured:
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot stuck-at`."""
-    parser.add_argument("--sample", type=int, default=500, help="faults, of all; 0: all")
-    parser.add_argument("--seed", type=int, default=SEED, help="of the sample and of what is random at the pins")
+    parser.add_argument("--sample", type=whole_of, default=500, help="faults, of all; 0: all")
+    parser.add_argument("--seed", type=whole_of, default=SEED, help="of the sample and of what is random at the pins")
     parser.add_argument("--out", type=Path, default=OUT, help="folder of stuck_at.json")
 
 

@@ -9,6 +9,7 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
+from talbot.base.arguments import whole_of
 from talbot.base.command import failures
 from talbot.base.jobs import Job, kept
 from talbot.base.jobs import run as run_jobs
@@ -16,7 +17,7 @@ from talbot.base.paths import ROOT
 from talbot.base.records import from_json
 from talbot.base.sources import code
 from talbot.base.tools import located
-from talbot.models.parameters import ParameterError
+from talbot.models.parameters import ParameterError, check_int
 from talbot.verif.needs import NEEDS, needs_in
 from talbot.verif.results import OUT, SEED, BlockResults, Fault, Tests, write_step
 from talbot.verif.suite.blocks import blocks_of, level_of
@@ -88,13 +89,14 @@ def last_seconds(store: Path) -> dict[str, float]:
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot suite`."""
     parser.add_argument("--folder", nargs="+", metavar="NAME", help="test folders; default: all")
-    parser.add_argument("--seed", type=int, default=SEED, help="of Hypothesis")
+    parser.add_argument("--seed", type=whole_of, default=SEED, help="of Hypothesis")
     parser.add_argument("--out", type=Path, default=OUT, help="folder of suite.json")
 
 
 def run(options: Namespace) -> int:
     """Return 0, 1 when a test failed."""
     store = options.out / "suite"
+    check_int("seed", options.seed, 0, 2**32 - 1)
     every = folders()
     for folder in options.folder or ():
         if folder not in every:
