@@ -223,7 +223,9 @@ def request_of(a: Namespace, sensor: SensorParameters | None = None, sequence: b
         numbers["rows"], numbers["cols"] = field.own_size()
     rows = numbers.get("rows", sensor.array.rows)
     known = read_calibration(typed["calibration"]) if typed.get("calibration") else None
-    waves = (0, min(3, rows - 1)) if a.waves == "1" else span("waves", a.waves, 0, rows - 1) if a.waves else None
+    waves = (
+        None if a.waves is None else (0, min(3, rows - 1)) if a.waves == "1" else span("waves", a.waves, 0, rows - 1)
+    )
     names = ("scene", "depth", "mode", "phase", "out", "waves_format", "converter", "light", "reflectance")
     plain = {name: typed[name] for name in names if name in typed}
     if field is not None:

@@ -93,7 +93,8 @@ def _one(options: Namespace, pitch_um: float) -> "tuple[PixelGeometry, float] | 
     values |= {"pitch_um": pitch_um}
     values |= {name: real(name, text, *NUMBERS[name][1:]) if name in NUMBERS else text for name, text in given.items()}
     geometry = PixelGeometry(options.pdk, kind, heights=options.heights, **values)
-    return geometry, real("wavelength_um", options.wavelength_um or str(WAVELENGTH_UM), 0.35, 1)
+    text = options.wavelength_um
+    return geometry, WAVELENGTH_UM if text is None else real("wavelength_um", text, 0.35, 1)
 
 
 def _print_one(s: dict[str, Any], folder: Path) -> None:

@@ -177,6 +177,8 @@ FILE = "<file>"  # for this one, whose path may have a space
         ("sim --rows= --waves 1", "rows = '': must be an integer in 1..1024"),
         ("cameras --size=", "size = '': must be an integer in 60..360"),
         ("calibrate --rows=", "rows = '': must be an integer in 1..1024"),
+        ("sim --waves=", "waves = '': must be an integer in 0..383"),
+        ("pixel --wavelength-um=", "wavelength_um = '': must be a number in [0.35, 1]"),
         ("verilog --rows nan", "rows = 'nan': must be an integer in 1..1024"),
         ("mutate --seed x", "seed = 'x': must be an integer in 0..4294967295"),
         ("mutate --factor 1e999", "factor = inf: must be a number in [0.001, 100]"),
