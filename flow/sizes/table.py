@@ -26,11 +26,11 @@ def markdown(sizes: Sequence[Size]) -> str:
 def blocks_table(sizes: Sequence[Size]) -> str:
     """Return the table of docs/results/blocks.md: function and size of each block."""
     by_top = {s.top: s for s in sizes}
-    lines = ["| block | what it does | cells | flip-flops | gates |", "|---|---|---:|---:|---:|"]
+    lines = ["| block | what it does | flip-flops | gates |", "|---|---|---:|---:|"]
     for top, about in BLOCKS.items():
         s, folder = by_top[top], FOLDERS.get(top) or re.sub("(?!^)(?=[A-Z])", "_", top).lower()
         cells = [f"[{top}](../../rtl/{folder}/README.md)", about]
-        cells += [f"{s.cells:,}", f"{s.flip_flops:,}", f"{s.gates:,.0f}"]
+        cells += [f"{s.flip_flops:,}", f"{s.gates:,.0f}"]
         lines.append(f"| {' | '.join(cells)} |")
     lines += [
         "",
