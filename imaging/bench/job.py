@@ -136,7 +136,7 @@ def expected(sensor: SensorParameters, lux: float, holes: int) -> str:
             volts = gain * _fallen(current * time)
             rows.append(
                 (
-                    lamp.name,
+                    "" if name != "plain" else lamp.name,
                     name,
                     f"{1e12 * current.min():.3g}..{1e12 * current.max():.3g}",
                     _time(time),

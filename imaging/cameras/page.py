@@ -21,8 +21,8 @@ TEXTS = {
     "lenslets": "lenslets",
     "mask": "coded mask",
     "random": "random projections",
-    PLAIN: "plain, one learned disparity",
-    COPIED: "plain, the image in every view",
+    PLAIN: "plain, learned disparity",
+    COPIED: "plain, copied",
 }
 SERIES = {("asp", "regular"): "ASP", ("asp", "random"): "ASP, random tile", ("mask", "regular"): "mask"}
 SERIES |= {("mask", "random"): "mask, random tile", ("random", "regular"): "random projections"}

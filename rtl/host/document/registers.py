@@ -11,8 +11,8 @@ from talbot.models.parameters.registers import Field, RegisterMap
 NOTE = (
     "Generated from models/parameters/registers/asp_chip.rdl by talbot document. Byte addresses; a field of more than "
     "a byte is little-endian. Access: ro read only, rw read and write (the configuration), wo write only (reads 0), "
-    "w1c sticky, cleared by writing 1; then the value after reset, if not 0. A register without a name has that of its "
-    "field. Addresses and bits that are not listed read 0 and ignore writes."
+    "w1c sticky, cleared by writing 1; then the reset value, if not 0. A register without a name has its field's. "
+    "Other addresses and bits read 0 and ignore writes."
 )
 COLUMNS = "address[bits] register", "field", "access", "meaning"
 

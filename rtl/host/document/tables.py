@@ -79,13 +79,13 @@ def pixel_types(sensor: SensorParameters) -> str:
 
 
 def phase_examples(sensor: SensorParameters) -> str:
-    """Return the table of taps, their differences, and the phase and amplitude that the chip sends."""
+    """Return the table of taps, and of the phase and amplitude that the chip sends."""
     if not sensor.chip.has_phase_path:
         return "This chip has no phase path: `phase` has no effect."
     taps = [(100, 100, 100, 200), (200, 100, 0, 10), (90, 91, 90, 89)]
     sent = zip(*phase_samples(np.array(taps), sensor.chip, noise_floor=8))
-    rows = ((*four, four[0] - four[2], four[3] - four[1], *pair) for four, pair in zip(taps, sent))
-    return markdown_table(["i0", "i90", "i180", "i270", "x", "y", "phase sent", "amplitude sent"], rows)
+    rows = ((*four, *pair) for four, pair in zip(taps, sent))
+    return markdown_table(["i0", "i90", "i180", "i270", "phase", "amplitude"], rows)
 
 
 def pattern_examples(sensor: SensorParameters) -> str:
