@@ -94,7 +94,7 @@ def _corners(folder: Path) -> dict[str, dict[str, Any]]:
     """Summaries of the corners of earlier runs whose library is still in the folder."""
     try:
         known = json.loads((folder / "summary.json").read_text(encoding="utf-8")).get("corners", {})
-    except (OSError, ValueError):
+    except (OSError, ValueError, AttributeError):
         return {}
     return {name: summary for name, summary in known.items() if (folder / f"{name}.lib").exists()}
 

@@ -1,10 +1,12 @@
 """Numba's compiler: imported when the first of its functions is called, with a cache that heals.
 
-A program whose results are kept (`base.kept`) then starts without Numba, a third of its time. Half a file of Numba's
-cache, which no program can read, counts as none: files of a full disk or of a machine that lost power are such, and
-Numba itself ends with what unpickling raises.
+A program whose results are kept (`base.kept`) then starts without Numba, a third of its time. A damaged file of Numba's
+cache counts as none: half a file of a full disk or of a machine that lost power, on which Numba itself ends with what
+unpickling raises, and another byte in it, which would be run as a program.
 """
 
+import hashlib
+import pickle
 from collections.abc import Callable
 from functools import cache, cached_property, update_wrapper
 from typing import Any
@@ -72,6 +74,18 @@ def _numba() -> Any:
             except Exception:  # unpickling raises nearly anything
                 self.flush()
                 return None
+
+        def _dump(self, obj: Any) -> bytes:
+            data = super()._dump(obj)
+            return data + hashlib.sha256(data).digest()
+
+        def _load_data(self, name: str) -> object:
+            with open(self._data_path(name), "rb") as file:
+                data = file.read()
+            end = len(data) - hashlib.sha256().digest_size
+            if hashlib.sha256(data[:end]).digest() != data[end:]:
+                raise ValueError(name)
+            return pickle.loads(data[:end])
 
     caching.IndexDataCacheFile = HealingFile
     return numba

@@ -26,6 +26,8 @@ from talbot.models.parameters import ParameterError
 
 Distributions = Mapping[str, optuna.distributions.BaseDistribution]
 RECORD = "record"
+# No database, one of another version of Optuna, or a value in it that is damaged
+DAMAGED = SQLAlchemyError, CommandError, RuntimeError, OptunaError, ValueError, LookupError, TypeError, AssertionError
 
 
 class Store:
@@ -42,13 +44,11 @@ class Store:
         try:
             storage = self._storage = _storage(path)
             self._studies = {name: self._study(name) for name in ("small", "full", "thesis")}
-        except (SQLAlchemyError, CommandError, RuntimeError) as error:  # no database, or of another version of Optuna
+        except DAMAGED as error:
             if storage:
                 _close(storage)
             _raise_full(error, path)
-            raise ParameterError(
-                f"store = {str(path)!r}: must be a file of talbot explore ({type(error).__name__})"
-            ) from None
+            raise _no_store(path, error) from None
 
     def _study(self, name: str) -> optuna.Study:
         return optuna.create_study(
@@ -56,12 +56,16 @@ class Store:
         )
 
     def records(self) -> dict[tuple[str, str], dict[str, Any]]:
-        """Records by fidelity and the JSON of the values."""
+        """Records by fidelity and the JSON of the values. Raises ParameterError for a file that is damaged."""
         out = {}
-        for name, study in self._studies.items():
-            for trial in study.get_trials(deepcopy=False):
-                if RECORD in trial.user_attrs:
-                    out[name, key(trial.params)] = trial.user_attrs[RECORD]
+        try:
+            for name, study in self._studies.items():
+                for trial in study.get_trials(deepcopy=False):
+                    if RECORD in trial.user_attrs:
+                        out[name, key(trial.params)] = trial.user_attrs[RECORD]
+        except DAMAGED as error:
+            self.close()
+            raise _no_store(self.path, error) from None
         return out
 
     def add(
@@ -105,6 +109,10 @@ def _storage(path: Path) -> RDBStorage:
 def _close(storage: RDBStorage) -> None:
     storage.remove_session()
     storage.engine.dispose()
+
+
+def _no_store(path: Path, error: BaseException) -> ParameterError:
+    return ParameterError(f"store = {str(path)!r}: must be a file of talbot explore ({type(error).__name__})")
 
 
 def _raise_full(error: BaseException | None, path: Path) -> None:

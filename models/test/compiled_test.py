@@ -36,7 +36,8 @@ def stats(tmp_path):
 def test_what_is_damaged_is_compiled_again(stats, tmp_path, suffix):
     assert [stats(), stats()] == [(0, 1), (1, 0)]
     (file,) = (tmp_path / "__pycache__").glob(f"*.{suffix}")
-    for damaged in (b"", file.read_bytes()[:300], bytes(range(256))):
+    data = file.read_bytes()
+    for damaged in (b"", data[:300], bytes(range(256)), data[:600] + b"x" + data[601:]):
         file.write_bytes(damaged)
         assert [stats(), stats()] == [(0, 1), (1, 0)]
 

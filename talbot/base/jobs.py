@@ -80,7 +80,10 @@ def run(jobs: Iterable[Job], store: Path | str, title: str, workers: int = -1) -
             parallel = joblib.Parallel(return_as="generator_unordered", batch_size=1)  # pyright: ignore[reportArgumentType]
             for _ in each(parallel(calls), title, str, len(todo)):
                 pass
-    return [(found or kept(file))[0] for file, found in zip(files, before, strict=True)]
+    done = [found or kept(file) for file, found in zip(files, before, strict=True)]
+    if not all(done):
+        raise ToolError(f"store = {store}: results of this run are gone: another process has removed them")
+    return [found[0] for found in done]
 
 
 @contextlib.contextmanager
@@ -92,10 +95,10 @@ def restarts() -> Iterator[None]:
 
 
 def kept(file: Path) -> list[Any]:
-    """Return the one value of a JSON file; [] where there is no file, or not the whole of one."""
+    """Return the one value of a JSON file; [] where there is none that can be read, or not the whole of one."""
     try:
         return [json.loads(file.read_text(encoding="utf-8"))]
-    except (FileNotFoundError, ValueError):
+    except (OSError, ValueError):
         return []
 
 

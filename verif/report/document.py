@@ -31,7 +31,10 @@ class Run:
 def record(done: Sequence[Outcome], out: Path, load: float) -> dict[str, Run]:
     """Add the steps that ran to ``out``/runs.json; returns all that are recorded there."""
     path = out / FILE
-    runs = from_json(dict[str, Run], json.loads(path.read_text(encoding="utf-8"))) if path.exists() else {}
+    try:
+        runs = from_json(dict[str, Run], json.loads(path.read_text(encoding="utf-8")))
+    except (OSError, ValueError, AttributeError, KeyError, TypeError):  # there is none, or it is damaged
+        runs = {}
     now = f"{datetime.now(UTC):%Y-%m-%d %H:%M}"
     for outcome in done:
         if outcome.seconds:

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -59,7 +60,10 @@ def figures(summary: dict[str, Any]) -> dict[str, Any]:
 
 def history(path: Path, summary: dict[str, Any]) -> list[Run]:
     """Runs in the file ``path`` and this one, the newest last; a run with the figures of the one before is left out."""
-    runs = list(map(Run.read, path.read_text(encoding="utf-8").splitlines())) if path.exists() else []
+    runs = []
+    for line in path.read_text(encoding="utf-8", errors="replace").splitlines() if path.exists() else ():
+        with suppress(ValueError, LookupError, TypeError, AttributeError):  # a line that is damaged is left out
+            runs.append(Run.read(line))
     found = figures(summary)
     if not runs or runs[-1].figures != found:
         when = datetime.now(UTC).strftime("%Y-%m-%d %H:%M:%S")

@@ -14,6 +14,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import optuna
 import pytest
 from joblib.externals.loky import get_reusable_executor
 
@@ -265,6 +266,24 @@ def test_what_dies_once_is_tried_again(tmp_path, trouble, whole):
     findings, _ = whole
     (trouble / str(findings.rows[1].values["threshold"])).write_text("once die")
     assert facts(search(plan(), tmp_path / "s.sqlite")) == facts(findings)
+
+
+def test_a_store_that_is_damaged_is_named(tmp_path):
+    path = tmp_path / "s.sqlite"
+    store = Store(path, "a", ["minimize"])
+    for k in range(3):
+        spaces = {"k": optuna.distributions.IntDistribution(0, 9)}
+        store.add("small", {"k": k}, spaces, [1.0], {"figures": {"error": 1.0}})
+    store.close()
+    data, record = path.read_bytes(), path.read_bytes().rindex(b'"figures"')
+    for damaged in (
+        data[: len(data) // 2],
+        data[:4096] + bytes(4096) + data[8192:],
+        data[:record] + data[record + 1 :],
+    ):
+        path.write_bytes(damaged)
+        with pytest.raises(ParameterError, match=r"^store = '.*s.sqlite': must be a file of talbot explore \(\w+\)$"):
+            Store(path, "a", ["minimize"]).records()
 
 
 def test_a_full_disk_is_told_and_leaves_the_store_whole(tmp_path, monkeypatch):

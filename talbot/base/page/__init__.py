@@ -5,9 +5,9 @@ A page that is given a ``card`` is listed by `base.page.index`.
 
 import base64
 import contextlib
+import hashlib
 import io
 import json
-import os
 import re
 from collections import Counter
 from collections.abc import Iterable, Sequence
@@ -18,11 +18,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from jinja2 import Environment, FileSystemBytecodeCache, FileSystemLoader, StrictUndefined
+from jinja2 import BytecodeCache, Environment, FileSystemLoader, StrictUndefined
+from jinja2.bccache import Bucket
 from markupsafe import Markup, escape
 from PIL import Image as pillow
 from PIL.Image import Image
 
+from talbot.base.files import write
 from talbot.base.paths import BUILD
 
 FOLDER = Path(__file__).parent
@@ -176,12 +178,25 @@ def card(title: str, tiles: Sequence[Tile] = (), picture: Image | None = None) -
     return json.dumps({"title": title, "tiles": tiles[:CARD_TILES], "picture": src})
 
 
-def _templates() -> FileSystemBytecodeCache | None:
-    """Where compiled templates are kept; None where this user may not write there."""
-    folder = BUILD / "templates"
-    with contextlib.suppress(OSError):
-        folder.mkdir(parents=True, exist_ok=True)
-    return FileSystemBytecodeCache(str(folder)) if os.access(folder, os.W_OK) else None
+class _Templates(BytecodeCache):
+    """Compiled templates as files; one that is damaged counts as none, and where none can be written none is kept."""
+
+    def load_bytecode(self, bucket: Bucket) -> None:
+        """Load a template's code."""
+        with contextlib.suppress(OSError):
+            data = self._file(bucket).read_bytes()
+            end = len(data) - hashlib.sha256().digest_size
+            if hashlib.sha256(data[:end]).digest() == data[end:]:
+                bucket.bytecode_from_string(data[:end])
+
+    def dump_bytecode(self, bucket: Bucket) -> None:
+        """Keep a template's code."""
+        data = bucket.bytecode_to_string()
+        with contextlib.suppress(OSError):
+            write(self._file(bucket), data + hashlib.sha256(data).digest())
+
+    def _file(self, bucket: Bucket) -> Path:
+        return BUILD / "templates" / bucket.key
 
 
 def render(template: Path, title: str, *, picture: Image | None = None, listed: bool = True, **values: Any) -> str:
@@ -191,7 +206,7 @@ def render(template: Path, title: str, *, picture: Image | None = None, listed: 
     """
     loader = FileSystemLoader([template.parent, FOLDER])
     environment = Environment(
-        loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True, bytecode_cache=_templates()
+        loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True, bytecode_cache=_Templates()
     )
     environment.filters |= {"units": units, "contained": contained}
     environment.globals["parts"] = environment.get_template("parts.html").module

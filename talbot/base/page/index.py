@@ -1,5 +1,6 @@
 """The page over a folder of results: a card for each page in it that has one."""
 
+import contextlib
 import html
 import json
 import re
@@ -31,9 +32,11 @@ class Card(NamedTuple):
 
 def cards(folder: Path) -> list[Card]:
     """Those of the pages below ``folder``, the newest first."""
-    paths = [path for pattern in PATTERNS for path in folder.glob(pattern) if path.is_file()]
-    pages = {path: path.stat().st_mtime for path in paths}
-    return [found for path in sorted(pages, key=lambda path: -pages[path]) if (found := read(path, folder))]
+    pages = {}
+    for path in (path for pattern in PATTERNS for path in folder.glob(pattern) if path.is_file()):
+        with contextlib.suppress(OSError):  # another process has removed it, or it is another user's
+            pages[path] = path.stat().st_mtime, read(path, folder)
+    return [card for _, card in sorted(pages.values(), key=lambda page: -page[0]) if card]
 
 
 def told_apart(cards: Sequence[Card]) -> list[Card]:
@@ -61,13 +64,16 @@ def refresh(folder: Path) -> Path:
 
 
 def read(path: Path, folder: Path) -> Card | None:
-    """Return the card of a page below ``folder``, None where it has none."""
+    """Return the card of a page below ``folder``, None where it has none, or a damaged one. Raises OSError."""
     with path.open(encoding="utf-8", errors="replace") as file:
         found = CARD.search(file.read(HEAD))
     if not found:
         return None
-    values: dict[str, Any] = json.loads(html.unescape(found[1]))
+    try:
+        values: dict[str, Any] = json.loads(html.unescape(found[1]))
+        tiles, title, picture = [Tile(*tile) for tile in values["tiles"]], values["title"], values["picture"]
+    except (ValueError, LookupError, TypeError):
+        return None
     when = datetime.fromtimestamp(path.stat().st_mtime, UTC).strftime("%Y-%m-%d %H:%M UTC")
     href = path.relative_to(folder)
-    tiles = [Tile(*tile) for tile in values["tiles"]]
-    return Card(href.as_posix(), href.parent.as_posix(), when, values["title"], tiles, values["picture"])
+    return Card(href.as_posix(), href.parent.as_posix(), when, title, tiles, picture)

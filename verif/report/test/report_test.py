@@ -232,6 +232,7 @@ def test_the_page_has_the_steps_that_ran_and_every_size(tmp_path):
         Outcome(suite, 0.0, "", {"EdgeAdc": BlockResults(tests=Tests(5))}),
         Outcome(stuck, 4.0, "", {"AspChip": BlockResults(stuck_at=StuckAt(9000, 500, 333), open_points=["x"])}),
     ]
+    (tmp_path / document.FILE).write_text('{"steps": ')  # damaged: begun again
     runs = document.record(done, tmp_path, 1.25)
     assert set(runs) == {"formal", "stuck_at"} and runs["formal"].seconds == 12.3
     document.put(page, [replace(outcome, seconds=0.0) for outcome in done], document.record([], tmp_path, 0.0))

@@ -17,6 +17,8 @@ def test_runs(tmp_path):
     path = tmp_path / "history.jsonl"
     for area in (10.0, 10.0, 9.0):
         path.write_text("".join(run.line() for run in history(path, SUMMARY | {"area_um2": area})))
+        path.write_bytes(path.read_bytes() + b'{"when": "2026\xff\n[]\n\n')  # damaged: left out
+    path.write_text("".join(run.line() for run in history(path, SUMMARY | {"area_um2": 9.0})))
     runs = [json.loads(line) for line in path.read_text().splitlines()]
     assert [(run["area_um2"], run["wns_ns"], run["power_uw"], run["seconds"]) for run in runs] == [
         (10.0, -1.0, 7.0, 3),

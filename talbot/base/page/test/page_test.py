@@ -140,9 +140,27 @@ def test_the_index_beside_what_is_no_page(tmp_path):
     (tmp_path / "sim" / "a.html").mkdir(parents=True)
     (tmp_path / "sim" / "b.html").write_text(page()[:100])
     (tmp_path / "sim" / "c.html").write_text(page())
+    for name, card in (("d", "{&#34;ti"), ("e", "[]"), ("f", "{&#34;tiles&#34;: [1], &#34;title&#34;: 2}")):
+        (tmp_path / "sim" / f"{name}.html").write_text(f'<meta name="talbot" content="{card}">')
+    (tmp_path / "sim" / "g.html").symlink_to("nowhere")
     (tmp_path / "index.html").write_bytes(bytes(range(256)))
     index.refresh(tmp_path)
     assert re.findall('href="(.*?)"', (tmp_path / "index.html").read_text()) == ["sim/c.html"]
+
+
+def test_a_compiled_template_that_is_damaged_is_compiled_again(tmp_path, monkeypatch):
+    monkeypatch.setattr("talbot.base.page.BUILD", tmp_path)
+    whole, files = page(), list((tmp_path / "templates").iterdir())
+    assert files
+    for damage in (lambda data: b"", lambda data: data[:-9], lambda data: data[:60] + b"x" + data[61:]):
+        kept = [file.read_bytes() for file in files]
+        for file in files:
+            file.write_bytes(damage(file.read_bytes()))
+        assert page() == whole and [file.read_bytes() for file in files] == kept
+    for file in files:
+        file.unlink()
+        file.mkdir()
+    assert page() == whole
 
 
 def test_a_folder_without_a_page_gets_no_index(tmp_path):
