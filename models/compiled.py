@@ -68,12 +68,25 @@ def _numba() -> Any:
 
     class HealingFile(caching.IndexDataCacheFile):
         def load(self, key: object) -> object:
-            """Return the entry of ``key``; None where it is damaged, and the index is written again."""
+            """Return the entry of ``key``; None where it is damaged or another's, and the index is written again.
+
+            Two processes may give files for two signatures one name.
+            """
             try:
-                return super().load(key)
+                entry = super().load(key)
+                if entry is None:
+                    return None
+                of, data = entry
+                if of != key:
+                    raise KeyError(key)
+                return data
             except Exception:  # unpickling raises nearly anything
                 self.flush()
                 return None
+
+        def save(self, key: object, data: object) -> None:
+            """Save an entry with its key."""
+            super().save(key, (key, data))
 
         def _dump(self, obj: Any) -> bytes:
             data = super()._dump(obj)

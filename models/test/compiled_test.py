@@ -21,11 +21,11 @@ def stats(tmp_path):
     """What a fresh program that calls the function finds in the cache, and does not."""
     (tmp_path / "doubled.py").write_text(SOURCE)
 
-    def called():
+    def called(value=3):
         spec = importlib.util.spec_from_file_location("doubled", tmp_path / "doubled.py")
         module = importlib.util.module_from_spec(spec)
         spec.loader.exec_module(module)
-        assert module.double(3) == 6
+        assert module.double(value) == 2 * value
         stats = module.double.compiled.stats
         return sum(stats.cache_hits.values()), sum(stats.cache_misses.values())
 
@@ -40,6 +40,20 @@ def test_what_is_damaged_is_compiled_again(stats, tmp_path, suffix):
     for damaged in (b"", data[:300], bytes(range(256)), data[:600] + b"x" + data[601:]):
         file.write_bytes(damaged)
         assert [stats(), stats()] == [(0, 1), (1, 0)]
+
+
+def test_an_entry_of_another_signature_is_compiled_again(stats, tmp_path):
+    """As two first runs at once leave it: both names in the index, the code of one."""
+    assert stats() == (0, 1)
+    (index,) = (tmp_path / "__pycache__").glob("*.nbi")
+    (code,) = (tmp_path / "__pycache__").glob("*.nbc")
+    kept = index.read_bytes(), code.read_bytes()
+    index.unlink()
+    assert stats(2.5) == (0, 1)
+    other = index.read_bytes()
+    index.write_bytes(kept[0])
+    assert code.read_bytes() != kept[1] and other != kept[0]
+    assert [stats(), stats()] == [(0, 1), (1, 0)]
 
 
 @njit()
