@@ -21,7 +21,7 @@ from sqlalchemy.exc import SQLAlchemyError
 from sqlalchemy.pool import NullPool
 
 from talbot.base.check import work_begins
-from talbot.base.files import atomic
+from talbot.base.files import atomic, held
 from talbot.models.parameters import ParameterError
 
 Distributions = Mapping[str, optuna.distributions.BaseDistribution]
@@ -37,9 +37,11 @@ class Store:
         work_begins()
         optuna.logging.set_verbosity(optuna.logging.ERROR)
         self.path, self.digest, self.directions = path, digest, list(directions)
-        if not path.exists():
-            with atomic(path) as part:
-                _close(_storage(part))
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with held(path.parent):  # another search may begin here, too
+            if not path.exists():
+                with atomic(path) as part:
+                    _close(_storage(part))
         storage = None
         try:
             storage = self._storage = _storage(path)

@@ -2,6 +2,7 @@
 
 import contextlib
 import errno
+import fcntl
 import os
 import platform
 import secrets
@@ -89,12 +90,24 @@ def staged(out: Path | str, replaces: Iterable[str] = ()) -> Iterator[Path]:
             written = {path.name for path in new.iterdir()}
             _check_names(out, [name for name in written if not (new / name).is_dir()])
             old.mkdir()
-            with undisturbed():
+            with undisturbed(), held(out):
                 _exchange(out, new, old, sorted(written), sorted(replaces - written))
     finally:
         if is_new:
             with contextlib.suppress(OSError):
                 out.rmdir()
+
+
+@contextlib.contextmanager
+def held(folder: Path) -> Iterator[None]:
+    """Let other processes wait that hold ``folder``, too: of files that appear together, those of one process do."""
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        with contextlib.suppress(OSError):  # of a file system without locks
+            fcntl.flock(descriptor, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(descriptor)
 
 
 def _check_names(out: Path, names: Iterable[str]) -> None:

@@ -275,12 +275,9 @@ def test_a_store_that_is_damaged_is_named(tmp_path):
         spaces = {"k": optuna.distributions.IntDistribution(0, 9)}
         store.add("small", {"k": k}, spaces, [1.0], {"figures": {"error": 1.0}})
     store.close()
-    data, record = path.read_bytes(), path.read_bytes().rindex(b'"figures"')
-    for damaged in (
-        data[: len(data) // 2],
-        data[:4096] + bytes(4096) + data[8192:],
-        data[:record] + data[record + 1 :],
-    ):
+    data, page = path.read_bytes(), bytes(4096)
+    record = data.rindex(b'"figures"')
+    for damaged in (data[:99999], data[:4096] + page + data[8192:], data[:record] + data[record + 1 :]):
         path.write_bytes(damaged)
         with pytest.raises(ParameterError, match=r"^store = '.*s.sqlite': must be a file of talbot explore \(\w+\)$"):
             Store(path, "a", ["minimize"]).records()

@@ -1,5 +1,8 @@
 import errno
 import os
+from concurrent.futures import ThreadPoolExecutor, wait
+from pathlib import Path
+from threading import Event
 
 import pytest
 
@@ -88,6 +91,36 @@ def test_a_folder_that_cannot_be_made_is_refused_before_the_work(tmp_path):
     for path in ("/proc/out", __file__, f"{__file__}/out"):  # permissions let root write in /proc, which has no room
         with pytest.raises(ParameterError, match=f"out = '{path}': must be a folder"):
             check_folder("out", path)
+
+
+def test_two_runs_into_one_folder_leave_the_files_of_one(tmp_path):
+    """The second moves its files while the first does."""
+    out, entered, go = tmp_path / "out", Event(), Event()
+    move = os.rename
+
+    def slow(source, target):
+        move(source, target)
+        if Path(target) == out / "a" and not entered.is_set():
+            entered.set()
+            assert go.wait(20)
+
+    def run(name):
+        with staged(out, ["a", "b"]) as folder:
+            for file in "ab":
+                (folder / file).write_text(name)
+
+    run("before")
+    with pytest.MonkeyPatch.context() as patch, ThreadPoolExecutor(2) as pool:
+        patch.setattr(os, "rename", slow)
+        first = pool.submit(run, "first")
+        assert entered.wait(20)
+        second = pool.submit(run, "second")
+        assert not wait([second], 0.2).done
+        go.set()
+        first.result(20)
+        second.result(20)
+    assert [(out / file).read_text() for file in "ab"] == ["second", "second"]
+    assert sorted(path.name for path in out.iterdir()) == ["a", "b"]
 
 
 def test_a_pipe_or_device_is_written_to_not_replaced(tmp_path):
