@@ -59,7 +59,7 @@ def part_folder(folder: Path) -> Iterator[Path]:
     for left in folder.glob(f"{PART}*"):
         if not _alive(int(left.name.removeprefix(PART).partition("-")[0])):
             shutil.rmtree(left, ignore_errors=True)
-    part.mkdir(mode=0o700)
+    part.mkdir(mode=0o700, parents=True)  # where a run that failed has removed the folder meanwhile
     try:
         yield part
     except OSError as error:
