@@ -15,7 +15,12 @@ def main() -> int:
     """Run the command of this process's arguments; returns the exit status."""
     environment.open_standard_files()
     environment.start_again()
-    return supervised(lambda: failure.reported("talbot", _command))
+    try:
+        return supervised(lambda: failure.reported("talbot", _command))
+    except OSError as error:  # no folder takes a temporary file, no further process
+        why = error.strerror or error
+        print(f"talbot: error: file = {error.filename or 'temporary'}: {why}; free some space", file=sys.stderr)
+        return 2
 
 
 def _command() -> int:

@@ -261,3 +261,16 @@ def test_no_room_for_the_results(photograph, tmp_path):
     assert result.returncode == 2 and "File too large" in result.stderr
     assert result.stderr.splitlines()[-1].startswith("talbot: error: file = ")
     assert not (tmp_path / "out").exists()
+
+
+def test_no_folder_for_temporary_files():
+    """As where every disk is full: no file may have a byte."""
+
+    def no_files():
+        resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
+
+    words = [sys.executable, "-m", "talbot", "sim"]
+    result = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, preexec_fn=no_files)
+    assert result.returncode == 2 and not result.stdout
+    (line,) = result.stderr.splitlines()
+    assert line.startswith("talbot: error: file = temporary: No usable temporary directory found in ['/tmp', ")
