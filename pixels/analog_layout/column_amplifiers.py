@@ -16,8 +16,8 @@ from typing import ClassVar
 from talbot.base.gds import db
 from talbot.models.parameters import ArrayParameters, ChipParameters, ParameterError
 from talbot.pixels.analog_layout.cells import new_canvas
-from talbot.pixels.analog_layout.column import EXIT_Y, LINE_WIDTH
 from talbot.pixels.analog_layout.column_band import Band, draw_band
+from talbot.pixels.analog_layout.column_plan import EXIT_Y, LINE_WIDTH
 from talbot.pixels.analog_layout.columns import WAY_END, Columns, column_nets, draw_columns, draw_grounds, draw_way
 from talbot.pixels.analog_layout.device import snap
 from talbot.pixels.analog_layout.drawn_block import DrawnBlock

@@ -16,7 +16,8 @@ from talbot.models.parameters import ParameterError
 from talbot.pixels.analog_layout import flat
 from talbot.pixels.analog_layout.array import LOWER_ENCLOSURE, LOWER_TAB, VIA_INSET
 from talbot.pixels.analog_layout.cells import Cell
-from talbot.pixels.analog_layout.column import PATCH_INSET, draw_patch, length_um, steps
+from talbot.pixels.analog_layout.column import PATCH_INSET, draw_patch, steps
+from talbot.pixels.analog_layout.column_plan import length_um
 from talbot.pixels.analog_layout.comparator import BETWEEN_STRIPS
 from talbot.pixels.analog_layout.device import Device, snap
 from talbot.pixels.analog_layout.row_driver import legs

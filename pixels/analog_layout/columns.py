@@ -9,19 +9,16 @@ from dataclasses import dataclass
 from talbot.base.gds import db
 from talbot.models.parameters import ArrayParameters, ParameterError, check_int, check_real
 from talbot.pixels.analog_layout.cells import Cell
-from talbot.pixels.analog_layout.column import (
+from talbot.pixels.analog_layout.column import PLATE_VIA_PAD, as_cell, draw_column, draw_ground
+from talbot.pixels.analog_layout.column_parts import HEIGHT
+from talbot.pixels.analog_layout.column_plan import (
     EXIT_Y,
     GROUPED,
-    HEIGHT,
     LANES,
-    PLATE_VIA_PAD,
     SINGLE,
     ColumnPlan,
-    as_cell,
     column_plan,
     devices,
-    draw_column,
-    draw_ground,
     line_um,
     names,
 )

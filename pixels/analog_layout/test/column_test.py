@@ -8,18 +8,10 @@ import pytest
 from talbot.base.gds import db
 from talbot.models.parameters import ArrayParameters, ChipParameters, ParameterError
 from talbot.pixels.analog_layout import flat
-from talbot.pixels.analog_layout.column import (
-    CAPS,
-    GROUPED,
-    LINE_WIDTH,
-    PIECES,
-    column_cell,
-    column_plan,
-    devices,
-    length_um,
-    names,
-)
+from talbot.pixels.analog_layout.column import column_cell
 from talbot.pixels.analog_layout.column_amplifiers import EXTERNAL_PINS, NAME, SOURCE, band_nets, draw_column_amplifiers
+from talbot.pixels.analog_layout.column_parts import CAPS, PIECES
+from talbot.pixels.analog_layout.column_plan import GROUPED, LINE_WIDTH, column_plan, devices, length_um, names
 from talbot.pixels.analog_layout.columns import column_nets, draw_columns
 from talbot.pixels.blocks import AnalogSizes, blocks
 from talbot.pixels.circuits.column import PINS, column

@@ -4,8 +4,8 @@ import pytest
 
 from talbot.base.gds import db, write_gds
 from talbot.models.parameters import ArrayParameters, ChipParameters
-from talbot.pixels.analog_layout.column import HEIGHT
 from talbot.pixels.analog_layout.column_amplifiers import draw_column_amplifiers
+from talbot.pixels.analog_layout.column_parts import HEIGHT
 from talbot.pixels.circuits.column_sizes import ColumnSpec, size
 from talbot.pixels.post_layout.checks import differences, drc, lvs
 from talbot.pixels.post_layout.test.planted import changed

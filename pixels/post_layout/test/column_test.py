@@ -6,7 +6,7 @@ import pytest
 
 from talbot.base.gds import db, write_gds
 from talbot.models.parameters import ChipParameters
-from talbot.pixels.analog_layout import column as drawn
+from talbot.pixels.analog_layout import column_plan
 from talbot.pixels.analog_layout.column import column_cell
 from talbot.pixels.analog_layout.column_band import draw_band
 from talbot.pixels.circuits.column import TAPS
@@ -91,9 +91,9 @@ def test_no_net_of_a_column_has_an_antenna(monkeypatch):
         return [level for level, bad in found.items() if bad.count()]
 
     assert antennas(column_cell(MASKS, SIZES)) == []
-    piece = drawn.PIECES[0]
+    piece = column_plan.PIECES[0]
     longer = replace(piece, over=piece.over | {"clear": "cn"})
-    monkeypatch.setattr(drawn, "PIECES", (longer, *drawn.PIECES[1:]))
+    monkeypatch.setattr(column_plan, "PIECES", (longer, *column_plan.PIECES[1:]))
     assert antennas(column_cell(MASKS, SIZES)) == [3]
 
 
