@@ -11,8 +11,10 @@ In a strip with an axis every device has its mirror image, and so have drops and
 change places on the axis. What is not symmetric is that crossing alone.
 """
 
+from bisect import bisect_left, bisect_right, insort
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from math import inf
 from typing import NamedTuple
 
 from talbot.models.parameters import ParameterError
@@ -43,6 +45,7 @@ SPLIT = 0.2  # from the axis to the halves of tracks
 CROSS = 0.9  # from the axis to their crossing
 FIRST, SECOND, THIRD, FOURTH = 1, 2, 3, 4
 TRIES = 60
+Place = tuple[float, float, float]  # x, low, high of a drop
 
 
 @dataclass(frozen=True)
@@ -262,7 +265,7 @@ def _assigned(
     strip: Strip, groups: Sequence[Sequence[tuple[Strap, Placed]]]
 ) -> tuple[list[tuple[Strap, float, float, float]], int | None]:
     """Drops (strap, x, low, high) of groups in this order; the first group without room, or None."""
-    axis, kept = strip.plan.axis, list[tuple[Strap, float, float, float]]()
+    axis, kept, taken = strip.plan.axis, list[tuple[Strap, float, float, float]](), list[Place]()
     reaches = [[_reach(strip, strap) for strap, _ in group] for group in groups]
     for index, (group, ends) in enumerate(zip(groups, reaches, strict=True)):
         central = axis is not None and len(group) == 1 and abs(group[0][0].left + group[0][0].right - 2 * axis) < 1e-6
@@ -277,13 +280,11 @@ def _assigned(
                 )  # a strap across the axis has two drops, or one on it
             elif len(group) == 2 and axis is not None:
                 pairs.append((group[1][0], 2 * axis - x, *ends[1]))
-            trial = list(kept)
-            for pair in pairs:
-                if not _free(*pair[1:], trial):
-                    break
-                trial.append(pair)
-            else:
-                kept = trial
+            places = [pair[1:] for pair in pairs]
+            if all(_free(place, taken) for place in places) and _free(places[-1], places[:-1]):
+                kept += pairs
+                for place in places:
+                    insort(taken, place)
                 break
         else:
             return kept, index
@@ -298,9 +299,10 @@ def piece(tracks: Iterable[Strap], net: str, x: float) -> Strap | None:
 
 def _reach(strip: Strip, strap: Strap) -> tuple[float, float]:
     """Ends of a drop: the strap and its track, or its rail."""
-    track = piece(strip.tracks, strap.net, (strap.left + strap.right) / 2)
-    rail = strip.y if strap.net == strip.plan.rails[0] else strip.y + strip.plan.height_um
-    end = track.y if track else rail
+    if track := piece(strip.tracks, strap.net, (strap.left + strap.right) / 2):
+        end = track.y
+    else:
+        end = strip.y if strap.net == strip.plan.rails[0] else strip.y + strip.plan.height_um
     return min(strap.y, end), max(strap.y, end)
 
 
@@ -320,10 +322,13 @@ def _cross(canvas: Canvas, strip: Strip, pair: tuple[str, str], axis: float) -> 
     canvas.wire(FOURTH, axis + out - half, low.y - half, axis + out + half, high.y + half)
 
 
-def _free(x: float, low: float, high: float, others: Sequence[tuple[Strap, float, float, float]]) -> bool:
+def _free(place: Place, others: Sequence[Place]) -> bool:
+    """Return whether a drop is clear of ``others``, which are in ascending order."""
+    x, low, high = place
+    near = others[bisect_left(others, (x - DROP_PITCH, -inf, -inf)) : bisect_right(others, (x + DROP_PITCH, inf, inf))]
     return all(
         abs(x - at) >= DROP_PITCH - 1e-9 or high + DROP_ENDS <= bottom or top + DROP_ENDS <= low
-        for _, at, bottom, top in others
+        for at, bottom, top in near
     )
 
 
