@@ -126,7 +126,7 @@ def write_light_field(light_field: LightField, path: str | Path, white: float = 
         if picture.mode == "I;16" and path.suffix.lower() == ".webp":  # Pillow writes white
             raise ParameterError(f"path = {path.name!r}: must be .png or .tif, for 16 bits")
         try:
-            picture.save(path)
+            picture.save(path, lossless=True, quality=95)  # of WebP and JPEG; other forms take neither
         except OSError as error:
             if not str(error).startswith("cannot write mode"):
                 raise
