@@ -58,7 +58,7 @@ def test_missing_yosys(tmp_path, monkeypatch, capsys):
     [
         ("RegFile --lanes=3", "error: lanes = 3: must be one of"),
         ("--rows=-5", "error: rows = -5: must be an integer in 1..1024"),
-        ("--rows=x", "error: argument --rows: invalid int value: 'x'"),
+        ("--rows=x", "error: rows = 'x': must be an integer in 1..1024"),
         ("RegFil", "did you mean RegFile?"),
     ],
 )
