@@ -16,17 +16,32 @@ from talbot.platforms.wires import Wires
 class Fill:
     """Metal fill, which belongs to no net.
 
-    sides_um: of its squares, the largest first. space_um, clearance_um: to one another, and to other metal. density:
-    share of a layer that is to be covered, where there is room. density_most: limit of all metal of a layer in every
-    window of window_um.
+    width_um, area_um2, side_um: of a shape, the least width and area, and the largest side. clearances_um: by metal, of
+    a shape to all other metal; the next is tried where the one before leaves too little room. density: share of a layer
+    that is to be covered. density_least, density_most: limits of each layer in every window of window_um.
     """
 
-    sides_um: tuple[float, ...]
-    space_um: float
-    clearance_um: float
+    width_um: float
+    area_um2: float
+    side_um: float
+    clearances_um: Mapping[str, tuple[float, ...]]
     density: float
+    density_least: float
     density_most: float
     window_um: float
+
+
+@dataclass(frozen=True)
+class Dummies:
+    """Shapes of no net in the cells that fill rows, for the density of the lowest layers.
+
+    implants, taps: GDS layers. insets_um: by GDS layer, how much smaller than an implant a shape is on each side, in x
+    and in y.
+    """
+
+    implants: tuple[GdsLayer, ...]
+    taps: GdsLayer
+    insets_um: Mapping[GdsLayer, tuple[float, float]]
 
 
 @dataclass(frozen=True)
@@ -40,12 +55,11 @@ class LayoutPlatform:
     edge. pin_pitch_um: tracks of the pins' two layers, 'horizontal' (west and east) and 'vertical'. label_datatype,
     pin_datatype: GDS datatypes of labels and of what the decks take for pins. outline: GDS layer of the die's.
     blockage_layer: of GDS, to drop. poly, active, contact: GDS layers, the last between the first two and the lowest
-    metal. tap: mask of taps; None where it is that of active. fill: of all metals but the lowest. wires: by
-    platforms.wires.CORNERS. corners: at which cells are timed, that of synthesis first; () where there are no models of
-    the devices. antenna_walls: whether antenna ratios are those of side walls, else of area. masks: rules of KLayout
-    beyond those of PDKMaster's deck. lvs: what
-    its deck of LVS lacks. contradicted: rules of its deck that SkyWater's own transistors break. frames: outlines of
-    shuttles, by name.
+    metal. tap: mask of taps; None where it is that of active. fill: of all metals but the lowest. dummies: of the
+    others. wires: by platforms.wires.CORNERS. corners: at which cells are timed, that of synthesis first; () where
+    there are no models of the devices. antenna_walls: whether antenna ratios are those of side walls, else of area.
+    masks: rules of KLayout beyond those of PDKMaster's deck. lvs: what its deck of LVS lacks. contradicted: rules of
+    its deck that SkyWater's own transistors break. frames: outlines of shuttles, by name.
     """
 
     name: str
@@ -74,6 +88,7 @@ class LayoutPlatform:
     corners: tuple[str, ...] = ()
     rail: int = 0
     tap: GdsLayer | None = None
+    dummies: Dummies | None = None
     masks: Path | None = None
     lvs: Path | None = None
     contradicted: tuple[str, ...] = ()

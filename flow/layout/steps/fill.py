@@ -1,4 +1,4 @@
-"""Metal fill of every layer except the lowest."""
+"""Fill of every layer, to the densities that the process asks for."""
 
 import json
 from typing import Any
@@ -7,30 +7,37 @@ from talbot.base.gds import read_gds, write_gds
 from talbot.base.steps import Files, Step
 from talbot.flow.layout.steps.parameters import PdkParameters
 from talbot.platforms.layout import layout_platform
-from talbot.signoff.geometry.fill import fill, peak_density
+from talbot.signoff.geometry.fill import densities, fill, fill_cells
 
 
 class Fill(Step[PdkParameters]):
-    """The largest squares first, until a layer has its density or no room.
+    """Bars on every metal except the lowest until a layer has its density or no room; diffusion and li in filler cells.
 
-    before, after: density of every layer in its densest window. density_violations: layers with more than the process
-    allows. It keeps the process's clearance to other metal; `extraction` counts what it adds to the nets.
+    density: share of every layer that is covered in its densest window. density_violations: layers with more than the
+    process allows in some window. thin_layers: those with less. Bars keep the process's clearance to other metal;
+    `extraction` counts what they add to the nets.
     """
 
     name = "fill"
     inputs = {"gds": "stream_out.gds"}
     outputs = {"gds": "layout.gds", "summary": "fill.json"}
-    metrics = {"squares": "", "before": "", "after": "", "density_violations": ""}
+    metrics = {"shapes": "", "density": "", "density_violations": "", "thin_layers": ""}
     tools = ("python klayout",)
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         tech, layout = layout_platform(self.parameters.pdk), read_gds(inputs["gds"])
-        top = layout.top_cell()
-        before = {metal.name: peak_density(layout, top, metal, tech.fill) for metal in tech.metals}
-        squares = sum(fill(layout, top, metal, tech.fill) for metal in tech.metals[1:])
-        after = {metal.name: peak_density(layout, top, metal, tech.fill) for metal in tech.metals}
+        top, rules = layout.top_cell(), tech.fill
+        masks = {"diffusion": [tech.active, *([tech.tap] if tech.tap else [])]} | {m.name: [m.gds] for m in tech.metals}
+        before = {name: densities(layout, top, of_layer, rules.window_um) for name, of_layer in masks.items()}
+        if tech.dummies:
+            fill_cells(layout, tech.fill_cells, tech.dummies)
+        shapes = sum(fill(layout, top, metal, rules) for metal in tech.metals[1:])
+        after = {name: densities(layout, top, of_layer, rules.window_um) for name, of_layer in masks.items()}
         write_gds(layout, outputs["gds"])
-        dense = {name: density for name, density in after.items() if density > tech.fill.density_most}
-        summary = {"before": before, "after": after, "too dense": dense}
-        outputs["summary"].write_text(json.dumps(summary, indent=1) + "\n", encoding="utf-8")
-        return {"squares": squares, "before": before, "after": after, "density_violations": len(dense)}
+        outputs["summary"].write_text(json.dumps({"before": before, "after": after}, indent=1) + "\n", encoding="utf-8")
+        return {
+            "shapes": shapes,
+            "density": {name: most for name, (_, most) in after.items()},
+            "density_violations": sum(most > rules.density_most for _, most in after.values()),
+            "thin_layers": [name for name, (least, _) in after.items() if least < rules.density_least],
+        }

@@ -28,7 +28,14 @@ PLATFORM = LayoutPlatform(
     contact=layers.CONTACT.gds,
     # 35 to 60 % in windows of 200 um; IHP fills on its side, too
     fill=Fill(
-        sides_um=(2.0, 1.0, 0.5), space_um=0.42, clearance_um=0.6, density=0.36, density_most=0.6, window_um=200.0
+        width_um=0.5,
+        area_um2=0.25,
+        side_um=2.0,
+        clearances_um={metal.name: (0.6, 0.42) for metal in layers.METALS},
+        density=0.37,
+        density_least=0.35,
+        density_most=0.6,
+        window_um=200.0,
     ),
     wires=wires.WIRES,
     antenna_walls=False,
