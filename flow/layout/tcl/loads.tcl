@@ -15,6 +15,8 @@ proc help_and_reroute {} {
     legalize
     optimize_mirroring
     global_route -end_incremental -allow_congestion
+    # Only estimates by placement clear what earlier edits of the netlist have marked: else repair_timing may end with EST-0104
+    estimate_parasitics -placement
     estimate_parasitics -global_routing
   }
 }
