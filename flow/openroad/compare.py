@@ -14,7 +14,7 @@ from talbot.flow.openroad.results import broken
 FOUNDRY = "quad_divider", "amp_ctrl", "asp_chip"  # designs with a row of the foundry's cells, run or not
 HEAD = (
     "design | cells | area, mm2 | instances | cell area, um2 | f_max at ss, MHz | setup, hold, ns | "
-    "power at tt, uW | leakage at tt / ss / ff, uW | wire, mm | wire, pF | seconds | MiB | limits broken"
+    "power at tt, uW | leakage at tt / ss / ff, uW | wire, mm | wire, pF | seconds | MiB | limits broken | utilization"
 )
 
 
@@ -87,6 +87,7 @@ def row(summary: Mapping[str, Any]) -> list[str]:
         leakage,
         *(_written(*figure) for figure in (*more, *run)),
         str(len(broken(dict(summary)))),
+        _written(summary.get("utilization"), 1, ".2f"),
     ]
 
 
