@@ -60,13 +60,13 @@ class Design:
 
     top: module that rtl.export writes with ``options``. folder: of the block in rtl/. netlist_names: names under which
     the block's tests build it with these parameters, for `pytest --netlist`; () for the chip, whose test is a frame,
-    and for a block in a size that its tests do not have. utilization: where the search for the smallest area begins.
-    aspect: width by height. divider, n_frac: of the chip in whose frame the block's stimulus is recorded. io:
-    constraints of its ports. asynchronous: inputs that pass synchronizers, a false path. reset: port, active at 0 if it
-    ends in _n. frame: a shuttle's outline, see platforms.frame; '' for the smallest that there is. closed: edges
-    without pins. verilog: files of a user's design, which has no tests, and no frame in which power is measured; () for
-    a block of rtl/.
-    label: name of the sensor file that the design follows, part of its folder's name; '' for the standard sensor.
+    and for a block in a size that its tests do not have. utilization: where the search for the smallest area begins,
+    for a block that was laid out where it ended. aspect: width by height. divider, n_frac: of the chip in whose frame
+    the block's stimulus is recorded. io: constraints of its ports. asynchronous: inputs that pass synchronizers, a
+    false path. reset: port, active at 0 if it ends in _n. frame: a shuttle's outline, see platforms.frame; '' for the
+    smallest that there is. closed: edges without pins. verilog: files of a user's design, which has no tests, and no
+    frame in which power is measured; () for a block of rtl/. label: name of the sensor file that the design follows,
+    part of its folder's name; '' for the standard sensor.
     """
 
     name: str
@@ -93,11 +93,11 @@ class Design:
         return self.top == "AspChip" and not self.verilog
 
 
-def divider(name: str, variant: str, n_frac: int = 8) -> Design:
+def divider(name: str, variant: str, utilization: float, n_frac: int = 8) -> Design:
     """The Design of a variant of the divider with ``n_frac`` fraction bits."""
     top = "Cordic" if variant == "cordic" else f"QuadDivider{variant.capitalize()}"
     names, options = (f"QuadDivider_{variant}_{n_frac}_10",), (f"--n-frac={n_frac}",)
-    return Design(name, top, "quad_divider", names, options, divider=variant, n_frac=n_frac)
+    return Design(name, top, "quad_divider", names, options, utilization, divider=variant, n_frac=n_frac)
 
 
 SMALL = "--rows=7", "--cols=31", "--lanes=2"
@@ -109,15 +109,15 @@ chip = partial(Design, top="AspChip", folder="asp_chip", io=DIE, asynchronous=AS
 DESIGNS = {
     made.name: made
     for made in (
-        Design("amp_ctrl", "AmpCtrl", "amp_ctrl", ("AmpCtrl",)),
-        Design("readout_seq", "ReadoutSeq", "readout_seq", ("ReadoutSeq_7_31_2",), SMALL),
+        Design("amp_ctrl", "AmpCtrl", "amp_ctrl", ("AmpCtrl",), utilization=0.64),
+        Design("readout_seq", "ReadoutSeq", "readout_seq", ("ReadoutSeq_7_31_2",), SMALL, 0.68),
         Design("edge_adc", "EdgeAdc", "edge_adc", ("EdgeAdc",)),
-        Design("adc_bank", "AdcBank", "adc_bank", ("AdcBank8",)),
-        divider("quad_divider", "radix4"),
-        divider("quad_divider_radix2", "radix2"),
-        divider("quad_divider_pipelined", "pipelined"),
-        divider("cordic", "cordic"),
-        Design("phase_path", "PhasePath", "phase_path", ("PhasePath_8_radix4",)),
+        Design("adc_bank", "AdcBank", "adc_bank", ("AdcBank8",), utilization=0.6),
+        divider("quad_divider", "radix4", 0.8),
+        divider("quad_divider_radix2", "radix2", 0.76),
+        divider("quad_divider_pipelined", "pipelined", 0.72),
+        divider("cordic", "cordic", 0.68),
+        Design("phase_path", "PhasePath", "phase_path", ("PhasePath_8_radix4",), utilization=0.72),
         Design("run_length", "RunLength", "run_length", ("RunLength",), ("--rows=12", "--cols=36", "--lanes=4")),
         Design("reg_file", "RegFile", "reg_file", ("RegFile",), RESETS, divider="cordic", asynchronous=SPI_INPUTS),
         Design("proc", "Proc", "proc", ("Proc",)),
