@@ -7,9 +7,11 @@ south    the chip's pins            | ibias                            | lane_a,
 All nets between strips, pins and ways are on the fourth metal, each at separate places.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import count, islice
 from math import ceil
+from typing import NamedTuple
 
 from talbot.base.gds import db
 from talbot.models.parameters import ParameterError
@@ -50,16 +52,19 @@ WEST = 8.0  # of the bank's strips
 ROOM = 0.6  # next to each pair of devices
 CROSSING_SPACE = 0.95  # least, between centres of lines that cross strips
 PARTS_OF = 3  # parts of each of the bias's capacitors, at most
-PLATE = 28.0  # width of a part
+PLATE = 28.0  # width of a part, at most
 PLATE_LENGTH = 32.0  # of a row of a part, at most: 900 um2 (capm.12)
 ROW_SPACE = 1.5  # between these rows
 PLATE_SPACE = 2.0  # between parts, for a way
 ENDS_ROOM = 20.0  # of the lanes' ends in the west and in the east
 PLATE_RISE = 1.9  # from the rail to a part
 RAMP = "bank.clear.ramp"  # the pulse's capacitor, and its net
-RAMP_COLUMNS = 1.5  # x of its net, in columns: between two ways
+RAMP_COLUMNS = 1.5, 2.5, 3.5  # x of its net, in columns: between two ways
 RAMP_HALF = 4.2  # half the width of its plate's metal
+RAMP_TO_WAY = 5.0  # from that metal's middle to a way, at the least
+RAMP_STEP = 0.5  # by which the metal moves for a pin
 RAMP_WIDTH = 40.0
+RAMP_EAST = WEST + 1.0 + RAMP_WIDTH - RAMP_HALF - PATCH_INSET  # greatest x of its net
 RAMP_RISE = 1.5  # from the rail
 STRIPS = 2  # of the bank
 BANK = 500.0  # least east end of the bank
@@ -101,12 +106,15 @@ class Group:
                 xs.setdefault(net, []).extend(ends)
         return {net: (min(ends) + max(ends)) / 2 for net, ends in xs.items()}
 
-    def free(self, x: float, step: float, first: float = 0.0) -> float:
-        """Return the free place nearest to ``x`` on a grid of ``step``. Raises ParameterError."""
+    def clear(self, x: float) -> bool:
+        """Return whether a line at ``x`` is clear of all others."""
         taken = [*(at for xs in self.ways.values() for at in xs), *self.pins.values(), *self.inner.values()]
         taken += [at for xs in self.plates.values() for at in xs]
-        places = (snap(first + step * k) for k in range(int(self.right / step) + 1))
-        free = [at for at in places if at > self.left and all(abs(at - other) >= CROSSING_SPACE for other in taken)]
+        return x > self.left and all(abs(x - other) >= CROSSING_SPACE for other in taken)
+
+    def free(self, x: float, step: float, first: float = 0.0) -> float:
+        """Return the free place nearest to ``x`` on a grid of ``step``. Raises ParameterError."""
+        free = [at for k in range(int(self.right / step + 1e-6) + 1) if self.clear(at := snap(first + step * k))]
         if not free:
             raise ParameterError(f"array.pitch: column band from {self.left:.0f} um must have room for its lines")
         return min(free, key=lambda at: abs(at - x))
@@ -175,23 +183,17 @@ def draw_band(
     pitch: of the columns, um. pins: x of the pins in the south by net. outward: nets that have ways; a lane's two have
     two each. Raises ParameterError.
     """
-    d = {t.name: _device(t) for t in flat.transistors(band(sizes, lanes))}
+    d = band_devices(sizes, lanes)
     canvas = Canvas(layout, "column_band", masks.base)
-    rows = [in_columns(row, WEST, ROOM) for row in bank_rows(sizes, d)]
-    of_bank = set.union(*map(_nets, rows)).intersection(outward)
-    bank = Group(WEST, snap(max(BANK, (len(of_bank) + SPARE_WAYS) * pitch)), rows)
-    bank.inner[RAMP] = RAMP_COLUMNS * pitch
+    bank = bank_group(bank_rows(sizes, d), pitch, pins, outward)
     first = snap(min(x for net, x in pins.items() if net.startswith("lane_")) - ENDS_ROOM)
-    plate_pitch = ceil((PLATE + PLATE_SPACE) / pitch) * pitch
-    plate_west = ceil((bank.right + PLATES_OFFSET) / plate_pitch) * plate_pitch
-    parts = min(PARTS_OF, int((first - PLATES_SPACE - plate_west) / plate_pitch / len(BIASES)))
-    if parts < 1:
-        raise ParameterError(f"array.pitch = {1e-6 * pitch:g}: must be less, for the bias west of the lanes")
     bias_west = bank.right + BIAS_OFFSET
-    bias_east = plate_west + plate_pitch * parts * len(BIASES) + PLATES_SPACE
-    bias = Group(bias_west, bias_east, [_bias(d, bias_west)])
-    for k, net in enumerate(net for net in BIASES for _ in range(parts)):
-        bias.plates.setdefault(net, []).append(plate_west + (k + 0.5) * plate_pitch)
+    bias_row = _bias(d, bias_west)
+    plates_of = bias_plates(pitch, bank.right, first, len(_nets(bias_row).intersection(outward)))
+    bias_east = plates_of.west + plates_of.pitch * plates_of.parts * len(BIASES) + PLATES_SPACE
+    bias = Group(bias_west, bias_east, [bias_row])
+    for k, net in enumerate(net for net in BIASES for _ in range(plates_of.parts)):
+        bias.plates.setdefault(net, []).append(plates_of.west + (k + 0.5) * plates_of.pitch)
     ends = Group(first, 0.0, [_ends(d, lanes, first)])
     ends.right = snap(ends.rows[0][2] + ENDS_ROOM)
     groups = bank, bias, ends
@@ -202,13 +204,13 @@ def draw_band(
         for k, net in enumerate(nets_by_x):
             for _ in range(2 if net.startswith("lane_") else 1):
                 near = middles[net] if group is not bank else WEST + (k + 0.5) / len(nets_by_x) * (bank.right - WEST)
-                group.ways.setdefault(net, []).append(group.free(near, plate_pitch if group is bias else pitch))
+                group.ways.setdefault(net, []).append(group.free(near, plates_of.pitch if group is bias else pitch))
         for net, x in middles.items():
             if sum(net in _nets(row) for row in group.rows) > 1 and not group.of(net):
                 group.inner[net] = group.free(x, 0.5, 0.25)
     tops = [group.place(canvas, masks) for group in groups]
     ramp = _ramp(canvas, masks, sizes, bank, tops[0])
-    decoupling, top = _decoupling(canvas, masks, sizes, bias, tops[1])
+    decoupling, top = _decoupling(canvas, masks, sizes, bias, plates_of.width, tops[1])
     plates = ramp, *decoupling
     height = snap(max(tops[0] + RAMP_RISE + ramp.area / RAMP_WIDTH, top) + NORTH)
     joints: dict[str, list[tuple[float, float, float]]] = {"vss": [], "vdd": []}
@@ -222,6 +224,49 @@ def draw_band(
         for net, xs in group.ways.items():
             ways[net] += [round(x / pitch) for x in xs]
     return Band(cell, height, {net: tuple(xs) for net, xs in ways.items()}, joints)
+
+
+def bank_group(
+    pairs: Iterable[Sequence[Pair]], pitch: float, pins: Mapping[str, float], outward: Iterable[str]
+) -> Group:
+    """Return the bank, as wide as its ways need, with the place of the ramp's net. Raises ParameterError.
+
+    pairs: of its strips. pitch, pins, outward: as of `draw_band`.
+    """
+    rows = [in_columns(row, WEST, ROOM) for row in pairs]
+    nets = set.union(*map(_nets, rows))
+    bank = Group(WEST, BANK, rows, pins={net: x for net, x in pins.items() if net in nets})
+    bank.inner[RAMP] = _ramp_um(bank, pitch)
+    free = (x for x in (snap(k * pitch) for k in count()) if bank.clear(x))
+    bank.right = max(BANK, next(islice(free, len(nets.intersection(outward)) + SPARE_WAYS - 1, None)))
+    return bank
+
+
+class Plates(NamedTuple):
+    """Places of the capacitors of the bias's lines, um: width of a part, parts of each.
+
+    pitch: of the parts, between which ways are. west: of the first.
+    """
+
+    pitch: float
+    west: float
+    width: float
+    parts: int
+
+
+def bias_plates(pitch: float, west: float, east: float, ways: int) -> Plates:
+    """Return plates between the bank and the lanes' ends, as wide as leaves room for ``ways``. Raises ParameterError.
+
+    pitch: of the columns, um. west, east: ends of both.
+    """
+    for columns in range(round((PLATE + PLATE_SPACE) / pitch), 0, -1):
+        of_part = columns * pitch
+        first = ceil((west + PLATES_OFFSET) / of_part) * of_part
+        parts = min(PARTS_OF, int((east - PLATES_SPACE - first) / of_part / len(BIASES)))
+        last = first + of_part * parts * len(BIASES) + PLATES_SPACE
+        if parts > 0 and int(last / of_part) - int((west + BIAS_OFFSET) / of_part) >= ways:
+            return Plates(of_part, first, snap(min(PLATE, of_part - PLATE_SPACE)), parts)
+    raise ParameterError(f"array.pitch = {1e-6 * pitch:g}: must be less, for the bias west of the lanes")
 
 
 def _nets(row: tuple[Sequence[Placed], Sequence[Placed], float]) -> set[str]:
@@ -273,10 +318,25 @@ def _rails(canvas: Canvas, strips: Sequence[Strip], joints: dict[str, list[tuple
         joints[net].append((x, min(ys) - half, max(ys) + half))
 
 
+def band_devices(sizes: ColumnSizes, lanes: int) -> dict[str, Device]:
+    """All transistors of a band."""
+    return {t.name: _device(t) for t in flat.transistors(band(sizes, lanes))}
+
+
 def _device(t: Transistor) -> Device:
     """Return a transistor in fingers whose contacts are on the grid."""
     device = Device.of(t)
     return device if round(device.finger_um / 0.005) % 2 == 0 else Device.of(t, FINGER)
+
+
+def _ramp_um(bank: Group, pitch: float) -> float:
+    """Return x of the ramp's net: its plate's metal is between two ways, its line clear of the pins."""
+    by_steps = [RAMP_STEP * k for k in range(int((pitch / 2 - RAMP_TO_WAY) / RAMP_STEP) + 1)]
+    places = (snap(columns * pitch + side * by) for columns in RAMP_COLUMNS for by in by_steps for side in (-1, 1))
+    place = next((x for x in places if x <= RAMP_EAST and bank.clear(x)), None)
+    if place is None:
+        raise ParameterError(f"array.pitch = {1e-6 * pitch:g}: must have room for a line between the bank's pins")
+    return place
 
 
 def _ramp(canvas: Canvas, masks: AnalogMasks, sizes: ColumnSizes, bank: Group, top: float) -> flat.Plate:
@@ -297,13 +357,16 @@ def _ramp(canvas: Canvas, masks: AnalogMasks, sizes: ColumnSizes, bank: Group, t
 
 
 def _decoupling(
-    canvas: Canvas, masks: AnalogMasks, sizes: ColumnSizes, bias: Group, top: float
+    canvas: Canvas, masks: AnalogMasks, sizes: ColumnSizes, bias: Group, wide: float, top: float
 ) -> tuple[list[flat.Plate], float]:
-    """Return the capacitors of the bias's lines, between the places of ways above its strip, and their top."""
+    """Return the capacitors of the bias's lines, between the places of ways above its strip, and their top.
+
+    wide: um, of a part.
+    """
     strip, plates, highest = bias.strips[0], list[flat.Plate](), top
     tracks = {track.net: track.y for track in strip.tracks}
     for c in (c for c in flat.capacitors(band(sizes, 1)) if c.name.startswith("bias.c_")):
-        wide, low, parts = PLATE, top + PLATE_RISE, len(bias.plates[c.a])
+        low, parts = top + PLATE_RISE, len(bias.plates[c.a])
         whole = length_um(c.value / parts, masks, wide)
         rows = ceil(whole / PLATE_LENGTH)
         piece = length_um(c.value / parts / rows, masks, wide)

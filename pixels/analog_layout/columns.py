@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from talbot.base.gds import db
-from talbot.models.parameters import ArrayParameters, ParameterError, check_int, check_real
+from talbot.models.parameters import ArrayParameters, ParameterError, check_int
 from talbot.pixels.analog_layout.cells import Cell
 from talbot.pixels.analog_layout.column import PLATE_VIA_PAD, as_cell, draw_column, draw_ground
 from talbot.pixels.analog_layout.column_parts import HEIGHT
@@ -26,7 +26,7 @@ from talbot.pixels.analog_layout.strip import FOURTH, RAIL_TRUNK, SECOND, THIRD,
 from talbot.pixels.circuits.column import PINS, SUPPLIES, block_line
 from talbot.pixels.circuits.column_block import GROUPS, LINES, PLACES, taken
 from talbot.pixels.circuits.column_sizes import ColumnSizes
-from talbot.pixels.drawn import PIXEL_PITCHES_UM
+from talbot.pixels.drawn import check_pitch
 from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.analog import AnalogMasks
 
@@ -80,9 +80,9 @@ def draw_columns(
 ) -> Columns:
     """Draw them, and the names of a column's ports. extra: nets that have a line across, and no column.
 
-    Raises ParameterError where a pitch is less than a column's height, or lines are too many.
+    Raises ParameterError for a pitch at which nothing is drawn, or for too many lines.
     """
-    check_real("array.pitch_um", array.pitch_um, HEIGHT, PIXEL_PITCHES_UM[1], "um")
+    check_pitch(array.pitch_um)
     check_int("chip.lanes", lanes, 1, LANES)
     if (most := lanes * GROUPS * PLACES) < array.cols:
         raise ParameterError(f"array.cols = {array.cols}: must be at most {most}, the lines of {lanes} lanes")

@@ -13,7 +13,7 @@ from itertools import permutations
 
 from talbot.models.parameters import ParameterError
 from talbot.pixels.analog_layout.cells import Cell
-from talbot.pixels.analog_layout.device import Device
+from talbot.pixels.analog_layout.device import Device, snap
 from talbot.pixels.analog_layout.strip import (
     FOURTH,
     RAIL_AT,
@@ -98,7 +98,7 @@ class RowPlan:
 
     def places(self) -> dict[str, float]:
         """Return y of each line in its row, from the row's south edge."""
-        return {net: (k + 0.5) / len(ROW_LINES) * self.pitch for k, net in enumerate(ROW_LINES)}
+        return {net: snap((k + 0.5) / len(ROW_LINES) * self.pitch) for k, net in enumerate(ROW_LINES)}
 
 
 def _lines(n: Sequence[Placed], pins: Collection[float]) -> dict[str, float]:

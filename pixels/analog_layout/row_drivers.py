@@ -13,10 +13,10 @@ from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from talbot.base.gds import db
-from talbot.models.parameters import ArrayParameters, ParameterError, check_real
+from talbot.models.parameters import ArrayParameters, ParameterError
 from talbot.pixels.analog_layout.cells import Cell, new_canvas
 from talbot.pixels.analog_layout.comparator import devices
-from talbot.pixels.analog_layout.device import Device
+from talbot.pixels.analog_layout.device import Device, snap
 from talbot.pixels.analog_layout.drawn_block import DrawnBlock
 from talbot.pixels.analog_layout.row_bank import draw_bank
 from talbot.pixels.analog_layout.row_driver import LINE_WIDTH, RowPlan, as_cell, draw_row, row_plan
@@ -34,7 +34,7 @@ from talbot.pixels.circuits.row_driver import (
     row,
     taken,
 )
-from talbot.pixels.drawn import PIXEL_PITCHES_UM
+from talbot.pixels.drawn import check_pitch
 from talbot.pixels.footprints import draw_pins
 from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.analog import AnalogMasks
@@ -118,7 +118,7 @@ def _names(canvas: Canvas, cell: Cell) -> None:
 def draw_row_drivers(masks: AnalogMasks, array: ArrayParameters, room: AnalogSizes | None = None) -> RowDrivers:
     """Draw all rows in their frame. Raises ParameterError where they do not fit, or the bank has too few lines."""
     room = room or AnalogSizes()
-    check_real("array.pitch_um", array.pitch_um, *PIXEL_PITCHES_UM, "um")
+    check_pitch(array.pitch_um)
     if taken(array.rows - 1)["high"] >= CODES["high"]:
         raise ParameterError(f"rows = {array.rows}: must be at most {64 * CODES['high']} for the drawn bank")
     d = devices(row())
@@ -171,6 +171,6 @@ def _supplies(canvas: Canvas, block: Block, plan: RowPlan, south: float, room: A
         count = int((room.supply_um - 2) / VIA_PITCH)
         for x in ends:
             for k in range(count):
-                y = pin.at_um + (k - (count - 1) / 2) * VIA_PITCH
+                y = snap(pin.at_um) + (k - (count - 1) / 2) * VIA_PITCH
                 canvas.square(via, x, y, VIA)
             canvas.wire(FOURTH, x - VIA_PAD, pin.at_um - half, x + VIA_PAD, pin.at_um + half)

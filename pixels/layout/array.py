@@ -192,7 +192,7 @@ def _ends(canvas: Canvas, array: ArrayLayout) -> None:
     pins = {pin.name: pin.at_um for pin in array.block.pins}
     _, y0 = corner(array, 0, 0)
     for name, y in (("pixel_reset_row[0]", RESET_Y), ("read_row[0]", READ_Y)):
-        at = pins[name] - y0
+        at = canvas.snap(pins[name] - y0) * canvas.layout.dbu  # as vias are
         row.wire(PLATES, 0, at - LINE, TURN[0] + LINE, at + LINE)
         row.stack(TURN[0], at, ROWS_ON, PLATES)
         row.wire(ROWS_ON, TURN[0] - PAD, min(at, y) - LINE / 2, TURN[0] + PAD, max(at, y) + LINE / 2)
@@ -208,7 +208,7 @@ def _ends(canvas: Canvas, array: ArrayLayout) -> None:
         _repeat(canvas, dummy.cell, (0, y), (pitch, 1), (pitch, DUMMIES))
     x0, _ = corner(array, 0, 0)
     for name, x in (("column_a[0]", pitch / 2 - COLUMN), ("column_b[0]", pitch / 2 + COLUMN)):
-        at = pins[name] - x0
+        at = canvas.snap(pins[name] - x0) * canvas.layout.dbu
         column.wire(UPPER, at - LINE, 0, at + LINE, TURN[1] + LINE)
         column.stack(at, TURN[1], COLUMNS, UPPER)
         column.square(canvas.process.metals[PLATES].gds, at, TURN[1], 0.5)  # a via's pad is below the least area

@@ -21,12 +21,14 @@ class Varied:
 
     used: the result follows them. fixed: the result depends on them, and they cannot vary yet: the reason of each.
     limits: of used fields, least and greatest value where these are narrower than the sensor's own.
+    steps: of used fields, the step of which a value is a multiple.
     The result does not depend on fields that are in neither.
     """
 
     used: tuple[str, ...] = ()
     fixed: Mapping[str, str] = field(default_factory=dict)
     limits: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    steps: Mapping[str, float] = field(default_factory=dict)
 
     def uses(self, name: str) -> bool:
         """Return whether the result follows the field ``name``."""
@@ -37,7 +39,7 @@ class Varied:
         return next((reason for key, reason in self.fixed.items() if _within(name, key)), "")
 
     def check(self, sensor: SensorParameters, *also: SensorParameters) -> None:
-        """Check the limits, and that each fixed field of ``sensor`` is the standard's, or that of one of ``also``.
+        """Check limits, steps, and that each fixed field of ``sensor`` is the standard's, or that of one of ``also``.
 
         Raises ParameterError.
         """
@@ -49,6 +51,8 @@ class Varied:
             if name in self.limits and not self.limits[name][0] <= value <= self.limits[name][1]:
                 low, high = self.limits[name]
                 raise ParameterError(f"{name} = {_text(value)}: must be in {low:g}..{high:g} ({varied})")
+            if (step := self.steps.get(name)) and abs(value / step - round(value / step)) > 1e-6:
+                raise ParameterError(f"{name} = {value:.9g}: must be a multiple of {step:g} ({varied})")
 
 
 def standard_alone(reason: str) -> Varied:

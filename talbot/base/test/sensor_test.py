@@ -60,12 +60,13 @@ def test_a_wrong_option_is_named(asked, words, said):
         ("tile.rows = 2", r"tile.rows = 2: must be 4 \(drawn; "),
         (f"tile.order = {[*reversed(range(24))]}", r"tile.order = 23,22,21,.*: must be 0,9,20,.* \(drawn; "),
         ("array.rows = 40", r"array.rows = 40: must be in 100..400 \(this command varies array.rows\)"),
+        ("array.rows = 206", r"array.rows = 206: must be a multiple of 4 \(this command varies array.rows\)"),
         ("optics.camera.exit_pupil = 0.05", r"optics.camera.exit_pupil = 0.05: must be None \(drawn; "),
     ],
 )
 def test_what_a_command_cannot_vary_is_refused_in_a_line(asked, text, said):
     fixed = dict.fromkeys(("array.pitch", "tile", "optics.camera"), "drawn")
-    varied = Varied(("array.rows",), fixed, {"array.rows": (100, 400)})
+    varied = Varied(("array.rows",), fixed, {"array.rows": (100, 400)}, {"array.rows": 4})
     assert asked("optics.m = 0.5\narray.rows = 200", varied=varied).optics.m == 0.5
     with pytest.raises(ParameterError, match=f"^{said}") as caught:
         asked(text, varied=varied)
