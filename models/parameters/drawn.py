@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from talbot.models.parameters.array import ArrayParameters
 from talbot.models.parameters.checks import check_real
 from talbot.models.parameters.circuit import TABLE as CIRCUIT
 from talbot.models.parameters.circuit import circuit_electrical
@@ -47,13 +48,19 @@ class LineParameters:
 
 
 @cache
-def drawn_lines(table: Path = LINES) -> LineParameters:
-    """Row and column lines as extracted from the drawn array.
+def drawn_lines(pitch_um: float = ArrayParameters().pitch_um, table: Path = LINES) -> LineParameters:
+    """Row and column lines as extracted from drawn arrays.
 
-    table: JSON: "parameters" has the fields of `LineParameters`; "lines" each line at the corners of wires. Returns the
-    larger of the two row lines and of the two column lines, typical. Raises ParameterError for a value out of range.
+    pitch_um: of the pixels, in the range of the table. table: JSON: "pitches_um", ascending, and at each of them
+    "parameters" with the fields of `LineParameters` and "lines", each at the corners of wires. Returns the larger of
+    the two row lines and of the two column lines, typical, linear between two pitches. Raises ParameterError for a
+    value out of range.
     """
-    return LineParameters(**json.loads(table.read_text(encoding="utf-8"))["parameters"])
+    written = json.loads(table.read_text(encoding="utf-8"))
+    pitches = written["pitches_um"]
+    check_real("pitch_um", pitch_um, pitches[0], pitches[-1])
+    values = {name: [one[name] for one in written["parameters"]] for name in written["parameters"][0]}
+    return LineParameters(**{name: float(np.interp(pitch_um, pitches, along)) for name, along in values.items()})
 
 
 def drawn_electrical(electrical: ElectricalParameters, table: Path = PIXEL) -> ElectricalParameters:

@@ -10,6 +10,7 @@ from talbot.models.parameters import (
     ELEMENTARY_CHARGE,
     AmpTiming,
     EnergyParameters,
+    ParameterError,
     SensorParameters,
     check_int,
     check_real,
@@ -143,7 +144,8 @@ class ColumnSpec:
     ) -> Self:
         """Return the specification for a sensor: its lines and full well, the chip's clock and lanes, Table 6.1."""
         sensor, energy, timing = sensor or SensorParameters(), energy or EnergyParameters(), timing or AmpTiming()
-        drawn, array, chip = drawn_lines(), sensor.array, sensor.chip
+        array, chip = sensor.array, sensor.chip
+        drawn = drawn_lines(array.pitch_um)
         columns = ceil(array.cols / chip.lanes)
         rate = energy.frame_rate * energy.pixels
         return cls(
@@ -162,6 +164,22 @@ class ColumnSpec:
             energy=one_digit(energy.pixel_array / rate),
             pixel=1 / rate,
         )
+
+    @classmethod
+    def of_drawn(cls, sensor: SensorParameters) -> Self:
+        """Return the specification for a sensor whose columns have the sizes of the standard sensor's.
+
+        Raises ParameterError for lines with more capacitance than those sizes are for.
+        """
+        spec, standard, array = cls.of(sensor), cls.of(), sensor.array
+        lines = ("rows", array.rows, spec.line, standard.line), ("cols", array.cols, spec.wire, standard.wire)
+        for name, count, farad, most in lines:
+            if farad > most * (1 + 1e-9):
+                raise ParameterError(
+                    f"array.{name} = {count}: must be at most {int(count * most / farad)} at array.pitch = "
+                    f"{array.pitch:g}, for a line of {1e12 * most:.2f} pF, which the drawn columns are sized for"
+                )
+        return spec
 
     @property
     def well(self) -> float:

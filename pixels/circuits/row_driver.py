@@ -14,9 +14,17 @@ Pins of `row`: ROW_INPUTS, ROW_LINES, vdd (the chip's level) vddr (of the lines)
 
 from dataclasses import dataclass
 from itertools import pairwise
+from math import log, pi
 from typing import Self
 
-from talbot.models.parameters import ArrayParameters, SensorParameters, check_int, check_real, drawn_lines
+from talbot.models.parameters import (
+    ArrayParameters,
+    ParameterError,
+    SensorParameters,
+    check_int,
+    check_real,
+    drawn_lines,
+)
 from talbot.pixels.circuits.gates import LENGTH, UNIT, inverter, nand
 from talbot.pixels.circuits.netlist import Capacitor, Circuit, Instance, Resistor, Transistor
 
@@ -27,6 +35,8 @@ CONTROLS = "pixel_reset", "shutter", "integrate", "read", "tap0", "tap1", "expos
 ROW_INPUTS = (*(f"{side}_{group}" for side in SIDES for group in GROUPS), *CONTROLS)
 ROW_LINES = tuple(f"{name}_row" for name in ("pixel_reset", "shutter", "integrate", "read", "tap0", "tap1"))
 SUPPLIES = "vdd", "vddr", "vss"
+FAR = 0.01  # of a line's level, from it: settled
+SETTLING = 4 / pi**2 * log(4 / (pi * FAR))  # s of a driven line's far end, for each ohm and farad of the whole line
 SECTIONS = 32  # of a line's ladder; its delay is within 0.2 % of that of an infinite number
 GATE = 1.7e-15  # F, of a pixel's thick-oxide transistor of 1.0 x 0.5 um (`make pixel-circuit`)
 THICK = 0.5  # um, shortest gate of thick oxide
@@ -75,9 +85,20 @@ class RowDriverSpec:
 
     @classmethod
     def of(cls, sensor: SensorParameters | None = None) -> Self:
-        """Return the specification for a sensor: the columns of its array, the cycle of its chip."""
+        """Return the specification for a sensor: columns and pitch of its array, the cycle of its chip.
+
+        Raises ParameterError for a row whose lines alone do not settle within a cycle.
+        """
         sensor = sensor or SensorParameters()
-        return cls(cols=sensor.array.cols, settle=1 / sensor.chip.f_clk, slew=0.5 / sensor.chip.f_clk)
+        array, cycle = sensor.array, 1 / sensor.chip.f_clk
+        lines = drawn_lines(array.pitch_um)
+        ohm, farad = lines.row_ohm, lines.row_farad + 2 * GATE
+        if array.cols > (most := int((cycle / (SETTLING * ohm * farad)) ** 0.5)):
+            raise ParameterError(
+                f"array.cols = {array.cols}: must be at most {most} for a row's lines to settle in a cycle "
+                f"(array.pitch = {array.pitch:g}, chip.f_clk = {sensor.chip.f_clk:g})"
+            )
+        return cls(cols=array.cols, ohm=ohm, farad=farad, settle=cycle, slew=cycle / 2)
 
 
 def row_line(spec: RowDriverSpec) -> Circuit:

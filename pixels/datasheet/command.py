@@ -8,19 +8,21 @@ from talbot.base.jobs import worker_count
 from talbot.base.progress import Steps
 from talbot.base.sensor import Varied, add_sensor, labelled, sensor_asked
 from talbot.models.parameters import check_int
-from talbot.pixels.drawn import DRAWN_LINES
+from talbot.pixels.drawn import PIXEL_PITCH, PIXEL_STEP
 
 VARIED = Varied(
     used=(
         "array.rows",
         "array.cols",
+        "array.pitch",
         "chip.lanes",
         "chip.f_clk",
         "electrical.full_well",
         "electrical.swing",
         "electrical.difference_gain",
     ),
-    fixed=DRAWN_LINES,
+    limits=PIXEL_PITCH,
+    steps=PIXEL_STEP,
 )
 
 

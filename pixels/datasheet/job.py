@@ -106,9 +106,13 @@ def amplifier_of(
 
 
 def column_of(setup: Setup, sensor: SensorParameters = STANDARD) -> tuple[ColumnSpec, ColumnSizes]:
-    """Specification and sizes of the column amplifiers of a sensor. Raises ParameterError."""
-    spec = ColumnSpec.of(sensor)
-    return spec, column_size(spec, process_of(setup.pdk))
+    """Specification and sizes of the column amplifiers of a sensor. Raises ParameterError for too long lines."""
+    spec, array = ColumnSpec.of(sensor), sensor.array
+    try:
+        return spec, column_size(spec, process_of(setup.pdk))
+    except ParameterError as error:
+        size = f"array.rows, array.cols = {array.rows}, {array.cols}"
+        raise ParameterError(f"{size}: must be less at array.pitch = {array.pitch:g} (a column's {error})") from None
 
 
 def make(
@@ -131,6 +135,7 @@ def make(
         check_file("table", table)
     setup, sizes = setup_of(pdk, sensor)
     column_spec = column_of(setup, sensor)[0]
+    RowDriverSpec.of(sensor)
     note("check")
     typical = Corner.parse(TYPICAL)
     deck(lanes.sar_lane(sizes), setup, typical)

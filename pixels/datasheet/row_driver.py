@@ -9,10 +9,18 @@ from talbot.cells.corner import Corner
 from talbot.cells.spice.engine import Points
 from talbot.cells.spice.wave import Wave
 from talbot.pixels.circuits.netlist import Circuit, Instance
-from talbot.pixels.circuits.row_driver import CONTROLS, ROW_INPUTS, ROW_LINES, SUPPLIES, RowDriverSpec, row, row_line
+from talbot.pixels.circuits.row_driver import (
+    CONTROLS,
+    FAR,
+    ROW_INPUTS,
+    ROW_LINES,
+    SUPPLIES,
+    RowDriverSpec,
+    row,
+    row_line,
+)
 from talbot.pixels.datasheet.deck import EDGE, Setup, deck, patient, settled, simulator
 
-FAR = 0.01  # of the lines' level, from it: settled
 AROUND = 0.9, 1.0, 1.1  # of the lines' level: limits hold in any combination with the chip's
 # Cycles in which each control is high; the row is chosen until CHOSEN, and its controls come once more after it
 HIGH = {

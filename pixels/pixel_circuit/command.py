@@ -8,10 +8,10 @@ from talbot.base.arguments import number_of
 from talbot.base.jobs import worker_count
 from talbot.base.progress import Steps
 from talbot.base.sensor import Varied, add_sensor, labelled, sensor_asked
-from talbot.pixels.drawn import DRAWN_PITCH, DUMMIES
+from talbot.pixels.drawn import DUMMIES, PIXEL_PITCH, PIXEL_STEP
 
 # What the circuit has is measured; the written sensor file has all other fields as they are
-VARIED = Varied(used=("array.rows", "electrical"), fixed=DRAWN_PITCH)
+VARIED = Varied(used=("array.rows", "array.pitch", "electrical"), limits=PIXEL_PITCH, steps=PIXEL_STEP)
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -35,7 +35,8 @@ def run(options: Namespace) -> int:
     from talbot.pixels.pixel_circuit.deck import Bench
     from talbot.pixels.pixel_circuit.job import STEPS, make
 
-    bench = Bench(sink_a=options.sink, gate_v=options.gate, rows=sensor.array.rows + 2 * DUMMIES)
+    array = sensor.array
+    bench = Bench(options.sink, gate_v=options.gate, rows=array.rows + 2 * DUMMIES, pitch_um=array.pitch_um)
     out = options.out or RESULTS / "pixel-circuit" / labelled(options.pdk, options)
     with Steps(STEPS, lines=True) as steps:
         summary = make(options.pdk, options.corners, bench, out, options.table, options.workers, steps.note, sensor)

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from talbot.base.tools import ToolError, run
 from talbot.cells.corner import Corner
 from talbot.models.parameters import ArrayParameters, check_real, drawn_lines
-from talbot.pixels.drawn import DUMMIES
+from talbot.pixels.drawn import DUMMIES, check_pitch
 from talbot.pixels.layout.pixel import DIFFUSION, PixelLayout
 from talbot.platforms.pixel import pixel_models
 
@@ -30,19 +30,21 @@ class Bench:
     """Surroundings of a pixel; assumed, since there is no column amplifier in transistors.
 
     sink_a: of each column, 1e-7..1e-3 A. low_v: least voltage that the sink needs, 0..1 V. rows: of pixels on a column,
-    1..4096. gate_v: of an active reset line, 1..5.5 V; the select line has the process's own.
+    1..4096. gate_v: of an active reset line, 1..5.5 V; the select line has the process's own. pitch_um: of the pixels.
     """
 
     sink_a: float = 5e-6
     low_v: float = 0.3
     rows: int = ArrayParameters.rows + 2 * DUMMIES
     gate_v: float = 5.0
+    pitch_um: float = ArrayParameters().pitch_um
 
     def __post_init__(self) -> None:
         check_real("sink_a", self.sink_a, 1e-7, 1e-3)
         check_real("low_v", self.low_v, 0, 1)
         check_real("rows", self.rows, 1, 4096)
         check_real("gate_v", self.gate_v, 1, 5.5)
+        check_pitch(self.pitch_um)
 
 
 def subcircuit(made: PixelLayout) -> list[str]:
@@ -95,7 +97,7 @@ def pixel_deck(made: PixelLayout, corner: Corner, bench: Bench, mismatch: int | 
             # a sink ends at the ground
             f"Bsink_{side} column_{side} 0 I={bench.sink_a:g}*tanh(v(column_{side})/{SINK_ENDS:g})",
             f"Rsink_{side} column_{side} 0 {SINK_OHM:g}",
-            f"Cline_{side} column_{side} 0 {bench.rows * drawn_lines().column_farad:.6g}",
+            f"Cline_{side} column_{side} 0 {bench.rows * drawn_lines(bench.pitch_um).column_farad:.6g}",
             f"Xothers_{side} column_{side} 0 0 vssa {process.transistor} w={one.w_um:g} l={one.l_um:g} {junction} "
             f"sa=0.3 sb=0.3 sd=0 m={bench.rows - 1}",
         ]

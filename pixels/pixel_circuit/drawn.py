@@ -1,5 +1,6 @@
 """The measurements as calls of a process's name, for jobs: the pixel is drawn again in each."""
 
+from dataclasses import replace
 from functools import lru_cache
 
 from talbot.cells.corner import Corner
@@ -13,19 +14,19 @@ from talbot.platforms.pixel import pixel_process
 
 
 @lru_cache(maxsize=4)
-def drawn(pdk: str) -> PixelLayout:
+def drawn(pdk: str, pitch_um: float) -> PixelLayout:
     """Return a pixel of the tile: the circuit is the same in all. Raises ParameterError."""
     pixel_process(pdk)
     chosen, kind = gratings(pdk), TileParameters().types[0]
     geometry = chosen.geometries[kind.beta]
-    return pixel_layout(geometry, kind, fitted(geometry, chosen.wavelength_um))
+    return pixel_layout(replace(geometry, pitch_um=pitch_um), kind, fitted(geometry, chosen.wavelength_um))
 
 
 def measured(pdk: str, corner: Corner, bench: Bench) -> PixelFound:
     """`measure` of the drawn pixel."""
-    return measure(drawn(pdk), corner, bench)
+    return measure(drawn(pdk, bench.pitch_um), corner, bench)
 
 
 def spread_of(pdk: str, corner: Corner, bench: Bench, levels: tuple[float, float], count: int) -> Spread:
     """`spread` of the drawn pixel."""
-    return spread(drawn(pdk), corner, bench, levels, count)
+    return spread(drawn(pdk, bench.pitch_um), corner, bench, levels, count)

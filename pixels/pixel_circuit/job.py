@@ -78,7 +78,7 @@ def make(
     check_folder("out", out)
     if table:
         check_file("table", table)
-    made, middle = drawn(pdk), typical(pdk)
+    made, middle = drawn(pdk, bench.pitch_um), typical(pdk)
     asked = corners(pdk, wanted)
     note("corners")
     jobs = [
@@ -105,7 +105,7 @@ def make(
         "corners": {name: asdict(one) | {"dark_noise": one.dark_noise} for name, one in found.items()},
         "spread": asdict(spread_) | {"offset_electrons": 1e6 * spread_.offset / usual.gain_uv},
         "emva": asdict(exposures),
-        "quantum_efficiency": _efficiency(pdk),
+        "quantum_efficiency": _efficiency(pdk, made.fill_factor),
         "sensor": {key: getattr(electrical, key) for key in sources(usual, spread_)},
         "passed": all(one.lag < LAG_MOST and one.frames < FRAMES_MOST for one in found.values()),
         "wall_s": perf_counter() - start,
@@ -173,9 +173,9 @@ def sensor_file(sensor: SensorParameters, came: Mapping[str, str]) -> str:
     )
 
 
-def _efficiency(pdk: str) -> dict[str, dict[str, float]]:
+def _efficiency(pdk: str, fill: float) -> dict[str, dict[str, float]]:
     """Return quantum efficiencies at the gratings' wavelength, by beta: of the gratings, of a pixel."""
-    chosen, fill = gratings(pdk), drawn(pdk).fill_factor
+    chosen = gratings(pdk)
     found = {
         f"{beta:g}": fitted(geometry, chosen.wavelength_um).quantum_efficiency
         for beta, geometry in chosen.geometries.items()

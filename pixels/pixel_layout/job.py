@@ -13,6 +13,7 @@ from talbot.base.files import check_file, check_folder, staged, write
 from talbot.base.gds import db, write_gds
 from talbot.models.parameters import PixelType, SensorParameters
 from talbot.pixels.designs import gratings
+from talbot.pixels.drawn import PIXEL_PITCHES_UM
 from talbot.pixels.layout.array import DUMMIES, SOUTH, WEST, draw_array, draw_pixels, draw_tile
 from talbot.pixels.layout.circuit import Diode, spice, spice_array
 from talbot.pixels.layout.pixel import PixelLayout
@@ -116,7 +117,11 @@ def make(
         page.write(made, summary)
         (folder / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n", encoding="utf-8")
     if table:
-        write(table, json.dumps(line_table(pdk, lines), indent=1, allow_nan=False) + "\n")
+        by_pitch = {
+            um: lines if um == array.pitch_um else extracted(array_layout(pdk, rows, cols, sensor.tile, 1e-6 * um))
+            for um in PIXEL_PITCHES_UM
+        }
+        write(table, json.dumps(line_table(pdk, by_pitch), indent=1, allow_nan=False) + "\n")
     if responses:
         write(
             responses,

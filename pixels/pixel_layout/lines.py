@@ -51,22 +51,24 @@ def extracted(made: ArrayLayout) -> dict[str, Line]:
     return out
 
 
-def table(pdk: str, found: Mapping[str, Line]) -> dict[str, Any]:
-    """Return the lines for models and circuits: `models.parameters.drawn_lines`."""
-
-    def most(names: tuple[str, ...]) -> tuple[float, float]:
-        return max(found[name].ohm for name in names), max(found[name].farad["typ"] for name in names)
-
-    parameters = {}
-    for line, names in (("row", ROWS), ("column", COLUMN_NETS)):
-        ohm, farad = most(names)
-        parameters |= {f"{line}_ohm": float(f"{ohm:.4g}"), f"{line}_farad": float(f"{farad:.4g}")}
+def table(pdk: str, found: Mapping[float, Mapping[str, Line]]) -> dict[str, Any]:
+    """Return the lines for models and circuits: `models.parameters.drawn_lines`. found: by pitch in um, ascending."""
     return {
         "command": f"make pixel-layout, {pdk}",
         "source": "extracted from drawn arrays, a pixel's part: platforms.wires, fitted to OpenROAD's tables",
-        "parameters": parameters,
-        "lines": {name: asdict(line) for name, line in found.items()},
+        "pitches_um": [*found],
+        "parameters": [_parameters(lines) for lines in found.values()],
+        "lines": [{name: asdict(line) for name, line in lines.items()} for lines in found.values()],
     }
+
+
+def _parameters(found: Mapping[str, Line]) -> dict[str, float]:
+    """Return the fields of `LineParameters`."""
+    parameters = {}
+    for line, names in (("row", ROWS), ("column", COLUMN_NETS)):
+        ohm, farad = max(found[name].ohm for name in names), max(found[name].farad["typ"] for name in names)
+        parameters |= {f"{line}_ohm": float(f"{ohm:.4g}"), f"{line}_farad": float(f"{farad:.4g}")}
+    return parameters
 
 
 def _farads(made: ArrayLayout) -> dict[str, dict[str, float]]:

@@ -9,7 +9,9 @@ from talbot.base.progress import Steps
 from talbot.base.sensor import Varied, add_sensor, labelled, sensor_asked
 from talbot.models.parameters import STANDARD
 from talbot.pixels.blocks import blocks
-from talbot.pixels.drawn import DRAWN_SIZES, PIXEL_PITCH
+from talbot.pixels.circuits.column_sizes import ColumnSpec
+from talbot.pixels.circuits.row_driver import RowDriverSpec
+from talbot.pixels.drawn import DRAWN_SIZES, PIXEL_PITCH, PIXEL_STEP
 
 VARIED = Varied(
     used=("array.rows", "array.cols", "array.pitch", "chip.lanes"),
@@ -20,6 +22,7 @@ VARIED = Varied(
         "chip.lanes": (1, STANDARD.chip.lanes),
         **PIXEL_PITCH,
     },
+    steps=PIXEL_STEP,
 )
 
 SHOWN = 10  # differences of a cell
@@ -43,6 +46,8 @@ def run(options: Namespace) -> int:
 
     sensor = sensor_asked(options, VARIED)
     blocks(sensor.array, sensor.chip)  # has room for its pins
+    ColumnSpec.of_drawn(sensor)
+    RowDriverSpec.of(sensor)
     from talbot.pixels.post_layout.job import STEPS, make
 
     out = options.out or RESULTS / "analog-layout" / labelled(options.pdk, options)

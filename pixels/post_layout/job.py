@@ -22,7 +22,7 @@ from talbot.pixels.analog_layout.lane import lane_cell
 from talbot.pixels.analog_layout.row_drivers import row_cell
 from talbot.pixels.analog_layout.switch import switch_cell
 from talbot.pixels.circuits.amplifier import AmplifierSizes, AmplifierSpec
-from talbot.pixels.circuits.column_sizes import ColumnSizes
+from talbot.pixels.circuits.column_sizes import ColumnSizes, ColumnSpec
 from talbot.pixels.circuits.dac import BITS
 from talbot.pixels.circuits.lane import LaneSizes
 from talbot.pixels.circuits.row_driver import RowDriverSpec
@@ -126,7 +126,7 @@ def make(
         rows = list(_array(typical["sar_lane"][1], masks, sizes, setup.spec))
         rows += amplifier.capacitors(made["amplifier"], typical["amplifier"][1], masks, spec)
         rows += _measured(
-            setup, sizes, (spec, own), {corner: found[wire_corner(corner)] for corner in corners}, workers
+            setup, sizes, (spec, own), {corner: found[wire_corner(corner)] for corner in corners}, workers, sensor
         )
         summary = {
             "process": pdk,
@@ -158,7 +158,7 @@ def _table(
     Both were measured for the page: that is read.
     """
     circuit, *lanes = (drawn[name][0] for name in ("column", "amplifier", "bias"))
-    (column,) = _columns(setup, {corner: [circuit]}, workers)
+    (column,) = _columns(setup, column_of(setup), {corner: [circuit]}, workers)
     fit = fitted(setup, *column_of(setup), Corner.parse(corner), column.layout.start, circuit)
     (both,) = _amplifiers(setup, amplifier_of(setup, sizes), sizes, {corner: lanes}, workers)
     bend, bend_sources, bend_error = amplifier_curve(both.layout.amplifier.points)
@@ -216,20 +216,25 @@ def _measured(
     amplifiers: tuple[AmplifierSpec, AmplifierSizes],
     drawn: Mapping[str, Mapping[str, tuple[Extracted, Nets]]],
     workers: int,
+    sensor: SensorParameters,
 ) -> Iterator[Row]:
-    """Rows of all circuits at every corner."""
+    """Rows of all circuits at every corner, with the lines of a sensor."""
 
     def circuits(*names: str) -> dict[str, list[Extracted]]:
         return {corner: [cells[name][0] for name in names] for corner, cells in drawn.items()}
 
-    driven, support = RowDriverSpec.of(), SupportSpec()
+    driven, support, columns = (
+        RowDriverSpec.of(sensor),
+        SupportSpec(),
+        (ColumnSpec.of_drawn(sensor), column_of(setup)[1]),
+    )
     for lane in pairs("lane", measure, Measured, (setup, sizes), circuits("comparator", "sar_lane"), workers):
         yield from _rows(setup.spec, lane)
     for row in pairs("row driver", measure_row, RowDriverResult, (setup, driven), circuits("row"), workers):
         yield from row_driver.rows(driven, row)
-    for one in _columns(setup, circuits("column"), workers):
-        yield from column.rows(column_of(setup)[0], one)
-    (spec_c, sizes_c), (spec_a, sizes_a) = column_of(setup), amplifiers
+    for one in _columns(setup, columns, circuits("column"), workers):
+        yield from column.rows(columns[0], one)
+    (spec_c, sizes_c), (spec_a, sizes_a) = columns, amplifiers
     given = setup, (spec_c, spec_a), (sizes_c, sizes_a), sizes
     for turn in pairs("turn", measure_turn, TurnResult, given, circuits("column", "amplifier"), workers):
         yield from column.turn_rows(spec_c, turn)
@@ -239,9 +244,11 @@ def _measured(
         yield from amplifier.rows(amplifiers[0], both)
 
 
-def _columns(setup: Setup, drawn: Mapping[str, Sequence[Extracted]], workers: int) -> Iterator[Pair[ColumnResult]]:
+def _columns(
+    setup: Setup, sized: tuple[ColumnSpec, ColumnSizes], drawn: Mapping[str, Sequence[Extracted]], workers: int
+) -> Iterator[Pair[ColumnResult]]:
     """Yield a column at every corner."""
-    return pairs("column", column.measure, ColumnResult, (setup, *column_of(setup)), drawn, workers)
+    return pairs("column", column.measure, ColumnResult, (setup, *sized), drawn, workers)
 
 
 def _amplifiers(

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from talbot.models.parameters import ParameterError, SensorParameters
+from talbot.models.parameters import STANDARD, ArrayParameters, ParameterError, SensorParameters
 from talbot.pixels.circuits import column as columns
 from talbot.pixels.circuits import column_block as block
 from talbot.pixels.circuits.column import TAPS, column, holder
@@ -198,3 +198,16 @@ def test_a_column_in_its_turn():
     assert turn["sel"] and not turn["seln"] and [turn[f"s{t}"] for t in range(TAPS)] == [False, False, True, False]
     for other in (selected(group=True, unasked0=False), selected(k=True, unasked0=False)):
         assert not other["sel"] and not other["s0"]
+
+
+def test_lines_follow_the_pitch_and_drawn_columns_refuse_more_capacitance():
+    def sensor(rows, cols, pitch=13.5e-6):
+        return replace(STANDARD, array=ArrayParameters(rows, cols, pitch))
+
+    wide = ColumnSpec.of(sensor(384, 384))
+    assert wide.line > SPEC.line and wide.wire > SPEC.wire and wide.ohm > SPEC.ohm
+    assert ColumnSpec.of_drawn(STANDARD) == SPEC and ColumnSpec.of_drawn(sensor(200, 200)).line < SPEC.line
+    with pytest.raises(ParameterError, match=r"array.rows = 384: must be at most 228 at array.pitch = 1.5e-05"):
+        ColumnSpec.of_drawn(sensor(384, 200, 15e-6))
+    with pytest.raises(ParameterError, match=r"array.cols = 384: must be at most 263 at array.pitch = 1.5e-05"):
+        ColumnSpec.of_drawn(sensor(200, 384, 15e-6))

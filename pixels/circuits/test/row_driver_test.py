@@ -5,7 +5,7 @@ from itertools import product
 
 import pytest
 
-from talbot.models.parameters import ParameterError
+from talbot.models.parameters import STANDARD, ArrayParameters, ParameterError, drawn_lines
 from talbot.pixels.circuits.row_driver import (
     BANK_INPUTS,
     BANK_OUTPUTS,
@@ -118,3 +118,11 @@ def test_rows_are_read_once_the_columns_reset_has_ended(read, ref_ctl):
     driven = dict.fromkeys(BANK_INPUTS, False) | {"read": read, "ref_ctl": ref_ctl}
     levels = settled(bank(), driven)
     assert levels["read_line"] == (read and not ref_ctl)
+
+
+def test_lines_follow_the_pitch_and_too_long_ones_are_refused():
+    wide = RowDriverSpec.of(replace(STANDARD, array=ArrayParameters(384, 384, 15e-6)))
+    assert wide.ohm == drawn_lines(15.0).row_ohm > SPEC.ohm and wide.farad > SPEC.farad
+    said = "array.cols = 1536: must be at most 955 .* \\(array.pitch = 1.5e-05, chip.f_clk = 1e\\+07\\)"
+    with pytest.raises(ParameterError, match=said):
+        RowDriverSpec.of(replace(STANDARD, array=ArrayParameters(384, 1536, 15e-6)))

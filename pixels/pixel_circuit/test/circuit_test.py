@@ -32,7 +32,7 @@ ngspice = pytest.mark.needs("ngspice")
 @pytest.fixture(scope="module")
 def made(require):
     require("layout")
-    return drawn("sky130")
+    return drawn("sky130", ArrayParameters().pitch_um)
 
 
 def card(process):
