@@ -70,6 +70,14 @@ def column_nets(number: int, lanes: int) -> tuple[str, ...]:
     return tuple(nets.get(pin, pin) for pin in map(block_line, PINS))
 
 
+def check_columns(array: ArrayParameters, lanes: int) -> None:
+    """Raise ParameterError for a pitch at which no column is drawn, or for too few lines."""
+    check_pitch(array.pitch_um)
+    check_int("chip.lanes", lanes, 1, LANES)
+    if (most := lanes * GROUPS * PLACES) < array.cols:
+        raise ParameterError(f"array.cols = {array.cols}: must be at most {most}, the lines of {lanes} lanes")
+
+
 def draw_columns(
     layout: "db.Layout",
     masks: AnalogMasks,
@@ -82,10 +90,7 @@ def draw_columns(
 
     Raises ParameterError for a pitch at which nothing is drawn, or for too many lines.
     """
-    check_pitch(array.pitch_um)
-    check_int("chip.lanes", lanes, 1, LANES)
-    if (most := lanes * GROUPS * PLACES) < array.cols:
-        raise ParameterError(f"array.cols = {array.cols}: must be at most {most}, the lines of {lanes} lanes")
+    check_columns(array, lanes)
     d, count, pitch = devices(sizes), array.cols, array.pitch_um
     plan = column_plan(d, sizes, masks, extra, lanes)
     canvas = Canvas(layout, "column", masks.base)
