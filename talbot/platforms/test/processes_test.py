@@ -42,8 +42,8 @@ def test_figures_fit_each_other(pdk):
     for size in (tech.row_um, tech.site_um, tech.strap_um, *tech.pin_pitch_um.values()):
         assert abs(size / tech.grid_um - round(size / tech.grid_um)) < 1e-6
     assert all(via.size_um + 2 * via.enclosure_um < tech.strap_um for via in tech.vias)
-    assert tech.fill.density < tech.fill.density_most and tech.fill.clearance_um >= tech.fill.space_um
-    assert list(tech.fill.sides_um) == sorted(tech.fill.sides_um, reverse=True)
+    assert tech.fill.density_least < tech.fill.density < tech.fill.density_most
+    assert set(tech.fill.clearances_um) >= {metal.name for metal in tech.metals[1:]}
 
 
 @pytest.mark.needs("layout")
@@ -57,8 +57,8 @@ def test_the_wheel_agrees(pdk):
         assert wheel.gds_layers[part.name] == part.gds
     for metal in tech.metals[1:]:
         rules, fill = wheel.tech.primitives[metal.name], tech.fill
-        assert min(fill.sides_um) >= rules.min_width and min(fill.sides_um) ** 2 >= (rules.min_area or 0)
-        assert fill.space_um >= rules.min_space
+        assert fill.width_um >= rules.min_width and fill.area_um2 >= (rules.min_area or 0)
+        assert min(fill.clearances_um[metal.name]) >= rules.min_space
     for via in tech.vias:
         rules = wheel.tech.primitives[via.name]
         assert via.size_um == pytest.approx(rules.width) and via.space_um >= rules.min_space
