@@ -5,11 +5,12 @@ cache counts as none: half a file of a full disk or of a machine that lost power
 unpickling raises, and another byte in it, which would be run as a program.
 """
 
-import hashlib
 import pickle
 from collections.abc import Callable
 from functools import cache, cached_property, update_wrapper
 from typing import Any
+
+from talbot.models.sealed import sealed, unsealed
 
 __all__ = ["njit", "vectorize"]
 
@@ -89,16 +90,14 @@ def _numba() -> Any:
             super().save(key, (key, data))
 
         def _dump(self, obj: Any) -> bytes:
-            data = super()._dump(obj)
-            return data + hashlib.sha256(data).digest()
+            return sealed(super()._dump(obj))  # the index, too, which Numba reads as a pickle
 
         def _load_data(self, name: str) -> object:
             with open(self._data_path(name), "rb") as file:
-                data = file.read()
-            end = len(data) - hashlib.sha256().digest_size
-            if hashlib.sha256(data[:end]).digest() != data[end:]:
+                data = unsealed(file.read())
+            if data is None:
                 raise ValueError(name)
-            return pickle.loads(data[:end])
+            return pickle.loads(data)
 
     caching.IndexDataCacheFile = HealingFile
     return numba

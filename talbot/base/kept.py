@@ -25,12 +25,12 @@ from talbot.base.cache import digest
 from talbot.base.files import write
 from talbot.base.paths import BUILD
 from talbot.base.sources import code
+from talbot.models.sealed import sealed, unsealed
 
 T = TypeVar("T")
 STORE = BUILD / "kept"
 MOST = 256 << 20  # bytes of a store
 _AFRESH = ContextVar("afresh", default=False)
-HEAD = hashlib.sha256().digest_size
 PLAIN = (type(None), bool, int, float, complex, str, bytes, slice, range, np.generic, np.dtype)
 
 
@@ -51,18 +51,17 @@ def kept(store: str, compute: Callable[..., T], *arguments: object, most: int = 
     except (Unnamed, ValueError):  # ValueError: an empty cell of a closure
         return compute(*arguments)
     with contextlib.suppress(OSError):
-        data = memoryview(file.read_bytes())
-        if data[:HEAD] == hashlib.sha256(data[HEAD:]).digest():
+        if (data := unsealed(file.read_bytes())) is not None:
             with contextlib.suppress(OSError):  # of another user
                 os.utime(file)
-            return pickle.loads(data[HEAD:])
+            return pickle.loads(data)
     value = compute(*arguments)
     try:
-        data = pickle.dumps(value, pickle.HIGHEST_PROTOCOL)
+        pickled = pickle.dumps(value, pickle.HIGHEST_PROTOCOL)
     except (pickle.PicklingError, AttributeError, TypeError):  # holds a function within a function
         return value
     with contextlib.suppress(OSError):  # a full disk, a folder of another user: then it is computed again
-        write(file, hashlib.sha256(data).digest() + data)
+        write(file, sealed(pickled))
         _bound(file.parent, most)
     return value
 

@@ -5,7 +5,6 @@ A page that is given a ``card`` is listed by `base.page.index`.
 
 import base64
 import contextlib
-import hashlib
 import io
 import json
 import re
@@ -26,6 +25,7 @@ from PIL.Image import Image
 
 from talbot.base.files import write
 from talbot.base.paths import BUILD
+from talbot.models.sealed import sealed, unsealed
 
 FOLDER = Path(__file__).parent
 TABLES = FOLDER / "tables.html"  # a page of `Section`s
@@ -184,16 +184,13 @@ class _Templates(BytecodeCache):
     def load_bytecode(self, bucket: Bucket) -> None:
         """Load a template's code."""
         with contextlib.suppress(OSError):
-            data = self._file(bucket).read_bytes()
-            end = len(data) - hashlib.sha256().digest_size
-            if hashlib.sha256(data[:end]).digest() == data[end:]:
-                bucket.bytecode_from_string(data[:end])
+            if (data := unsealed(self._file(bucket).read_bytes())) is not None:
+                bucket.bytecode_from_string(bytes(data))
 
     def dump_bytecode(self, bucket: Bucket) -> None:
         """Keep a template's code."""
-        data = bucket.bytecode_to_string()
         with contextlib.suppress(OSError):
-            write(self._file(bucket), data + hashlib.sha256(data).digest())
+            write(self._file(bucket), sealed(bucket.bytecode_to_string()))
 
     def _file(self, bucket: Bucket) -> Path:
         return BUILD / "templates" / bucket.key
