@@ -15,11 +15,12 @@ def fill(layout: "db.Layout", top: "db.Cell", metal: Layer, rules: Fill) -> int:
     width, side = (round(value / layout.dbu) for value in (rules.width_um, rules.side_um))
     drawn, filled = db.Region(top.begin_shapes_rec(layer)).merged(), db.Region()
     for clearance in (round(value / layout.dbu) for value in rules.clearances_um[metal.name]):
+        missing = rules.density * die.area() - drawn.area() - filled.area()
+        if missing <= 0:
+            break
         room = db.Region(die).sized(-clearance) - drawn.sized(clearance) - filled.sized(clearance)
         shapes = _shapes(room, width, side, clearance)
-        shapes = shapes.with_area(round(rules.area_um2 / layout.dbu**2), None, False)
-        wanted = rules.density * die.area() - drawn.area() - filled.area()
-        filled += _evenly(shapes, wanted)
+        filled += _evenly(shapes.with_area(round(rules.area_um2 / layout.dbu**2), None, False), missing)
     top.shapes(layer).insert(filled)
     return filled.count()
 
@@ -39,10 +40,10 @@ def _shapes(room: "db.Region", width: int, side: int, space: int) -> "db.Region"
     return wide.not_interacting(faults)
 
 
-def _evenly(shapes: "db.Region", wanted: float) -> "db.Region":
-    """Those of ``shapes`` that cover the area ``wanted``, spread over all of them."""
+def _evenly(shapes: "db.Region", area: float) -> "db.Region":
+    """Those of ``shapes`` that cover ``area``, spread over all of them."""
     polygons = sorted(shapes.each(), key=lambda polygon: (polygon.bbox().bottom, polygon.bbox().left))
-    steps = np.floor(np.arange(len(polygons) + 1) * min(1.0, max(0.0, wanted) / max(1, shapes.area())))
+    steps = np.floor(np.arange(len(polygons) + 1) * min(1.0, area / max(1, shapes.area())))
     return db.Region([polygons[k] for k in np.flatnonzero(np.diff(steps))])
 
 

@@ -11,10 +11,10 @@ from talbot.signoff.geometry.fill import densities, fill, fill_cells
 
 
 class Fill(Step[PdkParameters]):
-    """Bars on every metal except the lowest until a layer has its density or no room; diffusion and li in filler cells.
+    """Shapes on all metals but the lowest until a layer has its density or no room; diffusion and li in filler cells.
 
     density: share of every layer that is covered in its densest window. density_violations: layers with more than the
-    process allows in some window. thin_layers: those with less. Bars keep the process's clearance to other metal;
+    process allows in some window. thin_layers: those with less. Shapes keep the process's clearance to other metal;
     `extraction` counts what they add to the nets.
     """
 
