@@ -5,6 +5,7 @@ from dataclasses import asdict, dataclass, field, fields
 from math import sqrt
 from pathlib import Path
 
+from talbot.base.arguments import Number
 from talbot.base.files import staged
 from talbot.base.paths import RESULTS
 
@@ -12,6 +13,11 @@ OUT = RESULTS / "verify"
 COVERAGE = "line", "branch", "expression", "toggle", "fsm", "functional"
 PROVEN = "proven"
 SEED = 1  # of what is random, unless --seed says otherwise
+
+
+def seed_of(about: str) -> Number:
+    """Return the option --seed of a command. about: what it is the seed of."""
+    return Number("seed", about, 0, 2**32 - 1, str(SEED), note=str(SEED))
 
 
 @dataclass

@@ -8,15 +8,13 @@ from argparse import ArgumentParser, Namespace
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
-from talbot.base.arguments import whole_of
 from talbot.base.jobs import Job, worker_count
 from talbot.base.jobs import run as run_jobs
 from talbot.base.records import from_json
-from talbot.models.parameters import check_int
 from talbot.rtl.harness.icarus import MISSING, installed
 from talbot.verif.bench.cross import ARRAYS, Crossed, crossed, every
 from talbot.verif.bench.simulation import DESIGNS, SIMULATORS, BenchError, BenchTest, simulate
-from talbot.verif.results import OUT, SEED, BlockResults, Tests, write_step
+from talbot.verif.results import OUT, BlockResults, Tests, seed_of, write_step
 
 CHIP = "AspChip"
 NAMES = {"verilator": "Verilator", "icarus": "Icarus"}
@@ -68,34 +66,37 @@ def crosses(seed: int, store: Path, workers: int) -> BlockResults:
     )
 
 
+SEED_OPTION = seed_of("of the tests' random numbers")
+
+
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot cocotb`."""
     parser.add_argument("--block", action="append", choices=DESIGNS, help="may be repeated; default: all")
     parser.add_argument("--simulator", action="append", choices=SIMULATORS, help="default: both")
-    parser.add_argument("--seed", type=whole_of, default=SEED, help="of the tests' random numbers")
+    SEED_OPTION.add(parser)
     parser.add_argument("--out", type=Path, default=OUT, help="folder of bench.json and of the kept results")
     parser.add_argument("--workers", type=worker_count, default=-1, help="processes, -1 for all cores")
 
 
 def run(options: Namespace) -> int:
     """Return 0, 1 when a test failed."""
-    check_int("seed", options.seed, 0, 2**32 - 1)
+    seed = SEED_OPTION.value(options)
     simulators = options.simulator or list(SIMULATORS)
     if "icarus" in simulators and not installed():
         raise BenchError(MISSING)
-    jobs = jobs_of(options.block or list(DESIGNS), simulators, options.seed)
+    jobs = jobs_of(options.block or list(DESIGNS), simulators, seed)
     store = options.out / "bench"
     runs = from_json(list[list[BenchTest]], run_jobs(list(jobs.values()), store, "benches", options.workers))
     by_block = summary(dict(zip(jobs, runs, strict=True)))
     if CHIP in by_block and "verilator" in simulators:
-        by_block[CHIP].add(crosses(options.seed, store, options.workers))
+        by_block[CHIP].add(crosses(seed, store, options.workers))
     write_step("bench", by_block, options.out)
     for job, ran in zip(jobs.values(), runs, strict=True):
         if any(test.failure for test in ran):
             job.file(store).unlink(missing_ok=True)  # failures are tried again
     for block, here in by_block.items():
-        print(f"{block}: {here.tests.passed} passed, {here.tests.failed} failed, seed {options.seed}")
+        print(f"{block}: {here.tests.passed} passed, {here.tests.failed} failed, seed {seed}")
         for point in here.open_points:
             print(point, file=sys.stderr)
-            print(f"again: talbot cocotb --block {block} --seed {options.seed}", file=sys.stderr)
+            print(f"again: talbot cocotb --block {block} --seed {seed}", file=sys.stderr)
     return int(any(here.open_points for here in by_block.values()))

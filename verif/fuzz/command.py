@@ -24,7 +24,7 @@ from talbot.verif.fuzz.batch import BATCH, Batch, make_input, run_batch, try_inp
 from talbot.verif.fuzz.chip.guided import Search, again, search
 from talbot.verif.fuzz.chip.program import CHIPS, MAIN
 from talbot.verif.fuzz.resync import AROUND, FRAMES, sweep
-from talbot.verif.results import OUT, SEED, BlockResults, Fuzz, Resync, Sweep, write_step
+from talbot.verif.results import OUT, BlockResults, Fuzz, Resync, Sweep, seed_of, write_step
 
 CHANGES = 16  # wrong values tried at each byte of a real frame
 CYCLES = 10_000_000  # of all chips
@@ -94,10 +94,13 @@ def running(folder: Path) -> list[str]:
     ]
 
 
+SEED_OPTION = seed_of("of what is random")
+
+
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot fuzz`."""
     parser.add_argument("--inputs", type=whole_of, default=1_000_000, help="for the decoder")
-    parser.add_argument("--seed", type=whole_of, default=SEED, help="default: %(default)s")
+    SEED_OPTION.add(parser)
     parser.add_argument(
         "--changes", type=whole_of, default=CHANGES, help="wrong values at each byte of the real frames, 0..255"
     )
@@ -113,7 +116,7 @@ def run(options: Namespace) -> int:
     """Return 0, 1 when an input failed."""
     folder = options.out / "fuzz"
     check_int("inputs", options.inputs, 0, 10**9)
-    check_int("seed", options.seed, 0, 2**32 - 1)
+    seed = SEED_OPTION.value(options)
     check_int("changes", options.changes, 0, 255)
     check_int("cycles", options.cycles, 0, 10**12)
     if options.session:
@@ -121,24 +124,24 @@ def run(options: Namespace) -> int:
     if options.only:
         for number in options.only:
             check_int("only", number, 0, 10**9)
-        return show(options.seed, *options.only)
+        return show(seed, *options.only)
     for mark in folder.glob("at.*"):
         mark.unlink(missing_ok=True)
     try:
-        planned = batches(options.inputs, options.seed, folder)
+        planned = batches(options.inputs, seed, folder)
         done = from_json(list[Batch], run_jobs(planned, folder, "fuzz"))
-        jobs = sweeps(options.changes, options.seed) if options.changes else []
+        jobs = sweeps(options.changes, seed) if options.changes else []
         swept = from_json(list[Sweep], run_jobs(jobs, folder, "resync"))
-        guided = searches(options.cycles, options.seed, folder) if options.cycles else []
+        guided = searches(options.cycles, seed, folder) if options.cycles else []
         searched = from_json(list[Search], run_jobs(guided, folder, "chip"))
     except TerminatedWorkerError:
         where = "; ".join(running(folder))
-        return failures([f"a process ended (crash or timeout) at: {where}; seed {options.seed}: see --only"])
+        return failures([f"a process ended (crash or timeout) at: {where}; seed {seed}: see --only"])
     every = zip((*planned, *jobs, *guided), (*done, *swept, *searched), strict=True)
     for job, result in every:
         if result.failures:
             job.file(folder).unlink(missing_ok=True)  # failures are tried again
-    results = summarize(options.seed, done, swept) | summarize_chip(options.seed, searched)
+    results = summarize(seed, done, swept) | summarize_chip(seed, searched)
     write_step("fuzz", results, options.out)
     return report(results)
 

@@ -12,13 +12,13 @@ from dataclasses import asdict, dataclass
 from itertools import islice
 from pathlib import Path
 
-from talbot.base.arguments import number_of, whole_of
+from talbot.base.arguments import number_of
 from talbot.base.jobs import Job
 from talbot.base.jobs import run as run_jobs
 from talbot.base.paths import PACKAGE
 from talbot.base.records import from_json
 from talbot.base.sources import code
-from talbot.models.parameters import check_int, check_real
+from talbot.models.parameters import check_real
 from talbot.rtl.replay import load
 from talbot.rtl.tops import TOPS
 from talbot.verif.coverage.testplan import folder_of
@@ -37,7 +37,7 @@ from talbot.verif.mutation.judge import (
 from talbot.verif.mutation.mutants import Mutant, generate, with_mutants
 from talbot.verif.mutation.operators import rewritten
 from talbot.verif.mutation.planted import jobs as bugs
-from talbot.verif.results import OUT, SEED, BlockResults, Mutants, write_step
+from talbot.verif.results import OUT, SEED, BlockResults, Mutants, seed_of, write_step
 from talbot.verif.verilated.program import compile_program
 
 NUMBERS = {  # of mutants of bits, and as many of the text
@@ -156,10 +156,13 @@ def summary(mutants: Sequence[Mutant], judged: Sequence[Judgement]) -> BlockResu
     )
 
 
+SEED_OPTION = seed_of("of the sample")
+
+
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot mutate`."""
     parser.add_argument("--only", nargs="+", choices=TOPS, metavar="BLOCK", help=f"of {', '.join(TOPS)}")
-    parser.add_argument("--seed", type=whole_of, default=SEED, help="of the sample")
+    SEED_OPTION.add(parser)
     parser.add_argument("--factor", type=number_of, default=1.0, help="of the sample's size")
     parser.add_argument("--out", type=Path, default=OUT, help="folder of mutation.json")
 
@@ -167,8 +170,8 @@ def add_arguments(parser: ArgumentParser) -> None:
 def run(options: Namespace) -> int:
     """Return 0, 1 with survivors."""
     check_real("factor", options.factor, 1e-3, 100)
-    check_int("seed", options.seed, 0, 2**32 - 1)
-    summaries = try_mutants(options.only or TOPS, options.out / "mutation", options.factor, options.seed)
+    seed = SEED_OPTION.value(options)
+    summaries = try_mutants(options.only or TOPS, options.out / "mutation", options.factor, seed)
     write_step("mutation", summaries, options.out)
     whole = Counter()
     for block, entry in summaries.items():
@@ -177,5 +180,5 @@ def run(options: Namespace) -> int:
         print(f"{block}: {json.dumps(counts)}", flush=True)
         for text in entry.open_points:
             print(f"  {text}")
-    print(f"all, seed {options.seed}: {json.dumps(whole)}")
+    print(f"all, seed {seed}: {json.dumps(whole)}")
     return int(whole[SURVIVED] > 0)

@@ -12,16 +12,14 @@ from dataclasses import asdict
 from pathlib import Path
 from time import perf_counter
 
-from talbot.base.arguments import whole_of
 from talbot.base.check import work_begins
 from talbot.base.command import failures
 from talbot.base.files import marked, staged
-from talbot.models.parameters import check_int
 from talbot.verif.report import document, limits
 from talbot.verif.report.merge import summarize
 from talbot.verif.report.page import render
 from talbot.verif.report.steps import STEPS, Outcome, read_step, run_step
-from talbot.verif.results import OUT, SEED, BlockResults
+from talbot.verif.results import OUT, SEED, BlockResults, seed_of
 
 BY_NAME = {step.name: step for step in STEPS}
 
@@ -41,6 +39,9 @@ def outcomes(chosen: Collection[str], out: Path, seed: int = SEED) -> list[Outco
     return done
 
 
+SEED_OPTION = seed_of("of tests, benches and fuzz")
+
+
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot verify`."""
     parser.add_argument(
@@ -51,7 +52,7 @@ def add_arguments(parser: ArgumentParser) -> None:
         help=f"run these alone, and read the kept results of the others; of {', '.join(BY_NAME)}",
     )
     parser.add_argument("--read", action="store_true", help="run nothing: report on the kept results")
-    parser.add_argument("--seed", type=whole_of, default=SEED, help="of tests, benches and fuzz")
+    SEED_OPTION.add(parser)
     parser.add_argument("--out", type=Path, default=OUT, help="folder of the results and the report")
     parser.add_argument("--document", type=Path, help="Markdown file whose tables of steps and sizes to write")
 
@@ -59,7 +60,7 @@ def add_arguments(parser: ArgumentParser) -> None:
 def run(options: Namespace) -> int:
     """Return 0, 1 where a point is open."""
     start, out = perf_counter(), options.out
-    check_int("seed", options.seed, 0, 2**32 - 1)
+    seed = SEED_OPTION.value(options)
     held = limits.read()
     if options.document:
         for name in ("steps", "sizes"):
@@ -67,7 +68,7 @@ def run(options: Namespace) -> int:
     work_begins()
     out.mkdir(parents=True, exist_ok=True)
     load = document.load()
-    done = outcomes([] if options.read else options.steps or list(BY_NAME), out, options.seed)
+    done = outcomes([] if options.read else options.steps or list(BY_NAME), out, seed)
     runs = document.record(done, out, load)
     if options.document:
         document.put(options.document, done, runs)

@@ -20,7 +20,7 @@ from talbot.models.digital.pattern import PatternEnd
 from talbot.models.parameters import ArrayParameters, ChipParameters, SensorParameters, check_int
 from talbot.rtl.export import translate
 from talbot.verif.formal.engine import version
-from talbot.verif.results import OUT, SEED, BlockResults, StuckAt, write_step
+from talbot.verif.results import OUT, BlockResults, StuckAt, seed_of, write_step
 from talbot.verif.stuck_at.faults import OUTPUT, collapsed
 from talbot.verif.stuck_at.netlist import OPERATORS, synthesize
 from talbot.verif.stuck_at.simulate import Simulator
@@ -82,19 +82,22 @@ def measure(sample: int, seed: int) -> Measured:
     return Measured(len(every), cycles, places)
 
 
+SEED_OPTION = seed_of("of the sample and of what is random at the pins")
+
+
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot stuck-at`."""
     parser.add_argument("--sample", type=whole_of, default=500, help="faults, of all; 0: all")
-    parser.add_argument("--seed", type=whole_of, default=SEED, help="of the sample and of what is random at the pins")
+    SEED_OPTION.add(parser)
     parser.add_argument("--out", type=Path, default=OUT, help="folder of stuck_at.json")
 
 
 def run(options: Namespace) -> int:
     """Print the coverage by block; the kept result has every fault of the sample."""
     check_int("sample", options.sample, 0, 10**9)
-    check_int("seed", options.seed, 0, 2**32 - 1)
-    inputs = options.sample, options.seed, version("yosys")
-    job = Job("stuck-at", measure, (options.sample, options.seed), inputs)
+    seed = SEED_OPTION.value(options)
+    inputs = options.sample, seed, version("yosys")
+    job = Job("stuck-at", measure, (options.sample, seed), inputs)
     measured = from_json(Measured, run_jobs([job], options.out / "stuck_at", "stuck-at", 1)[0])
     total, hit = (
         Counter(place.block for place in places)

@@ -9,7 +9,6 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
-from talbot.base.arguments import whole_of
 from talbot.base.command import failures
 from talbot.base.jobs import Job, kept
 from talbot.base.jobs import run as run_jobs
@@ -17,9 +16,9 @@ from talbot.base.paths import ROOT
 from talbot.base.records import from_json
 from talbot.base.sources import code
 from talbot.base.tools import located
-from talbot.models.parameters import ParameterError, check_int
+from talbot.models.parameters import ParameterError
 from talbot.verif.needs import NEEDS, needs_in
-from talbot.verif.results import OUT, SEED, BlockResults, Fault, Tests, write_step
+from talbot.verif.results import OUT, SEED, BlockResults, Fault, Tests, seed_of, write_step
 from talbot.verif.suite.blocks import blocks_of, level_of
 from talbot.verif.suite.pytest_folder import Case, FolderRun, folders, run_folder
 
@@ -86,29 +85,32 @@ def last_seconds(store: Path) -> dict[str, float]:
     return {result["folder"]: result["seconds"] for path in paths for result in kept(path)}
 
 
+SEED_OPTION = seed_of("of Hypothesis")
+
+
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot suite`."""
     parser.add_argument("--folder", nargs="+", metavar="NAME", help="test folders; default: all")
-    parser.add_argument("--seed", type=whole_of, default=SEED, help="of Hypothesis")
+    SEED_OPTION.add(parser)
     parser.add_argument("--out", type=Path, default=OUT, help="folder of suite.json")
 
 
 def run(options: Namespace) -> int:
     """Return 0, 1 when a test failed."""
     store = options.out / "suite"
-    check_int("seed", options.seed, 0, 2**32 - 1)
+    seed = SEED_OPTION.value(options)
     every = folders()
     for folder in options.folder or ():
         if folder not in every:
             raise ParameterError(f"folder = {folder!r}: must be a folder of tests, as {every[0]}")
-    planned = jobs(options.folder or every, last_seconds(store) if store.exists() else {}, options.seed)
+    planned = jobs(options.folder or every, last_seconds(store) if store.exists() else {}, seed)
     done = from_json(list[FolderRun], run_jobs(planned, store, "tests"))
     forget(planned, done, store)
     write_step("suite", summarize(done), options.out)
     cases = [case for result in done for case in result.cases]
     failures(f"{case.test} = {case.outcome}: {case.message[:300]}" for case in cases if case.outcome != PASSED)
     if failed := [case.test for case in cases if case.outcome == FAILED]:
-        print(f"again: python -m pytest {' '.join((*options_of(options.seed), *map(shlex.quote, failed[:10])))}")
+        print(f"again: python -m pytest {' '.join((*options_of(seed), *map(shlex.quote, failed[:10])))}")
     counts = Counter(case.outcome for case in cases)
     print(", ".join(f"{counts[outcome]} {outcome}" for outcome in (PASSED, FAILED, SKIPPED)))
     return int(counts[FAILED] > 0)
