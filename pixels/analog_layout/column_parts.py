@@ -37,7 +37,7 @@ class Cap(NamedTuple):
 
     lower, upper: nets of the plates.
     from_east: the strip of its lines is in the east.
-    beside: F between the lines of both nets, as extracted.
+    between_lines: F between the lines of both nets, as extracted.
     low, high: y of the upper plate.
     above: it is over the preceding capacitor, not east of it.
     """
@@ -46,7 +46,7 @@ class Cap(NamedTuple):
     lower: str
     upper: str
     from_east: bool = False
-    beside: float = 0.0
+    between_lines: float = 0.0
     low: float = (HEIGHT - PLATE_WIDTH) / 2
     high: float = (HEIGHT + PLATE_WIDTH) / 2
     above: bool = False
@@ -196,7 +196,7 @@ PIECES = (
         ),
         ("back_b.tap0.inner", "back_b.tap0.outer", "back_b.x", "back_b.kick", "cn", "vbp", "vcp"),
         ("back_a.x", "back_a.f", "seln", "start_a", "back_a.tap0.inner", "back_a.tap0.outer", "back_a.kick"),
-        # Between x and what its sample is not to depend on: kick, start_a. Beside cin_a: no node of the other diode's
+        # Between x and what its sample is not to depend on: kick, start_a. Next to cin_a: no node of the other diode's
         {
             "cn": 2,
             "vbp": 5,

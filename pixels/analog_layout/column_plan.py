@@ -114,7 +114,7 @@ def column_plan(
     for number, group in enumerate(CAPS):
         for k, cap in enumerate(group):
             left = plates[-1].left if cap.above else snap(x + NEXT_PLATE_AT * (k > 0))
-            length = length_um(farads[cap.name] - cap.beside, masks, cap.high - cap.low)
+            length = length_um(farads[cap.name] - cap.between_lines, masks, cap.high - cap.low)
             plates.append(Drawn(cap, left, snap(left + length)))
             x = max(x, plates[-1].right) if cap.above else plates[-1].right
         if number == len(PIECES):

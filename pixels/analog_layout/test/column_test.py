@@ -54,7 +54,7 @@ def test_plates_have_the_circuits_capacitance(cell):
         value, nets = farads[plate.name]
         assert {plate.upper, plate.lower} == nets
         step = 0.005 * (2 * 8.2 + 0.38)  # fF of half a step of the grid on either side
-        drawn = value - next(cap.beside for group in CAPS for cap in group if cap.name == plate.name)
+        drawn = value - next(cap.between_lines for group in CAPS for cap in group if cap.name == plate.name)
         assert 2 * plate.area + 0.19 * plate.edge == pytest.approx(1e15 * drawn, abs=step)
     with pytest.raises(ParameterError, match="capacitor = 1e-15 F: must be 1 um long"):
         length_um(1e-15, MASKS)
