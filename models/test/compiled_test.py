@@ -47,12 +47,12 @@ def test_an_entry_of_another_signature_is_compiled_again(stats, tmp_path):
     assert stats() == (0, 1)
     (index,) = (tmp_path / "__pycache__").glob("*.nbi")
     (code,) = (tmp_path / "__pycache__").glob("*.nbc")
-    kept = index.read_bytes(), code.read_bytes()
+    files = index.read_bytes(), code.read_bytes()
     index.unlink()
     assert stats(2.5) == (0, 1)
     other = index.read_bytes()
-    index.write_bytes(kept[0])
-    assert code.read_bytes() != kept[1] and other != kept[0]
+    index.write_bytes(files[0])
+    assert code.read_bytes() != files[1] and other != files[0]
     assert [stats(), stats()] == [(0, 1), (1, 0)]
 
 

@@ -175,7 +175,9 @@ def test_names_and_forms_of_written_files(tmp_path):
         write_light_field(LightField(CODES), tmp_path / name)
         np.testing.assert_array_equal(read_light_field(tmp_path / name).values, CODES)
     write_light_field(LightField(CODES), tmp_path / "x.webp")
-    found = read_light_field(tmp_path / "x.webp", 3)
-    np.testing.assert_allclose(found.view(0, 2), LightField(CODES).view(0, 2), atol=1e-9)  # it has no gray, three equal
+    light_field = read_light_field(tmp_path / "x.webp", 3)
+    np.testing.assert_allclose(
+        light_field.view(0, 2), LightField(CODES).view(0, 2), atol=1e-9
+    )  # it has no gray, three equal
     with pytest.raises(ParameterError, match="path = 'x.webp': must be .png or .tif, for 16 bits"):
         write_light_field(LightField(CODES / 255), tmp_path / "x.webp")

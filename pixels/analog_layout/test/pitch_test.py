@@ -57,19 +57,19 @@ def test_ways_and_capacitors_have_room_at_any_pitch(steps):
 @pytest.mark.parametrize("pitch", (12.03, 13.5))
 def test_a_row_has_whole_vias_and_its_lines_at_the_pins(pitch):
     array = ArrayParameters(1, 384, round(1e-6 * pitch, 12))
-    made = row_cell(MASKS, array)
+    drawn = row_cell(MASKS, array)
     for via in MASKS.base.vias:
         boxes = [
-            polygon.bbox() for polygon in db.Region(made.cell.begin_shapes_rec(made.layout.layer(*via.gds))).each()
+            polygon.bbox() for polygon in db.Region(drawn.cell.begin_shapes_rec(drawn.layout.layer(*via.gds))).each()
         ]
         assert len({(box.width(), box.height()) for box in boxes}) <= 1
         assert all(edge % 5 == 0 for box in boxes for edge in (box.left, box.bottom))
-    third = db.Region(made.cell.begin_shapes_rec(made.layout.layer(*MASKS.base.metals[3].gds))).merged()
-    east, places = made.cell.dbbox().right, dict(row_lines(array))
+    third = db.Region(drawn.cell.begin_shapes_rec(drawn.layout.layer(*MASKS.base.metals[3].gds))).merged()
+    east, places = drawn.cell.dbbox().right, dict(row_lines(array))
     for line in ROW_LINES:
         at = places[f"{line}[0]"]
         assert not (db.Region(db.DBox(east - 1, at - 0.01, east, at + 0.01).to_itype(0.001)) - third).count()
-    assert made.cell.dbbox().height() == pytest.approx(pitch)
+    assert drawn.cell.dbbox().height() == pytest.approx(pitch)
 
 
 def test_a_pitch_off_the_grid_is_refused_and_the_smallest_holds_a_column():
