@@ -9,12 +9,11 @@ from talbot.base.table import markdown_table
 from talbot.models.parameters.registers import Field, RegisterMap
 
 NOTE = (
-    "Generated from models/parameters/registers/asp_chip.rdl by talbot document. Byte addresses; a field of more than "
-    "a byte is little-endian. Access: ro read only, rw read and write (the configuration), wo write only (reads 0), "
-    "w1c sticky, cleared by writing 1; then the reset value, if not 0. A register without a name has its field's. "
-    "Other addresses and bits read 0 and ignore writes."
+    "Generated from models/parameters/registers/asp_chip.rdl by talbot document. Byte addresses, little-endian. "
+    "Access: ro read only, rw read and write (the configuration), wo write only (reads 0), w1c sticky, cleared by "
+    "writing 1; then the reset value, if not 0. Other addresses and bits read 0 and ignore writes."
 )
-COLUMNS = "address[bits] register", "field", "access", "meaning"
+COLUMNS = "address[bits]", "field", "access", "meaning"
 
 
 @dataclass(frozen=True)
@@ -28,12 +27,13 @@ class Row:
     def cells(self) -> tuple[str, ...]:
         """Return the row's texts, in the order of COLUMNS."""
         f, high = self.field, self.field.lsb + self.field.width - 1
-        register = f.register.partition("[")[0] + (f"[0..{self.more}]" if self.more else "")
+        register = f.register.partition("[")[0]
+        name = f"{register}[0..{self.more}]" if self.more else f.name if f.name == register else f"{register}.{f.name}"
         bits = f"{high}:{f.lsb}" if f.width > 1 else f"{f.lsb}"
         index = f" + {f.size} i " if self.more else ""
         return (
-            f"0x{f.address:02X}{index}[{bits}]" + (f" {register}" if register != f.name else ""),
-            f.name,
+            f"0x{f.address:02X}{index}[{bits}]",
+            name,
             f"{f.access}, {f.reset:#x}" if f.reset > 9 else f"{f.access}, {f.reset}" if f.reset else f.access,
             f.description,
         )
