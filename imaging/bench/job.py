@@ -126,24 +126,23 @@ def expected(sensor: SensorParameters, lux: float, holes: int) -> str:
     tangents = bench.angles(holes)
     light = bench.relative(sensor, tangents)
     gain = np.diff(bench.PAD_V[[-5, -1]])[0] / np.diff(bench.DIODE_V[[-5, -1]])[0]
+    lamp = bench.desk_lamp(lux)
+    seconds = bench.exposures(light, lamp)
     rows = []
-    for lamp in (bench.desk_lamp(lux), bench.laser_pointer()):
-        seconds = bench.exposures(light, lamp)
-        for name, pixels in _groups(sensor):
-            row, col = np.array(pixels).T
-            current = light[:, row, col] * lamp.plain_current()
-            time = float(seconds[row, col].min())
-            volts = gain * _fallen(current * time)
-            rows.append(
-                (
-                    "" if name != "plain" else lamp.name,
-                    name,
-                    f"{1e12 * current.min():.3g}..{1e12 * current.max():.3g}",
-                    _time(time),
-                    f"{1e3 * volts.min():.0f}..{1e3 * volts.max():.0f}",
-                )
+    for name, pixels in _groups(sensor):
+        row, col = np.array(pixels).T
+        current = light[:, row, col] * lamp.plain_current()
+        time = float(seconds[row, col].min())
+        volts = gain * _fallen(current * time)
+        rows.append(
+            (
+                name,
+                f"{1e12 * current.min():.3g}..{1e12 * current.max():.3g}",
+                _time(time),
+                f"{1e3 * volts.min():.0f}..{1e3 * volts.max():.0f}",
             )
-    return markdown_table(("light", "pixels", "pA of a diode", "exposure", "fall of a pad, mV"), rows, 2)
+        )
+    return markdown_table(("pixels", "pA of a diode", "exposure", "fall of a pad, mV"), rows, 1)
 
 
 def _groups(sensor: SensorParameters) -> list[tuple[str, list[tuple[int, int]]]]:

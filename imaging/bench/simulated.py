@@ -42,13 +42,11 @@ OFFSET, GAIN = 10e-3, 0.002  # rms of the followers
 CROSSTALK = 0.004  # of a plain pixel's signal, into a covered one
 DOUBLING = 8.0  # K
 FILTER_NM, FILTER = 20.0, 0.8  # width and transmission of the lamp's filter
-BEAM_M, LASER_W, LASER_NM = 20e-3, 1e-3, 532.0  # diameter of the widened beam of a laser pointer
 
 
 class Lamp(NamedTuple):
     """Light on the chip. irradiance: W/m2, of a beam square to it."""
 
-    name: str
     irradiance: float
     wavelength_nm: float
 
@@ -74,12 +72,7 @@ def desk_lamp(lux: float) -> Lamp:
     """White light of ``lux`` on the chip, through a filter at the gratings' wavelength."""
     room, wavelength = RoomParameters(illuminance=lux), 1e3 * gratings("sky130").wavelength_um
     white = room.illuminance / room.efficacy
-    return Lamp(f"desk lamp, {lux:g} lux", white * FILTER * FILTER_NM / 300, wavelength)  # equal energy, 400..700 nm
-
-
-def laser_pointer() -> Lamp:
-    """A laser pointer whose beam a lens has widened."""
-    return Lamp(f"laser pointer, {1e3 * LASER_W:g} mW", LASER_W / (np.pi / 4 * BEAM_M**2), LASER_NM)
+    return Lamp(white * FILTER * FILTER_NM / 300, wavelength)  # equal energy, 400..700 nm
 
 
 def stage(tangents: Floats) -> Floats:

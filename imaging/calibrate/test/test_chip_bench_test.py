@@ -89,10 +89,9 @@ def test_another_tile_than_the_chips_is_refused(tmp_path, capsys):
 def test_expected_readings_follow_the_light():
     rows = [line.split("|") for line in expected(STANDARD, 500.0, 9).splitlines()[2:]]
     twice = [line.split("|") for line in expected(STANDARD, 1000.0, 9).splitlines()[2:]]
-    assert [row[2].strip() for row in rows[:5]] == ["plain", "beta 12", "beta 18", "beta 24", "covered"]
-    ratios = [float(b[3].split("..")[1]) / float(a[3].split("..")[1]) for a, b in zip(rows[:5], twice[:5], strict=True)]
+    assert [row[1].strip() for row in rows] == ["plain", "beta 12", "beta 18", "beta 24", "covered"]
+    ratios = [float(b[2].split("..")[1]) / float(a[2].split("..")[1]) for a, b in zip(rows, twice, strict=True)]
     np.testing.assert_allclose(ratios, 2, rtol=0.02)
-    assert rows[5:] == twice[5:]  # the laser's
 
 
 @pytest.mark.needs("layout")
