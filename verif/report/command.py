@@ -54,7 +54,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--read", action="store_true", help="run nothing: report on the kept results")
     SEED_OPTION.add(parser)
     parser.add_argument("--out", type=Path, default=OUT, help="folder of the results and the report")
-    parser.add_argument("--document", type=Path, help="Markdown file whose tables of steps and sizes to write")
+    parser.add_argument("--document", type=Path, help="Markdown file whose table of steps to write")
 
 
 def run(options: Namespace) -> int:
@@ -63,8 +63,7 @@ def run(options: Namespace) -> int:
     seed = SEED_OPTION.value(options)
     held = limits.read()
     if options.document:
-        for name in ("steps", "sizes"):
-            marked(options.document, name)
+        marked(options.document, "steps")
     work_begins()
     out.mkdir(parents=True, exist_ok=True)
     load = document.load()

@@ -10,7 +10,6 @@ from pathlib import Path
 from talbot.base.files import insert, write
 from talbot.base.records import from_json
 from talbot.base.tools import commit
-from talbot.verif.formal import manifest, sizes
 from talbot.verif.report.merge import summarize
 from talbot.verif.report.steps import Outcome
 from talbot.verif.results import BlockResults
@@ -83,9 +82,8 @@ def table(done: Sequence[Outcome], runs: Mapping[str, Run]) -> str:
 
 
 def put(document: Path, done: Sequence[Outcome], runs: Mapping[str, Run]) -> None:
-    """Write the tables of steps and of sizes into ``document``. Raises ParameterError where it lacks their marks."""
+    """Write the table of steps into ``document``. Raises ParameterError where it lacks its marks."""
     insert(document, "steps", table(done, runs))
-    insert(document, "sizes", sizes.table(manifest.every()))
 
 
 def load() -> float:
