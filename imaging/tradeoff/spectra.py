@@ -49,7 +49,7 @@ def measure(point: Point) -> dict[str, Any]:
     sensor = tabled(replace(STANDARD, spectral=spectral), pixel)
     fits = _fits(lamp, spectral) if pixel == ENDLESS else {}
     types = {kind.beta: kind for kind in in_light(sensor, lamp).tile.types}
-    row: dict[str, Any] = {"pixel": pixel, "light": name, "filter_nm": width or "none"}
+    row: dict[str, Any] = {"pixel": pixel, "light": f"{name}, {width} nm" if width else name}
     for beta in (12.0, 18.0, 24.0):
         row[f"m_{beta:g}"] = fits[beta].m if fits else types[beta].m
     d = float(np.mean([one.diattenuation for one in fits.values()])) if fits else sensor.optics.diattenuation
@@ -101,6 +101,5 @@ def plot(rows: Sequence[dict[str, Any]]) -> Figure:
     series: dict[str, list[tuple[float, float, str]]] = {}
     for r in rows:
         depth = float(np.mean([float(r[f"m_{beta}"]) for beta in (12, 18, 24)]))
-        label = r["light"] if r["filter_nm"] == "none" else f"{r['light']}, {r['filter_nm']} nm"
-        series.setdefault(r["pixel"], []).append((depth, float(r["light_field_db"]), label))
+        series.setdefault(r["pixel"], []).append((depth, float(r["light_field_db"]), r["light"]))
     return curves(series, "mean modulation depth", "PSNR of the light field (dB)", "Light: what its spectrum costs")
