@@ -12,7 +12,7 @@ BODIES = re.compile(r"\brbodymod *= *1(\.0)?\b")
 
 @dataclass(frozen=True)
 class Accuracy:
-    """Tolerances of ngspice; with these decisions are within 10 ps of the off-line reference's (docs/results/cosim.md).
+    """Tolerances of ngspice; with these decisions are within 10 ps of a reference's (docs/decisions/0004-cosim.md).
 
     Attributes
     ----------
