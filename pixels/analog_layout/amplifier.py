@@ -30,15 +30,12 @@ from talbot.pixels.analog_layout.strip import (
     RAIL_HALF,
     SECOND,
     THIRD,
-    TRUNK,
     WELL_ENDS,
-    Placed,
-    Plan,
     draw_strip,
-    in_columns,
     join_rails,
     trunk,
 )
+from talbot.pixels.analog_layout.strip_plan import TRUNK, Placed, Plan, in_columns
 from talbot.pixels.circuits.amplifier import LATE, PICK, PINS, TRIM_BITS, AmplifierSizes, amplifier
 from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.analog import AnalogMasks

@@ -13,7 +13,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from talbot.pixels.analog_layout.device import Strap, snap
-from talbot.pixels.analog_layout.strip import FIRST, SECOND, THIRD, TRACK, TRACK_PITCH
+from talbot.pixels.analog_layout.strip import FIRST, SECOND, THIRD, TRACK
+from talbot.pixels.analog_layout.strip_plan import TRACK_PITCH
 from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.layers import GdsLayer
 

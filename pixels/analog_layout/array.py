@@ -19,7 +19,8 @@ from talbot.models.parameters import ParameterError
 from talbot.pixels.analog_layout.device import GRID, Strap, snap
 from talbot.pixels.analog_layout.flat import Plate, Tap
 from talbot.pixels.analog_layout.pattern import SIDE
-from talbot.pixels.analog_layout.strip import FOURTH, SECOND, THIRD, TRACK, TRACK_PITCH
+from talbot.pixels.analog_layout.strip import FOURTH, SECOND, THIRD, TRACK
+from talbot.pixels.analog_layout.strip_plan import TRACK_PITCH
 from talbot.pixels.circuits.dac import DacSizes
 from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.analog import AnalogMasks

@@ -21,11 +21,11 @@ from talbot.pixels.analog_layout.strip import (
     RAIL_HALF,
     THIRD,
     WELL_ENDS,
-    Plan,
     draw_strip,
     join_rails,
     trunk,
 )
+from talbot.pixels.analog_layout.strip_plan import Plan
 from talbot.pixels.circuits.support import bias
 from talbot.pixels.layout.canvas import CONTACT_UM, Canvas
 from talbot.platforms.analog import AnalogMasks

@@ -12,7 +12,8 @@ So nets meet on no metal, wherever their ends are.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from talbot.pixels.analog_layout.strip import FOURTH, SECOND, THIRD, TRACK, TRACK_PITCH, TRUNK
+from talbot.pixels.analog_layout.strip import FOURTH, SECOND, THIRD, TRACK
+from talbot.pixels.analog_layout.strip_plan import TRACK_PITCH, TRUNK
 from talbot.pixels.layout.canvas import Canvas
 
 NET_SPACE = 1.0  # um, between nets on a track

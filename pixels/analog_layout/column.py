@@ -44,13 +44,13 @@ from talbot.pixels.analog_layout.strip import (
     SECOND,
     THIRD,
     TRACK,
-    TRACK_PITCH,
     Strip,
     draw_rails,
     draw_rows,
     join_rails,
     name_track,
 )
+from talbot.pixels.analog_layout.strip_plan import TRACK_PITCH
 from talbot.pixels.circuits.column import PINS
 from talbot.pixels.circuits.column_sizes import ColumnSizes
 from talbot.pixels.layout.canvas import Canvas

@@ -22,7 +22,8 @@ from talbot.pixels.analog_layout.columns import WAY_END, Columns, column_nets, d
 from talbot.pixels.analog_layout.device import snap
 from talbot.pixels.analog_layout.drawn_block import DrawnBlock
 from talbot.pixels.analog_layout.row_drivers import TOP, VIA, VIA_PAD, VIA_PITCH, chip_pin
-from talbot.pixels.analog_layout.strip import FOURTH, TRUNK
+from talbot.pixels.analog_layout.strip import FOURTH
+from talbot.pixels.analog_layout.strip_plan import TRUNK
 from talbot.pixels.blocks import DEEP_UM, AnalogSizes, Block, Pin, blocks
 from talbot.pixels.circuits.column import BIASES
 from talbot.pixels.circuits.column_block import BANK_INPUTS, BANK_OUTPUTS

@@ -30,14 +30,11 @@ from talbot.pixels.analog_layout.strip import (
     RAIL_TRUNK,
     SECOND,
     THIRD,
-    TRUNK,
-    Placed,
-    Plan,
     Strip,
     draw_strip,
-    in_columns,
     trunk,
 )
+from talbot.pixels.analog_layout.strip_plan import TRUNK, Placed, Plan, in_columns
 from talbot.pixels.circuits.column import BIASES
 from talbot.pixels.circuits.column_block import band
 from talbot.pixels.circuits.column_sizes import FINGER, ColumnSizes

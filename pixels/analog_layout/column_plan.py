@@ -8,7 +8,8 @@ from talbot.models.parameters import ParameterError
 from talbot.pixels.analog_layout import flat
 from talbot.pixels.analog_layout.column_parts import CAPS, HEIGHT, PIECES, PLATE_WIDTH, Cap, Piece
 from talbot.pixels.analog_layout.device import Device, snap
-from talbot.pixels.analog_layout.strip import RAIL_AT, Plan, in_columns
+from talbot.pixels.analog_layout.strip import RAIL_AT
+from talbot.pixels.analog_layout.strip_plan import Plan, in_columns
 from talbot.pixels.circuits.column import CONTROLS, OF_TAPS, TWICE, column
 from talbot.pixels.circuits.column_block import GROUPS, PLACES
 from talbot.pixels.circuits.column_sizes import FINGER, ColumnSizes

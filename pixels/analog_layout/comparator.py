@@ -10,7 +10,8 @@ from collections.abc import Mapping, Sequence
 
 from talbot.pixels.analog_layout import flat
 from talbot.pixels.analog_layout.device import Device, swapped
-from talbot.pixels.analog_layout.strip import Placed, Plan, Strip, draw_strip, mirrored, trunk
+from talbot.pixels.analog_layout.strip import Strip, draw_strip, trunk
+from talbot.pixels.analog_layout.strip_plan import Placed, Plan, mirrored
 from talbot.pixels.circuits.netlist import Circuit
 from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.analog import AnalogMasks

@@ -24,7 +24,8 @@ from talbot.pixels.analog_layout.cells import Cell, new_canvas
 from talbot.pixels.analog_layout.channel import Channel, up
 from talbot.pixels.analog_layout.drawn_block import DrawnBlock
 from talbot.pixels.analog_layout.lane import lane_cell
-from talbot.pixels.analog_layout.strip import FOURTH, RAIL_AT, SECOND, THIRD, TRUNK
+from talbot.pixels.analog_layout.strip import FOURTH, RAIL_AT, SECOND, THIRD
+from talbot.pixels.analog_layout.strip_plan import TRUNK
 from talbot.pixels.blocks import DIODES, AnalogSizes, Block, Pin, blocks
 from talbot.pixels.circuits.amplifier import TRIM_BITS, AmplifierSizes
 from talbot.pixels.circuits.dac import BITS

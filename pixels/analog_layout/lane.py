@@ -24,15 +24,13 @@ from talbot.pixels.analog_layout.strip import (
     RAIL_ENDS,
     THIRD,
     TRACK,
-    TRUNK,
     WELL_ENDS,
-    Plan,
     Strip,
     draw_strip,
-    in_columns,
     join_rails,
     trunk,
 )
+from talbot.pixels.analog_layout.strip_plan import TRUNK, Plan, in_columns
 from talbot.pixels.analog_layout.switch import ORDER
 from talbot.pixels.circuits.dac import BITS
 from talbot.pixels.circuits.interface import CHIP, LATE, LINE, interface

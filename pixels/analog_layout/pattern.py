@@ -36,12 +36,3 @@ def halves() -> npt.NDArray[np.str_]:
     """Names refp and refn in a checkerboard: each has its partner, too."""
     row, column = np.indices((SIDE, SIDE))
     return np.where((row + column) % 2 == 0, "refp", "refn")
-
-
-def centroids(names: npt.NDArray[np.str_]) -> dict[str, tuple[float, float]]:
-    """(row, column) of each capacitor's middle from the array's, in units."""
-    middle = (SIDE - 1) / 2
-    return {
-        str(name): tuple(float(k.mean() - middle) for k in np.nonzero(names == name))  # type: ignore[misc]
-        for name in np.unique(names)
-    }

@@ -8,17 +8,8 @@ from collections.abc import Iterator, Sequence
 from talbot.pixels.analog_layout.cells import Cell
 from talbot.pixels.analog_layout.comparator import BETWEEN_STRIPS, devices
 from talbot.pixels.analog_layout.row_driver import LINE_PITCH, ROOM, RowPlan, legs
-from talbot.pixels.analog_layout.strip import (
-    FOURTH,
-    RAIL_HALF,
-    SECOND,
-    THIRD,
-    Plan,
-    Strip,
-    draw_strip,
-    in_columns,
-    trunk,
-)
+from talbot.pixels.analog_layout.strip import FOURTH, RAIL_HALF, SECOND, THIRD, Strip, draw_strip, trunk
+from talbot.pixels.analog_layout.strip_plan import Plan, in_columns
 from talbot.pixels.circuits.row_driver import ADDRESS, BANK_INPUTS, BANK_OUTPUTS, CODES, CONTROLS, LATE, SIDES, bank
 from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.analog import AnalogMasks

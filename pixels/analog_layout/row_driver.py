@@ -23,16 +23,13 @@ from talbot.pixels.analog_layout.strip import (
     TAP_HALF,
     THIRD,
     TRACK,
-    TRUNK,
     WELL_ENDS,
-    Placed,
-    Plan,
     Strip,
     draw_rails,
     draw_rows,
-    in_columns,
     join_rails,
 )
+from talbot.pixels.analog_layout.strip_plan import TRUNK, Placed, Plan, in_columns
 from talbot.pixels.circuits.row_driver import CODES, CONTROLS, ROW_INPUTS, ROW_LINES, SIDES, SUPPLIES
 from talbot.pixels.layout.canvas import Canvas
 from talbot.platforms.analog import AnalogMasks

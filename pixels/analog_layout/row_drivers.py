@@ -98,10 +98,10 @@ def _plan(d: Mapping[str, Device], array: ArrayParameters, room: AnalogSizes) ->
     return plain, row_plan(d, plain.width_um, array.pitch_um, {name: south[chip_pin(name)] for name in BANK_INPUTS})
 
 
-def row_cell(masks: AnalogMasks, array: ArrayParameters, room: AnalogSizes | None = None) -> Cell:
+def row_cell(masks: AnalogMasks, array: ArrayParameters) -> Cell:
     """Return a row alone, its pins named on its tracks: what is extracted and simulated."""
     d, canvas = devices(row()), new_canvas(masks, "row")
-    _, plan = _plan(d, array, room or AnalogSizes())
+    _, plan = _plan(d, array, AnalogSizes())
     cell = as_cell(canvas, d, draw_row(canvas, masks, plan))
     _names(canvas, cell)
     canvas.box(masks.base.outline, plan.logic.left - RAIL_ENDS, 0, plan.right, plan.pitch)

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping
 
 from talbot.pixels.analog_layout.device import Device, snap
-from talbot.pixels.analog_layout.strip import DROP_PITCH, GAP, Placed
+from talbot.pixels.analog_layout.strip_plan import DROP_PITCH, GAP, Placed
 from talbot.pixels.circuits.netlist import Transistor
 
 

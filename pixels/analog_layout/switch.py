@@ -3,7 +3,8 @@
 from talbot.pixels.analog_layout.cells import MARGIN, Cell, finish, new_canvas
 from talbot.pixels.analog_layout.comparator import devices
 from talbot.pixels.analog_layout.row_driver import ROOM, legs
-from talbot.pixels.analog_layout.strip import Plan, draw_strip, in_columns
+from talbot.pixels.analog_layout.strip import draw_strip
+from talbot.pixels.analog_layout.strip_plan import Plan, in_columns
 from talbot.pixels.circuits.support import DELAYS, non_overlap
 from talbot.platforms.analog import AnalogMasks
 

@@ -24,15 +24,13 @@ from talbot.pixels.analog_layout.strip import (
     TAP_HALF,
     THIRD,
     WELL_ENDS,
-    Placed,
-    Plan,
     Strip,
     Terminal,
     draw_rails,
     draw_rows,
-    in_columns,
     trunk,
 )
+from talbot.pixels.analog_layout.strip_plan import Placed, Plan, in_columns
 from talbot.pixels.drawn import DUMMIES
 from talbot.pixels.layout.array import GROUND_BUS, SUPPLY_BUS, ArrayLayout, corner, draw_surroundings, inside
 from talbot.pixels.layout.canvas import Canvas
