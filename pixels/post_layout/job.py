@@ -32,9 +32,10 @@ from talbot.pixels.circuits.row_driver import RowDriverSpec
 from talbot.pixels.circuits.specification import LaneSpec
 from talbot.pixels.circuits.support import SupportSpec
 from talbot.pixels.datasheet.column import ColumnResult
+from talbot.pixels.datasheet.converter import amplifier_curve
 from talbot.pixels.datasheet.curves import SOURCES, fitted
 from talbot.pixels.datasheet.deck import Setup, process_of
-from talbot.pixels.datasheet.job import amplifier_curve, amplifier_of, column_of, setup_of
+from talbot.pixels.datasheet.job import amplifier_of, column_of, setup_of
 from talbot.pixels.datasheet.lane import inl
 from talbot.pixels.datasheet.linearity import inl_dnl, levels
 from talbot.pixels.datasheet.row_driver import RowDriverResult

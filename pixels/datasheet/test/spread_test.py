@@ -10,6 +10,7 @@ from talbot.cells.corner import Corner
 from talbot.pixels.circuits.amplifier import UNITS, amplifier
 from talbot.pixels.datasheet import amplifier as measurements
 from talbot.pixels.datasheet import job, spread, supply
+from talbot.pixels.datasheet.converter import polynomial
 from talbot.pixels.datasheet.tables import _table, text
 from talbot.platforms.sky130 import analog as process
 
@@ -55,7 +56,7 @@ def test_ripple_of_the_supply_is_least_where_the_loop_has_gain():
 
 def test_a_cubic_gives_its_own_points_back():
     x = np.linspace(-96, 96, 5) / 128
-    bend, rest = job.polynomial([(128 * v, 128 * v + 0.1 - 0.5 * v + 0.2 * v**2 - 0.3 * v**3) for v in x])
+    bend, rest = polynomial([(128 * v, 128 * v + 0.1 - 0.5 * v + 0.2 * v**2 - 0.3 * v**3) for v in x])
     assert bend == pytest.approx((0.1, -0.5, 0.2, -0.3)) and rest < 1e-9
 
 
