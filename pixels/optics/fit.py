@@ -102,15 +102,6 @@ def fit(response: Response) -> Fit:
     )
 
 
-def phase_slope(response: Response) -> float:
-    """Angular frequency by another way: slope of the phase of the two differences, weighted by their power."""
-    curves = response.unpolarized.mean(0)
-    signal = (curves[0] - curves[2]) + 1j * (curves[1] - curves[3])
-    order = np.argsort(response.angles)
-    phase = np.unwrap(np.angle(signal[order]))
-    return abs(float(np.polyfit(response.angles[order], phase, 1, w=np.abs(signal[order]))[0]))
-
-
 def _linear(angles: Floats, curves: Floats, turn: int, beta: float, sigma: float) -> tuple[Floats, Floats]:
     """Best mean, cosine and sine of the formula, and the residual (4, A)."""
     aperture = np.exp(-0.5 * (angles / sigma) ** 2)

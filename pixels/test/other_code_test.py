@@ -10,10 +10,11 @@ import numpy as np
 import pytest
 
 from talbot.pixels.designs import gratings
-from talbot.pixels.optics.fit import fit, phase_slope
+from talbot.pixels.optics.fit import fit
 from talbot.pixels.optics.geometry import QUADRATURE, PixelGeometry
 from talbot.pixels.optics.response import respond
 from talbot.pixels.optics.solve import Illumination, solve
+from talbot.pixels.optics.test.slope import phase_slope
 from talbot.platforms.materials import refractive_index
 
 CELLS = 560  # of a period: the edges of the lines are between them

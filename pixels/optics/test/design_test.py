@@ -8,10 +8,11 @@ import pytest
 from talbot.models.parameters import ParameterError
 from talbot.pixels.optics.closed_form import angular_frequency, talbot_depth
 from talbot.pixels.optics.design import Design, candidates, front, measure, neighbours, phased
-from talbot.pixels.optics.fit import fit, phase_slope
+from talbot.pixels.optics.fit import fit
 from talbot.pixels.optics.geometry import QUADRATURE, PixelGeometry, Slab
 from talbot.pixels.optics.response import Response, respond
 from talbot.pixels.optics.solve import Illumination, solve
+from talbot.pixels.optics.test.slope import phase_slope
 from talbot.platforms.materials import refractive_index
 from talbot.platforms.optics import optical_stack
 from talbot.platforms.processes import PROCESSES
