@@ -8,16 +8,17 @@ DIE = 5e-3  # m, side of the thesis's die [Jayasuriya2017, Sec. 3.5.1]
 BETA_COLOURS = {12.0: "#7fb3d5", 18.0: "#f5b971", 24.0: "#c39bd3"}
 GRAY = "#b0b0b0"
 LABEL = 110  # width that a label takes
+WIDTH = 360  # of the die
 
 
-def chip_svg(sensor: SensorParameters, frame: FrameParameters, width: float = 360) -> str:
+def chip_svg(sensor: SensorParameters, frame: FrameParameters) -> str:
     """Die, pixel array with the window read, column lanes and row logic, and one tile enlarged, as SVG text."""
     rows, cols, pitch = sensor.array.rows, sensor.array.cols, sensor.array.pitch
     side = max(DIE, 1.3 * pitch * max(rows, cols))
-    px = width / side
+    px = WIDTH / side
     w, h = cols * pitch * px, rows * pitch * px
-    x, y = (width - w) / 2 + 10, (width - h) / 2 - 14
-    parts = [_rect(0, 0, width, width, "#20262f", rx=6), _rect(x, y, w, h, "#3b4656")]
+    x, y = (WIDTH - w) / 2 + 10, (WIDTH - h) / 2 - 14
+    parts = [_rect(0, 0, WIDTH, WIDTH, "#20262f", rx=6), _rect(x, y, w, h, "#3b4656")]
     parts += _window(sensor, frame, x, y, w, h)
     parts += _lanes(sensor, x, y + h + 5, w)
     parts.append(_rect(x - 20, y, 14, h, "#5f8f6a"))
@@ -26,9 +27,9 @@ def chip_svg(sensor: SensorParameters, frame: FrameParameters, width: float = 36
     below = max(w, LABEL)
     parts.append(_rect(x + (w - below) / 2, y + h + 32, below, 12, "#6b7b8d"))
     parts.append(_text(x + w / 2, y + h + 41, "encoder, registers, SPI", 9))
-    parts.append(_text(width / 2, 14, f"die {side * 1e3:.3g} mm, pitch {pitch * 1e6:g} µm", 10))
-    tile = _tile(sensor, frame, width + 24, 24, 46)
-    view = f'viewBox="0 0 {width + 320} {width}" font-family="sans-serif"'
+    parts.append(_text(WIDTH / 2, 14, f"die {side * 1e3:.3g} mm, pitch {pitch * 1e6:g} µm", 10))
+    tile = _tile(sensor, frame, WIDTH + 24, 24, 46)
+    view = f'viewBox="0 0 {WIDTH + 320} {WIDTH}" font-family="sans-serif"'
     label = f"the die with {rows} x {cols} pixels and {sensor.chip.lanes} converters, and the pixel types of one tile"
     view += f' role="img" aria-label="{label}"'
     return f'<svg class="broad" xmlns="http://www.w3.org/2000/svg" {view}>{"".join(parts + tile)}</svg>'

@@ -13,6 +13,7 @@ from talbot.models.parameters import TileParameters
 
 Values = npt.NDArray[np.floating]
 
+VIEW, OVERVIEW = 96, 288  # px, sides of the pictures on a sheet
 INK, PAPER = (24, 28, 36), (255, 255, 255)
 COLD, WARM = np.array([33, 102, 172]), np.array([178, 24, 43])
 CONVERTED, ZERO, UNREAD = (250, 204, 92), (44, 52, 66), (205, 210, 218)
@@ -133,12 +134,12 @@ def edge_sheet(edges: Values, tile: TileParameters, scale: float) -> Image:
     return contact_sheet(images, labels, columns=max(1, len(images) // 3), aspect=tile.cols / tile.rows)
 
 
-def view_sheet(light_field: Values, cell: int = 96) -> Image:
+def view_sheet(light_field: Values) -> Image:
     """Return the views l[v, u, y, x] in their order, dark to bright by the field's own maximum."""
     high = float(light_field.max()) or 1.0
     v, u = light_field.shape[:2]
     images = [gray(light_field[j, i], high=high) for j in range(v) for i in range(u)]
-    return contact_sheet(images, [f"v{j - v // 2:+d} u{i - u // 2:+d}" for j in range(v) for i in range(u)], u, cell)
+    return contact_sheet(images, [f"v{j - v // 2:+d} u{i - u // 2:+d}" for j in range(v) for i in range(u)], u, VIEW)
 
 
 def sprite(images: Sequence[Sequence[Image]], width: int) -> Image:
@@ -152,7 +153,7 @@ def sprite(images: Sequence[Sequence[Image]], width: int) -> Image:
     return sheet
 
 
-def overview(named: Sequence[tuple[str, Image]], cell: int = 288) -> Image:
+def overview(named: Sequence[tuple[str, Image]]) -> Image:
     """Return the run's pictures side by side, each with its name."""
-    square = [image.convert("RGB").resize((cell, cell), Resampling.LANCZOS) for _, image in named]
-    return contact_sheet(square, [name for name, _ in named], len(named), cell)
+    square = [image.convert("RGB").resize((OVERVIEW, OVERVIEW), Resampling.LANCZOS) for _, image in named]
+    return contact_sheet(square, [name for name, _ in named], len(named), OVERVIEW)

@@ -20,6 +20,7 @@ from talbot.models.plan import codes_per_unit
 from talbot.models.scene import Sampling, Scene, load
 
 VIEWS = (1, 3, 5, 7, 9, 11, 13, 15, 17, 21, 25, 31)
+REPEATS = 30
 
 
 def points(quick: bool) -> list[tuple[int, int]]:
@@ -58,11 +59,11 @@ def measure(point: tuple[int, int]) -> dict[str, Any]:
     }
 
 
-def _ratio(sensor: SensorParameters, scene: Scene, views: int, repeats: int = 30) -> float:
+def _ratio(sensor: SensorParameters, scene: Scene, views: int) -> float:
     """Time to add a rendered view to the diodes over that to copy it, both the best of some."""
     field, light, pair = field_weights(sensor, views), scene.image.copy(), np.zeros((2, *scene.shape))
     times: dict[str, list[float]] = {"add": [], "copy": []}
-    for _ in range(repeats):
+    for _ in range(REPEATS):
         start = perf_counter()
         add_view(pair, light, field, sensor, views // 2, views // 2)
         middle = perf_counter()

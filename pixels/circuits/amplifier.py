@@ -199,17 +199,15 @@ class AmplifierSizes:
         return UNITS / self.gain
 
 
-def size(
-    spec: AmplifierSpec, load: float, process: ModuleType, gain: float = GAIN, unit: float = UNIT
-) -> AmplifierSizes:
+def size(spec: AmplifierSpec, load: float, process: ModuleType) -> AmplifierSizes:
     """Sizes for ``spec`` with ``load`` F, the lane's array, from the process's tables of gm/Id.
 
     The output has the signal's time without SLEW to come within LEFT of the allowed residue, in time constants
     C / (beta gm). A recycling folded cascode has 1 + (SPLIT - 1) / SPLIT times the transconductance of one side of its
     pair [Assaad2009]. Widths are currents over the densities at which each role has its EFFICIENCY.
     """
-    feedback = UNITS / gain * unit
-    inputs = (2 * UNITS + UNITS / gain) * unit
+    feedback = UNITS / GAIN * UNIT
+    inputs = (2 * UNITS + UNITS / GAIN) * UNIT
     constant = (spec.hold - spec.track - SLEW) / log(RANGE / (LEFT * spec.settling))
     pair = process.operating(*PAIR, EFFICIENCY["pair"])
     beta, current = feedback / inputs, 0.0
@@ -232,7 +230,7 @@ def size(
         width("cascode_p", CASCODE_P, branch),
         width("leg", LEGS, BIAS),
     )
-    return AmplifierSizes(ota, unit, gain)
+    return AmplifierSizes(ota)
 
 
 def _drawn(um: float) -> float:

@@ -60,7 +60,7 @@ def decisions(setup: Setup, sizes: LaneSizes, corner: Corner, circuit: Circuit |
     return Decisions(bool(right), delay, energy, spice.runs, spice.repeated)
 
 
-def offsets(setup: Setup, sizes: LaneSizes, corner: Corner, seed: int, circuit: Circuit | None = None) -> list[float]:
+def offsets(setup: Setup, sizes: LaneSizes, corner: Corner, seed: int) -> list[float]:
     """Return offsets of BATCH comparators with mismatch, LSB at the lane's input: V(inn) above V(inp) at balance.
 
     One beyond REACH is +-REACH.
@@ -68,7 +68,7 @@ def offsets(setup: Setup, sizes: LaneSizes, corner: Corner, seed: int, circuit: 
     spec, vdd = setup.spec, corner.supply
     numbers = range(BATCH)
     lines = deck(
-        circuit or comparator(sizes.comparator),
+        comparator(sizes.comparator),
         setup,
         corner,
         [(f"p{k}", f"n{k}", "strobe", f"q{k}", "vdd", "vss") for k in numbers],

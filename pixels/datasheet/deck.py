@@ -87,12 +87,13 @@ def simulator(
     return Simulator(lines, inputs, outputs, all_rails, corner.temperature, settings)
 
 
-def bits(values: Sequence[int | bool], period: float, high: float, delay: float = CLOCK_TO_Q) -> Points:
-    """Return a signal that has ``values`` in consecutive periods, each ``delay`` s late."""
+def bits(values: Sequence[int | bool], period: float, high: float) -> Points:
+    """Return a signal that has ``values`` in consecutive periods, each CLOCK_TO_Q late."""
     points = [(0.0, high * bool(values[0]))]
     for k, (before, after) in enumerate(zip(values, values[1:], strict=False), 1):
         if before != after:
-            points += [(k * period + delay, high * bool(before)), (k * period + delay + EDGE, high * bool(after))]
+            change = k * period + CLOCK_TO_Q
+            points += [(change, high * bool(before)), (change + EDGE, high * bool(after))]
     return points
 
 

@@ -35,11 +35,11 @@ class DrawnCurves:
     shares: Floats
 
 
-def drawn_curves(pixel: PixelLayout, wavelength_um: float, orders_a_period: int = ORDERS_A_PERIOD) -> DrawnCurves:
+def drawn_curves(pixel: PixelLayout, wavelength_um: float) -> DrawnCurves:
     """Solve a drawn pixel. Raises ParameterError for a type at no angle of `DIRECTIONS`, SolverError."""
     sines, total = np.zeros(0), np.zeros(())
     for cut, weight in sections(pixel):
-        orders = min(2 * int(orders_a_period * cut.period_um / pixel.drawn.period_um / 2) + 1, MOST_ORDERS)
+        orders = min(2 * int(ORDERS_A_PERIOD * cut.period_um / pixel.drawn.period_um / 2) + 1, MOST_ORDERS)
         offsets = int(np.ceil(wavelength_um / cut.period_um / STEP))
         sines, shares, _ = section_shares(pixel.geometry.stack, cut, wavelength_um, orders, offsets, SINE)
         total = total + weight * shares.mean(0)

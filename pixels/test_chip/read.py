@@ -69,7 +69,7 @@ class Read:
         return a, b
 
 
-def extracted(chip: TestChip, masks: AnalogMasks, corner: str = TYPICAL) -> Extracted:
+def extracted(chip: TestChip, masks: AnalogMasks) -> Extracted:
     """Return the strips' transistors with the parasitics of all nets; lines to the pixels are ports, too."""
     ports = *INPUTS, *ANALOG, LOGIC, HIGH, SUBSTRATE
     layout = relabelled(chip.layout, {GROUND: SUBSTRATE, **{port: port for port in ports}})
@@ -86,7 +86,7 @@ def extracted(chip: TestChip, masks: AnalogMasks, corner: str = TYPICAL) -> Extr
     )
     ends = tuple(end._replace(strap=end.strap._replace(net=named(end.strap.net))) for end in chip.terminals)
     cell = Cell(layout, layout.top_cell(), ports, devices, terminals=ends)
-    wires = layout_platform(masks.base.name).wires[wire_corner(corner)]
+    wires = layout_platform(masks.base.name).wires[wire_corner(TYPICAL)]
     circuit, _ = extract(cell, masks, wires)
     inner = ["pixel_reset", *(f"read[{row}]" for row in range(ROWS))]
     inner += [f"column_{side}[{col}]" for side in SIDES for col in range(COLS)]

@@ -57,9 +57,9 @@ def edges_of(memory: bytes, stream: bytes, wake: Wake) -> Edges:
     return Edges(status, edges, busy, counts)
 
 
-def host_edges(stream: bytes, wake: Wake, tile: TileParameters = TileParameters()) -> Edges:
+def host_edges(stream: bytes, wake: Wake) -> Edges:
     """Return the same of a whole frame by the host's decoder."""
-    rows, cols = cells_of(stream, wake.shift)
+    tile, (rows, cols) = TileParameters(), cells_of(stream, wake.shift)
     nonzero = decode_stream(stream, tile)[0].samples[..., 0] != 0
     whole = np.zeros((rows * tile.rows << wake.shift, cols * tile.cols << wake.shift), np.uint8)
     whole[: nonzero.shape[0], : nonzero.shape[1]] = nonzero
