@@ -37,6 +37,7 @@ from talbot.models.scene import Sampling, Scene, load
 Floats = npt.NDArray[np.floating]
 GRID = 192  # columns of the grid on which pictures of all sensors are compared
 FIGURES = "error", "energy_uj", "bytes", "area_mm2", "frames_per_s"  # of every task
+LANES = [1, 2, 4, 8, 16]  # that tasks try
 SIM = "threshold", "lux", "mode", "decimation"  # settings that `make sim` has under their names
 MORE = ("frames_per_s", "range_m")  # that are better the larger they are
 

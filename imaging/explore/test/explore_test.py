@@ -23,12 +23,13 @@ from talbot.base.table import read_csv
 from talbot.commands import main
 from talbot.imaging.explore import budget, costs, space
 from talbot.imaging.explore.pool import Failure, Pool
+from talbot.imaging.explore.recognition import Recognition
 from talbot.imaging.explore.robust import robustness
 from talbot.imaging.explore.search import Plan, dominated_share, importances, oriented, sampler_of, search, undominated
 from talbot.imaging.explore.space import TILES, narrowed, point_of, tile_of
 from talbot.imaging.explore.store import Store
 from talbot.imaging.explore.task import FIGURES, FULL, SMALL, Fidelity, golden
-from talbot.imaging.explore.tasks import SCENES, Recognition, task_of
+from talbot.imaging.explore.tasks import SCENES, task_of
 from talbot.imaging.frame.figures import energy_of
 from talbot.imaging.frame.job import simulate_frame
 from talbot.imaging.frame.request import request
