@@ -5,7 +5,8 @@ columns and lanes continue edge to edge between blocks that touch.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from typing import Self
 
 from talbot.models.parameters import ArrayParameters, ChipParameters, ParameterError, check_real
 
@@ -37,6 +38,9 @@ LANES_IN = {"clk": 1, "hold": 1, "wake": 1, "convert": 1, "mode": 2, "sub": 2, "
 LANES_SUPPLIES = 0.25, 0.46, 0.75  # of the height: the supply of the lanes, the ground, the supply of the amplifiers
 MARGIN_UM, DEEP_UM = 5.0, 2.0  # of pins from a block's corners; how far a pin reaches into its block
 CONTROL_PITCH_UM = 4.0  # of the column amplifiers' control pins
+# Of the drawn column amplifiers, in columns: the bank and its bias, west of the lines to the converters; the pins of
+# references and biases in the east, and um from there to the room for the bias
+WEST_COLUMNS, EAST_COLUMNS, EAST_UM = 49, 40, 100.0
 
 
 @dataclass(frozen=True)
@@ -45,7 +49,8 @@ class AnalogSizes:
 
     row_driver: width. columns: height of the column amplifiers. lane, lanes: width of a converter with its amplifier,
     height of all. bias: width of what is east of them, their bias and what rises from the chip to the amplifiers.
-    chip: room between the column amplifiers' control pins, in their west, and the converters, where the chip is.
+    chip: room between the column amplifiers' control pins, in their west, and the converters. The chip is there where
+    it fits, else west of the row driver.
     supply: width of a supply pin.
     """
 
@@ -61,6 +66,14 @@ class AnalogSizes:
         for name in ("row_driver_um", "columns_um", "lane_um", "lanes_um", "bias_um", "chip_um"):
             check_real(name, getattr(self, name), 20, 1000)
         check_real("supply_um", self.supply_um, 2, 30)
+
+    @classmethod
+    def of(cls, array: ArrayParameters, chip: ChipParameters) -> Self:
+        """Sizes for a sensor: where its columns are too few for the whole room the chip has less."""
+        sizes, pitch = cls(), array.pitch_um
+        taken = control_um() + chip.lanes * sizes.lane_um + sizes.bias_um + EAST_UM + EAST_COLUMNS * pitch
+        room = max(array.cols * pitch - taken, WEST_COLUMNS * pitch)
+        return replace(sizes, chip_um=min(sizes.chip_um, float(round(room))))
 
 
 @dataclass(frozen=True)
@@ -94,7 +107,8 @@ def blocks(
     array: ArrayParameters | None = None, chip: ChipParameters | None = None, sizes: AnalogSizes | None = None
 ) -> tuple[Block, ...]:
     """Return the four analog blocks. Raises ParameterError where there is no room for the pins."""
-    array, chip, sizes = array or ArrayParameters(), chip or ChipParameters(), sizes or AnalogSizes()
+    array, chip = array or ArrayParameters(), chip or ChipParameters()
+    sizes = sizes or AnalogSizes.of(array, chip)
     return (
         pixel_array(array),
         row_driver(array, sizes),
@@ -106,6 +120,11 @@ def blocks(
 def bits(ports: Mapping[str, int]) -> list[str]:
     """Names of the pins of ports (name -> bits), a bus bit by bit."""
     return [name if width == 1 else f"{name}[{bit}]" for name, width in ports.items() for bit in range(width)]
+
+
+def control_um() -> float:
+    """Width of the column amplifiers' control pins."""
+    return CONTROL_PITCH_UM * (len(bits(COLUMNS_IN)) - 1) + 2 * MARGIN_UM
 
 
 def row_lines(array: ArrayParameters) -> list[tuple[str, float]]:
@@ -171,7 +190,7 @@ def row_driver(array: ArrayParameters, sizes: AnalogSizes) -> Block:
 def _column_amplifiers(array: ArrayParameters, chip: ChipParameters, sizes: AnalogSizes) -> Block:
     """From the west: the control pins, room for the chip, the lines to the converters."""
     width, pins = array.cols * array.pitch * 1e6, bits(COLUMNS_IN)
-    control = CONTROL_PITCH_UM * (len(pins) - 1) + 2 * MARGIN_UM
+    control = control_um()
     begin = control + sizes.chip_um
     if (end := begin + chip.lanes * sizes.lane_um + sizes.bias_um) > width:
         raise ParameterError(

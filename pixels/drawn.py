@@ -1,7 +1,7 @@
 """Fields of a sensor that the drawn circuits can and cannot vary, with reasons, for `talbot.base.sensor.Varied`."""
 
 from talbot.base.sensor import Varied
-from talbot.models.parameters import ParameterError, check_real
+from talbot.models.parameters import STANDARD, ParameterError, check_real
 
 PIXEL_PITCHES_UM = 10.0, 15.0  # at which pixels are drawn: at 9 um metal 1 breaks its rules, at 8 um implants too
 PITCH_STEP_UM = 0.01  # half a pixel is on the manufacturing grid
@@ -19,6 +19,17 @@ DRAWN_SIZES = dict.fromkeys(
         *(f"converter.{name}" for name in ("inl", "offset", "noise", "ktc")),
     ),
     "transistors are drawn in the sizes that the standard sensor needs",
+)
+DRAWN_BLOCKS = Varied(  # row drivers, column amplifiers, converters
+    used=(*ARRAY_FIELDS.values(), "array.pitch", "chip.lanes"),
+    fixed=DRAWN_SIZES,
+    limits={
+        "array.rows": (1, STANDARD.array.rows),
+        "array.cols": (1, STANDARD.array.cols),
+        "chip.lanes": (1, STANDARD.chip.lanes),
+        **PIXEL_PITCH,
+    },
+    steps=PIXEL_STEP,
 )
 
 

@@ -123,7 +123,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Write the footprints."""
-    sensor, sizes = sensor_asked(options, VARIED, FIELDS), AnalogSizes()
+    sensor = sensor_asked(options, VARIED, FIELDS)
+    sizes = AnalogSizes.of(sensor.array, sensor.chip)
     write(options.out, blocks(sensor.array, sensor.chip, sizes), options.pdk, sizes.supply_um)
     return 0
 

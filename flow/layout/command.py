@@ -8,7 +8,7 @@ from talbot.base.arguments import number_of
 from talbot.base.command import failures
 from talbot.base.paths import RESULTS
 from talbot.base.progress import Steps
-from talbot.base.sensor import add_sensor
+from talbot.base.sensor import add_sensor, sensor_asked
 from talbot.flow.layout.block import lay_out
 from talbot.flow.layout.chain import all_steps
 from talbot.flow.layout.design import DESIGNS, Design, design_asked, folder_name
@@ -17,7 +17,7 @@ from talbot.flow.layout.report.metrics import broken
 from talbot.flow.layout.report.page import closing
 from talbot.flow.layout.sensor.die import die_steps, lay_out_sensor
 from talbot.flow.layout.sensor.plan import BLOCKS
-from talbot.flow.layout.varied import CHIP, SENSOR
+from talbot.flow.layout.varied import CHIP, SENSOR, varied
 from talbot.flow.layout.verilog import design_of
 from talbot.models.parameters import ParameterError, check_choice
 from talbot.pixels.test_chip import job as test_chip
@@ -62,7 +62,9 @@ def run(arguments: Namespace) -> int:
         steps = [f"{CHIP}: {step.name}" for step in all_steps(chosen, options)]
         steps += [step.name for step in die_steps(chosen, options, BLOCKS)]
         with Steps(steps, lines=True) as bar:
-            summary, lines = lay_out_sensor(chosen, options, arguments.analog, arguments.out, bar.note)
+            summary, lines = lay_out_sensor(
+                chosen, options, arguments.analog, arguments.out, bar.note, sensor_asked(arguments, varied(name))
+            )
     else:
         summary, lines = block(chosen, options, arguments)
     print(f"{name}: laid out")

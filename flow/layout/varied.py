@@ -1,7 +1,9 @@
-"""What of a sensor a layout varies: the chip and each block follow it; the die and the wrappers have fixed sizes."""
+"""What of a sensor a layout varies: the die, the chip and each block follow it; the wrappers have fixed sizes."""
+
+from dataclasses import replace
 
 from talbot.base.sensor import Varied
-from talbot.pixels.drawn import DRAWN_PITCH
+from talbot.pixels.drawn import DRAWN_BLOCKS
 from talbot.rtl.sensor_options import FIELDS
 
 CHIP, SENSOR, WRAPPERS = "asp_chip", "asp_sensor", "tt_"
@@ -23,11 +25,11 @@ SIZED = {
     "reg_file": (*_ARRAY, "chip.divider"),
 }
 _FIXED = Varied(fixed=dict.fromkeys(SIZES, "this design has the sizes of the standard sensor"))
-_DIE = Varied(fixed={**_FIXED.fixed, **DRAWN_PITCH})
+_DIE = replace(DRAWN_BLOCKS, used=tuple(dict.fromkeys((*DRAWN_BLOCKS.used, *SIZED[CHIP], "tile"))))
 
 
 def varied(design: str) -> Varied:
-    """Return what the layout of ``design`` varies; nothing of the die and of wrappers."""
+    """Return what the layout of ``design`` varies; nothing of wrappers."""
     if design == SENSOR:
         return _DIE
     return _FIXED if design.startswith(WRAPPERS) else Varied(used=(*SIZED.get(design, ()), CLOCK))

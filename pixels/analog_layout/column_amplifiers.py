@@ -93,7 +93,7 @@ def draw_column_amplifiers(
     room: AnalogSizes | None = None,
 ) -> ColumnAmplifiers:
     """Draw all columns and their drivers. Raises ParameterError where they do not fit."""
-    room = room or AnalogSizes()
+    room = room or AnalogSizes.of(array, chip)
     canvas = new_canvas(masks, NAME)
     columns = draw_columns(canvas.layout, masks, sizes, array, chip.lanes, EXTRA)
     plain = frame(array, chip, room)

@@ -29,6 +29,15 @@ def drawn_pixels(
     pdk: str, tile: TileParameters, pitch_um: float = ArrayParameters().pitch_um
 ) -> tuple[PixelLayout, ...]:
     """The tile's types on the gratings that ``pdk`` keeps. Raises ParameterError for a beta that it does not have."""
+    wavelength = gratings(pdk).wavelength_um
+    return tuple(
+        pixel_layout(replace(geometry, pitch_um=pitch_um), kind, fitted(geometry, wavelength))
+        for kind, geometry in zip(tile.types, tile_geometries(pdk, tile), strict=True)
+    )
+
+
+def tile_geometries(pdk: str, tile: TileParameters) -> list[PixelGeometry]:
+    """Of each of the tile's types the gratings that ``pdk`` keeps. Raises ParameterError for one without."""
     pixel_process(pdk)
     chosen, out = gratings(pdk), []
     for kind in tile.types:
@@ -36,10 +45,8 @@ def drawn_pixels(
         if abs(beta - kind.beta) > REACHED * beta:
             known = ", ".join(f"{b:g}" for b in chosen.geometries)
             raise ParameterError(f"beta = {kind.beta:g}: must be one of {known}, which {pdk!r} has gratings for")
-        geometry = chosen.geometries[beta]
-        fit = fitted(geometry, chosen.wavelength_um)
-        out.append(pixel_layout(replace(geometry, pitch_um=pitch_um), kind, fit))
-    return tuple(out)
+        out.append(chosen.geometries[beta])
+    return out
 
 
 @lru_cache(maxsize=64)

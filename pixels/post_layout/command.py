@@ -6,25 +6,10 @@ from typing import Any
 
 from talbot.base.jobs import worker_count
 from talbot.base.progress import Steps
-from talbot.base.sensor import Varied, add_sensor, labelled, sensor_asked
-from talbot.models.parameters import STANDARD
-from talbot.pixels.blocks import blocks
-from talbot.pixels.circuits.column_sizes import ColumnSpec
-from talbot.pixels.circuits.row_driver import RowDriverSpec
-from talbot.pixels.drawn import DRAWN_SIZES, PIXEL_PITCH, PIXEL_STEP
+from talbot.base.sensor import add_sensor, labelled, sensor_asked
+from talbot.pixels.drawn import DRAWN_BLOCKS
 
-VARIED = Varied(
-    used=("array.rows", "array.cols", "array.pitch", "chip.lanes"),
-    fixed=DRAWN_SIZES,
-    limits={
-        "array.rows": (1, STANDARD.array.rows),
-        "array.cols": (1, STANDARD.array.cols),
-        "chip.lanes": (1, STANDARD.chip.lanes),
-        **PIXEL_PITCH,
-    },
-    steps=PIXEL_STEP,
-)
-
+VARIED = DRAWN_BLOCKS
 SHOWN = 10  # differences of a cell
 
 
@@ -45,9 +30,6 @@ def run(options: Namespace) -> int:
     from talbot.pixels.datasheet.job import corners_of
 
     sensor = sensor_asked(options, VARIED)
-    blocks(sensor.array, sensor.chip)  # has room for its pins
-    ColumnSpec.of_drawn(sensor)
-    RowDriverSpec.of(sensor)
     from talbot.pixels.post_layout.job import STEPS, make
 
     out = options.out or RESULTS / "analog-layout" / labelled(options.pdk, options)

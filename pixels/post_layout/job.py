@@ -17,13 +17,11 @@ from talbot.pixels.analog_layout.amplifier import amplifier_cell
 from talbot.pixels.analog_layout.bias import bias_cell
 from talbot.pixels.analog_layout.cells import Cell, comparator_cell
 from talbot.pixels.analog_layout.column import column_cell
-from talbot.pixels.analog_layout.column_amplifiers import frame
-from talbot.pixels.analog_layout.columns import check_columns
+from talbot.pixels.analog_layout.drawable import check_drawable
 from talbot.pixels.analog_layout.drawn_block import DrawnBlock
 from talbot.pixels.analog_layout.lane import lane_cell
 from talbot.pixels.analog_layout.row_drivers import row_cell
 from talbot.pixels.analog_layout.switch import switch_cell
-from talbot.pixels.blocks import AnalogSizes
 from talbot.pixels.circuits.amplifier import AmplifierSizes, AmplifierSpec
 from talbot.pixels.circuits.column_sizes import ColumnSizes, ColumnSpec
 from talbot.pixels.circuits.dac import BITS
@@ -98,8 +96,7 @@ def make(
     check_folder("out", out)
     if table:
         check_file("table", table)
-    check_columns(sensor.array, sensor.chip.lanes)
-    frame(sensor.array, sensor.chip, AnalogSizes())  # has room for its pins
+    check_drawable(sensor)
     masks, (setup, sizes) = analog_masks(pdk), setup_of(pdk)
     spec, own = amplifier_of(setup, sizes)
     made = cells(masks, sizes, own, spec.lanes, column_of(setup)[1], sensor.array)

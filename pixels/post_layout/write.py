@@ -10,6 +10,7 @@ from pathlib import Path
 from talbot.base.command import main
 from talbot.base.files import staged
 from talbot.base.gds import write_gds
+from talbot.base.sensor import add_sensor, sensor_asked
 from talbot.base.steps import StepError
 from talbot.models.parameters import STANDARD, SensorParameters
 from talbot.pixels.analog_layout.column_amplifiers import NAME as COLUMNS
@@ -21,6 +22,7 @@ from talbot.pixels.analog_layout.row_drivers import NAME as ROWS
 from talbot.pixels.analog_layout.row_drivers import draw_row_drivers
 from talbot.pixels.blocks import AnalogSizes
 from talbot.pixels.datasheet.job import amplifier_of, column_of, setup_of
+from talbot.pixels.drawn import DRAWN_BLOCKS
 from talbot.pixels.post_layout.checks import differences, lvs
 from talbot.platforms.analog import analog_masks
 
@@ -28,7 +30,7 @@ from talbot.platforms.analog import analog_masks
 def drawn_blocks(pdk: str, sensor: SensorParameters = STANDARD) -> dict[str, DrawnBlock]:
     """Converters, rows' drivers, column amplifiers, by name, for the array and chip. Raises ParameterError."""
     array, chip = sensor.array, sensor.chip
-    masks, (setup, sizes), room = analog_masks(pdk), setup_of(pdk), AnalogSizes()
+    masks, (setup, sizes), room = analog_masks(pdk), setup_of(pdk), AnalogSizes.of(array, chip)
     return {
         CONVERTERS: draw_converters(masks, sizes, amplifier_of(setup, sizes)[1], chip, room),
         ROWS: draw_row_drivers(masks, array, room),
@@ -36,11 +38,11 @@ def drawn_blocks(pdk: str, sensor: SensorParameters = STANDARD) -> dict[str, Dra
     }
 
 
-def write(out: Path, pdk: str) -> None:
+def write(out: Path, pdk: str, sensor: SensorParameters = STANDARD) -> None:
     """Write <block>.lef and <block>.gds of all into ``out``. Raises StepError where one is not its circuit."""
     masks = analog_masks(pdk)
     with staged(out) as part:
-        for name, block in drawn_blocks(pdk).items():
+        for name, block in drawn_blocks(pdk, sensor).items():
             (part / f"{name}.lef").write_text(block.lef(masks), encoding="utf-8")
             write_gds(block.layout, part / f"{name}.gds", block.cell)
             report = part / f"{name}.lvsdb"
@@ -51,12 +53,13 @@ def write(out: Path, pdk: str) -> None:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Options of `python -m talbot.pixels.post_layout.write`."""
     parser.add_argument("--pdk", default="sky130", help="process")
+    add_sensor(parser)
     parser.add_argument("--out", type=Path, required=True, help="folder of the files")
 
 
 def run(options: argparse.Namespace) -> int:
     """Write the files."""
-    write(options.out, options.pdk)
+    write(options.out, options.pdk, sensor_asked(options, DRAWN_BLOCKS))
     return 0
 
 

@@ -2,12 +2,14 @@
 
 import sys
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
 from talbot.base.paths import ROOT
 from talbot.base.tools import run
 from talbot.flow.layout.sensor.plan import BLOCKS
-from talbot.models.parameters import ParameterError
+from talbot.flow.layout.sensor.steps.drawing import sensor_options
+from talbot.models.parameters import STANDARD, ParameterError, SensorParameters
 from talbot.signoff.black_box import extra_pins
 
 KINDS = "lef", "gds"
@@ -23,13 +25,15 @@ class AnalogFiles(NamedTuple):
     drawn: tuple[str, ...]
 
 
-def files(folder: Path, pdk: str, analog: Path | None = None) -> AnalogFiles:
+def files(folder: Path, pdk: str, analog: Path | None = None, sensor: SensorParameters = STANDARD) -> AnalogFiles:
     """Write the black boxes into ``folder``; find a user's blocks in ``analog``.
 
     Raises ParameterError for blocks that do not fit, before anything is drawn.
     """
     circuits = dict.fromkeys(_circuits(analog), analog) if analog else {}
-    run([sys.executable, "-m", "talbot.pixels.footprints", "--pdk", pdk, "--out", folder], cwd=ROOT)
+    with TemporaryDirectory() as given:
+        options = "--pdk", pdk, *sensor_options(sensor, Path(given)), "--out", str(folder)
+        run([sys.executable, "-m", "talbot.pixels.footprints", *options], cwd=ROOT)
     found = {f"{block}.black_box": folder / f"{block}.lef" for block in BLOCKS}
     for block, place in circuits.items():
         found |= {f"{block}.{kind}": place / f"{block}.{kind}" for kind in KINDS}

@@ -72,7 +72,7 @@ def arranged_as_is(
     Branches and trunks do not depend on the channel's height: they come first, then all blocks are raised.
     """
     analog = {name: block for name, block in blocks.items() if name != CORE}
-    placed, room = stack(analog, die), side_room(blocks[CORE], tracks)
+    placed, room = stack(analog), side_room(blocks[CORE], tracks)
     low = with_core(placed, blocks[CORE], die, room, 0)
     found = nets(low, extra)
     routed, abutted = split_nets(low, found)

@@ -10,7 +10,7 @@ from pathlib import Path
 from talbot.base.files import staged
 from talbot.base.steps import Runner, Step, StepError
 from talbot.flow.layout.block import lay_out
-from talbot.flow.layout.design import Design
+from talbot.flow.layout.design import Design, folder_name
 from talbot.flow.layout.options import Options
 from talbot.flow.layout.report.metrics import broken
 from talbot.flow.layout.report.page import picture, write_report
@@ -29,10 +29,13 @@ from talbot.flow.layout.sensor.steps.die_pads import DiePads, DiePadsDrc, DiePad
 from talbot.flow.layout.sensor.steps.die_parasitics import DieParasitics, DieParasiticsParameters
 from talbot.flow.layout.sensor.steps.die_plan import DiePlan, DiePlanParameters
 from talbot.flow.layout.sensor.steps.die_sta import DieSta
-from talbot.flow.layout.sensor.steps.drawing import ARRAY, DrawnCircuits, DrawnPixels
+from talbot.flow.layout.sensor.steps.drawing import ARRAY, DrawingParameters, DrawnCircuits, DrawnPixels
 from talbot.flow.layout.steps.parameters import PdkParameters
 from talbot.flow.layout.steps.sta import StaParameters
 from talbot.flow.layout.varied import CHIP, SENSOR
+from talbot.models.parameters import STANDARD, SensorParameters
+from talbot.pixels.analog_layout.drawable import check_drawable
+from talbot.pixels.layout.write import tile_geometries
 from talbot.platforms.die import top_metal
 from talbot.platforms.layout import layout_platform
 from talbot.platforms.pads import pad_process
@@ -51,16 +54,20 @@ PACKAGE = f"{SENSOR}.pins.md", f"{SENSOR}.package.png", f"{SENSOR}.package.svg"
 
 
 def die_steps(
-    chip: Design, options: Options, drawn: Sequence[str] = (), die: DieParameters | None = None
+    chip: Design,
+    options: Options,
+    drawn: Sequence[str] = (),
+    die: DieParameters | None = None,
+    sensor: SensorParameters = STANDARD,
 ) -> list[Step]:
     """The die's steps, of those that can begin the longest first.
 
-    drawn: blocks that this project draws. die: see DiePlanParameters.
+    drawn: blocks that this project draws, for ``sensor``. die: see DiePlanParameters.
     """
     pdk, clock, io = options.pdk, chip.clock, chip.io
     ns = {"input_ns": io.input_delay * clock.period_ns, "output_ns": io.output_delay * clock.period_ns}
     parasitics = DieParasiticsParameters(pdk, clock.port, load_pf=io.load_pf, **ns)
-    drawings = [step(PdkParameters(pdk)) for step in (DrawnPixels, DrawnCircuits)]
+    drawings = [step(DrawingParameters(pdk, sensor)) for step in (DrawnPixels, DrawnCircuits)]
     drawings = [step for step in drawings if any(f"{block}.lef" in step.outputs for block in drawn)]
     steps: list[Step] = [
         DiePads(PdkParameters(pdk)),
@@ -72,7 +79,7 @@ def die_steps(
         DieAntenna(PdkParameters(pdk)),
         DieParasitics(parasitics),
         *(DieSta(StaParameters(chip.top, corner, clock.period_ns)) for corner in options.corners),
-        *([DieIrDrop(DieIrDropParameters(pdk))] if ARRAY in drawn else []),
+        *([DieIrDrop(DieIrDropParameters(pdk, sensor.array))] if ARRAY in drawn else []),
         DiePadsDrc(PdkParameters(pdk)),
         DiePadsLvs(PdkParameters(pdk)),
     ]
@@ -83,7 +90,12 @@ def die_steps(
 
 
 def lay_out_sensor(
-    chip: Design, options: Options, analog: Path | None, out: Path, note: Callable[[str], None]
+    chip: Design,
+    options: Options,
+    analog: Path | None,
+    out: Path,
+    note: Callable[[str], None],
+    sensor: SensorParameters = STANDARD,
 ) -> tuple[Path, list[str]]:
     """Lay out the chip and the die around it: (path of summary.json, limits broken).
 
@@ -91,8 +103,11 @@ def lay_out_sensor(
     designs. Raises ParameterError, StepError for a chip that breaks a limit.
     """
     top_metal(options.pdk)  # a process without one is refused before anything runs
-    folder = out / SENSOR
-    blocks = files(folder / "black_boxes", options.pdk, analog)
+    if not analog:
+        check_drawable(sensor)
+        tile_geometries(options.pdk, sensor.tile)
+    folder = out / folder_name(replace(chip, name=SENSOR), options.pdk)
+    blocks = files(folder / "black_boxes", options.pdk, analog, sensor)
     runner = Runner(folder / "steps", blocks.paths, note, out / "shared")
     given = [f"timing.{corner}" for corner in options.corners] + [f"foundry.{name}" for name, _ in options.decks]
     sources = PARTS | {name: name for name in given}
@@ -102,13 +117,13 @@ def lay_out_sensor(
         return {name: core.paths[source] for name, source in sources.items() if source in core.paths}
 
     def beside(core: Runner) -> AbstractContextManager[None]:
-        return runner.beside(die_steps(chip, options, blocks.drawn), lambda: parts(core))
+        return runner.beside(die_steps(chip, options, blocks.drawn, sensor=sensor), lambda: parts(core))
 
     core, summary = lay_out(chip, options, out, lambda text: note(f"{CHIP}: {text}"), beside)
     if wrong := broken(summary):
         raise StepError(f"{SENSOR}: its block {CHIP} breaks a limit: {wrong[0]}")
     runner.paths |= parts(core)
-    return lay_out_die(chip, options, runner, drawn=blocks.drawn)
+    return lay_out_die(chip, options, runner, drawn=blocks.drawn, sensor=sensor)
 
 
 def lay_out_die(
@@ -118,13 +133,14 @@ def lay_out_die(
     black_boxes: Sequence[str] = (),
     drawn: Sequence[str] = (),
     die: DieParameters | None = None,
+    sensor: SensorParameters = STANDARD,
 ) -> tuple[Path, list[str]]:
     """Lay out the die around a chip that is laid out: (path of summary.json, limits broken).
 
     runner: its files are PARTS of the chip and those of the blocks; the results are beside its folder.
     """
     folder = runner.folder.parent
-    runner.run_all(die_steps(chip, options, drawn, die))
+    runner.run_all(die_steps(chip, options, drawn, die, sensor))
     summary = summarize(SENSOR, options, runner, black_boxes)
     lines, tech = broken(summary, RULES), layout_platform(options.pdk)
     tech = replace(tech, metals=(*tech.metals, top_metal(options.pdk).metal))

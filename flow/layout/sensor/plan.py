@@ -1,8 +1,11 @@
-"""Placement of the blocks on the die and their nets, in nm: analog blocks abut, the chip is west of the converters."""
+"""Placement of the blocks on the die and their nets, in nm: analog blocks abut, the chip is west of the converters.
+
+It is below the column amplifiers, or west of the row driver where these have no room for it.
+"""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 from talbot.base.lef.read import read_macro
 from talbot.base.steps import StepError
@@ -32,15 +35,30 @@ ABUTMENTS = (
 DIGITAL, ANALOG = ("vdd", "vss"), ("vdda", "vddc", "vddr", "vssa")
 CIRCUITS = "vddc", "vssa"  # with bars in the west and in the east
 SUPPLIES = DIGITAL + ANALOG
+STEP_UM = 20.0  # in which a die grows
+SIDES = "west", "east"  # fields of DieParameters
 # Pins of the die, beside the supplies, from the west
 LINK = *(f"link_data[{k}]" for k in range(8)), "link_val", "link_rdy"
 SIGNALS = "clk", "reset", "sclk", "csn", "mosi", "miso", "miso_oe", "busy", "frame_sync", *LINK
 
 
+class NoRoom(ParameterError):
+    """A side of the die is too short.
+
+    size: field of DieParameters that is to be changed: a size, or the number of signals on a side. least: of a size, um
+    that it takes, 0 where that is not known.
+    """
+
+    def __init__(self, text: str, size: str, least: float = 0.0) -> None:
+        super().__init__(text)
+        self.size, self.least = size, least
+
+
 @dataclass(frozen=True)
 class DieParameters:
-    """Sizes of the die: the blocks of one of 5 x 5 mm [Jayasuriya2017, Sec. 3.5.1], and a ring of pads around them.
+    """Sizes of the die: its blocks, and a ring of pads around them.
 
+    width, height: 0 for the least that blocks and pads take, in steps of STEP_UM.
     ring: from the die's edge to what is inside of the pads. edge: from there to the first bar. bar: width of the
     supplies' bars. gap: between bars, and between blocks that do not touch. pad, side: pitch of the signals' pads
     in the south, and in the west and the east. west: the first of SIGNALS that have theirs in the west. east: analog
@@ -49,8 +67,8 @@ class DieParameters:
     widths: coupling is most of a net's capacitance where they are as near as rules allow.
     """
 
-    width_um: float = field(default=5000.0, metadata={"unit": "um", "range": (50, 3e4)})
-    height_um: float = field(default=5860.0, metadata={"unit": "um", "range": (50, 3e4)})
+    width_um: float = field(default=0.0, metadata={"unit": "um", "range": (0, 3e4)})
+    height_um: float = field(default=0.0, metadata={"unit": "um", "range": (0, 3e4)})
     ring_um: float = field(default=203.0, metadata={"unit": "um", "range": (20, 1000)})
     edge_um: float = field(default=10.0, metadata={"unit": "um", "range": (2, 200)})
     bar_um: float = field(default=20.0, metadata={"unit": "um", "range": (4, 30)})
@@ -64,9 +82,24 @@ class DieParameters:
     trunk_pitch: float = field(default=4.0, metadata={"range": (1, 25)})
 
     def __post_init__(self) -> None:
-        for one in fields(self):
-            if "range" in one.metadata:
-                check_real(one.name, getattr(self, one.name), *one.metadata["range"])
+        for size in fields(self):
+            if "range" in size.metadata:
+                check_real(size.name, getattr(self, size.name), *size.metadata["range"])
+
+    def larger(self, reason: NoRoom) -> Self:
+        """The die with room where ``reason`` has none.
+
+        A signal leaves a side where its pads take the supplies' place. Pads in the south first move as near to each
+        other as on the other sides. Raises ``reason`` where no size helps.
+        """
+        if reason.size in SIDES:
+            if not (count := getattr(self, reason.size)):
+                raise reason
+            return replace(self, **{reason.size: count - 1})
+        if reason.size == "width_um" and not reason.least and self.pad_um > self.side_um:
+            return replace(self, pad_um=self.side_um)
+        least = max(reason.least, getattr(self, reason.size) + STEP_UM)
+        return replace(self, **{reason.size: -(-least // STEP_UM) * STEP_UM})
 
 
 # Of LEF: whether west and east, and south and north, are swapped
@@ -159,14 +192,9 @@ def nm(um: float) -> int:
     return round(um * 1000)
 
 
-def stack(blocks: Mapping[str, Block], die: DieParameters) -> dict[str, Block]:
-    """Place the analog blocks; the array with its row driver is in the middle of the die.
-
-    The column amplifiers' bottom is at y = 0.
-    """
-    array, driver = blocks["pixel_array"], blocks["row_driver"]
-    x = (nm(die.width_um) - array.width + driver.width) // 2 // 5 * 5
-    placed = {"pixel_array": array.moved(x, blocks["column_amplifiers"].height)}
+def stack(blocks: Mapping[str, Block]) -> dict[str, Block]:
+    """Place the analog blocks; the array's west is at x = 0, the column amplifiers' bottom at y = 0."""
+    placed = {"pixel_array": blocks["pixel_array"].moved(0, blocks["column_amplifiers"].height)}
     for there, name, side, pin in ABUTMENTS:
         placed[name] = abut(placed[there], blocks[name], side, pin)
     return placed
@@ -184,21 +212,27 @@ def abut(there: Block, block: Block, side: str, pin: str) -> Block:
 def with_core(
     placed: Mapping[str, Block], core: Block, die: DieParameters, side_nm: int, channel_nm: int
 ) -> dict[str, Block]:
-    """Place the chip beside the converters, and all blocks above a channel of ``channel_nm``.
+    """Place the chip west of the converters, all blocks above a channel of ``channel_nm`` and in the die's middle.
 
-    side_nm: width of the branches on either side of the chip. Raises ParameterError where the die is too small.
+    side_nm: width of the branches on either side of the chip. Raises NoRoom.
     """
     lanes, columns, gap = placed["adc_lanes"], placed["column_amplifiers"], nm(die.gap_um)
     bottom = max(core.height + gap, lanes.height) + channel_nm
-    shifted = {name: block.moved(0, bottom - columns.y) for name, block in placed.items()}
-    made = shifted | {CORE: core.moved((lanes.x - gap - side_nm - core.width) // 10 * 10, channel_nm)}
+    controls = max(shape.box[2] for shape in columns.at("south") if shape.box[2] < lanes.x)
+    east = lanes.x
+    if east - gap - 2 * side_nm - core.width < controls + gap:
+        east = placed["row_driver"].x
+    low = {name: block.moved(0, bottom - columns.y) for name, block in placed.items()}
+    low[CORE] = core.moved((east - gap - side_nm - core.width) // 10 * 10, channel_nm)
     bars = nm(die.ring_um + die.edge_um + len(SUPPLIES) * (die.bar_um + die.gap_um))
-    lefts, _, rights, tops = zip(*(block.box for block in made.values()), strict=True)
-    for name, least in (("width_um", max(rights) - min(lefts) + 2 * bars), ("height_um", max(tops) + bars)):
+    lefts, _, rights, tops = zip(*(block.box for block in low.values()), strict=True)
+    wide = max(rights) - min(lefts)
+    for name, least in (("width_um", wide + 2 * bars), ("height_um", max(tops) + bars)):
         if least > nm(size := getattr(die, name)):
             why = "for the blocks, the supplies' bars and the pads"
-            raise ParameterError(f"{name} = {size:g}: must be at least {least / 1000:g}, {why}")
-    return made
+            raise NoRoom(f"{name} = {size:g}: must be at least {least / 1000:g}, {why}", name, least / 1000)
+    begin = ((nm(die.width_um) - wide) // 2 - min(lefts)) // 10 * 10
+    return {name: block.moved(begin, 0) for name, block in low.items()}
 
 
 def nets(blocks: Mapping[str, Block], extra: Iterable[str] = ()) -> dict[str, list[Terminal]]:

@@ -14,7 +14,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from talbot.base.steps import StepError
+from talbot.flow.layout.sensor.plan import NoRoom
 from talbot.platforms.pads import PadProcess
 
 Box = tuple[int, int, int, int]  # left, bottom, right, top
@@ -132,14 +132,15 @@ class Pads:
     def track(self, net: str, side: str, level: int, ends: tuple[int, int]) -> tuple[int, int] | None:
         """Of the track of a supply, on a level of metal, its two ends across the side; None where it has none there.
 
-        ends: y of what is to meet it. Raises StepError where that is across the border.
+        ends: y of what is to meet it. Raises NoRoom where that is across the border.
         """
         pin = next((pin for pin, own in self.tracks(side, ends[0]).items() if own == net), None)
         if pin is None:
             return None
         border = self.borders[side]
         if ends[0] < border + GAP and ends[1] > border and self.tracks(side, ends[1]) != self.tracks(side, ends[0]):
-            raise StepError(f"ring: {net} at {ends[0] / UM:g} um in the {side} is at the border of two segments")
+            where = f"at {ends[0] / UM:g} um in the {side}"
+            raise NoRoom(f"ring: {net} {where} is at the border of two segments", "height_um")
         _, _, bottom, _, top = next(found for found in self.filler[pin] if found[0] == level)
         left, low, right, high = self.frame.box(side, 0, (0, bottom, 0, top))
         return (left, right) if side in ("west", "east") else (low, high)
@@ -173,7 +174,7 @@ def supply(net: str, number: int, side: str, at: int, process: PadProcess, track
 def ring(pads: Pads, signals: Sequence[Place], ways: Iterable[Way] = ()) -> tuple[list[Place], list[Gap]]:
     """All cells of the ring but its corners, and the gaps: between the segments, and the slots of the lines ``ways``.
 
-    signals: pads, in the south digital ones before analog ones. Raises StepError where there is no room.
+    signals: pads, in the south digital ones before analog ones. Raises NoRoom.
     """
     frame, process = pads.frame, pads.process
     digital = [place for place in signals if place.side == "south" and "vddio" in place.nets.values()]
@@ -198,7 +199,8 @@ def ring(pads: Pads, signals: Sequence[Place], ways: Iterable[Way] = ()) -> tupl
     for side, begin, to, nets, tracks in parts:
         room = (to - begin - len(nets) * frame.pad) // (len(nets) + 1) // UM * UM
         if room < 0:
-            raise StepError(f"ring: no room for {len(nets)} pads in the {side}, from {begin / UM:g} to {to / UM:g} um")
+            where = f"in the {side}, from {begin / UM:g} to {to / UM:g} um"
+            raise NoRoom(f"ring: no room for {len(nets)} pads {where}", _size(side))
         beside = [slot for slot in slots if slot.side == side]
         for place, net in enumerate(nets):
             count[net] = count.get(net, 0) + 1
@@ -206,6 +208,11 @@ def ring(pads: Pads, signals: Sequence[Place], ways: Iterable[Way] = ()) -> tupl
             made.append(supply(net, count[net], side, at, process, tracks))
     gaps += slots
     return made + list(_fillers(frame, made, gaps, process)), gaps
+
+
+def _size(side: str) -> str:
+    """The size of the die along a side."""
+    return "width_um" if side in ("north", "south") else "height_um"
 
 
 def lowest(signals: Iterable[Place], side: str, border: int) -> int:
@@ -233,7 +240,7 @@ def _common(one: Mapping[str, str], other: Mapping[str, str]) -> dict[str, str]:
 
 
 def _fillers(frame: Frame, places: Iterable[Place], gaps: Iterable[Gap], process: PadProcess) -> Iterator[Place]:
-    """Fillers of all that is free between the corners. Raises StepError for what overlaps."""
+    """Fillers of all that is free between the corners. Raises NoRoom for what overlaps."""
     taken = [(place.side, place.at, frame.pad, place.name) for place in places]
     taken += [(gap.side, gap.at, gap.width, gap.name) for gap in gaps]
     for side in SIDES:
@@ -241,7 +248,8 @@ def _fillers(frame: Frame, places: Iterable[Place], gaps: Iterable[Gap], process
         here = sorted(own for of, *own in taken if of == side)
         for begin, width, name in [*here, [end, 0, "the corner"]]:
             if begin < at:
-                raise StepError(f"ring: {before} and {name} overlap in the {side}, at {begin / UM:g} um")
+                where = f"overlap in the {side}, at {begin / UM:g} um"
+                raise NoRoom(f"ring: {before} and {name} {where}", _size(side))
             for um, cell in process.fillers.items():
                 while begin - at >= um * UM:
                     yield Place(f"{side}_{at // UM}", cell, side, at, {})

@@ -12,6 +12,7 @@ from talbot.flow.layout.sensor.plan import (
     Block,
     Box,
     DieParameters,
+    NoRoom,
     Terminal,
     bar,
     check_way,
@@ -144,7 +145,7 @@ def _pads(
 ) -> Iterator[tuple[str, Branch]]:
     """Pairs (net, Branch) of the signals' pads; in the south around the middle of the blocks' pins on these nets.
 
-    Analog signals are behind the host's, across the border of the ring's segments. Raises StepError.
+    Analog signals are behind the host's, across the border of the ring's segments. Raises NoRoom.
     """
     kinds = {
         net: function(net, driver(blocks, ends)[0] == CORE) for net, ends in routed.items() if ("die", net) in ends
@@ -167,7 +168,7 @@ def _pads(
         while any(abs(at + offset - other) < tracks.branch_pitch for other in taken):
             at += UM
         if at + pads.frame.pad + GAP > high:
-            raise StepError(f"ring: no room for the pad of {net} in the south")
+            raise NoRoom(f"ring: no room for the pad of {net} in the south", "width_um")
         taken.append(at + offset)
         half = min(right - left, 2 * STUB_HALF) // 2
         box = at + offset - half, pads.frame.seal + bottom, at + offset + half, pads.frame.seal + top

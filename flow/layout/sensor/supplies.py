@@ -15,6 +15,7 @@ from talbot.flow.layout.sensor.plan import (
     Block,
     Box,
     DieParameters,
+    NoRoom,
     check_way,
     nm,
 )
@@ -50,21 +51,26 @@ def supplies(
 
     Lines on the top metal lead from the straps over the chip and from the analog blocks' pins to the tracks of the ring
     in the west and the east, across bars of the metal below, one a net; a line whose net has no track beside it ends at
-    the bar. Two lines in the north connect the west with the east.
+    the bar. Two lines in the north connect the west with the east. Raises NoRoom for a net that meets no track.
     """
     straps, lines = _straps(blocks[CORE]), _lines(blocks, die, top)
     found: list[Shape] = []
     for net in SUPPLIES:
+        met: dict[str, bool] = {}  # whether a line meets the ring, by side
         for side in ("west", "east"):
             own = [line.box for line in lines if (line.net, line.side) == (net, side)]
             if own:
                 ends = plan.bar(net, side, die)
                 tracks = [pads.track(net, side, len(rules.layers) - 1, (box[1], box[3])) for box in own]
+                met[side] = any(tracks)
                 boxes = [to_track(box, side, track or ends) for box, track in zip(own, tracks, strict=True)]
                 found += _bar(net, ends, boxes, rules.layers[-1], top)
                 for box, track in zip(boxes, tracks, strict=True):
                     if track:
                         found += vias(net, (track[0], box[1], track[1], box[3]), top)
+        if met and not any(met.values()):
+            side = next(iter(met))
+            raise NoRoom(f"ring: {net} meets none of its tracks, above the signals' pads in the {side}", side)
     half = nm(top.via.size_um + 2 * top.via.enclosure_below_um) // 2
     for net, at in straps:
         for line in lines:

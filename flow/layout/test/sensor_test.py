@@ -8,9 +8,10 @@ import pytest
 from talbot.flow.layout.chain import input_files, netlist_tests, timing_steps
 from talbot.flow.layout.design import design, design_asked, folder_name
 from talbot.flow.layout.options import Options
+from talbot.flow.layout.sensor.die import lay_out_sensor
 from talbot.flow.layout.steps.gate_frames import few
 from talbot.flow.layout.varied import CHIP, SENSOR
-from talbot.models.parameters import ParameterError, Window
+from talbot.models.parameters import ParameterError, Window, read_sensor
 
 TEXT = """
 array = { rows = 9, cols = 14, pitch = 12e-6 }
@@ -66,11 +67,42 @@ def test_a_block_that_the_sensor_lacks_is_refused(tmp_path):
         design_asked("phase_path", Namespace(sensor=tmp_path / "none.toml"))
 
 
-@pytest.mark.parametrize("name", ("tt_asp_chip", SENSOR))
-def test_other_designs_refuse_it(name, small):
+def test_wrappers_refuse_it(small):
     line = r"tile.rows = 2: must be 4 \(this design has the sizes of the standard sensor; .* varies nothing\)"
     with pytest.raises(ParameterError, match=line):
-        design_asked(name, small)
+        design_asked("tt_asp_chip", small)
+
+
+def test_the_die_follows_what_circuits_are_drawn_for(small):
+    text = TEXT.replace(", f_clk = 80e6", "")
+    small.sensor.write_text(text)
+    assert design_asked(SENSOR, small) == design_asked(CHIP, small)
+    changes = {
+        "array.pitch": ("12e-6", "8e-6"),
+        "array.rows": ("rows = 9", "rows = 500"),
+        "chip.f_clk": ("lanes", "f_clk = 80e6, lanes"),
+    }
+    for field, change in changes.items():
+        small.sensor.write_text(text.replace(*change))
+        with pytest.raises(ParameterError, match=f"{field} = .*: must be "):
+            design_asked(SENSOR, small)
+
+
+@pytest.mark.needs("layout")
+@pytest.mark.parametrize(
+    "change, words",
+    [
+        ("", "cols = 14: 168 um must have room for pins"),
+        ("cols = 14 -> cols = 210", "array.cols = 210: must be at most 96, the lines of 2 lanes"),
+    ],
+)
+def test_a_die_that_cannot_be_drawn_is_refused_before_anything_runs(change, words, small, tmp_path):
+    text = TEXT.replace(", f_clk = 80e6", "")
+    small.sensor.write_text(text.replace(*change.split(" -> ")) if change else text)
+    sensor, chip = read_sensor(small.sensor), design_asked(SENSOR, small)
+    with pytest.raises(ParameterError, match=words):
+        lay_out_sensor(chip, Options(), None, tmp_path / "out", print, sensor)
+    assert not (tmp_path / "out").exists()
 
 
 @pytest.mark.needs("iverilog", "yosys")

@@ -15,9 +15,10 @@ from talbot.platforms.layout import layout_platform
 
 @dataclass(frozen=True)
 class DieIrDropParameters:
-    """Process. sink_a: of every column's follower, that of `make pixel-circuit`."""
+    """Process, pixels. sink_a: of every column's follower, that of `make pixel-circuit`."""
 
     pdk: str = "sky130"
+    array: ArrayParameters = field(default_factory=ArrayParameters)
     sink_a: float = field(default=5e-6, metadata={"unit": "A"})
 
 
@@ -34,7 +35,7 @@ class DieIrDrop(Step[DieIrDropParameters]):
     metrics = {"pixel_drop_mv": "mV", "pixel_spread_mv": "mV", "pixel_drop_both_mv": "mV"}
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
-        p, array = self.parameters, ArrayParameters()
+        p, array = self.parameters, self.parameters.array
         plan, tech = json.loads(inputs["plan"].read_text(encoding="utf-8")), layout_platform(p.pdk)
         made = mesh(plan, array, tech, top_metal(p.pdk))
         rows = (0, array.rows // 2, array.rows - 1)

@@ -8,7 +8,7 @@ from typing import Any
 from talbot.base.steps import Files, Step
 from talbot.flow.layout.sensor import arrange, decoupling, ring, routing, supplies, verilog
 from talbot.flow.layout.sensor.arrange import Arranged
-from talbot.flow.layout.sensor.plan import BLOCKS, CORE, Block, DieParameters, driver, nm
+from talbot.flow.layout.sensor.plan import BLOCKS, CORE, Block, DieParameters, NoRoom, driver, nm
 from talbot.flow.layout.sensor.ring import Frame, Pads, Place
 from talbot.flow.layout.sensor.rules import RoutingRules
 from talbot.flow.layout.sensor.shapes import Shape, drawn
@@ -48,16 +48,27 @@ class DiePlan(Step[DiePlanParameters]):
     metrics = {"area_um2": "um2", **dict.fromkeys(COUNTS, ""), "wire_um": "um", "decoupling_pf": "pF"}
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
+        die = self.parameters.die
+        while True:
+            try:
+                return self.planned(die, inputs, outputs)
+            except NoRoom as reason:
+                if self.parameters.die.width_um and self.parameters.die.height_um:
+                    raise
+                die = die.larger(reason)
+
+    def planned(self, die: DieParameters, inputs: Files, outputs: Files) -> dict[str, Any]:
+        """Write the plan of a die of this size; returns the metrics. Raises ParameterError, StepError."""
         p, tech = self.parameters, layout_platform(self.parameters.pdk)
         rules = RoutingRules.of(tech, json.loads(inputs["rules"].read_text(encoding="utf-8")))
         layers = [tech.metals[level].lef for level in (routing.STUB, routing.BRANCH)]
         blocks = {name: Block.read(name, inputs[f"{name}.lef"].read_text(encoding="utf-8")) for name in (*BLOCKS, CORE)}
-        tracks = routing.Tracks.of(rules, p.die)
-        pads = self.pads(json.loads(inputs["pads"].read_text(encoding="utf-8")), {})
+        tracks = routing.Tracks.of(rules, die)
+        pads = self.pads(die, json.loads(inputs["pads"].read_text(encoding="utf-8")), {})
         extra = dict.fromkeys(
             pin for block in BLOCKS for pin in extra_pins(inputs[f"{block}.lef"], inputs[f"{block}.black_box"])
         )
-        made = arrange.arranged(blocks, p.die, tracks, layers, pads, extra)
+        made = arrange.arranged(blocks, die, tracks, layers, pads, extra)
         signals = [
             ring.signal(net, kind, at - offset, pads.process, branch.side)
             for net, found in made.routes.items()
@@ -71,18 +82,18 @@ class DiePlan(Step[DiePlanParameters]):
         for place in (place for place in signals if place.side != "south"):
             borders[place.side] = max(borders[place.side], place.at + pads.frame.pad)
         pads = replace(pads, borders={side: y // ring.UM * ring.UM for side, y in borders.items()})
-        metal = supplies.metal(made, p.die, tracks, rules, top_metal(p.pdk), pads)
-        lines = supplies.crossing(made.blocks, p.die, top_metal(p.pdk), "adc_lanes")
+        metal = supplies.metal(made, die, tracks, rules, top_metal(p.pdk), pads)
+        lines = supplies.crossing(made.blocks, die, top_metal(p.pdk), "adc_lanes")
         taken = [branch.x for found in made.routes.values() for branch in found]
-        field = decoupling.field(made.blocks, taken, p.die)
+        field = decoupling.field(made.blocks, taken, die)
         metal += decoupling.metal(field, lines, rules, top_metal(p.pdk))
-        places, gaps = ring.ring(pads, signals, supplies.ways(made.blocks, p.die, top_metal(p.pdk)))
+        places, gaps = ring.ring(pads, signals, supplies.ways(made.blocks, die, top_metal(p.pdk)))
         levels = [*tech.metals, top_metal(p.pdk).metal]
         metal += [drawn(levels[level], net, box) for net, level, box in ring.bridges(pads, gaps)]
-        plan = as_json(made, metal, places, pads, p.die, tracks, levels[-1]) | {"decoupling": field._asdict()}
+        plan = as_json(made, metal, places, pads, die, tracks, levels[-1]) | {"decoupling": field._asdict()}
         outputs["plan"].write_text(json.dumps(plan) + "\n", encoding="utf-8")
         outputs["verilog"].write_text(verilog.top(TOP, made.blocks, made.nets, places), encoding="utf-8")
-        area = p.die.width_um * p.die.height_um
+        area = die.width_um * die.height_um
         covered = sum(block.width * block.height for block in made.blocks.values()) / 1e6
         return {
             "area_um2": area,
@@ -96,11 +107,11 @@ class DiePlan(Step[DiePlanParameters]):
             "wire_um": round(made.wire / 1000, 1),
         }
 
-    def pads(self, cells: ring.Pins, borders: Mapping[str, int]) -> Pads:
+    def pads(self, die: DieParameters, cells: ring.Pins, borders: Mapping[str, int]) -> Pads:
         """The pads in the frame of the die."""
-        p, process = self.parameters, pad_process(self.parameters.pdk)
+        process = pad_process(self.parameters.pdk)
         depth, width = nm(process.height_um), nm(process.width_um)
-        frame = Frame(nm(p.die.width_um), nm(p.die.height_um), nm(p.die.ring_um) - depth, depth, width)
+        frame = Frame(nm(die.width_um), nm(die.height_um), nm(die.ring_um) - depth, depth, width)
         return Pads(frame, cells, process, borders)
 
 

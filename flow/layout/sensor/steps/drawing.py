@@ -3,6 +3,7 @@
 import shutil
 import sys
 from collections.abc import Iterable
+from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, ClassVar
@@ -11,7 +12,8 @@ from talbot.base.paths import ROOT
 from talbot.base.steps import Files, Step
 from talbot.base.tools import run
 from talbot.flow.layout.sensor.plan import BLOCKS
-from talbot.flow.layout.steps.parameters import PdkParameters
+from talbot.models.parameters import STANDARD, SensorParameters
+from talbot.models.parameters.sensor_file import sensor_text
 
 ARRAY = "pixel_array"
 
@@ -21,8 +23,16 @@ def files_of(blocks: Iterable[str]) -> dict[str, str]:
     return {file: file for block in blocks for file in (f"{block}.lef", f"{block}.gds")}
 
 
-class Drawing(Step[PdkParameters]):
-    """LEF and GDS of blocks, as ``module`` draws them."""
+@dataclass(frozen=True)
+class DrawingParameters:
+    """Process and sensor."""
+
+    pdk: str = "sky130"
+    sensor: SensorParameters = STANDARD
+
+
+class Drawing(Step[DrawingParameters]):
+    """LEF and GDS of a sensor's blocks, as ``module`` draws them."""
 
     shared = True
     module: ClassVar[str]
@@ -33,11 +43,20 @@ class Drawing(Step[PdkParameters]):
         return (self.module,)
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
+        p = self.parameters
         with TemporaryDirectory() as folder:
-            run([sys.executable, "-m", self.module, "--pdk", self.parameters.pdk, "--out", folder], cwd=ROOT)
+            options = sensor_options(p.sensor, Path(folder))
+            run([sys.executable, "-m", self.module, "--pdk", p.pdk, *options, "--out", folder], cwd=ROOT)
             for name, path in outputs.items():
                 shutil.copyfile(Path(folder) / name, path)
         return {}
+
+
+def sensor_options(sensor: SensorParameters, folder: Path) -> tuple[str, ...]:
+    """Options of a module that draws blocks of ``sensor``, whose file is written into ``folder``."""
+    path = folder / "sensor.toml"
+    path.write_text(sensor_text(sensor), encoding="utf-8")
+    return "--sensor", str(path)
 
 
 class DrawnPixels(Drawing):

@@ -13,10 +13,10 @@ from talbot.base.paths import ROOT
 from talbot.base.steps import StepError
 from talbot.base.tools import finish
 from talbot.flow.layout.sensor import arrange
-from talbot.flow.layout.sensor.plan import CORE, ORIENTATIONS, SIGNALS, SUPPLIES, DieParameters
+from talbot.flow.layout.sensor.plan import CORE, ORIENTATIONS, SIGNALS, STEP_UM, SUPPLIES, DieParameters, NoRoom
 from talbot.flow.layout.sensor.test import small
-from talbot.models.parameters import ParameterError
-from talbot.pixels.blocks import blocks
+from talbot.models.parameters import ArrayParameters, ChipParameters, ParameterError
+from talbot.pixels.blocks import AnalogSizes, blocks
 from talbot.signoff.geometry.abstract import ports
 
 pytestmark = pytest.mark.needs("layout")
@@ -230,8 +230,30 @@ def test_a_row_line_cut(made, tmp_path):
 def test_blocks_that_the_die_has_no_room_for(made, tmp_path):
     with pytest.raises(ParameterError, match=r"height_um = 900: must be at least \d+"):
         small.plan(made[0] | {}, tmp_path, DieParameters(2800.0, 900.0))
-    with pytest.raises(StepError, match="ring: no room for the pad of "):
+    with pytest.raises(NoRoom, match="ring: no room for the pad of "):
         small.plan(made[0] | {}, tmp_path, DieParameters(2050.0, 1800.0))
+
+
+@pytest.mark.parametrize(
+    "rows, cols, pitch, lanes, room",
+    [(7, 150, 10e-6, 1, None), (60, 131, 10e-6, 2, 60.0), (200, 190, 12.5e-6, 4, None)],
+)
+def test_a_die_of_any_sensor_has_the_least_size(tmp_path, rows, cols, pitch, lanes, room):
+    """The chip is below the column amplifiers, or west of the row driver where these are too narrow."""
+    array, chip = ArrayParameters(rows, cols, pitch), ChipParameters(lanes)
+    given = small.files(tmp_path, blocks(array, chip, AnalogSizes(chip_um=room) if room else None))
+    small.plan(given, tmp_path, DieParameters())
+    assert small.connectivity(given, tmp_path) == {"open_nets": 0, "shorts": 0, "lvs_match": True}
+    plan = json.loads(given["die_plan.plan"].read_text())
+    width, height = (side / 1000 for side in plan["die"])
+    chip_at, drivers = plan["blocks"][CORE]["box"], plan["blocks"]["row_driver"]["box"]
+    assert (chip_at[2] > drivers[2]) == (room is None)
+    for smaller in (
+        replace(DieParameters(), width_um=width - STEP_UM, height_um=height, pad_um=100.0),
+        replace(DieParameters(), width_um=width, height_um=height - STEP_UM, pad_um=100.0),
+    ):
+        with pytest.raises(NoRoom):
+            small.plan(given, tmp_path, smaller)
 
 
 @pytest.mark.parametrize(
@@ -265,10 +287,14 @@ def test_pins_that_fit_nothing(made, tmp_path, change, words):
 def test_a_pin_behind_a_block(made, tmp_path):
     text = made[0]["column_amplifiers.lef"].read_text()
     found = re.search(r"PIN mode\[0\]\n.*?RECT (\S+) (\S+) (\S+) (\S+)", text, re.S)
-    moved = text.replace(f"RECT {' '.join(found.groups())}", f"RECT 400.000 {found[2]} 400.400 {found[4]}")
+    lanes = next(block for block in small.ANALOG if block.name == "column_amplifiers")
+    west = max(pin.at_um for pin in lanes.pins if pin.name.startswith("lane_"))
+    moved = text.replace(
+        f"RECT {' '.join(found.groups())}", f"RECT {west + 9:.3f} {found[2]} {west + 9.4:.3f} {found[4]}"
+    )
     given = made[0] | {"column_amplifiers.lef": tmp_path / "columns.lef"}
     given["column_amplifiers.lef"].write_text(moved)
-    with pytest.raises(StepError, match=r"column_amplifiers: its pin mode\[0\] has core in its way to the south"):
+    with pytest.raises(StepError, match=r"column_amplifiers: its pin mode\[0\] has adc_lanes in its way to the south"):
         small.plan(given, tmp_path)
 
 

@@ -43,19 +43,15 @@ WIDTH, HEIGHT = 200.0, 400.0
 SPLIT = 6  # the place of the pin whose metal is in pieces, each of them too small for a stub
 
 
-def analog():
-    return blocks(
-        ArrayParameters(16, 120),
-        ChipParameters(2),
-        AnalogSizes(row_driver_um=60.0, columns_um=100.0, lane_um=100.0, lanes_um=300.0, chip_um=360.0),
-    )
+SIZES = AnalogSizes(row_driver_um=60.0, columns_um=100.0, lane_um=100.0, lanes_um=300.0, chip_um=360.0)
+ANALOG = blocks(ArrayParameters(16, 120), ChipParameters(2), SIZES)
 
 
-def core_pins():
+def core_pins(analog=ANALOG):
     """dict pin -> direction: the die's signals and what the analog blocks have in the south, the other way round."""
     outer = {
         pin.name: "output" if pin.direction == "input" else "input"
-        for block in analog()
+        for block in analog
         for pin in block.pins
         if pin.side == "south" and not pin.name.startswith(("column_", "lane_"))
     }
@@ -63,7 +59,7 @@ def core_pins():
     return dict(sorted((outer | own).items()))
 
 
-def core(folder):
+def core(folder, analog=ANALOG):
     """Write core.lef and core.gds: pins on the west and the east, in turn, and four straps."""
     import klayout.db as db
 
@@ -80,7 +76,7 @@ def core(folder):
         lines.extend(["    END", f"  END {name}"])
 
     metal = layout_platform("sky130").metals[STUB]
-    for k, (name, direction) in enumerate(core_pins().items()):
+    for k, (name, direction) in enumerate(core_pins(analog).items()):
         left, bottom = (0.0 if k % 2 == 0 else WIDTH - 0.3), 5 + 4.0 * (k // 2)
         ends = (0.0, 0.13, 0.32) if k == SPLIT else (0.0, 0.32)
         pieces = [(left, bottom + low, left + 0.3, bottom + high) for low, high in itertools.pairwise(ends)]
@@ -149,10 +145,10 @@ def pads(folder):
     layout.write(str(folder / "pads.gds"))
 
 
-def files(folder):
+def files(folder, analog=ANALOG):
     """Everything that the die's steps are given: dict name -> Path."""
-    write(folder, analog(), "sky130", AnalogSizes().supply_um)
-    core(folder)
+    write(folder, analog, "sky130", AnalogSizes().supply_um)
+    core(folder, analog)
     pads(folder)
     (folder / "rules.json").write_text(json.dumps(RULES))
     for block in BLOCKS:
