@@ -11,7 +11,7 @@ SkyWater's periphery rules m1.7, m2.7.
 
 from functools import partial
 
-from talbot.platforms.die import TopMetal
+from talbot.platforms.die import Ring, SealRing, TopMetal
 from talbot.platforms.layers import DIFFUSION, Crossing, Layer, Via
 
 LABEL, PIN = 5, 16  # GDS datatypes
@@ -20,6 +20,7 @@ DIFF, TAP = (65, 20), (65, 44)
 NWELL, NSDM, PSDM = (64, 20), (93, 44), (94, 20)
 HVTP, LVTN = (78, 44), (125, 44)
 CELL_CORE = 81, 4  # areaid.core: cells of a library
+SEALED = 81, 1  # areaid.seal: where cuts may be rings
 CELL_OUTLINE = 236, 0
 NWELL_LABEL, PWELL_LABEL = (64, 5), (64, 59)
 
@@ -146,6 +147,19 @@ VIA4 = _via(
 )
 VIAS = MCON, VIA, VIA2, VIA3, VIA4  # VIAS[k] connects METALS[k] and METALS[k + 1]
 TOP = TopMetal(MET5, VIA4)  # above what blocks are routed on
+
+# The deck takes cuts as rings in areaid.seal that are as wide as a cut, 0.20 um on via; of licon squares alone
+_CUTS = {MCON: 0.17, VIA: 0.20, VIA2: 0.20, VIA3: 0.20, VIA4: 0.80}
+SEAL = SealRing(
+    (
+        *(Ring(layer, 1.8, 6.4) for layer in (SEALED, PSDM)),
+        *(Ring(layer, 2.0, 6.0) for layer in (TAP, *(metal.gds for metal in METALS))),
+        *(Ring(cut.gds, inset, width) for cut, width in _CUTS.items() for inset in (3.5, 5.5)),
+    ),
+    tuple(Ring(LICON.gds, inset, 0.17) for inset in (3.5, 5.5)),
+    inset_um=2.0,
+    corner_um=17.0,
+)
 
 CROSSINGS = (
     Crossing("li1", DIFFUSION, 55.30, 44.27, 0.0),

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 from talbot.base.gds import read_gds, write_gds
 from talbot.base.steps import Files, Step, StepError
-from talbot.flow.layout.sensor import decoupling
+from talbot.flow.layout.sensor import decoupling, seal
 from talbot.flow.layout.sensor.plan import BLOCKS, CORE, ORIENTATIONS
 from talbot.flow.layout.sensor.ring import Frame
 from talbot.flow.layout.sensor.rules import RoutingRules
 from talbot.flow.layout.sensor.steps.die_plan import TOP
-from talbot.platforms.die import top_metal
+from talbot.platforms.die import seal_ring, top_metal
 from talbot.platforms.layout import layout_platform
 from talbot.platforms.pads import pad_process
 
@@ -33,10 +33,10 @@ class DieGdsParameters:
 
 
 class DieGds(Step[DieGdsParameters]):
-    """The blocks' GDS at the places of the plan, the ring of pads, and the plan's metal.
+    """The blocks' GDS at the places of the plan, the ring of pads, the seal ring, and the plan's metal.
 
     checked: the same without the pixels of drawn arrays, for rules and antennas, which see every shape of each of
-    150,000 pixels, and with the pads' metals alone; what is around the pixels stays.
+    150,000 pixels, with the pads' metals alone, and without the seal ring; what is around the pixels stays.
     """
 
     name = "die_gds"
@@ -74,7 +74,11 @@ class DieGds(Step[DieGdsParameters]):
         top.shapes(layout.layer(*tech.outline)).insert(db.Box(0, 0, *plan["die"]))
         rules = RoutingRules.of(tech, json.loads(inputs["rules"].read_text(encoding="utf-8")))
         decoupling.draw(layout, plan, rules, pad_process(self.parameters.pdk).capacitor)
+        width, height = (side * layout.dbu for side in plan["die"])
+        ring = seal.draw(layout, width, height, seal_ring(self.parameters.pdk))
+        top.insert(db.CellInstArray(ring.cell_index(), db.Trans()))
         write_gds(layout, outputs["gds"])
+        ring.prune_cell()
         for name in self.parameters.drawn:
             inner = [layout.cell(index) for index in cells[name].each_child_cell()]
             for cell in inner:

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from talbot.base.steps import StepError
+from talbot.flow.layout.sensor.plan import NoRoom
 from talbot.flow.layout.sensor.ring import (
     ANALOG,
     BESIDE_CHIP,
@@ -85,12 +85,12 @@ def test_only_a_line_with_another_track_before_its_own_has_a_slot(cells):
 
 
 def test_a_line_at_the_border_of_two_segments(cells):
-    with pytest.raises(StepError, match="ring: west_border and slot of vddr overlap in the west, at 916 um"):
+    with pytest.raises(NoRoom, match="ring: west_border and slot of vddr overlap in the west, at 916 um"):
         made(cells, 3_000_000, lines=[920_000])
 
 
 def test_pads_that_the_lines_leave_no_room_for(cells):
     """Six pads of 90 um where every 100 um there is a line."""
     lines = range(1_000_000, 1_700_000, 100_000)
-    with pytest.raises(StepError, match=r"ring: \S+ and pad_vdd\w_\d overlap in the west, at "):
+    with pytest.raises(NoRoom, match=r"ring: \S+ and pad_vdd\w_\d overlap in the west, at "):
         made(cells, 1_800_000, lines=lines)
