@@ -56,14 +56,7 @@ def golden_events(golden: GoldenFrame, stream: bytes, cycles: int, busy: int) ->
 
 
 def energy_of(result: FrameResult) -> dict[str, float]:
-    """Energy of the frame in uJ: parts in the lower reading of Table 6.1, ``adcs_high``, ``total``, ``total_high``.
-
-    timing, digital: one part, by the table and by the layout's gates; a total has one of them.
-    image_mode, image_mode_high: of an edge frame's samples converted in full and sent as a byte each. saved_by_edge: by
-    how much it takes less, and edge_pays_below: the share of converted samples below which it does, both in the lower
-    reading with the digital part by the layout. light: of the source in time of flight, on while a row integrates; in
-    no total. circuits: the analog parts by `CircuitEnergy`, the digital part by the layout, and the pads.
-    """
+    """Return the energy of the frame in uJ, by part (docs/figures.md)."""
     events, request, energy = events_of(result), result.request, EnergyParameters()
     parts = {name: (1e6 * low, 1e6 * high) for name, (low, high) in energy.frame(events).items()}
     out = {name: low for name, (low, _) in parts.items()} | {"adcs_high": parts["adcs"][1]}
@@ -296,13 +289,7 @@ def _tools() -> dict[str, str]:
 
 
 def summarize_golden(result: GoldenResult) -> dict[str, Any]:
-    """Figures of a frame that the golden chip can give: no cycles, no energy.
-
-    quadrature_error_codes: RMS of the captured differences against 31 x 31 views, on a probe. hidden_light_codes: RMS,
-    there, of what the differences have of light that the middle view does not see, where the scene knows it.
-    raw_bytes: one byte a sample sent. psnr_db: decoded samples against the noiseless analog values, peak 255 codes; of
-    phase and amplitude, the amplitude alone. Figures of quality: docs/figures.md.
-    """
+    """Return the figures of a frame that the golden chip can give (docs/figures.md): no cycles, no energy."""
     request, golden, decoded = result.request, result.golden, result.decoded
     sensor, frame = request.sensor, request.frame
     ideal, marks = result.exposed.ideal, MARK.size * decoded.segments

@@ -16,7 +16,7 @@ from talbot.models.afe import Converter, FrontEnd
 from talbot.models.digital.scan import Scan
 from talbot.models.parameters import MODES, ConverterParameters, FrameParameters, Window
 from talbot.rtl.adc_bank import AdcBank, AdcBankCL, AdcBankFL
-from talbot.rtl.harness.afe_fl import AfeFL
+from talbot.rtl.adc_bank.test.afe_fl import AfeFL
 from talbot.rtl.harness.reset import outputs_after_reset
 from talbot.rtl.harness.testbench import build
 from talbot.rtl.messages import END, FRAME, ROW, SAMPLE, ScanMsg, step_msg

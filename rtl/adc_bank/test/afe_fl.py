@@ -1,4 +1,4 @@
-"""The analog front end as a PyMTL component, for the tests of single blocks: Afe of pixels/afe.sv."""
+"""The analog front end as a PyMTL component: Afe of pixels/afe.sv."""
 
 import numpy as np
 import numpy.typing as npt
