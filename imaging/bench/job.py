@@ -133,7 +133,7 @@ def expected(sensor: SensorParameters, lux: float, holes: int) -> str:
         row, col = np.array(pixels).T
         current = light[:, row, col] * lamp.plain_current()
         time = float(seconds[row, col].min())
-        volts = gain * _fallen(current * time)
+        volts = gain * bench.fall(current * time / bench.FARAD)
         rows.append(
             (
                 name,
@@ -153,10 +153,6 @@ def _groups(sensor: SensorParameters) -> list[tuple[str, list[tuple[int, int]]]]
         groups.setdefault(name, []).append(divmod(place, COLS))
     covered = [(REFERENCE, col) for col in COVERED]
     return [("plain", plain), *sorted((n, p) for n, p in groups.items() if n != "plain"), ("covered", covered)]
-
-
-def _fallen(coulomb: np.ndarray) -> np.ndarray:
-    return bench.fall(coulomb / bench.FARAD)
 
 
 def _time(seconds: float) -> str:

@@ -82,7 +82,7 @@ def rows(s: dict[str, Any]) -> list[tuple[str, ...]]:
         ),
         (
             "zero of the stage by the sums, inner, outer, degrees",
-            _pair(s["stage_zero_deg"]),
+            ", ".join(f"{value:+.2f}" for value in s["stage_zero_deg"]),
             "+0.00, +0.00" if truth else "",
         ),
         ("lamp and noise of the plain pixels, rms %", f"{100 * s['lamp_rms']:.2f}", ""),
@@ -156,7 +156,3 @@ def _tiles(s: dict[str, Any]) -> list[Tile]:
 
 def _number(value: float | None, digits: int) -> str:
     return "not measured" if value is None else f"{value:.{digits}f}"
-
-
-def _pair(values: list[float]) -> str:
-    return ", ".join(f"{value:+.2f}" for value in values)

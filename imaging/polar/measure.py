@@ -68,7 +68,7 @@ def read_polarization(
     psi, degree = frame.truth
     sure = polarized.confidence > 0
     shown = sure & (degree > POLARIZED)
-    constant = np.full(psi.shape, _mean_angle(psi[shown])) if shown.any() else psi
+    constant = np.full(psi.shape, np.angle(np.exp(2j * psi[shown]).mean()) / 2) if shown.any() else psi
     frame.summary.update(
         about(result)
         | {
@@ -142,10 +142,6 @@ def angle_error(angles: Values, truth: Values, where: Bools) -> float | None:
     """Mean distance of two angles modulo pi, in degrees; None where there are none."""
     turned = np.abs((angles - truth + np.pi / 2) % np.pi - np.pi / 2)[where]
     return float(np.rad2deg(turned.mean())) if turned.size else None
-
-
-def _mean_angle(psi: Values) -> float:
-    return float(np.angle(np.exp(2j * psi).mean()) / 2)
 
 
 def _f1(tagged: Bools, truth: Bools) -> float | None:
