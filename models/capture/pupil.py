@@ -67,7 +67,7 @@ def integrate(scene: Scene, sensor: SensorParameters, region: Region, waves: Seq
             for total, wave in zip(out, waves, strict=True):
                 _add(
                     total,
-                    light if wave is None else light * wave(surface, *place),
+                    np.ascontiguousarray(light if wave is None else light * wave(surface, *place)),
                     series,
                     order,
                     field.y,
@@ -91,9 +91,11 @@ def add_view(pair: Floats, light: Floats, field: FieldWeights, sensor: SensorPar
     sensor. v, u: view row and column.
     """
     order = sensor.tile.type_map(sensor.tile.rows, sensor.tile.cols)
-    _add(pair, light, np.ascontiguousarray(field.series[:, :, v, u]), order, field.y, field.x, np.arange(len(light)))
+    light, series = map(np.ascontiguousarray, (light, field.series[:, :, v, u]))
+    _add(pair, light, series, order, field.y, field.x, np.arange(len(light)))
 
 
+# Of contiguous arrays alone: of others Numba would compile it once more
 @njit(cache=True, nogil=True)
 def _add(
     out: Floats, light: Floats, series: Floats, order: npt.NDArray[np.int64], y: Floats, x: Floats, rows: Ints

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from talbot.models.digital.stream.body import Body
 from talbot.models.digital.stream.frame import DecodedFrame
@@ -42,6 +43,8 @@ def iterate_frames(data: bytes, tile: TileParameters = TileParameters()) -> Iter
     frame starts anywhere.
     """
     data = bytes(data)
+    # A copy that may be written, as those in which a byte is corrected: for another type Numba would compile all again
+    view = np.frombuffer(bytearray(data), np.uint8)
     at, last, limit = 0, None, SEARCH_MAX[0] + SEARCH_MAX[1] * len(data)
     while at < len(data):
         start = _find_header(data, at, tile)
@@ -55,7 +58,7 @@ def iterate_frames(data: bytes, tile: TileParameters = TileParameters()) -> Iter
         header = start.header
         samples = np.zeros((header.rows, header.cols, header.subs), np.int16)
         last = DecodedFrame(header, samples, start.layout, start.position, errors=start.notes)
-        limit = _decode_frame(data, last, start.sent, tile, limit)
+        limit = _decode_frame(data, view, last, start.sent, tile, limit)
         at = last.stop
     if last is None:
         raise StreamError("0 bytes: the stream is empty")
@@ -105,9 +108,14 @@ def _good_header(data: bytes, start: int, stop: int) -> int:
     return position
 
 
-def _decode_frame(data: bytes, frame: DecodedFrame, sent: bytes, tile: TileParameters, limit: int) -> int:
-    """Fill in a frame from its ``start`` on; returns the rest of the tokens that may be decoded on trial."""
-    body, stop = Body(np.frombuffer(data, np.uint8), frame, sent), len(data)
+def _decode_frame(
+    data: bytes, view: npt.NDArray[np.uint8], frame: DecodedFrame, sent: bytes, tile: TileParameters, limit: int
+) -> int:
+    """Fill in a frame from its ``start`` on; returns the rest of the tokens that may be decoded on trial.
+
+    view: the bytes ``data``.
+    """
+    body, stop = Body(view, frame, sent), len(data)
     ordinal, at, tail = body.decode(0, body.first)
     if tail is None:
         following = _find_header(data, at, tile)

@@ -182,7 +182,8 @@ def encode_rows(codes: Codes, rows: Ints, counts: Ints, edge: bool, base: int, s
     edge: run-length coded signed codes; else plain bytes. base: see `base_of`. segment: bytes of payload after which a
     row is a segment's last. out: receives the bytes. Returns bytes written.
     """
-    at, begin, first, row, state = 0, 0, 0, 0, _fresh(base)
+    at, begin = int64(0), int64(0)  # of a plain 0 Numba would compile `_append` and `crc16_span` once more
+    first, row, state = 0, 0, _fresh(base)
     for i in range(rows.size):
         at, state = _append(codes[first : first + counts[i]], edge, base, out, at, state)
         first += counts[i]
