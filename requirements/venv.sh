@@ -115,16 +115,22 @@ install() {
 [ -x "$folder/bin/uv" ] || "$folder/bin/python" -m pip install --quiet --no-deps --no-compile --require-hashes \
     -r "$here/uv.lock" 2>/dev/null || true # a registry without it
 # A lock names all that its packages depend on. pip compiles 6,000 modules with one core. compileall compiles those that a frame
-# loads, with all cores; Python compiles the others when it imports them
+# or most tests load, with all cores, while the project is installed; Python compiles the others when it imports them
 later='site-packages/((.*/)?(tests?|testcases)|pip|setuptools|networkx|fontTools|pygments|hypothesis|_pytest|sklearn'
-later+='|systemrdl|antlr4|markdown|joblib|packaging|py|scipy/(_lib/(cobyqa|pyprima)|odr|fftpack)'
+later+='|systemrdl|antlr4|markdown|joblib|packaging|py|tifffile|imageio|contourpy|sortedcontainers|pluggy'
+later+='|plotly|_plotly_utils|narwhals|sphinx|docutils|snowballstemmer|babel|myst_parser|markdown_it|mdit_py_plugins|dask|fsspec'
+later+='|pydantic|pydantic_core|fastjsonschema|edalize|fusesoc|okonomiyaki|simplesat|cocotb|cocotb_tools|wasmtime|meent|rich'
+later+='|urllib3|requests|idna|bs4|soupsieve|scipy/(_lib/(cobyqa|pyprima)|odr|fftpack)'
 later+='|numba/cuda|numpy/(distutils|f2py)|scipy/(stats|optimize|signal|sparse|integrate|interpolate|spatial|io|cluster|constants)'
-later+='|matplotlib/backends|imageio/plugins|skimage/(feature|measure|morphology|transform|filters)|mpl_toolkits)/'
+later+='|matplotlib/backends|skimage/(feature|measure|morphology|transform|filters)|mpl_toolkits)/'
 install --require-hashes "${requirements[@]}"
-"$folder/bin/python" -m compileall -q -j 0 -x "$later" "$folder"/lib/python*/site-packages >/dev/null 2>&1 || true # of templates, too
+"$folder/bin/python" -m compileall -q -j 0 -x "$later" "$folder"/lib/python*/site-packages >/dev/null 2>&1 & # of templates, too
+trap "kill $! 2>/dev/null || true" EXIT
 case " $* " in # the project itself, with the packages that it cannot do without
     *run.lock*) install --no-build-isolation --editable . ;;
 esac
+wait
+trap - EXIT
 # From zlib 1.3.2 on, of which Python's process takes a part of the wheel's calls, it crashes as it reads a file
 if [ "$native" ] && "$folder/bin/python" -c 'import sys, zlib
 version = [int(part) for part in zlib.ZLIB_RUNTIME_VERSION.split(".")[:3] if part.isdigit()]
