@@ -79,6 +79,7 @@ class Tree:
         self.root, self.package = root, root / PACKAGE.name
         self._texts: dict[str, Text] = {}
         self._digests: dict[Path, str] = {}
+        self._fitting: dict[str, list[str]] = {}
 
     def digest(self, files: Iterable[Path]) -> str:
         """Return the digest of files: their places below the root and their contents."""
@@ -87,6 +88,11 @@ class Tree:
         return digest(
             *(part for file in files for part in (file.relative_to(self.root).as_posix(), self._digests[file]))
         )
+
+    def forget(self, name: str) -> None:
+        """Drop what was read of the files with a ``name``."""
+        self._texts = {module: text for module, text in self._texts.items() if text.path.name != name}
+        self._digests = {file: known for file, known in self._digests.items() if file.name != name}
 
     @cached_property
     def modules(self) -> dict[str, Path]:
@@ -141,10 +147,16 @@ class Tree:
             return None, [dict(text.imports)[reference.name]]
         more = [*(found for _, found in text.imports), *map(Reference, text.named)]
         for pattern in text.patterns:
-            more += [Reference(name) for name in self.modules if re.fullmatch(pattern, name) and _meant(name, chosen)]
+            more += [Reference(name) for name in self._named(pattern) if _meant(name, chosen)]
         _, *parents = accumulate(reference.module.split("."), "{}.{}".format)  # talbot itself loads nothing
         more += [Reference(name) for name in parents[:-1] if name in self.modules and not self._text(name).plain]
         return text, more
+
+    def _named(self, pattern: str) -> list[str]:
+        """Return the modules whose names fit a regular expression."""
+        if pattern not in self._fitting:
+            self._fitting[pattern] = [name for name in self.modules if re.fullmatch(pattern, name)]
+        return self._fitting[pattern]
 
     def _text(self, module: str) -> Text:
         if module not in self._texts:
@@ -335,7 +347,13 @@ def code(*starts: str | Path, chosen: Mapping[str, str] | None = None, root: Pat
     return _code(root, starts, tuple(sorted((chosen or {}).items())))
 
 
-def forget() -> None:
-    """Drop what was read of all trees: the files of a tree are taken to stay as they are while a process runs."""
-    _tree.cache_clear()
+def forget(file: Path | None = None, root: Path = ROOT) -> None:
+    """Drop what was read of all trees: the files of a tree are taken to stay as they are while a process runs.
+
+    file: of the tree in ``root``, to drop what was read of it alone; none is new there and none is gone.
+    """
+    if file:
+        _tree(root).forget(file.name)
+    else:
+        _tree.cache_clear()
     _code.cache_clear()

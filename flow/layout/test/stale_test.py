@@ -51,23 +51,21 @@ def cache_keys(tree):
 
 
 def with_result(keys):
-    def fresh():
-        sources.forget()
-        return keys()
-
-    return fresh, fresh()
+    return keys, keys()
 
 
 def changed(keys, tree, file):
     """Names of the keys that change with one more line in ``file``."""
-    fresh, before = keys
+    now, before = keys
     path = tree / file
     text = path.read_text()
     path.write_text(text + ("\nCHANGED = True\n" if path.suffix == ".py" else "\n"))
+    sources.forget(path, tree)
     try:
-        after = fresh()
+        after = now()
     finally:
         path.write_text(text)
+        sources.forget(path, tree)
     return {name for name in before if before[name] != after[name]}
 
 
