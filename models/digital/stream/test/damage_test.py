@@ -67,12 +67,12 @@ def test_one_wrong_byte_anywhere_is_corrected(name):
     header, samples, data = sent(name)
     rng = np.random.default_rng(1)
     for position in range(len(data)):
-        for change in {1, 0xFF, int(rng.integers(1, 256))}:
-            (frame,) = decode_stream(changed(data, position, change))
-            check_rows_lost(frame, header, samples, [])
-            at_end = position >= len(data) - 4  # the frame's CRC-32 itself
-            assert ("CRC-32" if at_end else f"byte {position}: byte of ") in frame.errors[0]
-            assert frame.stop == len(data)
+        change = (1, 0xFF, int(rng.integers(1, 256)))[position % 3]
+        (frame,) = decode_stream(changed(data, position, change))
+        check_rows_lost(frame, header, samples, [])
+        at_end = position >= len(data) - 4  # the frame's CRC-32 itself
+        assert ("CRC-32" if at_end else f"byte {position}: byte of ") in frame.errors[0]
+        assert frame.stop == len(data)
 
 
 @pytest.mark.parametrize("name", FRAMES)
@@ -83,10 +83,10 @@ def test_two_wrong_bytes_anywhere_in_a_segment_cost_that_segment(name):
     rng = np.random.default_rng(1)
     for lost, start, stop in zip(rows, starts, starts[1:], strict=False):
         for position in range(start, stop - 1):
-            for first, second in rng.integers(1, 256, (2, 2)).tolist():
-                (frame,) = decode_stream(changed(changed(data, position, first), position + 1, second))
-                check_rows_lost(frame, header, samples, lost)
-                assert frame.stop == len(data)
+            first, second = rng.integers(1, 256, 2).tolist()
+            (frame,) = decode_stream(changed(changed(data, position, first), position + 1, second))
+            check_rows_lost(frame, header, samples, lost)
+            assert frame.stop == len(data)
 
 
 def test_one_wrong_byte_costs_a_row_where_the_frame_has_no_known_end():
