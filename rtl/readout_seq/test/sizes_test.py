@@ -137,6 +137,9 @@ def refused(size):
     yield size.whole(row0=last_row, mask=types_of(size, rows[size.rows - size.tile_rows * last_row :], cols))
 
 
+SOME_LANES = [pytest.param(lanes, marks=() if lanes in (1, 4, 32) else pytest.mark.slow) for lanes in LANES]
+
+
 class TestReadoutSeqSizes:
     verilog = None  # in PyMTL; not recorded: verif/coverage would compile every size
 
@@ -148,12 +151,12 @@ class TestReadoutSeqSizes:
         for ports in refused(size):
             self.refuse(bench, size, ports)
 
-    @pytest.mark.parametrize("lanes", LANES)
+    @pytest.mark.parametrize("lanes", SOME_LANES)
     def test_every_choice_of_columns(self, lanes):
         size = Size(2, 6 * 40 + 5 - lanes % 6, lanes)
         self.run(size, column_choices(size, random.Random(lanes)))
 
-    @pytest.mark.parametrize("lanes", LANES)
+    @pytest.mark.parametrize("lanes", SOME_LANES)
     def test_every_partial_tile_is_decimated(self, lanes):
         for there in range(1, 7):
             size = Size(1, 6 * 40 + there, lanes)

@@ -82,7 +82,7 @@ class TestFL:
         host.control(False)
         assert host.status() == 0
 
-    @pytest.mark.parametrize("length", (0, 1, 2, 7, 40))
+    @pytest.mark.parametrize("length", (0, 1, 2, 7, 20))
     def test_sorts_while_processor_and_host_use_the_memory(self, length):
         """The processor writes and checks other words as the sorter works, and the host reads."""
         host, rng = self.host(), random.Random(length)

@@ -38,7 +38,7 @@ def plant(monkeypatch):
 
 
 BUGS = [
-    ("byte_queue", "head <= second;", "head <= octet;", "p_order"),
+    pytest.param("byte_queue", "head <= second;", "head <= octet;", "p_order", marks=pytest.mark.slow),
     pytest.param("edge_adc", "trial <= 8'd129 - {", "trial <= 8'd130 - {", "p_dac", marks=pytest.mark.slow),
     pytest.param(
         "phase_path",
