@@ -75,7 +75,7 @@ def given(
         "synthesis.verilog": folder / "netlist.v",
         "stream_out.verilog": folder / "final.v",
         "stream_out.gds": folder / "final.gds",
-        "database": folder / "route.odb",
+        "database": folder / "mend.odb",
         "powered": folder / "final.power.v",
         "cells.spice": root / tech.cell_spice,
         **{f"extraction.{own}": folder / f"{wires}.spef" for own, wires in zip(CORNERS, WIRES, strict=True)},

@@ -45,7 +45,7 @@ class Stage:
 
 def stages(tech: OpenRoadPlatform, wires: Sequence[str] = WIRES) -> list[Stage]:
     """Every Stage. wires: corners of parasitics that the PDK has."""
-    names = "floorplan", "power", "place", "cts", "repair", "loads", "route"
+    names = "floorplan", "power", "place", "cts", "repair", "loads", "route", "mend"
     databases = [Stage(name, f"{name}.odb") for name in names]
     extraction = [Stage("extract", f"{corner}.spef", corner) for corner in wires]
     timing = [Stage("sta", f"{corner}.{tech.corners[-1]}.sdf", corner) for corner in wires]

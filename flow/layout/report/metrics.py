@@ -69,7 +69,7 @@ def summarize(design: Design, options: Options, runner: Runner, attempts: Sequen
         "attempts": [asdict(attempt) for attempt in attempts],
         **own("stream_out", "wire_um", "vias"),
         **own("finish", "open_nets"),
-        **own("route", "router_drc_violations", "router_antennas"),
+        **own("mend", "router_drc_violations", "router_antennas"),
         **own("stream_out", "diodes", "clock_buffers"),
         "clock_gates": metric("synthesis", "clock_gates"),
         "drc_violations": metric("drc", "drc_violations"),

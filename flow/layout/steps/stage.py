@@ -36,7 +36,8 @@ STAGES: dict[str, dict[str, str]] = {
         "estimated_setup_ns": "ns",
         "estimated_hold_ns": "ns",
     },
-    "route": {"router_drc_violations": "", "router_antennas": ""},
+    "route": {},
+    "mend": {"router_drc_violations": "", "router_antennas": ""},
     "finish": {"open_nets": ""},
 }
 # Threads that wait give their core away: next to other jobs, placement of the divider took 15 times its CPU time

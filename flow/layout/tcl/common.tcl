@@ -42,6 +42,26 @@ proc routing_layers {} {
   }
 }
 
+# Nets above which `route` ends after the first iterations, and the number of the last of these
+set large 4000
+set first_iterations 3
+
+# Detailed routing, which goes on from the routes that there are. Its violations stay with the database. New cells are not
+# on the supplies yet in every release, and their rails would be shorts to the router.
+proc route_in_detail {args} {
+  global_connect
+  detailed_route -output_drc route_drc.rpt -verbose 1 {*}$args
+  set block [ord::get_db_block]
+  set count [odb::dbIntProperty_find $block violations]
+  if {$count ne "NULL"} { odb::dbProperty_destroy $count }
+  odb::dbIntProperty_create $block violations [detailed_route_num_drvs]
+}
+
+# What the last detailed routing left.
+proc violations {} {
+  [odb::dbIntProperty_find [ord::get_db_block] violations] getValue
+}
+
 # Slews and loads, with a share of each limit left.
 proc repair_loads {} {
   global load_margin

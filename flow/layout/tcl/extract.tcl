@@ -1,7 +1,7 @@
 # Extracted wires at the corner of parasitics that the environment's CORNER names.
 source common.tcl
 set wires $::env(CORNER)
-open_stage route
+open_stage mend
 foreach path $rcx_rules($wires) {
   if {[file isfile $pdk_root/$path]} { set rules $pdk_root/$path; break }
 }

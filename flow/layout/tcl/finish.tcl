@@ -1,6 +1,6 @@
 # What leaves: DEF, LEF, netlists. Cells without a function are not in the netlist for checks and timing.
 source common.tcl
-open_stage route
+open_stage mend
 write_def final.def
 write_abstract_lef final.lef
 write_verilog -remove_cells $unconnected final.v

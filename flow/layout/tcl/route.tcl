@@ -1,26 +1,9 @@
-# Detailed routes along the global ones of `loads`, with diodes where a gate's net is too large an antenna; fillers last,
-# since a diode wants a free site.
+# Detailed routes along the global ones of `loads`. Of a large design the first iterations alone, which take most of the
+# time: `mend` goes on from there, and a run that is killed then resumes there.
 source common.tcl
 open_stage loads
 set_propagated_clock [all_clocks]
 routing_layers
-
-# New cells are not on the supplies yet in every release, and their rails would be shorts to the router.
-proc route_in_detail {} {
-  global_connect
-  detailed_route -output_drc route_drc.rpt -verbose 1
-}
-
-# Antennas wait for the real routes: on global routes the router's second pass after a diode ends the run in some
-# releases ("heap underflow", GRT-0183), and what it estimates is not what is left.
-route_in_detail
-for {set turn 0} {$turn < 3 && [check_antennas] > 0} {incr turn} {
-  if {[repair_antennas $diode] == 0} { break }
-  route_in_detail
-}
-filler_placement $fill
-global_connect
-check_placement -verbose
-measured router_drc_violations [detailed_route_num_drvs]
-measured router_antennas [check_antennas]
+set nets [llength [[ord::get_db_block] getNets]]
+route_in_detail {*}[expr {$nets > $large ? [list -droute_end_iter $first_iterations] : ""}]
 write_db route.odb
