@@ -81,8 +81,8 @@ setup-layout: $(LAYOUT_READY)
 RUN := sim sensor lightfield cameras polar depth recognize calibrate tradeoff stability decode index verilog
 TESTS := formal coverage mutate sizes fuzz cocotb suite stuck-at document site pixel pixel-layout cosim layout
 LAYOUT := pixel pixel-layout cosim pixel-circuit analog analog-layout footprints handoff cells cells-report \
-  cells-compact layout layout-timing openroad openroad-compare
-TOOLS := pixel-circuit analog analog-layout cells cells-report cells-compact layout layout-timing
+  cells-compact sram layout layout-timing openroad openroad-compare
+TOOLS := pixel-circuit analog analog-layout sram cells cells-report cells-compact layout layout-timing
 COMMANDS := $(sort $(RUN) $(TESTS) $(LAYOUT) $(TOOLS))
 .PHONY: $(COMMANDS)
 $(COMMANDS): $(READY)

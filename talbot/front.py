@@ -61,6 +61,7 @@ GROUPS: dict[str, dict[str, Command]] = {
         "layout": Command("Verilog to a checked GDS: the chip, a block or the die", "flow.layout.command"),
         "openroad": Command("scripts and layout of a design by OpenROAD", "flow.openroad.command"),
         "cells": Command("characterize standard cells: transistors to Liberty and LEF", "cells.command"),
+        "sram": Command("a static RAM's cell: layout, margins, a column in ngspice", "memory.command"),
         "handoff": Command("one reproducible archive of a finished layout", "flow.handoff.command"),
     },
     "Verification": {

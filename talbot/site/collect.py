@@ -10,7 +10,7 @@ import shutil
 from collections.abc import Iterator
 from pathlib import Path
 
-FOLDERS = "docs", "models", "rtl", "imaging", "pixels", "cells", "signoff", "flow", "verif", "talbot"
+FOLDERS = "docs", "models", "rtl", "imaging", "memory", "pixels", "cells", "signoff", "flow", "verif", "talbot"
 IMAGE = re.compile(r"!\[[^\]]*\]\(([^)\s]+)\)")
 # Code, which stays as it is, or a link, perhaps with code for its words
 LINK = re.compile(r"(?ms)^```.*?^```|^ {4}.*?$|(?<!!)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)\s]+)\)|`[^`\n]+`")
@@ -22,7 +22,7 @@ PARTS = {
     "Models": ("models",),
     "The chip, block by block": ("rtl",),
     "Pictures": ("imaging",),
-    "Pixels and cells": ("pixels", "cells"),
+    "Pixels and cells": ("pixels", "cells", "memory"),
     "Layout": ("flow", "signoff", "talbot/platforms"),
     "Verification": ("verif",),
     "Project": (

@@ -37,7 +37,7 @@ def run(*words, cwd=ROOT, **environment):
 
 
 def test_every_part_is_a_link():
-    assert sorted(PARTS) == ["cells", "flow", "imaging", "models", "pixels", "rtl", "signoff", "verif"]
+    assert sorted(PARTS) == ["cells", "flow", "imaging", "memory", "models", "pixels", "rtl", "signoff", "verif"]
     assert all((PACKAGE / part).readlink() == Path("..", part) for part in PARTS)
 
 

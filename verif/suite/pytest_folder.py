@@ -11,7 +11,7 @@ from xml.etree import ElementTree
 from talbot.base.paths import ROOT
 from talbot.base.tools import ToolTimeout, finish
 
-TESTED = "models", "rtl", "imaging", "pixels", "signoff", "flow", "verif", "talbot"
+TESTED = "models", "rtl", "imaging", "memory", "pixels", "signoff", "flow", "verif", "talbot"
 # Layouts have a separate environment, in which `make test` runs these
 LAYOUTS = "flow/handoff", "flow/layout", "flow/openroad", "signoff", "talbot/platforms", "talbot/base/steps"
 SECONDS = 1500  # limit of a folder's tests

@@ -12,7 +12,7 @@ from talbot.flow.layout.design import design
 from talbot.flow.layout.options import Options
 
 OPTIONS = Options()
-FOLDERS = "models", "rtl", "imaging", "pixels", "cells", "signoff", "flow", "verif", "talbot"
+FOLDERS = "models", "rtl", "imaging", "memory", "pixels", "cells", "signoff", "flow", "verif", "talbot"
 FRAMES = {"gate_frames", "stimulus"}
 
 

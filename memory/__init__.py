@@ -1,0 +1,1 @@
+"""Memories drawn by script: a static RAM under plain logic rules."""
