@@ -115,14 +115,18 @@ install() {
 [ -x "$folder/bin/uv" ] || "$folder/bin/python" -m pip install --quiet --no-deps --no-compile --require-hashes \
     -r "$here/uv.lock" 2>/dev/null || true # a registry without it
 # A lock names all that its packages depend on. pip compiles 6,000 modules with one core. compileall compiles those that a frame
-# or most tests load, with all cores, while the project is installed; Python compiles the others when it imports them
-later='site-packages/((.*/)?(tests?|testcases)|pip|setuptools|networkx|fontTools|pygments|hypothesis|_pytest|sklearn'
-later+='|systemrdl|antlr4|markdown|joblib|packaging|py|tifffile|imageio|contourpy|sortedcontainers|pluggy'
+# or the tests load, with all cores, while the project is installed; Python compiles the others when it imports them
+of_tests='hypothesis|_pytest|pluggy|py|sortedcontainers|joblib|tifffile|'
+of_tests+='scipy/(stats|optimize|sparse|integrate|interpolate|spatial|constants)|'
+case " $* " in
+    *test.lock*) of_tests="" ;; # each process of the tests would compile them
+esac
+later="site-packages/((.*/)?(tests?|testcases)|${of_tests}pip|setuptools|networkx|fontTools|pygments|sklearn"
+later+='|systemrdl|antlr4|markdown|packaging|imageio|contourpy'
 later+='|plotly|_plotly_utils|narwhals|sphinx|docutils|snowballstemmer|babel|myst_parser|markdown_it|mdit_py_plugins|dask|fsspec'
 later+='|pydantic|pydantic_core|fastjsonschema|edalize|fusesoc|okonomiyaki|simplesat|cocotb|cocotb_tools|wasmtime|meent|rich'
-later+='|urllib3|requests|idna|bs4|soupsieve|scipy/(_lib/(cobyqa|pyprima)|odr|fftpack)'
-later+='|numba/cuda|numpy/(distutils|f2py)|scipy/(stats|optimize|signal|sparse|integrate|interpolate|spatial|io|cluster|constants)'
-later+='|matplotlib/backends|skimage/(feature|measure|morphology|transform|filters)|mpl_toolkits)/'
+later+='|urllib3|requests|idna|bs4|soupsieve|scipy/(_lib/(cobyqa|pyprima)|odr|fftpack|signal|io|cluster)'
+later+='|numba/cuda|numpy/(distutils|f2py)|matplotlib/backends|skimage/(feature|measure|morphology|transform|filters)|mpl_toolkits)/'
 install --require-hashes "${requirements[@]}"
 "$folder/bin/python" -m compileall -q -j 0 -x "$later" "$folder"/lib/python*/site-packages >/dev/null 2>&1 & # of templates, too
 trap "kill $! 2>/dev/null || true" EXIT
