@@ -70,6 +70,15 @@ def metal(found: Field, lines: Sequence[tuple[str, Box]], rules: RoutingRules, t
                     yield from vias(net, (strip[0], box[1], strip[2], box[3]), top)
 
 
+def box(plan: Mapping[str, Any]) -> "db.Box | None":
+    """Where the plan's columns are; None without any."""
+    field = plan["decoupling"]
+    if not field["columns"]:
+        return None
+    top = field["bottom"] + field["plates"] * nm(STEP)
+    return db.Box(field["columns"][0], field["bottom"], field["columns"][-1] + nm(COLUMN), top)
+
+
 def draw(layout: "db.Layout", plan: Mapping[str, Any], rules: RoutingRules, capacitor: Capacitor) -> None:
     """Put the top plates and the vias of the plan's columns into the top cell."""
     own = plan["decoupling"]

@@ -24,7 +24,7 @@ BOXES_NOT_CHECKED = "insides of the black boxes: outlines with pins, no circuit;
 NOT_CHECKED = (
     "pixels of the drawn array: rules and LVS of make pixel-layout, of a small array of the same cells",
     "pads: rules and LVS of each cell; no ESD pulse is simulated",
-    "density and fill outside of the chip",
+    "density of diffusion and poly outside of the blocks",
     "antennas on the highest metal of the channel: whether a net's driver has the diffusion for it",
     "coupling of the die's nets to blocks and bars; nets to the abutting rows, columns and lanes have no length here",
     "IR drop of other supplies than the drawn array's",
@@ -62,7 +62,7 @@ def summarize(name: str, options: Options, runner: Runner, black_boxes: Sequence
         "timing_rests_on": f"the chip, its ports with the die's nets{extrapolated(sta)}; {timing_basis(options)}",
         **{key: {corner: found[key] for corner, found in sta.items()} or None for key in SLACKS},
         "f_max_mhz": min((found["f_max_mhz"] for found in sta.values()), default=None),
-        **{key: metrics.get(key) for key in ("foundry_drc_violations", *DROPS)},
+        **{key: metrics.get(key) for key in ("foundry_drc_violations", "outside_density", *DROPS)},
         "largest_loads": dict(sorted(loads.items(), key=lambda item: -item[1])[:SHOWN]),
         "not_checked": [*([BOXES_NOT_CHECKED] if black_boxes else []), *NOT_CHECKED],
         **{name: {step: record[name] for step, record in records.items()} for name in ("wall_s", "peak_mib")},

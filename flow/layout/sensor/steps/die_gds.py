@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from talbot.base.gds import read_gds, write_gds
 from talbot.base.steps import Files, Step, StepError
-from talbot.flow.layout.sensor import decoupling, seal
+from talbot.flow.layout.sensor import decoupling, outside, seal
 from talbot.flow.layout.sensor.plan import BLOCKS, CORE, ORIENTATIONS
 from talbot.flow.layout.sensor.ring import Frame
 from talbot.flow.layout.sensor.rules import RoutingRules
@@ -35,15 +35,16 @@ class DieGdsParameters:
 class DieGds(Step[DieGdsParameters]):
     """The blocks' GDS at the places of the plan, the ring of pads, the seal ring, and the plan's metal.
 
-    checked: the same without the pixels of drawn arrays, for rules and antennas, which see every shape of each of
-    150,000 pixels, with the pads' metals alone, and without the seal ring; what is around the pixels stays.
+    outside_density: by metal, share of the area outside of blocks and pads that wires and fill cover. checked: the same
+    without the pixels of drawn arrays, for rules and antennas, which see every shape of each of 150,000 pixels, with
+    the pads' metals alone, and without the seal ring; what is around the pixels stays.
     """
 
     name = "die_gds"
     inputs = {f"{block}.gds": f"{block}.gds" for block in (*BLOCKS, CORE)} | {"plan": "die_plan.plan"}
     inputs |= {"pads.gds": "die_pads.gds", "rules": "library.rules"}
     outputs = {"gds": f"{TOP}.gds", "checked": "checked.gds"}
-    metrics = {"rectangles": ""}
+    metrics = {"rectangles": "", "outside_density": ""}
     tools = ("python klayout",)
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
@@ -74,6 +75,8 @@ class DieGds(Step[DieGdsParameters]):
         top.shapes(layout.layer(*tech.outline)).insert(db.Box(0, 0, *plan["die"]))
         rules = RoutingRules.of(tech, json.loads(inputs["rules"].read_text(encoding="utf-8")))
         decoupling.draw(layout, plan, rules, pad_process(self.parameters.pdk).capacitor)
+        metals = *tech.metals, top_metal(self.parameters.pdk).metal
+        shares = outside.fill(layout, top, plan, metals)
         width, height = (side * layout.dbu for side in plan["die"])
         ring = seal.draw(layout, width, height, seal_ring(self.parameters.pdk))
         top.insert(db.CellInstArray(ring.cell_index(), db.Trans()))
@@ -84,13 +87,13 @@ class DieGds(Step[DieGdsParameters]):
             for cell in inner:
                 if cell.name.startswith(PIXELS):
                     cell.prune_cell()
-        metals = {metal.gds for metal in (*tech.metals[1:], top_metal(self.parameters.pdk).metal)}
+        routed = {metal.gds for metal in metals[1:]}
         for cell in pads:
             for index in layout.layer_indexes():
-                if (layout.get_info(index).layer, layout.get_info(index).datatype) not in metals:
+                if (layout.get_info(index).layer, layout.get_info(index).datatype) not in routed:
                     cell.clear(index)
         write_gds(layout, outputs["checked"])
-        return {"rectangles": len(plan["shapes"])}
+        return {"rectangles": len(plan["shapes"]), "outside_density": shares}
 
     def ring(self, plan: Mapping[str, Any], layout: "kdb.Layout", top: "kdb.Cell", gds: Path) -> "list[kdb.Cell]":
         """Put the ring's cells into the die; returns them."""

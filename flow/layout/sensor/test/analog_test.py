@@ -8,15 +8,23 @@ import pytest
 
 from talbot.base.steps import Runner, StepError
 from talbot.flow.layout.sensor.analog import files
-from talbot.flow.layout.sensor.plan import BLOCKS
-from talbot.flow.layout.sensor.steps.drawing import DrawnCircuits, DrawnPixels
+from talbot.flow.layout.sensor.plan import BLOCKS, DieParameters
+from talbot.flow.layout.sensor.steps.die_antenna import DieAntenna
+from talbot.flow.layout.sensor.steps.die_drc import DieDrc
+from talbot.flow.layout.sensor.steps.die_pads import DiePads
+from talbot.flow.layout.sensor.steps.drawing import DrawingParameters, DrawnCircuits, DrawnPixels
 from talbot.flow.layout.sensor.test import small
+from talbot.flow.layout.steps.library import Library
+from talbot.flow.layout.steps.parameters import PdkParameters
 from talbot.models.parameters import ParameterError
+from talbot.models.parameters.sensor_file import sensor_of
+from talbot.pixels.blocks import blocks
 from talbot.platforms.layout import layout_platform
 from talbot.platforms.pads import pad_process
 from talbot.signoff.black_box import extra_pins
 
 pytestmark = pytest.mark.needs("layout")
+DRAWINGS = DrawnPixels, DrawnCircuits
 
 
 @pytest.fixture(scope="module")
@@ -165,7 +173,6 @@ def test_the_drawn_array_is_a_block_of_the_die(tmp_path):
 def test_the_drawn_rows_are_a_block_of_the_die(tmp_path):
     """Supplies of three levels, every line and control are found again where rows and array are drawn."""
     from talbot.base.gds import write_gds
-    from talbot.flow.layout.sensor.plan import DieParameters
     from talbot.models.parameters import ArrayParameters, ChipParameters
     from talbot.pixels.analog_layout.row_drivers import draw_row_drivers
     from talbot.pixels.blocks import AnalogSizes, blocks
@@ -189,3 +196,24 @@ def test_the_drawn_rows_are_a_block_of_the_die(tmp_path):
         == 16 * 6 + 120 * 2 + 2 * 2
     )
     assert small.connectivity(given, tmp_path) == {"open_nets": 0, "shorts": 0, "lvs_match": True}
+
+
+@pytest.mark.slow
+def test_the_drawn_blocks_of_another_sensor_are_a_die(tmp_path):
+    """Another array, pitch and number of lanes, the real pads, and a stand-in for the chip: no rule is broken."""
+    sensor = sensor_of({"array": {"rows": 48, "cols": 176, "pitch": 12e-6}, "chip": {"lanes": 4}})
+    given = small.files(tmp_path, blocks(sensor.array, sensor.chip))
+    library = Library(PdkParameters())
+    for step in (library, DiePads(PdkParameters()), *(kind(DrawingParameters("sky130", sensor)) for kind in DRAWINGS)):
+        (tmp_path / step.name / "part").mkdir(parents=True)
+        outputs = {name: tmp_path / step.name / "part" / file for name, file in step.outputs.items()}
+        step.run({}, outputs)
+        given |= {f"{step.name}.{name}": path for name, path in outputs.items()}
+        if step.name.startswith("drawn"):
+            given |= outputs
+    small.plan(given, tmp_path, DieParameters())
+    plan = json.loads(given["die_plan.plan"].read_text())
+    assert plan["die"] == [3_200_000, 2_560_000]
+    assert small.connectivity(given, tmp_path, drawn=BLOCKS) == {"open_nets": 0, "shorts": 0, "lvs_match": True}
+    assert small.run(DieAntenna(PdkParameters()), given, tmp_path)["antenna_violations"] == 0
+    assert small.run(DieDrc(PdkParameters()), given, tmp_path)["drc_violations"] == 0
