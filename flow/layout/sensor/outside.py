@@ -1,6 +1,6 @@
 """Fill of the die outside of blocks, pads and capacitors: squares of no net on every metal."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from talbot.base.gds import db
@@ -19,7 +19,7 @@ def fill(layout: "db.Layout", top: "db.Cell", plan: Mapping[str, Any], metals: S
     shares = {}
     for metal in metals:
         boxes = [box for _, layer, datatype, *box in plan["shapes"] if (layer, datatype) == metal.gds]
-        wires = db.Region([db.Box(*box) for box in boxes]).merged()
+        wires = _region(db.Box(*box) for box in boxes).merged()
         squares = _grid(free.bbox()).inside(free - wires.sized(nm(CLEARANCE_UM)))
         top.shapes(layout.layer(*metal.gds)).insert(squares)
         covered = squares.area() + (wires & free).area()
@@ -31,7 +31,7 @@ def _free(plan: Mapping[str, Any]) -> "db.Region":
     """Inside of the pads, away from blocks and capacitors."""
     frame, width, height = plan["frame"], *plan["die"]
     inner = frame["seal"] + frame["depth"]
-    taken = db.Region([db.Box(*block["box"]) for block in plan["blocks"].values()])
+    taken = _region(db.Box(*block["box"]) for block in plan["blocks"].values())
     if (field := decoupling.box(plan)) is not None:
         taken.insert(field)
     inside = db.Region(db.Box(inner, inner, width - inner, height - inner))
@@ -41,10 +41,12 @@ def _free(plan: Mapping[str, Any]) -> "db.Region":
 def _grid(box: "db.Box") -> "db.Region":
     """All squares in ``box``."""
     side, step = nm(SIDE_UM), nm(STEP_UM)
-    return db.Region(
-        [
-            db.Box(x, y, x + side, y + side)
-            for x in range(box.left, box.right - side, step)
-            for y in range(box.bottom, box.top - side, step)
-        ]
-    )
+    xs, ys = range(box.left, box.right - side, step), range(box.bottom, box.top - side, step)
+    return _region(db.Box(x, y, x + side, y + side) for x in xs for y in ys)
+
+
+def _region(boxes: "Iterable[db.Box]") -> "db.Region":
+    region = db.Region()
+    for box in boxes:
+        region.insert(box)
+    return region
