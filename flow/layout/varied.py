@@ -25,7 +25,8 @@ SIZED = {
     "reg_file": (*_ARRAY, "chip.divider"),
 }
 _FIXED = Varied(fixed=dict.fromkeys(SIZES, "this design has the sizes of the standard sensor"))
-_DIE = replace(DRAWN_BLOCKS, used=tuple(dict.fromkeys((*DRAWN_BLOCKS.used, *SIZED[CHIP], "tile"))))
+_PHASE_PATH = tuple(name for name in SIZED[CHIP] if name.startswith("chip.") and name != "chip.lanes")
+_DIE = replace(DRAWN_BLOCKS, used=(*DRAWN_BLOCKS.used, "tile", *_PHASE_PATH))
 
 
 def varied(design: str) -> Varied:

@@ -14,7 +14,7 @@ from talbot.models.parameters.sensor_file import keys, values
 WITHOUT = {
     *("sensor", "index", "site"),
     *("stability",),  # its cases have sensors of their own
-    *("cells", "cells-report", "cells-compact"),
+    *("cells", "cells-report", "cells-compact", "sram"),
     *("openroad-compare", "layout-compare", "layout-timing"),
     *("verify", "formal", "suite", "cocotb", "coverage", "mutate", "fuzz", "stuck-at", "replay"),
 }
