@@ -7,9 +7,11 @@ by Verilator: its assumptions are checked with their own text, and its propertie
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from operator import attrgetter
+from typing import Any
 
 from pymtl3 import Component, InPort, is_bitstruct_class
 
+from talbot.rtl.asp_chip.test.chip_bench import ChipBench
 from talbot.verif.formal import design, manifest, replay
 from talbot.verif.formal.proof import Proof
 
@@ -67,6 +69,27 @@ class Recorder:
         lanes = {"LANES": self.sensor["lanes"]} if "LANES" in proof.defines else {}
         proof = replace(proof, sensor=dict(self.sensor), defines=proof.defines | lanes)
         return replay.violations(proof, design.exported(proof), design.wrapper(proof), self.cycles[proof.name], {})
+
+
+class RecordingBench(ChipBench):
+    """ChipBench that records the inputs of the chip's blocks."""
+
+    def __init__(self, sim: Component, recorder: Recorder, **options: Any) -> None:
+        recorder.connect(sim)
+        self.recorder = recorder
+        super().__init__(sim, recorder.sensor["lanes"], **options)
+
+    def reset(self) -> None:
+        """Reset the chip for four cycles, which the synchronizer of its release takes."""
+        self.sim.reset @= 1
+        for _ in range(4):
+            self.tick()
+        self.sim.reset @= 0
+
+    def watch(self) -> None:
+        """Record, after the checks of the bench."""
+        super().watch()
+        self.recorder.sample()
 
 
 def _inputs(chip: Component, block: Component) -> dict[str, str]:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from functools import cache
 
 from talbot.base.paths import ROOT
+from talbot.base.table import markdown_table
 from talbot.models.parameters import SensorParameters
 from talbot.rtl.sizes import BLOCKS, BUILD
 from talbot.rtl.tops import TOPS, build_top
@@ -33,6 +34,10 @@ class Size:
         required = [*self.allowed] if few else [self.allowed[0], self.allowed[-1]]
         missing = [value for value in required if value not in self.proven]
         return missing or ([] if few or len(self.proven) > len(required) else ["a value between"])
+
+
+def _text(values: Sequence[object]) -> str:
+    return f"{values[0]}..{values[-1]}" if isinstance(values, range) else ", ".join(map(str, values))
 
 
 @cache
@@ -80,3 +85,12 @@ def problems(proofs: Iterable[Proof]) -> list[str]:
             if name not in parameters(proof.block) or not (ROOT / test.split("::")[0]).is_file()
         ),
     ]
+
+
+def table(proofs: Iterable[Proof]) -> str:
+    """Return the values that a parameter may have as a Markdown table, blocks with the same values in one row."""
+    blocks: dict[tuple[str, str], list[str]] = {}
+    for size in sizes(proofs):
+        blocks.setdefault((size.parameter, _text(size.allowed)), []).append(size.block)
+    rows = ((*values, ", ".join(names)) for values, names in blocks.items())
+    return markdown_table(("parameter", "can be built with", "blocks"), rows)

@@ -8,33 +8,11 @@ from talbot.models.digital.host import command, frame_writes
 from talbot.models.parameters import ParameterError
 from talbot.rtl.asp_chip import AspChip
 from talbot.rtl.asp_chip.test.asp_chip_test import COLS, FRAMES, LANES, PHASE, ROWS, SENSOR
-from talbot.rtl.asp_chip.test.chip_bench import ChipBench
 from talbot.rtl.harness.testbench import build
 from talbot.verif.formal import contract, manifest, owners
 from talbot.verif.formal.proof import Owner
 
 SIZE = {"rows": ROWS, "cols": COLS, "lanes": LANES}
-
-
-class RecordingBench(ChipBench):
-    """ChipBench that records the inputs of the chip's blocks."""
-
-    def __init__(self, sim, recorder, **options):
-        recorder.connect(sim)
-        self.recorder = recorder
-        super().__init__(sim, recorder.sensor["lanes"], **options)
-
-    def reset(self):
-        """Reset the chip for four cycles, which the synchronizer of its release takes."""
-        self.sim.reset @= 1
-        for _ in range(4):
-            self.tick()
-        self.sim.reset @= 0
-
-    def watch(self):
-        """Record, after the checks of the bench."""
-        super().watch()
-        self.recorder.sample()
 
 
 @pytest.fixture(scope="module")
@@ -43,7 +21,7 @@ def recorder():
     recorder = contract.Recorder(SIZE)
     tile = SENSOR.tile
     chip = build(AspChip(ROWS, COLS, LANES, tuple(tile.order), tile.rows, tile.cols))
-    bench = RecordingBench(chip, recorder, stall=0.3)
+    bench = contract.RecordingBench(chip, recorder, stall=0.3)
     for frame in (FRAMES["raw, a window"], PHASE, FRAMES["tof, decimated"]):
         bench.reset()
         bench.registers = {}
