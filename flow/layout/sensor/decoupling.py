@@ -35,6 +35,11 @@ class Field(NamedTuple):
     bottom: int
     plates: int
 
+    @property
+    def top(self) -> int:
+        """Of all columns."""
+        return self.bottom + self.plates * nm(STEP)
+
 
 def field(blocks: Mapping[str, Block], taken: Sequence[int], die: DieParameters) -> Field:
     """The columns for which there is room. taken: x of the routes' branches."""
@@ -59,24 +64,14 @@ def metal(found: Field, lines: Sequence[tuple[str, Box]], rules: RoutingRules, t
     """
     if not found.plates or {net for net, _ in lines} < {SUPPLY, GROUND}:
         return
-    height = found.bottom + found.plates * nm(STEP)
     for x in found.columns:
-        yield shapes.drawn(rules.layers[-2], GROUND, (x, found.bottom, x + nm(COLUMN), height))
+        yield shapes.drawn(rules.layers[-2], GROUND, (x, found.bottom, x + nm(COLUMN), found.top))
         for net, (left, right) in ((SUPPLY, (EDGE + OVER, EDGE + PLATE - OVER)), (GROUND, RETURN)):
-            strip = x + nm(left), found.bottom, x + nm(right), height
+            strip = x + nm(left), found.bottom, x + nm(right), found.top
             yield shapes.drawn(rules.layers[-1], net, strip)
             for of, box in lines:
                 if of == net:
                     yield from vias(net, (strip[0], box[1], strip[2], box[3]), top)
-
-
-def box(plan: Mapping[str, Any]) -> "db.Box | None":
-    """Where the plan's columns are; None without any."""
-    field = plan["decoupling"]
-    if not field["columns"]:
-        return None
-    top = field["bottom"] + field["plates"] * nm(STEP)
-    return db.Box(field["columns"][0], field["bottom"], field["columns"][-1] + nm(COLUMN), top)
 
 
 def draw(layout: "db.Layout", plan: Mapping[str, Any], rules: RoutingRules, capacitor: Capacitor) -> None:

@@ -4,12 +4,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from talbot.base.gds import db
-from talbot.flow.layout.sensor import decoupling
+from talbot.flow.layout.sensor.decoupling import COLUMN, Field
 from talbot.flow.layout.sensor.plan import nm
 from talbot.platforms.layers import Layer
 
 SIDE_UM, STEP_UM = 10.0, 14.0  # of the squares: a share of 51 %
-CLEARANCE_UM = 3.0  # from wires, 18 times the least space: a wire's capacitance to fill is left out
+CLEARANCE_UM = 3.0  # from wires, about twice the least space of met5: their capacitance to fill is left out
 APART_UM = 20.0  # from blocks and pads: light reaches the pixels at the array's edge as inside
 
 
@@ -32,8 +32,9 @@ def _free(plan: Mapping[str, Any]) -> "db.Region":
     frame, width, height = plan["frame"], *plan["die"]
     inner = frame["seal"] + frame["depth"]
     taken = _region(db.Box(*block["box"]) for block in plan["blocks"].values())
-    if (field := decoupling.box(plan)) is not None:
-        taken.insert(field)
+    field = Field(**plan["decoupling"])
+    for x in field.columns:
+        taken.insert(db.Box(x, field.bottom, x + nm(COLUMN), field.top))
     inside = db.Region(db.Box(inner, inner, width - inner, height - inner))
     return inside.sized(-nm(APART_UM)) - taken.sized(nm(APART_UM))
 

@@ -6,21 +6,20 @@ from talbot.base.gds import db
 from talbot.platforms.die import Ring, SealRing
 
 CELL, CONTACT = "seal_ring", "seal_ring_contact"
-GRID_UM = 0.005
 
 
-def draw(layout: "db.Layout", width_um: float, height_um: float, seal: SealRing) -> "db.Cell":
+def draw(layout: "db.Layout", width_um: float, height_um: float, seal: SealRing, grid_um: float) -> "db.Cell":
     """Draw the ring of a die of this size into a cell, whose origin is the die's corner; returns the cell."""
     cell = layout.create_cell(CELL)
     for ring in seal.rings:
-        outside = _outline(width_um, height_um, ring.inset_um, _corner(seal, ring))
-        inner = ring.inset_um + ring.width_um
-        inside = _outline(width_um, height_um, inner, _corner(seal, ring) + _diagonal(ring.width_um))
+        outer, inner = _corners(seal, ring, grid_um)
+        outside = _outline(width_um, height_um, ring.inset_um, outer)
+        inside = _outline(width_um, height_um, ring.inset_um + ring.width_um, inner)
         polygon = db.DPolygon(outside)
         polygon.insert_hole(inside)
         cell.shapes(layout.layer(*ring.gds)).insert(polygon)
     for ring in seal.contacts:
-        _squares(layout, cell, width_um, height_um, ring, _corner(seal, ring) + _diagonal(ring.width_um))
+        _squares(layout, cell, width_um, height_um, ring, _corners(seal, ring, grid_um)[1])
     return cell
 
 
@@ -39,15 +38,16 @@ def _squares(layout: "db.Layout", cell: "db.Cell", width: float, height: float, 
             cell.insert(db.DCellInstArray(square.cell_index(), place, way * step, none, count, 1))
 
 
-def _corner(seal: SealRing, ring: Ring) -> float:
-    """X + y of a ring's outer chamfer: all chamfers are as far apart as the sides."""
+def _corners(seal: SealRing, ring: Ring, grid_um: float) -> tuple[float, float]:
+    """X + y of a ring's outer and inner chamfer: all chamfers are as far apart as the sides."""
+
+    def diagonal(um: float) -> float:
+        """What a distance of ``um`` across a chamfer adds to x + y, on the grid and no less."""
+        return ceil(round(um * sqrt(2) / grid_um, 6)) * grid_um
+
     apart = ring.inset_um - seal.inset_um
-    return seal.corner_um + (_diagonal(apart) if apart > 0 else -_diagonal(-apart))
-
-
-def _diagonal(um: float) -> float:
-    """What a distance of ``um`` across a chamfer adds to x + y, on the grid and no less."""
-    return ceil(round(um * sqrt(2) / GRID_UM, 6)) * GRID_UM
+    outer = seal.corner_um + (diagonal(apart) if apart > 0 else -diagonal(-apart))
+    return outer, outer + diagonal(ring.width_um)
 
 
 def _outline(width: float, height: float, inset: float, corner: float) -> "list[db.DPoint]":

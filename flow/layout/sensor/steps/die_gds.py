@@ -78,7 +78,7 @@ class DieGds(Step[DieGdsParameters]):
         metals = *tech.metals, top_metal(self.parameters.pdk).metal
         shares = outside.fill(layout, top, plan, metals)
         width, height = (side * layout.dbu for side in plan["die"])
-        ring = seal.draw(layout, width, height, seal_ring(self.parameters.pdk))
+        ring = seal.draw(layout, width, height, seal_ring(self.parameters.pdk), tech.grid_um)
         top.insert(db.CellInstArray(ring.cell_index(), db.Trans()))
         write_gds(layout, outputs["gds"])
         ring.prune_cell()

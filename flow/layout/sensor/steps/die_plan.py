@@ -1,7 +1,7 @@
 """Placement and routing of the die."""
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
@@ -48,26 +48,31 @@ class DiePlan(Step[DiePlanParameters]):
     metrics = {"area_um2": "um2", **dict.fromkeys(COUNTS, ""), "wire_um": "um", "decoupling_pf": "pF"}
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
-        die = self.parameters.die
+        die, tech = self.parameters.die, layout_platform(self.parameters.pdk)
+        rules = RoutingRules.of(tech, json.loads(inputs["rules"].read_text(encoding="utf-8")))
+        blocks = {name: Block.read(name, inputs[f"{name}.lef"].read_text(encoding="utf-8")) for name in (*BLOCKS, CORE)}
+        cells = json.loads(inputs["pads"].read_text(encoding="utf-8"))
+        extra = [pin for block in BLOCKS for pin in extra_pins(inputs[f"{block}.lef"], inputs[f"{block}.black_box"])]
+        sizes = {name for name in ("width_um", "height_um") if getattr(die, name)}
         while True:
             try:
-                return self.planned(die, inputs, outputs)
+                plan, text, metrics = self.planned(die, rules, blocks, cells, extra)
+                break
             except NoRoom as reason:
-                if self.parameters.die.width_um and self.parameters.die.height_um:
+                if reason.size in sizes or len(sizes) == 2:
                     raise
                 die = die.larger(reason)
+        outputs["plan"].write_text(json.dumps(plan) + "\n", encoding="utf-8")
+        outputs["verilog"].write_text(text, encoding="utf-8")
+        return metrics
 
-    def planned(self, die: DieParameters, inputs: Files, outputs: Files) -> dict[str, Any]:
-        """Write the plan of a die of this size; returns the metrics. Raises ParameterError, StepError."""
+    def planned(
+        self, die: DieParameters, rules: RoutingRules, blocks: dict[str, Block], cells: ring.Pins, extra: Iterable[str]
+    ) -> tuple[dict[str, Any], str, dict[str, Any]]:
+        """Return plan, Verilog and metrics of a die of this size. Raises ParameterError, StepError."""
         p, tech = self.parameters, layout_platform(self.parameters.pdk)
-        rules = RoutingRules.of(tech, json.loads(inputs["rules"].read_text(encoding="utf-8")))
         layers = [tech.metals[level].lef for level in (routing.STUB, routing.BRANCH)]
-        blocks = {name: Block.read(name, inputs[f"{name}.lef"].read_text(encoding="utf-8")) for name in (*BLOCKS, CORE)}
-        tracks = routing.Tracks.of(rules, die)
-        pads = self.pads(die, json.loads(inputs["pads"].read_text(encoding="utf-8")), {})
-        extra = dict.fromkeys(
-            pin for block in BLOCKS for pin in extra_pins(inputs[f"{block}.lef"], inputs[f"{block}.black_box"])
-        )
+        tracks, pads = routing.Tracks.of(rules, die), self.pads(die, cells, {})
         made = arrange.arranged(blocks, die, tracks, layers, pads, extra)
         signals = [
             ring.signal(net, kind, at - offset, pads.process, branch.side)
@@ -91,11 +96,9 @@ class DiePlan(Step[DiePlanParameters]):
         levels = [*tech.metals, top_metal(p.pdk).metal]
         metal += [drawn(levels[level], net, box) for net, level, box in ring.bridges(pads, gaps)]
         plan = as_json(made, metal, places, pads, die, tracks, levels[-1]) | {"decoupling": field._asdict()}
-        outputs["plan"].write_text(json.dumps(plan) + "\n", encoding="utf-8")
-        outputs["verilog"].write_text(verilog.top(TOP, made.blocks, made.nets, places), encoding="utf-8")
         area = die.width_um * die.height_um
         covered = sum(block.width * block.height for block in made.blocks.values()) / 1e6
-        return {
+        metrics = {
             "area_um2": area,
             "utilization": round(covered / area, 4),
             "nets": len(made.nets),
@@ -106,6 +109,7 @@ class DiePlan(Step[DiePlanParameters]):
             "pads": sum(bool(place.nets) for place in places),
             "wire_um": round(made.wire / 1000, 1),
         }
+        return plan, verilog.top(TOP, made.blocks, made.nets, places), metrics
 
     def pads(self, die: DieParameters, cells: ring.Pins, borders: Mapping[str, int]) -> Pads:
         """The pads in the frame of the die."""

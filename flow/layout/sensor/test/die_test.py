@@ -230,8 +230,9 @@ def test_a_row_line_cut(made, tmp_path):
 def test_blocks_that_the_die_has_no_room_for(made, tmp_path):
     with pytest.raises(ParameterError, match=r"height_um = 900: must be at least \d+"):
         small.plan(made[0] | {}, tmp_path, DieParameters(2800.0, 900.0))
-    with pytest.raises(NoRoom, match="ring: no room for the pad of "):
-        small.plan(made[0] | {}, tmp_path, DieParameters(2050.0, 1800.0))
+    for height in (1800.0, 0.0):  # a width that is given does not grow with a height that is not
+        with pytest.raises(NoRoom, match="ring: no room for the pad of "):
+            small.plan(made[0] | {}, tmp_path, DieParameters(2050.0, height, west=0))
 
 
 @pytest.mark.parametrize(

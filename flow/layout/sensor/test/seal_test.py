@@ -8,6 +8,7 @@ from talbot.base.gds import db
 from talbot.flow.layout.sensor import seal
 from talbot.flow.layout.sensor.plan import DieParameters
 from talbot.platforms.die import seal_ring
+from talbot.platforms.layout import layout_platform
 from talbot.platforms.pads import pad_process
 from talbot.platforms.sky130.layers import LICON, METALS, TAP, VIAS
 
@@ -20,7 +21,7 @@ def ring(request):
     """(layout, its cell, width, height)."""
     layout = db.Layout()
     layout.dbu = 0.001
-    return layout, seal.draw(layout, *request.param, RULES), *request.param
+    return layout, seal.draw(layout, *request.param, RULES, layout_platform("sky130").grid_um), *request.param
 
 
 def region(layout, cell, gds):
