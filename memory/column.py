@@ -20,11 +20,11 @@ from talbot.memory.parameters import SramParameters
 from talbot.pixels.circuits.gates import inverter, nand
 from talbot.pixels.circuits.netlist import Capacitor, Circuit, Instance, Resistor, Transistor
 from talbot.platforms.sky130 import analog as sky130
+from talbot.platforms.sky130.layers import MET1, MET2
 
 PORTS = "clk", "we", "d", "q", "wl", "bl", "br", "sense", "cell", "vdd", "vss"
 LENGTH = 0.15  # um, of switches and sense amplifier
 SECTIONS = 4  # of a line
-SQUARE = 0.125  # ohm, of met1 and met2
 DELAYS = 4  # inverters ahead of the sense amplifier
 DELAY_LENGTH = 0.35  # um, of theirs
 PRECHARGE, READ_MUX, WRITE_MUX = 1.68, 2.0, 3.0  # um
@@ -45,7 +45,7 @@ def lines(netlist: str, sram: SramParameters) -> tuple[Line, Line, float]:
     word, bit, node = (sum(c.value for c in pairs if net in (c.a, c.b)) for net in ("wl", "bl", "q"))
     long = sram.columns / GROUP * GROUP_PITCH / (bitcell.WORD_METAL[1] - bitcell.WORD_METAL[0])
     high = sram.rows * bitcell.HEIGHT / bitcell.BIT_WIDTH
-    return Line(word, SQUARE * long), Line(bit, SQUARE * high), node
+    return Line(word, MET1.sheet_ohm * long), Line(bit, MET2.sheet_ohm * high), node
 
 
 def column(sram: SramParameters, netlist: str) -> Circuit:

@@ -46,8 +46,8 @@ def draw(folder: Path, masks: AnalogMasks) -> None:
 def antennas(gds: Path) -> int:
     """Return the number of places with too much metal for the gates of its net."""
     layout, tech = read_gds(gds), layout_platform(PDK)
-    found = antenna.violations(layout, layout.top_cell(), tech)
-    return sum(region.count() for region in found.values())
+    regions = antenna.violations(layout, layout.top_cell(), tech)
+    return sum(region.count() for region in regions.values())
 
 
 def area(sram: SramParameters) -> float:
@@ -104,15 +104,15 @@ def make(
             "lvs_match": same,
             "lvs_differs": [] if same else differences(folder / "tile.lvsdb"),
             "antennas": charged,
-            "margins": {corner: asdict(one) for corner, one in (typical | ends).items()},
-            "mismatch": {kind: asdict(one) for kind, one in spread.items()},
-            "column": {corner: asdict(one) | {"cycle": one.cycle} for corner, one in columns.items()},
+            "margins": {corner: asdict(margin) for corner, margin in (typical | ends).items()},
+            "mismatch": {kind: asdict(cells) for kind, cells in spread.items()},
+            "column": {corner: asdict(access) | {"cycle": access.cycle} for corner, access in columns.items()},
             "sense_offset": sense_offset(),
             "passed": same
             and not rules
             and not charged
-            and all(one.least > 0 for one in spread.values())
-            and all(one.right for one in columns.values()),
+            and all(cells.least > 0 for cells in spread.values())
+            and all(access.right for access in columns.values()),
             "wall_s": perf_counter() - start,
         }
         note("report")

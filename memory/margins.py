@@ -9,17 +9,15 @@ Static noise margin: the side of the largest square between the curves, of the s
 Write margin: voltage of the bit line at which the cell changes. Read current: into the side that stores 0.
 """
 
-import tempfile
 from collections.abc import Iterable
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 
-from talbot.base.tools import ToolError, finish
 from talbot.cells.corner import Corner
 from talbot.cells.netlist import spice
+from talbot.pixels.pixel_circuit.deck import analyse
 from talbot.platforms.sky130 import models as sky130
 
 STEP = 0.045  # V, of the curves
@@ -81,8 +79,7 @@ def spread(netlist: str, kind: str, corner: str, copies: int, seed: int | None =
         return noise_margins(_curves(netlist, at, copies, seed, at.supply)).tolist()
     lines = deck(netlist, at, copies, seed, at.supply, cut=False)
     lines.append(f"Vfall bl 0 PWL(0 {FALL[0]:g} {RAMP:g} {FALL[1]:g})")
-    curves = _swept(lines, f"tran {RAMP / STEPS:g} {RAMP:g} 0 {RAMP / STEPS:g}", copies)
-    curves[..., 0] = FALL[0] + (FALL[1] - FALL[0]) * curves[..., 0] / RAMP
+    curves = _swept(lines, f"tran {RAMP / STEPS:g} {RAMP:g} 0 {RAMP / STEPS:g}", "bl", copies)
     return write_margins(curves).tolist()
 
 
@@ -90,23 +87,14 @@ def _curves(netlist: str, corner: Corner, copies: int, seed: int | None, word: f
     """Return the curves of a cell whose gates are cut, its word line at ``word``, V."""
     lines = deck(netlist, corner, copies, seed, word, cut=True)
     lines.append(f"Vbl bl 0 {corner.supply:g}")
-    return _swept(lines, f"dc vin 0 {corner.supply:g} {STEP:g}", copies)
+    return _swept(lines, f"dc vin 0 {corner.supply:g} {STEP:g}", "in", copies)
 
 
-def _swept(lines: Iterable[str], analysis: str, copies: int) -> Curve:
-    """Return [cell, point, (what is swept, q, qn, current of bl)]. Raises ToolError."""
-    saved = " ".join(f"v(q{k}) v(qn{k}) i(vmeter{k})" for k in range(copies))
-    with tempfile.TemporaryDirectory(prefix="talbot-") as name:
-        folder = Path(name)
-        control = [".control", "set wr_singlescale", analysis, f"wrdata out.txt {saved}", "quit", ".endc", ".end"]
-        (folder / "deck.sp").write_text("\n".join(["* margins", *lines, *control, ""]), encoding="utf-8")
-        done = finish(["ngspice", "-n", "-b", "deck.sp"], env={"OMP_NUM_THREADS": "1"}, cwd=folder)
-        try:
-            table = np.loadtxt(folder / "out.txt")
-        except (OSError, ValueError) as error:
-            raise ToolError(f"ngspice: {error}: {(done.stdout + done.stderr).strip()[-400:]}") from None
-    x = np.broadcast_to(table[:, :1], (copies, len(table), 1))
-    return np.concatenate([x, np.moveaxis(table[:, 1:].reshape(len(table), copies, 3), 1, 0)], axis=2)
+def _swept(lines: Iterable[str], analysis: str, source: str, copies: int) -> Curve:
+    """Return [cell, point, (V of the net ``source``, q, qn, current of bl)]. Raises ToolError."""
+    cells = [wave for k in range(copies) for wave in (f"v(q{k})", f"v(qn{k})", f"i(vmeter{k})")]
+    x, *waves = analyse(lines, [analysis], [f"v({source})", *cells])
+    return np.moveaxis(np.array([(x, *waves[3 * k : 3 * k + 3]) for k in range(copies)]), 1, 2)
 
 
 def noise_margins(curves: Curve) -> Curve:

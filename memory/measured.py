@@ -35,19 +35,21 @@ def nominal(netlist: str, corners: Sequence[str], store: Path, workers: int) -> 
     """Return the margins of a cell without mismatch by corner."""
     jobs = [Job(corner, margins.nominal, (netlist, corner), (netlist, corner)) for corner in corners]
     results = run(jobs, store, "corners", workers)
-    return {corner: Margins(**one) for corner, one in zip(corners, results, strict=True)}
+    return {corner: Margins(**margin) for corner, margin in zip(corners, results, strict=True)}
 
 
 def accesses(sram: SramParameters, netlist: str, store: Path, workers: int) -> dict[str, Access]:
     """Return what a column does at the corners of COLUMN."""
-    jobs = [Job(f"column_{one}", access.measure, (sram, netlist, one), (sram, netlist, one)) for one in COLUMN]
+    jobs = [
+        Job(f"column_{corner}", access.measure, (sram, netlist, corner), (sram, netlist, corner)) for corner in COLUMN
+    ]
     results = run(jobs, store, "corners of a column", workers)
-    return {corner: Access(**one) for corner, one in zip(COLUMN, results, strict=True)}
+    return {corner: Access(**measured) for corner, measured in zip(COLUMN, results, strict=True)}
 
 
-def spreads(netlist: str, found: dict[str, Margins], draws: int, store: Path, workers: int) -> dict[str, Spread]:
-    """Return the spread of each margin of KINDS, at the corner of ``found`` where it is the least without mismatch."""
-    worst = {kind: min(found, key=lambda corner, kind=kind: getattr(found[corner], kind)) for kind in KINDS}
+def spreads(netlist: str, typical: dict[str, Margins], draws: int, store: Path, workers: int) -> dict[str, Spread]:
+    """Return the spread of each margin of KINDS, where ``typical``, without mismatch, has the least."""
+    worst = {kind: min(typical, key=lambda corner, kind=kind: getattr(typical[corner], kind)) for kind in KINDS}
     starts = range(0, draws, BATCH)
     cases = [(kind, worst[kind], min(BATCH, draws - start), 1 + start) for kind in KINDS for start in starts]
     jobs = [
@@ -58,6 +60,6 @@ def spreads(netlist: str, found: dict[str, Margins], draws: int, store: Path, wo
     results = run(jobs, store, "batches of cells", workers)
     out = {}
     for kind, corner in worst.items():
-        values = np.concatenate([one for one, case in zip(results, cases, strict=True) if case[0] == kind])
+        values = np.concatenate([batch for batch, case in zip(results, cases, strict=True) if case[0] == kind])
         out[kind] = Spread(corner, len(values), *(float(f(values)) for f in (np.mean, np.std, np.min)))
     return out

@@ -5,14 +5,12 @@ its gate swept. `talbot/platforms/<process>/gm_id.json` keeps them; `make analog
 """
 
 import json
-import tempfile
-from pathlib import Path
 from types import ModuleType
 
 import numpy as np
 import numpy.typing as npt
 
-from talbot.base.tools import ToolError, finish
+from talbot.pixels.pixel_circuit.deck import analyse
 
 WIDTH = 10.0  # um
 DRAIN = 0.4  # V between drain and source
@@ -54,28 +52,14 @@ def swept(process: ModuleType, role: str, length: float) -> npt.NDArray[np.float
     sign = -1 if role.startswith("p") else 1
     first, last, step = (sign * volts for volts in SWEEP)
     device = f"@m.xm.m{process.ROLES[role]}"
-    values = " ".join(f"{device}[{name}]" for name in COLUMNS)
-    with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
-        deck, found = Path(folder) / "deck.sp", Path(folder) / "found"
-        lines = [
-            "* one transistor",
-            ".option gmin=1e-15",
-            *process.cards("tt", {(role, WIDTH, length)}),
-            ".temp 27",
-            f"Vd d 0 {sign * DRAIN:g}",
-            "Vg g 0 0",
-            process.instance("m", ("d", "g", "0", "0"), role, WIDTH, length),
-            f".save {values}",
-            ".control",
-            f"dc Vg {first:g} {last:g} {step:g}",
-            "set wr_singlescale",
-            f"wrdata {found} {values}",
-            "quit",
-            ".endc",
-            ".end",
-        ]
-        deck.write_text("\n".join([*lines, ""]), encoding="utf-8")
-        done = finish(["ngspice", "-n", "-b", deck], env={"OMP_NUM_THREADS": "1"})
-        if not found.exists():
-            raise ToolError(f"ngspice: no table of {role}: {(done.stdout + done.stderr).strip()[-400:]}")
-        return np.loadtxt(found)[:, 1:].T
+    values = [f"{device}[{name}]" for name in COLUMNS]
+    lines = [
+        ".option gmin=1e-15",
+        *process.cards("tt", {(role, WIDTH, length)}),
+        ".temp 27",
+        f"Vd d 0 {sign * DRAIN:g}",
+        "Vg g 0 0",
+        process.instance("m", ("d", "g", "0", "0"), role, WIDTH, length),
+        f".save {' '.join(values)}",
+    ]
+    return analyse(lines, [f"dc Vg {first:g} {last:g} {step:g}"], values)
