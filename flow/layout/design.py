@@ -118,7 +118,7 @@ DESIGNS = {
         divider("quad_divider_pipelined", "pipelined", 0.72),
         divider("cordic", "cordic", 0.68),
         Design("phase_path", "PhasePath", "phase_path", ("PhasePath_8_radix4",), utilization=0.72),
-        Design("run_length", "RunLength", "run_length", ("RunLength",), ("--rows=12", "--cols=36", "--lanes=4")),
+        Design("run_length", "RunLength", "run_length", ("RunLength",), ("--rows=12", "--cols=36", "--lanes=4"), 0.62),
         Design("reg_file", "RegFile", "reg_file", ("RegFile",), RESETS, divider="cordic", asynchronous=SPI_INPUTS),
         Design("proc", "Proc", "proc", ("Proc",)),
         tile("tt_quad_divider", "tt_um_talbot_divider", netlist_names=("tt_um_talbot_divider",), frame="tt_1x1"),
