@@ -1,4 +1,4 @@
-"""Bytes with their digest behind them, so that a damaged file is told from a whole one."""
+"""Bytes with their digest behind them, which shows whether a file is damaged."""
 
 import hashlib
 
