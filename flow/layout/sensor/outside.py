@@ -9,7 +9,7 @@ from talbot.flow.layout.sensor.plan import nm
 from talbot.platforms.layers import Layer
 
 SIDE_UM, STEP_UM = 10.0, 14.0  # of the squares: a share of 51 %
-CLEARANCE_UM = 3.0  # from wires, about twice the least space of met5: their capacitance to fill is left out
+CLEARANCE_UM = 3.0  # from wires, about twice the least space of the top metal: their capacitance to fill is left out
 APART_UM = 20.0  # from blocks and pads: light reaches the pixels at the array's edge as inside
 
 
