@@ -25,7 +25,17 @@ from talbot.platforms.foundry import installed
 from talbot.platforms.processes import PROCESSES
 
 NAMES = *DESIGNS, SENSOR, test_chip.DESIGN
-CELLS = "sensor", "top", "clock", "reset", "period_ns", "utilization", "liberty", "analog"  # of other designs alone
+CELLS = (
+    "sensor",
+    "top",
+    "clock",
+    "reset",
+    "period_ns",
+    "utilization",
+    "liberty",
+    "analog",
+    "wrapper",
+)  # of other designs alone
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -46,6 +56,8 @@ def add_arguments(parser: ArgumentParser) -> None:
     cells = "characterized cells at a corner (again for further corners; default: those shipped)"
     add("--liberty", type=Path, action="append", default=[], help=cells)
     add("--analog", type=Path, help=f"folder with <block>.lef and .gds in place of {SENSOR}'s black boxes")
+    wrapper = f"a shuttle's empty wrapper (GDS), in which {SENSOR} is laid out without pads"
+    add("--wrapper", type=Path, help=wrapper)
     add("--out", type=Path, default=RESULTS / "layout", help="folder of the layouts")
 
 
@@ -60,10 +72,11 @@ def run(arguments: Namespace) -> int:
     name = arguments.design or chosen.name
     if name == SENSOR:
         steps = [f"{CHIP}: {step.name}" for step in all_steps(chosen, options)]
-        steps += [step.name for step in die_steps(chosen, options, BLOCKS)]
+        steps += [step.name for step in die_steps(chosen, options, BLOCKS, wrapped=bool(arguments.wrapper))]
+        sensor = sensor_asked(arguments, varied(name))
         with Steps(steps, lines=True) as bar:
             summary, lines = lay_out_sensor(
-                chosen, options, arguments.analog, arguments.out, bar.note, sensor_asked(arguments, varied(name))
+                chosen, options, arguments.analog, arguments.out, bar.note, sensor, arguments.wrapper
             )
     else:
         summary, lines = block(chosen, options, arguments)
@@ -107,8 +120,9 @@ def pixels(arguments: Namespace) -> int:
 
 def block(chosen: Design, options: Options, arguments: Namespace) -> tuple[Path, list[str]]:
     """Lay out a design: (path of summary.json, limits broken). Raises as `lay_out`."""
-    if arguments.analog:
-        raise ParameterError(f"analog = {arguments.analog}: must be with DESIGN={SENSOR} alone")
+    for option in ("analog", "wrapper"):
+        if value := getattr(arguments, option):
+            raise ParameterError(f"{option} = {value}: must be with DESIGN={SENSOR} alone")
     with Steps([step.name for step in all_steps(chosen, options)], lines=True) as bar:
         _, summary = lay_out(chosen, options, arguments.out, bar.note)
     return arguments.out / folder_name(chosen, options.pdk) / "summary.json", broken(summary)

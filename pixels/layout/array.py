@@ -113,7 +113,12 @@ def draw_array(layout: "db.Layout", array: ArrayLayout, cells: "Mapping[int, db.
 
 
 def draw_surroundings(canvas: Canvas, array: ArrayLayout) -> None:
-    """Draw the surroundings of the pixels: rings, ends of rows and columns, buses of the supplies in the east."""
+    """Draw the surroundings of the pixels: rings, ends of rows and columns, buses of the supplies in the east.
+
+    A shuttle fills what is less dense than its rules ask: over the diodes the fill would be a shade.
+    """
+    for mask in canvas.process.fill_blocks:
+        canvas.box(mask, *inside(array))
     _rings(canvas, array)
     _ends(canvas, array)
     _buses(canvas, array)

@@ -19,10 +19,10 @@ class PixelProcess:
     name: of the process. active, tap, well, nplus, pplus, poly, contact, contact_poly: masks; tap is the diffusion of
     contacts to wells and substrate, contact_poly opens the nitride around contacts to poly. thick: (mask, enclosure of
     the transistors' active area in um) of each mask that makes them thick-oxide ones. metals, vias: as in
-    `LayoutPlatform`, with the top metal and the via below it. outline: mask of a cell's outline. transistor, diode:
-    SPICE models. supply_v: of pixels; gate_v: of their reset and select lines, above the supply by more than a
-    threshold, so that a reset is complete. masks: rules of KLayout for these masks. density_most: limit of a metal's
-    share. deck_model, deck_diode: names of the devices in LVS.
+    `LayoutPlatform`, with the top metal and the via below it. outline: mask of a cell's outline. fill_blocks: masks
+    that keep a shuttle's fill out. transistor, diode: SPICE models. supply_v: of pixels; gate_v: of their reset and
+    select lines, above the supply by more than a threshold, so that a reset is complete. masks: rules of KLayout for
+    these masks. density_most: limit of a metal's share. deck_model, deck_diode: names of the devices in LVS.
     """
 
     name: str
@@ -38,6 +38,7 @@ class PixelProcess:
     metals: tuple[Layer, ...]
     vias: tuple[Via, ...]
     outline: GdsLayer
+    fill_blocks: tuple[GdsLayer, ...]
     grid_um: float
     transistor: str
     diode: str

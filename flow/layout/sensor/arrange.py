@@ -3,7 +3,6 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from talbot.base.steps import StepError
 from talbot.flow.layout.sensor.plan import (
     CORE,
     ORIENTATIONS,
@@ -15,8 +14,17 @@ from talbot.flow.layout.sensor.plan import (
     stack,
     with_core,
 )
-from talbot.flow.layout.sensor.ring import Pads
-from talbot.flow.layout.sensor.routing import Branch, Tracks, branches, length, raised, side_room, split_nets, trunks
+from talbot.flow.layout.sensor.routing import (
+    Branch,
+    Outside,
+    Tracks,
+    branches,
+    length,
+    levels,
+    raised,
+    side_room,
+    split_nets,
+)
 
 
 @dataclass(frozen=True)
@@ -46,7 +54,7 @@ def arranged(
     die: DieParameters,
     tracks: Tracks,
     layers: Sequence[str],
-    pads: Pads,
+    outside: Outside,
     extra: Iterable[str] = (),
 ) -> Arranged:
     """Place and route ``blocks``, given at the origin, with the chip in the orientation of the least wire length.
@@ -55,7 +63,7 @@ def arranged(
     """
     turned = [blocks | {CORE: blocks[CORE].turned(way)} for way in ORIENTATIONS]
     return min(
-        (arranged_as_is(found, die, tracks, layers, pads, extra) for found in turned), key=lambda made: made.wire
+        (arranged_as_is(found, die, tracks, layers, outside, extra) for found in turned), key=lambda made: made.wire
     )
 
 
@@ -64,7 +72,7 @@ def arranged_as_is(
     die: DieParameters,
     tracks: Tracks,
     layers: Sequence[str],
-    pads: Pads,
+    outside: Outside,
     extra: Iterable[str] = (),
 ) -> Arranged:
     """Place and route with the chip in the orientation given. Arguments: see `arranged`.
@@ -76,12 +84,9 @@ def arranged_as_is(
     low = with_core(placed, blocks[CORE], die, room, 0)
     found = nets(low, extra)
     routed, abutted = split_nets(low, found)
-    routes = branches(low, routed, die, tracks, layers, pads)
-    numbers, begin = trunks(routes, tracks), nm(die.ring_um + die.edge_um + die.gap_um)
-    count = max(numbers.values()) + 1
+    routes = branches(low, routed, tracks, layers, outside)
+    begin = nm(die.ring_um + die.edge_um + die.gap_um)
+    y, count = levels(routes, tracks, begin)
     height = begin + count * tracks.trunk_pitch + nm(die.gap_um)
-    if lowest := [net for net, one in routes.items() if any(b.side != "south" and b.end < height for b in one)]:
-        raise StepError(f"ring: the pad of {lowest[0]} is beside the channel")
-    y = {net: begin + number * tracks.trunk_pitch for net, number in numbers.items()}
     high = with_core(placed, blocks[CORE], die, room, height)
     return Arranged(high, found, raised(routes, height), y, len(abutted), (begin, height), count)

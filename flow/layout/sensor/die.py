@@ -30,6 +30,8 @@ from talbot.flow.layout.sensor.steps.die_parasitics import DieParasitics, DiePar
 from talbot.flow.layout.sensor.steps.die_plan import DiePlan, DiePlanParameters
 from talbot.flow.layout.sensor.steps.die_sta import DieSta
 from talbot.flow.layout.sensor.steps.drawing import ARRAY, DrawingParameters, DrawnCircuits, DrawnPixels
+from talbot.flow.layout.sensor.steps.wrapped import WrappedGds, WrappedPlan
+from talbot.flow.layout.sensor.wrapper import check_wrapper
 from talbot.flow.layout.steps.parameters import PdkParameters
 from talbot.flow.layout.steps.sta import StaParameters
 from talbot.flow.layout.varied import CHIP, SENSOR
@@ -41,6 +43,7 @@ from talbot.platforms.layout import layout_platform
 from talbot.platforms.pads import pad_process
 from talbot.platforms.pixel import pixel_process
 from talbot.platforms.wires import CORNERS
+from talbot.platforms.wrapper import wrappers
 from talbot.signoff.foundry_drc import FoundryDrcParameters
 
 # Files of the chip's run that the die is given
@@ -51,6 +54,8 @@ PARTS |= {f"library.{deck}": f"library.{deck}" for deck in ("drc", "lvs")}
 RESULTS = {"gds": "die_gds.gds", "v": "die_plan.verilog", "sdc": "die_parasitics.sdc", "drc.lyrdb": "die_drc.report"}
 RESULTS |= {"connectivity.json": "die_connectivity.report", "parasitics.json": "die_parasitics.nets"}
 PACKAGE = f"{SENSOR}.pins.md", f"{SENSOR}.package.png", f"{SENSOR}.package.svg"
+WRAPPED = "wrapped"  # label of the folder of a sensor in a wrapper
+SHUTTLE = "shuttle"  # folder of the files for its repository
 
 
 def die_steps(
@@ -59,10 +64,12 @@ def die_steps(
     drawn: Sequence[str] = (),
     die: DieParameters | None = None,
     sensor: SensorParameters = STANDARD,
+    wrapped: bool = False,
 ) -> list[Step]:
     """The die's steps, of those that can begin the longest first.
 
-    drawn: blocks that this project draws, for ``sensor``. die: see DiePlanParameters.
+    drawn: blocks that this project draws, for ``sensor``. die: see DiePlanParameters. wrapped: whether the die is in a
+    shuttle's wrapper, without pads.
     """
     pdk, clock, io = options.pdk, chip.clock, chip.io
     ns = {"input_ns": io.input_delay * clock.period_ns, "output_ns": io.output_delay * clock.period_ns}
@@ -70,9 +77,9 @@ def die_steps(
     drawings = [step(DrawingParameters(pdk, sensor)) for step in (DrawnPixels, DrawnCircuits)]
     drawings = [step for step in drawings if any(f"{block}.lef" in step.outputs for block in drawn)]
     steps: list[Step] = [
-        DiePads(PdkParameters(pdk)),
-        DiePlan(DiePlanParameters(pdk, die or DieParameters())),
-        DieGds(DieGdsParameters(pdk, tuple(drawn))),
+        *([] if wrapped else [DiePads(PdkParameters(pdk))]),
+        (WrappedPlan if wrapped else DiePlan)(DiePlanParameters(pdk, die or DieParameters())),
+        (WrappedGds if wrapped else DieGds)(DieGdsParameters(pdk, tuple(drawn))),
         *([DieFoundryDrc(FoundryDrcParameters(pdk, SENSOR))] if "klayout" in dict(options.decks) else []),
         DieDrc(PdkParameters(pdk)),
         DieConnectivity(PdkParameters(pdk)),
@@ -80,8 +87,7 @@ def die_steps(
         DieParasitics(parasitics),
         *(DieSta(StaParameters(chip.top, corner, clock.period_ns)) for corner in options.corners),
         *([DieIrDrop(DieIrDropParameters(pdk, sensor.array))] if ARRAY in drawn else []),
-        DiePadsDrc(PdkParameters(pdk)),
-        DiePadsLvs(PdkParameters(pdk)),
+        *([] if wrapped else [DiePadsDrc(PdkParameters(pdk)), DiePadsLvs(PdkParameters(pdk))]),
     ]
     own = {name: f"{step.name}.{name}" for step in drawings for name in step.outputs if name.split(".")[0] in drawn}
     for step in steps:
@@ -96,18 +102,23 @@ def lay_out_sensor(
     out: Path,
     note: Callable[[str], None],
     sensor: SensorParameters = STANDARD,
+    wrapper: Path | None = None,
 ) -> tuple[Path, list[str]]:
     """Lay out the chip and the die around it: (path of summary.json, limits broken).
 
-    What needs no more of the chip than there is runs beside it. analog: folder of a user's blocks. out: folder of all
-    designs. Raises ParameterError, StepError for a chip that breaks a limit.
+    What needs no more of the chip than there is runs beside it. analog: folder of a user's blocks. wrapper: a shuttle's
+    empty wrapper, which the die has in place of pads. out: folder of all designs. Raises ParameterError, StepError for
+    a chip that breaks a limit.
     """
     top_metal(options.pdk)  # a process without one is refused before anything runs
     if not analog:
         check_drawable(sensor)
         tile_geometries(options.pdk, sensor.tile)
-    folder = out / folder_name(replace(chip, name=SENSOR), options.pdk)
+    if wrapper:
+        check_wrapper(wrapper, options.pdk)
+    folder = out / "-".join([folder_name(replace(chip, name=SENSOR), options.pdk), *([WRAPPED] if wrapper else [])])
     blocks = files(folder / "black_boxes", options.pdk, analog, sensor)
+    blocks.paths.update({"wrapper": wrapper} if wrapper else {})
     runner = Runner(folder / "steps", blocks.paths, note, out / "shared")
     given = [f"timing.{corner}" for corner in options.corners] + [f"foundry.{name}" for name, _ in options.decks]
     sources = PARTS | {name: name for name in given}
@@ -117,7 +128,8 @@ def lay_out_sensor(
         return {name: core.paths[source] for name, source in sources.items() if source in core.paths}
 
     def beside(core: Runner) -> AbstractContextManager[None]:
-        return runner.beside(die_steps(chip, options, blocks.drawn, sensor=sensor), lambda: parts(core))
+        steps = die_steps(chip, options, blocks.drawn, sensor=sensor, wrapped=bool(wrapper))
+        return runner.beside(steps, lambda: parts(core))
 
     core, summary = lay_out(chip, options, out, lambda text: note(f"{CHIP}: {text}"), beside)
     if wrong := broken(summary):
@@ -137,26 +149,47 @@ def lay_out_die(
 ) -> tuple[Path, list[str]]:
     """Lay out the die around a chip that is laid out: (path of summary.json, limits broken).
 
-    runner: its files are PARTS of the chip and those of the blocks; the results are beside its folder.
+    runner: its files are PARTS of the chip, those of the blocks, and 'wrapper' for a die in one; the results are beside
+    its folder.
     """
-    folder = runner.folder.parent
-    runner.run_all(die_steps(chip, options, drawn, die, sensor))
+    folder, wrapped = runner.folder.parent, "wrapper" in runner.paths
+    runner.run_all(die_steps(chip, options, drawn, die, sensor, wrapped))
     summary = summarize(SENSOR, options, runner, black_boxes)
     lines, tech = broken(summary, RULES), layout_platform(options.pdk)
     tech = replace(tech, metals=(*tech.metals, top_metal(options.pdk).metal))
     results = RESULTS | {f"{corner}.sta.txt": f"die_sta_{corner}.report" for corner in options.corners}
-    with staged(folder, [*(f"{SENSOR}.{suffix}" for suffix in results), *PACKAGE]) as part:
+    others = [*PACKAGE[:1], SHUTTLE] if wrapped else PACKAGE
+    with staged(folder, [*(f"{SENSOR}.{suffix}" for suffix in results), *others]) as part:
         for suffix, source in results.items():
             shutil.copyfile(runner.paths[source], part / f"{SENSOR}.{suffix}")
         blocks = part / f"{SENSOR}.blocks.png"
         by_block(blocks, json.loads(runner.paths["die_plan.plan"].read_text(encoding="utf-8")), black_boxes)
-        pin_map(runner, options, part)
+        if wrapped:
+            shuttle_files(runner, options, part)
+        else:
+            pin_map(runner, options, part)
         layout = render(runner.paths["die_gds.gds"], tech)
         layout.image.save(part / f"{SENSOR}.png")
         shown = [picture(blocks, "Blocks; hatched: black box, no circuit" if black_boxes else "Blocks")]
-        shown.append(picture(part / PACKAGE[1], "Package and bond wires, to scale"))
+        if not wrapped:
+            shown.append(picture(part / PACKAGE[1], "Package and bond wires, to scale"))
         write_report(part, folder, summary, lines, layout, shown)
     return folder / "summary.json", lines
+
+
+def shuttle_files(runner: Runner, options: Options, part: Path) -> None:
+    """Write the pin map, and the files that the shuttle's repository takes, in SHUTTLE."""
+    shutil.copyfile(runner.paths["die_plan.pins"], part / PACKAGE[0])
+    cell = json.loads(runner.paths["die_plan.plan"].read_text(encoding="utf-8"))["cell"]
+    for place, source in {"gds/{}.gds": "die_gds.gds", "verilog/gl/{}.v": "die_plan.verilog"}.items():
+        path = part / SHUTTLE / place.format(cell)
+        path.parent.mkdir(parents=True)
+        shutil.copyfile(runner.paths[source], path)
+    for wrapper in wrappers(options.pdk):
+        for name, text in wrapper.files.items() if wrapper.cell == cell else ():
+            path = part / SHUTTLE / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text, encoding="utf-8")
 
 
 def pin_map(runner: Runner, options: Options, part: Path) -> None:

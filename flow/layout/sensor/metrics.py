@@ -19,11 +19,12 @@ DROPS = "pixel_drop_mv", "pixel_spread_mv", "pixel_drop_both_mv"  # of a drawn a
 PADS = "pad_drc_violations", "pads_unmatched"
 LOADS = "wire_pf", "worst_load_pf", "worst_load", "worst_delay_ns", "worst_delay", "loads_over"
 SLACKS = [name for name in DieSta.metrics if name != "f_max_mhz"]  # by corner
+PADS_ONLY = "pads: rules and LVS of each cell; no ESD pulse is simulated"
+WRAPPED = "the wrapper's pads without a driver have no ESD clamp; fill and seal ring are the shuttle's"
 SHOWN = 12  # nets in the summary, those with the largest loads
 BOXES_NOT_CHECKED = "insides of the black boxes: outlines with pins, no circuit; they have no rule, netlist or current"
 NOT_CHECKED = (
     "pixels of the drawn array: rules and LVS of make pixel-layout, of a small array of the same cells",
-    "pads: rules and LVS of each cell; no ESD pulse is simulated",
     "density of diffusion and poly outside of the blocks",
     "antennas on the highest metal of the channel: whether a net's driver has the diffusion for it",
     "coupling of the die's nets to blocks and bars; nets to the abutting rows, columns and lanes have no length here",
@@ -43,7 +44,8 @@ def summarize(name: str, options: Options, runner: Runner, black_boxes: Sequence
     plan = json.loads(runner.paths["die_plan.plan"].read_text(encoding="utf-8"))
     nets = json.loads(runner.paths["die_parasitics.nets"].read_text(encoding="utf-8"))
     loads = {net: found["load_pf"] for net, found in nets.items()}
-    total, bonded = leads(plan)
+    wrapped = not plan["ring"]
+    total, bonded = (None, []) if wrapped else leads(plan)
     return {
         "design": name,
         "top": name,
@@ -55,16 +57,18 @@ def summarize(name: str, options: Options, runner: Runner, black_boxes: Sequence
         "blocks": {block: placed(found) for block, found in plan["blocks"].items()},
         "black_boxes": list(black_boxes),
         "circuits": [block for block in BLOCKS if block not in black_boxes],
-        **{key: metrics[key] for key in ROUTED + CHECKED + PADS + LOADS},
+        **{key: metrics[key] for key in ROUTED + CHECKED + LOADS},
+        **{key: metrics.get(key) for key in PADS},
+        "wrapper": plan["cell"] if wrapped else None,
         "leads": total,
-        "bond_wire_mm": round(max(lead.wire_mm for lead in bonded), 2),
+        "bond_wire_mm": round(max(lead.wire_mm for lead in bonded), 2) if bonded else None,
         **dict.fromkeys(("equivalence", "gate_tests", "power_uw")),
         "timing_rests_on": f"the chip, its ports with the die's nets{extrapolated(sta)}; {timing_basis(options)}",
         **{key: {corner: found[key] for corner, found in sta.items()} or None for key in SLACKS},
         "f_max_mhz": min((found["f_max_mhz"] for found in sta.values()), default=None),
         **{key: metrics.get(key) for key in ("foundry_drc_violations", "outside_density", *DROPS)},
         "largest_loads": dict(sorted(loads.items(), key=lambda item: -item[1])[:SHOWN]),
-        "not_checked": [*([BOXES_NOT_CHECKED] if black_boxes else []), *NOT_CHECKED],
+        "not_checked": [*([BOXES_NOT_CHECKED] if black_boxes else []), *NOT_CHECKED, WRAPPED if wrapped else PADS_ONLY],
         **{name: {step: record[name] for step, record in records.items()} for name in ("wall_s", "peak_mib")},
         "tools": dict(sorted(tools.items())),
     }

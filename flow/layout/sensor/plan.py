@@ -224,10 +224,12 @@ def with_core(
         east = placed["row_driver"].x
     low = {name: block.moved(0, bottom - columns.y) for name, block in placed.items()}
     low[CORE] = core.moved((east - gap - side_nm - core.width) // 10 * 10, channel_nm)
-    bars = nm(die.ring_um + die.edge_um + len(SUPPLIES) * (die.bar_um + die.gap_um))
+    bars, north = (
+        nm(die.ring_um + die.edge_um + len(nets) * (die.bar_um + die.gap_um)) for nets in (SUPPLIES, CIRCUITS)
+    )
     lefts, _, rights, tops = zip(*(block.box for block in low.values()), strict=True)
     wide = max(rights) - min(lefts)
-    for name, least in (("width_um", wide + 2 * bars), ("height_um", max(tops) + bars)):
+    for name, least in (("width_um", wide + 2 * bars), ("height_um", max(tops) + north)):
         if least > nm(size := getattr(die, name)):
             why = "for the blocks, the supplies' bars and the pads"
             raise NoRoom(f"{name} = {size:g}: must be at least {least / 1000:g}, {why}", name, least / 1000)

@@ -145,6 +145,10 @@ class Pads:
         left, low, right, high = self.frame.box(side, 0, (0, bottom, 0, top))
         return (left, right) if side in ("west", "east") else (low, high)
 
+    def reach(self, net: str, side: str) -> Sequence[tuple[int, int]]:
+        """Nothing: the tracks meet a supply's lines, not its bar."""
+        return ()
+
     def crossed(self, net: str, side: str, at: int) -> bool:
         """Whether a supply's line on the top metal has a track of another net before its own."""
         pins = {pin for pin, own in self.tracks(side, at).items() if own == net}

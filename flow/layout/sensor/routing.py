@@ -1,6 +1,6 @@
 """Routes of the signals, in nm: a trunk in the channel, a vertical branch from it to every pin."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from talbot.base.steps import StepError
@@ -26,6 +26,7 @@ from talbot.flow.layout.sensor.rules import RoutingRules
 # Places in RoutingRules.layers. Branches are the highest: a net is connected only there, with its driver, so that no
 # gate has a trunk or a branch as an antenna before. Stubs are where the chip's ports are
 STUB, TRUNK, BRANCH = 3, 3, 4
+PAD = 1  # of the pads' pins
 STUB_HALF, ABOVE = 150, 700  # of the metal from a pad's pin, and how far inside of the ring its vias are
 Nets = Mapping[str, list[Terminal]]
 
@@ -35,7 +36,8 @@ class Branch:
     """A pin's connection to its trunk.
 
     x: of the vertical segment; end: y of its end at the pin. box: of the pin. side: of the die, where its pad is. A pin
-    in the west or the east, of the chip or of a pad, has a stub from there to x.
+    in the west or the east, of the chip or of a pad, has a stub from there to x. level: of the pin, in
+    RoutingRules.layers.
     """
 
     block: str
@@ -44,6 +46,12 @@ class Branch:
     end: int
     box: Box | None = None
     side: str = "south"
+    level: int = PAD
+
+
+Found = Mapping[str, list[Branch]]
+# From the branches of the blocks, the nets and the blocks to the branches of the die's pins
+Outside = Callable[[Found, Nets, Mapping[str, Block]], Iterator[tuple[str, Branch]]]
 
 
 @dataclass(frozen=True)
@@ -84,7 +92,7 @@ def side_room(core: Block, tracks: Tracks) -> int:
 
 
 def branches(
-    blocks: Mapping[str, Block], routed: Nets, die: DieParameters, tracks: Tracks, layers: Sequence[str], pads: Pads
+    blocks: Mapping[str, Block], routed: Nets, tracks: Tracks, layers: Sequence[str], outside: Outside
 ) -> dict[str, list[Branch]]:
     """Branches of the nets. layers: (stub, branch), LEF names of the layers of the pins. Raises StepError."""
     made: dict[str, list[Branch]] = {net: [] for net in routed}
@@ -99,7 +107,7 @@ def branches(
             made[pin].append(Branch(name, pin, (south[pin][0] + south[pin][2]) // 10 * 5, south[pin][1], south[pin]))
     for net, branch in _beside(blocks[CORE], routed, tracks, layers[0]):
         made[net].append(branch)
-    for net, branch in _pads(made, routed, blocks, die, tracks, pads):
+    for net, branch in outside(made, routed, blocks):
         made[net].append(branch)
     check_apart({(b.block, b.pin): b.x for found in made.values() for b in found}, tracks.branch_pitch)
     return made
@@ -135,13 +143,8 @@ def _whole(pieces: Sequence[Box], least: int) -> Box:
     return min(high or found, key=lambda box: (box[3] - box[1] if high else box[1] - box[3], box[0] - box[2], box))
 
 
-def _pads(
-    made: Mapping[str, list[Branch]],
-    routed: Nets,
-    blocks: Mapping[str, Block],
-    die: DieParameters,
-    tracks: Tracks,
-    pads: Pads,
+def pad_branches(
+    made: Found, routed: Nets, blocks: Mapping[str, Block], *, die: DieParameters, tracks: Tracks, pads: Pads
 ) -> Iterator[tuple[str, Branch]]:
     """Pairs (net, Branch) of the signals' pads; in the south around the middle of the blocks' pins on these nets.
 
@@ -196,10 +199,33 @@ def _on_side(
         yield net, Branch("die", net, low + tracks.branch_pitch // 2 + k * tracks.branch_pitch, at + middle, box, side)
 
 
-def trunks(made: Mapping[str, list[Branch]], tracks: Tracks) -> dict[str, int]:
-    """Track of each net's trunk."""
+def levels(made: Found, tracks: Tracks, begin: int) -> tuple[dict[str, int], int]:
+    """Return the y of each net's trunk, and the number of tracks from ``begin`` on.
+
+    The tracks are in an order in which no trunk meets the stub of another net's pin in the west or the east of the die.
+    Raises StepError where none is found.
+    """
     spans = {net: (min(branch.x for branch in found), max(branch.x for branch in found)) for net, found in made.items()}
-    return left_edge(spans, 2 * tracks.trunk_pitch)
+    numbers = left_edge(spans, 2 * tracks.trunk_pitch)
+    count = max(numbers.values()) + 1
+    stubs = [(net, b) for net, found in made.items() for b in found if b.block == "die" and b.side in ("west", "east")]
+    meets = set[tuple[int, int]]()  # (track, place)
+    for net, stub_of in stubs:
+        half = (stub_of.box[3] - stub_of.box[1]) // 2 if stub_of.box else 0
+        reach = half + tracks.trunk_pitch
+        near = [k for k in range(count) if abs(begin + k * tracks.trunk_pitch - stub_of.end) < reach]
+        for other, (low, high) in spans.items() if near else ():
+            beyond = low < stub_of.x + tracks.trunk if stub_of.side == "west" else high > stub_of.x - tracks.trunk
+            if other != net and beyond:
+                meets.update((numbers[other], k) for k in near)
+    places = list(range(count))  # of the tracks
+    for track in range(count):
+        if (track, places[track]) in meets:
+            free = (k for k in range(count) if {(track, places[k]), (k, places[track])}.isdisjoint(meets))
+            if (other_track := next(free, None)) is None:
+                raise StepError("ring: a pad beside the channel meets all of its tracks")
+            places[track], places[other_track] = places[other_track], places[track]
+    return {net: begin + places[number] * tracks.trunk_pitch for net, number in numbers.items()}, count
 
 
 def raised(made: Mapping[str, list[Branch]], dy: int) -> dict[str, list[Branch]]:

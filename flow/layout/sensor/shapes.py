@@ -8,8 +8,6 @@ from talbot.flow.layout.sensor.routing import BRANCH, STUB, TRUNK, Branch, Track
 from talbot.flow.layout.sensor.rules import Layer, RoutingRules, Via
 from talbot.platforms import layers
 
-PAD = 1  # place in RoutingRules.layers of the pads' pins
-
 
 @dataclass(frozen=True)
 class Shape:
@@ -40,22 +38,22 @@ def signal(net: str, branches: Sequence[Branch], y: int, tracks: Tracks, rules: 
             pad, _ = rules.vias[STUB].below
             yield drawn(rules.layers[STUB], net, (min(left, branch.x - pad), bottom, max(right, branch.x + pad), top))
             yield from stack(net, branch.x, branch.end, rules)
-        elif branch.side != "south" and branch.box:
+        elif branch.side in ("west", "east") and branch.box:
             left, bottom, right, top = branch.box
             pad, _ = rules.vias[STUB].below
             edge = right if branch.x > right else left
             first, last = sorted((edge, branch.x))
-            yield drawn(rules.layers[PAD], net, branch.box)
-            for level in range(PAD, STUB):
+            yield drawn(rules.layers[branch.level], net, branch.box)
+            for level in range(branch.level, STUB):
                 yield from via(net, edge, branch.end, level, rules)
-            yield from islands(net, edge, branch.end, rules, PAD, STUB)
+            yield from islands(net, edge, branch.end, rules, branch.level, STUB)
             wide = max((top - bottom) // 2, tracks.stub // 2)
             yield drawn(rules.layers[STUB], net, (first - pad, branch.end - wide, last + pad, branch.end + wide))
             yield from stack(net, branch.x, branch.end, rules)
-        elif branch.block == "die" and branch.box:
+        elif branch.block == "die" and branch.side == "south" and branch.box:
             left, bottom, right, _ = branch.box
-            yield drawn(rules.layers[PAD], net, (left, bottom, right, branch.end))
-            yield from stack(net, branch.x, branch.end, rules, PAD)
+            yield drawn(rules.layers[branch.level], net, (left, bottom, right, branch.end))
+            yield from stack(net, branch.x, branch.end, rules, branch.level)
         yield drawn(rules.layers[BRANCH], net, (branch.x - half, low, branch.x + half, high))
 
 
@@ -80,3 +78,13 @@ def via(net: str, x: int, y: int, level: int, rules: RoutingRules) -> Iterator[S
     low, high, half = rules.layers[level], rules.layers[level + 1], own.size // 2
     for on, (width, height) in ((low, own.below), (high, own.above), (own, (half, half))):
         yield drawn(on, net, (x - width, y - height, x + width, y + height))
+
+
+def cuts(net: str, box: Box, on: Via | layers.Via, size: int, space: int, rooms: tuple[int, int]) -> list[Shape]:
+    """As many cuts as fit into ``box``, centred. rooms: from its sides in x and in y to the first."""
+    pitch, places = size + space, []
+    for low, high, room in ((box[0], box[2], rooms[0]), (box[1], box[3], rooms[1])):
+        count = max((high - low - 2 * room + space) // pitch, 0)
+        start = (low + high - count * pitch + space) // 10 * 5
+        places.append([start + k * pitch for k in range(count)])
+    return [drawn(on, net, (x, y, x + size, y + size)) for x in places[0] for y in places[1]]

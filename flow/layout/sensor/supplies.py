@@ -1,7 +1,7 @@
 """The die's supplies on the top metal, and with them all metal of the die, in nm."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 from talbot.base.steps import StepError
 from talbot.flow.layout.sensor import plan, shapes
@@ -19,7 +19,7 @@ from talbot.flow.layout.sensor.plan import (
     check_way,
     nm,
 )
-from talbot.flow.layout.sensor.ring import Pads, Way
+from talbot.flow.layout.sensor.ring import Way
 from talbot.flow.layout.sensor.routing import Tracks
 from talbot.flow.layout.sensor.rules import Layer, RoutingRules
 from talbot.flow.layout.sensor.shapes import Shape
@@ -34,8 +34,18 @@ class Line(NamedTuple):
     box: Box
 
 
+class Around(Protocol):
+    """What is around the blocks: a ring of pads, or a wrapper."""
+
+    def track(self, net: str, side: str, level: int, ends: tuple[int, int]) -> tuple[int, int] | None:
+        """Return the ends across the side of a supply's track that a line at ``ends`` meets, None without one."""
+
+    def reach(self, net: str, side: str) -> Sequence[tuple[int, int]]:
+        """Return the ends in y of what a supply's bar must meet."""
+
+
 def metal(
-    made: Arranged, die: DieParameters, tracks: Tracks, rules: RoutingRules, top: TopMetal, pads: Pads
+    made: Arranged, die: DieParameters, tracks: Tracks, rules: RoutingRules, top: TopMetal, pads: Around
 ) -> list[Shape]:
     """All shapes of the die but those of the ring's cells."""
     found = supplies(made.blocks, die, rules, top, pads)
@@ -45,7 +55,7 @@ def metal(
 
 
 def supplies(
-    blocks: Mapping[str, Block], die: DieParameters, rules: RoutingRules, top: TopMetal, pads: Pads
+    blocks: Mapping[str, Block], die: DieParameters, rules: RoutingRules, top: TopMetal, pads: Around
 ) -> list[Shape]:
     """Shapes of the supplies.
 
@@ -62,9 +72,10 @@ def supplies(
             if own:
                 ends = plan.bar(net, side, die)
                 tracks = [pads.track(net, side, len(rules.layers) - 1, (box[1], box[3])) for box in own]
-                met[side] = any(tracks)
+                reach = pads.reach(net, side)
+                met[side] = any(tracks) or bool(reach)
                 boxes = [to_track(box, side, track or ends) for box, track in zip(own, tracks, strict=True)]
-                found += _bar(net, ends, boxes, rules.layers[-1], top)
+                found += _bar(net, ends, boxes, reach, rules.layers[-1], top)
                 for box, track in zip(boxes, tracks, strict=True):
                     if track:
                         found += vias(net, (track[0], box[1], track[1], box[3]), top)
@@ -104,9 +115,12 @@ def _lines(blocks: Mapping[str, Block], die: DieParameters, top: TopMetal) -> li
     return [*_over_core(blocks[CORE], _straps(blocks[CORE]), die), *_from_blocks(blocks, die, top), *_in_north(die)]
 
 
-def _bar(net: str, bar: tuple[int, int], boxes: Sequence[Box], below: Layer, top: TopMetal) -> Iterator[Shape]:
-    """Shapes of a net's lines ``boxes`` and of the bar that connects them on one side of the die."""
-    across = (bar[0], min(box[1] for box in boxes), bar[1], max(box[3] for box in boxes))
+def _bar(
+    net: str, bar: tuple[int, int], boxes: Sequence[Box], reach: Sequence[tuple[int, int]], below: Layer, top: TopMetal
+) -> Iterator[Shape]:
+    """Shapes of a net's lines ``boxes`` and of the bar that connects them, and ``reach``, on one side of the die."""
+    lows, highs = zip(*((box[1], box[3]) for box in boxes), *reach, strict=True)
+    across = bar[0], min(lows), bar[1], max(highs)
     yield shapes.drawn(below, net, across)
     for box in boxes:
         yield shapes.drawn(top.metal, net, box)
@@ -142,20 +156,21 @@ def _from_blocks(blocks: Mapping[str, Block], die: DieParameters, top: TopMetal)
 
 def _in_north(die: DieParameters) -> Iterator[Line]:
     """Lines that connect the bars of the circuits' supplies."""
-    bar, high = nm(die.bar_um), nm(die.height_um - die.ring_um - die.edge_um)
-    for place, net in enumerate(CIRCUITS):
-        y = high - (place + 1) * bar - place * nm(die.gap_um)
-        middle, width = nm(die.width_um) // 2, nm(die.width_um)
-        yield Line(net, "west", (0, y, middle, y + bar))
-        yield Line(net, "east", (middle, y, width, y + bar))
+    middle, width = nm(die.width_um) // 2, nm(die.width_um)
+    for net in CIRCUITS:
+        low, high = in_north(net, die)
+        yield Line(net, "west", (0, low, middle, high))
+        yield Line(net, "east", (middle, low, width, high))
+
+
+def in_north(net: str, die: DieParameters) -> tuple[int, int]:
+    """Ends in y of the line of one of CIRCUITS in the north."""
+    bar, place = nm(die.bar_um), CIRCUITS.index(net)
+    low = nm(die.height_um - die.ring_um - die.edge_um) - (place + 1) * bar - place * nm(die.gap_um)
+    return low, low + bar
 
 
 def vias(net: str, box: Box, top: TopMetal) -> list[Shape]:
     """As many vias to the top metal as its rules allow in ``box``, centred."""
-    size, space = nm(top.via.size_um), nm(top.via.space_um)
-    pitch, places = size + space, []
-    for low, high, room in ((box[0], box[2], top.via.enclosure_below_um), (box[1], box[3], top.via.enclosure_um)):
-        count = max((high - low - 2 * nm(room) + space) // pitch, 0)
-        start = (low + high - count * pitch + space) // 10 * 5
-        places.append([start + k * pitch for k in range(count)])
-    return [shapes.drawn(top.via, net, (x, y, x + size, y + size)) for x in places[0] for y in places[1]]
+    rooms = nm(top.via.enclosure_below_um), nm(top.via.enclosure_um)
+    return shapes.cuts(net, box, top.via, nm(top.via.size_um), nm(top.via.space_um), rooms)

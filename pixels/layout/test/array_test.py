@@ -9,7 +9,7 @@ from talbot.base.lef.read import read_macro
 from talbot.models.parameters import ArrayParameters, ParameterError
 from talbot.pixels.blocks import SUPPLIES, AnalogSizes, pixel_array
 from talbot.pixels.footprints import lef
-from talbot.pixels.layout.array import DUMMIES, SOUTH, WEST, draw_array, draw_pixels
+from talbot.pixels.layout.array import DUMMIES, SOUTH, WEST, draw_array, draw_pixels, inside
 from talbot.pixels.layout.write import NAME, array_layout, array_lef, write
 
 pytestmark = pytest.mark.needs("layout")
@@ -83,3 +83,11 @@ def test_files_are_written_together(made, tmp_path):
 def test_pixels_of_another_pitch_are_refused(made):
     with pytest.raises(ParameterError, match="pitch = 1.2e-05: must be that of every pixel"):
         replace(made, array=ArrayParameters(ROWS, COLS, pitch=12e-6))
+
+
+def test_a_shuttles_fill_is_kept_out(made, drawn):
+    """Metal of met1 to met5, poly and diffusion over a diode would be a shade; the blocks cover all pixels."""
+    layout, cell = drawn
+    pixels = db.Region(db.DBox(*inside(made)).to_itype(layout.dbu))
+    for mask in ((22, 24), (33, 24), (62, 24), (105, 52), (107, 24), (112, 4), (117, 4)):
+        assert (pixels - db.Region(cell.begin_shapes_rec(layout.layer(*mask)))).is_empty()

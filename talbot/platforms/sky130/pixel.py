@@ -27,6 +27,7 @@ PROCESS = PixelProcess(
     metals=layers.METALS,
     vias=layers.VIAS,
     outline=layers.PRBOUNDARY,
+    fill_blocks=layers.FILL_BLOCKS,
     grid_um=0.005,
     transistor="sky130_fd_pr__nfet_g5v0d10v5",
     diode="sky130_fd_pr__model__parasitic__diode_ps2nw",

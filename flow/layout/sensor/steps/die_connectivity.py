@@ -1,6 +1,7 @@
 """Connectivity of the die's GDS, compared with the nets of the plan."""
 
 import json
+from collections.abc import Mapping
 from typing import Any
 
 from talbot.base.steps import Files, Step
@@ -29,15 +30,19 @@ class DieConnectivity(Step[PdkParameters]):
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         plan, pdk = json.loads(inputs["plan"].read_text(encoding="utf-8")), self.parameters.pdk
         cells = {block["cell"]: name for name, block in plan["blocks"].items()} | {CELL: ""}
+        ring = self.ring(plan) if plan["ring"] else {}
+        tech, plate = layout_platform(pdk), pad_process(pdk).capacitor.plate
+        found = connectivity.nets(inputs["gds"], cells, ring, tech, top_metal(pdk), plate)
+        opens, shorts = connectivity.compare(found, plan["nets"])
+        outputs["report"].write_text(json.dumps({"open": opens, "short": shorts}, indent=1) + "\n", encoding="utf-8")
+        return {"open_nets": len(opens), "shorts": len(shorts), "lvs_match": not opens and not shorts}
+
+    def ring(self, plan: Mapping[str, Any]) -> dict[tuple[str, int, int], str]:
+        """(cell, x, y) of each pad of a ring -> its name, '' for fillers and corners."""
         frame = Frame(**plan["frame"])
         at = [
             (place["cell"], place["nets"] and place["name"], turned(frame, place["side"], place["at"]).disp)
             for place in plan["ring"]
         ]
         at += [(plan["corner"], "", trans.disp) for trans in corners(frame)]
-        ring = {(cell, disp.x, disp.y): name or "" for cell, name, disp in at}
-        tech, plate = layout_platform(pdk), pad_process(pdk).capacitor.plate
-        found = connectivity.nets(inputs["gds"], cells, ring, tech, top_metal(pdk), plate)
-        opens, shorts = connectivity.compare(found, plan["nets"])
-        outputs["report"].write_text(json.dumps({"open": opens, "short": shorts}, indent=1) + "\n", encoding="utf-8")
-        return {"open_nets": len(opens), "shorts": len(shorts), "lvs_match": not opens and not shorts}
+        return {(cell, disp.x, disp.y): name or "" for cell, name, disp in at}

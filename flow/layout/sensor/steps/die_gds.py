@@ -1,7 +1,7 @@
 """The GDS of the die."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,6 +14,7 @@ from talbot.flow.layout.sensor.ring import Frame
 from talbot.flow.layout.sensor.rules import RoutingRules
 from talbot.flow.layout.sensor.steps.die_plan import TOP
 from talbot.platforms.die import seal_ring, top_metal
+from talbot.platforms.layers import Layer
 from talbot.platforms.layout import layout_platform
 from talbot.platforms.pads import pad_process
 
@@ -53,35 +54,18 @@ class DieGds(Step[DieGdsParameters]):
         plan, layout = json.loads(inputs["plan"].read_text(encoding="utf-8")), db.Layout()
         tech = layout_platform(self.parameters.pdk)
         layout.dbu = 0.001
-        top = layout.create_cell(TOP)
-        cells = {name: layout.create_cell(block["cell"]) for name, block in plan["blocks"].items()}
-        for name, block in plan["blocks"].items():
-            source = db.Layout()
-            source.read(str(inputs[f"{name}.gds"]))
-            tops = [cell.name for cell in source.top_cells()]
-            if tops != [block["cell"]]:
-                has = f"{inputs[f'{name}.gds'].name} has the top cells {', '.join(tops)}"
-                raise StepError(f"die_gds: {has}; its LEF is of {block['cell']}")
-            cells[name].copy_tree(source.top_cell())  # renames cells in it whose name is taken
-            top.insert(db.CellInstArray(cells[name].cell_index(), placed(block)))
-        pads = self.ring(plan, layout, top, inputs["pads.gds"])
+        top = layout.create_cell(plan["cell"])
+        cells = self.blocks(plan, layout, top, inputs)
         for _, layer, datatype, *box in plan["shapes"]:
             top.shapes(layout.layer(layer, datatype)).insert(db.Box(*box))
-        for net, boxes in plan["pins"].items():
-            for _, layer, _, *box in boxes:
-                middle = db.Trans(db.Box(*box).center() - db.Point())
-                for datatype in (tech.pin_datatype, tech.label_datatype):
-                    top.shapes(layout.layer(layer, datatype)).insert(db.Text(net, middle))
         top.shapes(layout.layer(*tech.outline)).insert(db.Box(0, 0, *plan["die"]))
         rules = RoutingRules.of(tech, json.loads(inputs["rules"].read_text(encoding="utf-8")))
         decoupling.draw(layout, plan, rules, pad_process(self.parameters.pdk).capacitor)
         metals = *tech.metals, top_metal(self.parameters.pdk).metal
-        shares = outside.fill(layout, top, plan, metals)
-        width, height = (side * layout.dbu for side in plan["die"])
-        ring = seal.draw(layout, width, height, seal_ring(self.parameters.pdk), tech.grid_um)
-        top.insert(db.CellInstArray(ring.cell_index(), db.Trans()))
+        pads, walls, shares = self.around(plan, layout, top, inputs, metals)
         write_gds(layout, outputs["gds"])
-        ring.prune_cell()
+        for wall in walls:
+            wall.prune_cell()
         for name in self.parameters.drawn:
             inner = [layout.cell(index) for index in cells[name].each_child_cell()]
             for cell in inner:
@@ -94,6 +78,42 @@ class DieGds(Step[DieGdsParameters]):
                     cell.clear(index)
         write_gds(layout, outputs["checked"])
         return {"rectangles": len(plan["shapes"]), "outside_density": shares}
+
+    def blocks(
+        self, plan: Mapping[str, Any], layout: "kdb.Layout", top: "kdb.Cell", inputs: Files
+    ) -> "dict[str, kdb.Cell]":
+        """Put the blocks into the die; returns their cells."""
+        import klayout.db as db
+
+        cells = {name: layout.create_cell(block["cell"]) for name, block in plan["blocks"].items()}
+        for name, block in plan["blocks"].items():
+            source = read_gds(inputs[f"{name}.gds"])
+            tops = [cell.name for cell in source.top_cells()]
+            if tops != [block["cell"]]:
+                has = f"{inputs[f'{name}.gds'].name} has the top cells {', '.join(tops)}"
+                raise StepError(f"die_gds: {has}; its LEF is of {block['cell']}")
+            cells[name].copy_tree(source.top_cell())  # renames cells in it whose name is taken
+            top.insert(db.CellInstArray(cells[name].cell_index(), placed(block)))
+        return cells
+
+    def around(
+        self, plan: Mapping[str, Any], layout: "kdb.Layout", top: "kdb.Cell", inputs: Files, metals: Sequence[Layer]
+    ) -> "tuple[list[kdb.Cell], list[kdb.Cell], dict[str, float]]":
+        """Put ring, pins, fill and seal ring into the die: (cells of pads, of the seal ring, outside_density)."""
+        import klayout.db as db
+
+        tech = layout_platform(self.parameters.pdk)
+        pads = self.ring(plan, layout, top, inputs["pads.gds"])
+        for net, boxes in plan["pins"].items():
+            for _, layer, _, *box in boxes:
+                middle = db.Trans(db.Box(*box).center() - db.Point())
+                for datatype in (tech.pin_datatype, tech.label_datatype):
+                    top.shapes(layout.layer(layer, datatype)).insert(db.Text(net, middle))
+        shares = outside.fill(layout, top, plan, metals)
+        width, height = (side * layout.dbu for side in plan["die"])
+        wall = seal.draw(layout, width, height, seal_ring(self.parameters.pdk), tech.grid_um)
+        top.insert(db.CellInstArray(wall.cell_index(), db.Trans()))
+        return pads, [wall], shares
 
     def ring(self, plan: Mapping[str, Any], layout: "kdb.Layout", top: "kdb.Cell", gds: Path) -> "list[kdb.Cell]":
         """Put the ring's cells into the die; returns them."""

@@ -3,6 +3,7 @@
 import json
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
+from functools import partial
 from typing import Any
 
 from talbot.base.steps import Files, Step
@@ -48,11 +49,9 @@ class DiePlan(Step[DiePlanParameters]):
     metrics = {"area_um2": "um2", **dict.fromkeys(COUNTS, ""), "wire_um": "um", "decoupling_pf": "pF"}
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
-        die, tech = self.parameters.die, layout_platform(self.parameters.pdk)
-        rules = RoutingRules.of(tech, json.loads(inputs["rules"].read_text(encoding="utf-8")))
-        blocks = {name: Block.read(name, inputs[f"{name}.lef"].read_text(encoding="utf-8")) for name in (*BLOCKS, CORE)}
+        die = self.parameters.die
+        rules, blocks, extra = self.read(inputs)
         cells = json.loads(inputs["pads"].read_text(encoding="utf-8"))
-        extra = [pin for block in BLOCKS for pin in extra_pins(inputs[f"{block}.lef"], inputs[f"{block}.black_box"])]
         sizes = {name for name in ("width_um", "height_um") if getattr(die, name)}
         while True:
             try:
@@ -66,6 +65,14 @@ class DiePlan(Step[DiePlanParameters]):
         outputs["verilog"].write_text(text, encoding="utf-8")
         return metrics
 
+    def read(self, inputs: Files) -> tuple[RoutingRules, dict[str, Block], list[str]]:
+        """Rules, blocks, and the pins that these have beside those of their black boxes."""
+        tech = layout_platform(self.parameters.pdk)
+        rules = RoutingRules.of(tech, json.loads(inputs["rules"].read_text(encoding="utf-8")))
+        blocks = {name: Block.read(name, inputs[f"{name}.lef"].read_text(encoding="utf-8")) for name in (*BLOCKS, CORE)}
+        extra = [pin for block in BLOCKS for pin in extra_pins(inputs[f"{block}.lef"], inputs[f"{block}.black_box"])]
+        return rules, blocks, extra
+
     def planned(
         self, die: DieParameters, rules: RoutingRules, blocks: dict[str, Block], cells: ring.Pins, extra: Iterable[str]
     ) -> tuple[dict[str, Any], str, dict[str, Any]]:
@@ -73,7 +80,8 @@ class DiePlan(Step[DiePlanParameters]):
         p, tech = self.parameters, layout_platform(self.parameters.pdk)
         layers = [tech.metals[level].lef for level in (routing.STUB, routing.BRANCH)]
         tracks, pads = routing.Tracks.of(rules, die), self.pads(die, cells, {})
-        made = arrange.arranged(blocks, die, tracks, layers, pads, extra)
+        outside = partial(routing.pad_branches, die=die, tracks=tracks, pads=pads)
+        made = arrange.arranged(blocks, die, tracks, layers, outside, extra)
         signals = [
             ring.signal(net, kind, at - offset, pads.process, branch.side)
             for net, found in made.routes.items()
@@ -87,29 +95,39 @@ class DiePlan(Step[DiePlanParameters]):
         for place in (place for place in signals if place.side != "south"):
             borders[place.side] = max(borders[place.side], place.at + pads.frame.pad)
         pads = replace(pads, borders={side: y // ring.UM * ring.UM for side, y in borders.items()})
-        metal = supplies.metal(made, die, tracks, rules, top_metal(p.pdk), pads)
-        lines = supplies.crossing(made.blocks, die, top_metal(p.pdk), "adc_lanes")
-        taken = [branch.x for found in made.routes.values() for branch in found]
-        field = decoupling.field(made.blocks, taken, die)
-        metal += decoupling.metal(field, lines, rules, top_metal(p.pdk))
+        metal, field = self.metal(made, die, tracks, rules, pads)
         places, gaps = ring.ring(pads, signals, supplies.ways(made.blocks, die, top_metal(p.pdk)))
         levels = [*tech.metals, top_metal(p.pdk).metal]
         metal += [drawn(levels[level], net, box) for net, level, box in ring.bridges(pads, gaps)]
-        plan = as_json(made, metal, places, pads, die, tracks, levels[-1]) | {"decoupling": field._asdict()}
+        plan = as_json(made, metal, die, tracks, field) | in_ring(made, places, pads, levels[-1])
+        metrics = self.figures(made, die, field) | {"pads": sum(bool(place.nets) for place in places)}
+        return plan, verilog.top(TOP, made.blocks, made.nets, places), metrics
+
+    def metal(
+        self, made: Arranged, die: DieParameters, tracks: routing.Tracks, rules: RoutingRules, around: supplies.Around
+    ) -> tuple[list[Shape], decoupling.Field]:
+        """Metal of routes, supplies and capacitors; the capacitors."""
+        top = top_metal(self.parameters.pdk)
+        metal = supplies.metal(made, die, tracks, rules, top, around)
+        lines = supplies.crossing(made.blocks, die, top, "adc_lanes")
+        taken = [branch.x for found in made.routes.values() for branch in found]
+        field = decoupling.field(made.blocks, taken, die)
+        return [*metal, *decoupling.metal(field, lines, rules, top)], field
+
+    def figures(self, made: Arranged, die: DieParameters, field: decoupling.Field) -> dict[str, Any]:
+        """Metrics but those of the pads."""
         area = die.width_um * die.height_um
         covered = sum(block.width * block.height for block in made.blocks.values()) / 1e6
-        metrics = {
+        return {
             "area_um2": area,
             "utilization": round(covered / area, 4),
             "nets": len(made.nets),
             "routed": len(made.routes),
             "abutted": made.abutted,
             "tracks": made.count,
-            "decoupling_pf": round(decoupling.picofarad(field, pad_process(p.pdk).capacitor), 1),
-            "pads": sum(bool(place.nets) for place in places),
+            "decoupling_pf": round(decoupling.picofarad(field, pad_process(self.parameters.pdk).capacitor), 1),
             "wire_um": round(made.wire / 1000, 1),
         }
-        return plan, verilog.top(TOP, made.blocks, made.nets, places), metrics
 
     def pads(self, die: DieParameters, cells: ring.Pins, borders: Mapping[str, int]) -> Pads:
         """The pads in the frame of the die."""
@@ -120,36 +138,38 @@ class DiePlan(Step[DiePlanParameters]):
 
 
 def as_json(
-    made: Arranged,
-    metal: Shapes,
-    places: Sequence[Place],
-    pads: Pads,
-    die: DieParameters,
-    tracks: routing.Tracks,
-    top: Layer,
+    made: Arranged, metal: Shapes, die: DieParameters, tracks: routing.Tracks, field: decoupling.Field
 ) -> dict[str, Any]:
-    """The plan for JSON, nm. metal: all shapes. places: of the ring. top: metal of the bond pads, the die's pins."""
-    blocks, routes, frame = made.blocks.items(), made.routes.items(), pads.frame
+    """The plan inside of the pads for JSON, nm. metal: all shapes."""
+    blocks, routes = made.blocks.items(), made.routes.items()
+    return {
+        "die": [nm(die.width_um), nm(die.height_um)],
+        "blocks": {name: {"cell": b.cell, "orientation": b.orientation, "box": b.box} for name, b in blocks},
+        "drivers": {net: driver(made.blocks, made.nets[net]) for net in made.routes},
+        "channel": made.channel,
+        "tracks": asdict(tracks),
+        "shapes": [_plain(shape) for shape in metal],
+        "routes": {net: {"y": made.y[net], "branches": list(map(asdict, found))} for net, found in routes},
+        "decoupling": field._asdict(),
+    }
+
+
+def in_ring(made: Arranged, places: Sequence[Place], pads: Pads, top: Layer) -> dict[str, Any]:
+    """What the plan adds with a ring of pads. places: of the ring. top: metal of the bond pads, the die's pins."""
     pins: dict[str, list[Any]] = {}
     for place in (place for place in places if place.nets):
         pin = ring.bond(place, pads.process)
         box = max((box for level, *box in pads.cells[place.cell][pin] if level == ring.TOP), key=_area)
         pins.setdefault(place.nets[pin], []).append(
-            _plain(drawn(top, place.nets[pin], frame.box(place.side, place.at, box)))
+            _plain(drawn(top, place.nets[pin], pads.frame.box(place.side, place.at, box)))
         )
     return {
-        "die": [nm(die.width_um), nm(die.height_um)],
-        "blocks": {name: {"cell": b.cell, "orientation": b.orientation, "box": b.box} for name, b in blocks},
+        "cell": TOP,
         "ring": [place._asdict() | {"box": pads.box(place)} for place in places],
-        "frame": asdict(frame),
+        "frame": asdict(pads.frame),
         "corner": pads.process.corner,
         "nets": ring.nets(made.nets, places),
-        "drivers": {net: driver(made.blocks, made.nets[net]) for net in made.routes},
-        "channel": made.channel,
-        "tracks": asdict(tracks),
         "pins": pins,
-        "shapes": [_plain(shape) for shape in metal],
-        "routes": {net: {"y": made.y[net], "branches": list(map(asdict, found))} for net, found in routes},
     }
 
 

@@ -1,13 +1,13 @@
 """The channel: as few tracks as can be, and in metal the nets that were asked for."""
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given, reject, settings
 from hypothesis import strategies as st
 
 from talbot.base.steps import StepError
 from talbot.flow.layout.sensor.channel import check_apart, free, left_edge
 from talbot.flow.layout.sensor.plan import DieParameters
-from talbot.flow.layout.sensor.routing import Branch, Tracks, trunks
+from talbot.flow.layout.sensor.routing import STUB, Branch, Tracks, levels
 from talbot.flow.layout.sensor.rules import RoutingRules
 from talbot.flow.layout.sensor.shapes import signal
 from talbot.flow.layout.sensor.test import small
@@ -54,16 +54,17 @@ def test_branches_too_near_are_refused():
 
 @st.composite
 def routes(draw):
-    """dict net -> list of Branch: pins from the north, from the die's edge and beside a chip, no two at one x."""
+    """dict net -> list of Branch: pins from the north, from the die's edges and beside a chip, no two at one x."""
     places = draw(st.lists(st.integers(0, 80), unique=True, min_size=4, max_size=24))
     made = {}
     for k, place in enumerate(places):
         x, net = place * TRACKS.branch_pitch, f"n{k if k < 2 else draw(st.integers(0, len(places) // 2 - 1))}"
-        kind = draw(st.sampled_from(("north", "die", "core")))
-        row = 200_000 + 2000 * k
+        kind = draw(st.sampled_from(("north", "die", "west", "core")))
+        row, low = 200_000 + 2000 * k, 15_000 + 2600 * k
         branch = {
             "north": Branch("north", f"p{k}", x, 300_000),
             "die": Branch("die", f"p{k}", x, 0),
+            "west": Branch("die", f"p{k}", x, low, (-9_000, low - 280, -6_000, low + 280), "west", STUB),
             "core": Branch("core", f"p{k}", x, row, (100_000, row - 160, 100_300, row + 160)),
         }[kind]
         made.setdefault(net, []).append(branch)
@@ -73,12 +74,11 @@ def routes(draw):
 @settings(deadline=None)
 @given(routes())
 def test_metal_joins_each_net_and_keeps_others_apart(made):
-    tracks = trunks(made, TRACKS)
-    shapes = [
-        shape
-        for net, found in made.items()
-        for shape in signal(net, found, 20_000 + tracks[net] * TRACKS.trunk_pitch, TRACKS, ROUTING_RULES)
-    ]
+    try:
+        y, _ = levels(made, TRACKS, 20_000)
+    except StepError:
+        reject()
+    shapes = [shape for net, found in made.items() for shape in signal(net, found, y[net], TRACKS, ROUTING_RULES)]
     groups = components(shapes)
     assert len(groups) == len(made)
     assert {frozenset(shapes[k].net for k in group) for group in groups} == {frozenset([net]) for net in made}

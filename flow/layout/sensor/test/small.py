@@ -15,9 +15,11 @@ from talbot.flow.layout.steps.parameters import PdkParameters
 from talbot.models.parameters import ArrayParameters, ChipParameters
 from talbot.pixels.blocks import AnalogSizes, blocks
 from talbot.pixels.footprints import write
+from talbot.platforms.die import top_metal
 from talbot.platforms.layout import layout_platform
 from talbot.platforms.pads import pad_process
 from talbot.platforms.pixel import pixel_process
+from talbot.platforms.sky130.chipignite import BARE, BIASES, CARAVAN, GPIO
 
 DIE = DieParameters(2800.0, 1800.0, pad_um=91.0, side_um=91.0, west=2, east=2)
 RULES = {
@@ -179,3 +181,44 @@ def connectivity(given, folder, drawn=()):
     """Metrics of the comparison of the GDS of the plan with its nets."""
     run(DieGds(DieGdsParameters(drawn=drawn)), given, folder)
     return run(DieConnectivity(PdkParameters()), given, folder)
+
+
+SIDES = {"west": range(14, GPIO), "east": range(14)}
+
+
+def wrapper(path, width=2800.0, height=1900.0, cell=CARAVAN.cell):
+    """Write an empty wrapper with the pins of Caravan, evenly on its sides; met2 in the south, else met3."""
+    import klayout.db as db
+
+    metals, layout = layout_platform("sky130").metals, db.Layout()
+    top = layout.create_cell(cell)
+    top.shapes(layout.layer(*layout_platform("sky130").outline)).insert(db.DBox(0, 0, width, height))
+
+    def pin(name, metal, *box):
+        shape = db.DBox(*box)
+        for numbers in (metal.gds, metal.pin):
+            top.shapes(layout.layer(*numbers)).insert(shape)
+        top.shapes(layout.layer(*metal.pin)).insert(db.DText(name, db.DTrans(shape.center() - db.DPoint())))
+
+    rows = {side: [f"io_{kind}[{k}]" for k in ks for kind in ("in", "out", "oeb")] for side, ks in SIDES.items()}
+    rows["east"] += [f"gpio_noesd[{k}]" for k in BIASES.values()]
+    wide = {side: list(pins.values()) for side, pins in CARAVAN.supplies.items()}
+    wide["east"].append("io_analog[0]")
+    for side, names in rows.items():
+        left, right = (-2.0, 2.4) if side == "west" else (width - 2.4, width + 2.0)
+        for k, name in enumerate(names):
+            y = 12.0 + 1.0 * round(k * (height - 500.0) / len(names))
+            pin(name, metals[3], left, y - 0.28, right, y + 0.28)
+        for k, name in enumerate(wide[side]):
+            y = height - 470.0 + 100.0 * k
+            pin(name, metals[3], *((0.0, y, 8.5, y + 24.0) if side == "west" else (width - 8.5, y, width, y + 24.0)))
+    for k, name in enumerate([*(f"io_analog[{k}]" for k in range(1, len(BARE))), "vssa1"]):
+        x = 300.0 + 200.0 * k
+        clamped = k % 2 and name != "vssa1"  # two pieces, up to the top metal
+        for left in (x, x + 40.0) if clamped else (x,):
+            for metal in (*metals[3:], top_metal("sky130").metal) if clamped else metals[3:4]:
+                pin(name, metal, left, height - 8.5, left + 25.0, height + 4.0)
+    for k in range(8):
+        pin(f"la_data_out[{k}]", metals[2], 600.0 + 6.0 * k, -2.0, 600.56 + 6.0 * k, 2.4)
+    layout.write(str(path))
+    return path
