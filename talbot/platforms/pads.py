@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
+from types import ModuleType
 
 from talbot.platforms.layers import GdsLayer
 from talbot.platforms.processes import package
@@ -58,3 +59,8 @@ class PadProcess:
 def pad_process(pdk: str) -> PadProcess:
     """Return the pads of ``pdk``. Raises ParameterError for a process without them."""
     return import_module(f"talbot.platforms.{package(pdk, PROCESSES, ' for a die with pads')}.pads").PROCESS
+
+
+def esd_models(pdk: str) -> ModuleType:
+    """Pads for ngspice: a module like `platforms.sky130.esd`. Raises ParameterError for a process without them."""
+    return import_module(f"talbot.platforms.{package(pdk, PROCESSES, ' for a die with pads')}.esd")

@@ -23,6 +23,7 @@ from talbot.flow.layout.sensor.plan import DieParameters
 from talbot.flow.layout.sensor.steps.die_antenna import DieAntenna
 from talbot.flow.layout.sensor.steps.die_connectivity import DieConnectivity
 from talbot.flow.layout.sensor.steps.die_drc import DieDrc, DieFoundryDrc
+from talbot.flow.layout.sensor.steps.die_esd import DieEsd
 from talbot.flow.layout.sensor.steps.die_gds import DieGds, DieGdsParameters
 from talbot.flow.layout.sensor.steps.die_ir_drop import DieIrDrop, DieIrDropParameters
 from talbot.flow.layout.sensor.steps.die_pads import DiePads, DiePadsDrc, DiePadsLvs
@@ -53,6 +54,7 @@ PARTS |= {"core.verilog": "stream_out.verilog", "library.rules": "library.rules"
 PARTS |= {f"library.{deck}": f"library.{deck}" for deck in ("drc", "lvs")}
 RESULTS = {"gds": "die_gds.gds", "v": "die_plan.verilog", "sdc": "die_parasitics.sdc", "drc.lyrdb": "die_drc.report"}
 RESULTS |= {"connectivity.json": "die_connectivity.report", "parasitics.json": "die_parasitics.nets"}
+RESULTS |= {"esd.json": "die_esd.report"}
 PACKAGE = f"{SENSOR}.pins.md", f"{SENSOR}.package.png", f"{SENSOR}.package.svg"
 WRAPPED = "wrapped"  # label of the folder of a sensor in a wrapper
 SHUTTLE = "shuttle"  # folder of the files for its repository
@@ -87,7 +89,7 @@ def die_steps(
         DieParasitics(parasitics),
         *(DieSta(StaParameters(chip.top, corner, clock.period_ns)) for corner in options.corners),
         *([DieIrDrop(DieIrDropParameters(pdk, sensor.array))] if ARRAY in drawn else []),
-        *([] if wrapped else [DiePadsDrc(PdkParameters(pdk)), DiePadsLvs(PdkParameters(pdk))]),
+        *([] if wrapped else [kind(PdkParameters(pdk)) for kind in (DiePadsDrc, DiePadsLvs, DieEsd)]),
     ]
     own = {name: f"{step.name}.{name}" for step in drawings for name in step.outputs if name.split(".")[0] in drawn}
     for step in steps:
@@ -161,7 +163,8 @@ def lay_out_die(
     others = [*PACKAGE[:1], SHUTTLE] if wrapped else PACKAGE
     with staged(folder, [*(f"{SENSOR}.{suffix}" for suffix in results), *others]) as part:
         for suffix, source in results.items():
-            shutil.copyfile(runner.paths[source], part / f"{SENSOR}.{suffix}")
+            if source in runner.paths:
+                shutil.copyfile(runner.paths[source], part / f"{SENSOR}.{suffix}")
         blocks = part / f"{SENSOR}.blocks.png"
         by_block(blocks, json.loads(runner.paths["die_plan.plan"].read_text(encoding="utf-8")), black_boxes)
         if wrapped:

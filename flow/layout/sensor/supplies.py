@@ -42,6 +42,7 @@ class Around(Protocol):
 
     def reach(self, net: str, side: str) -> Sequence[tuple[int, int]]:
         """Return the ends in y of what a supply's bar must meet."""
+        ...
 
 
 def metal(

@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 class WrappedPlan(DiePlan):
     """`DiePlan` with the pins of a wrapper around the blocks. pads: pins of the wrapper that carry a net."""
 
-    inputs = {name: source for name, source in DiePlan.inputs.items() if name != "pads"} | {"wrapper": "wrapper"}
-    outputs = DiePlan.outputs | {"pins": "pins.md"}
+    inputs = {**{name: source for name, source in DiePlan.inputs.items() if name != "pads"}, "wrapper": "wrapper"}
+    outputs = {**DiePlan.outputs, "pins": "pins.md"}
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         p, tech = self.parameters, layout_platform(self.parameters.pdk)

@@ -62,10 +62,14 @@ def test_a_small_die(tmp_path, monkeypatch):
     summary = json.loads(path.read_text())
     assert lines == [] and summary["lvs_match"] and summary["drc_violations"] == summary["antenna_violations"] == 0
     assert summary["equivalence"] is None and summary["gate_tests"] is None and summary["wns_ns"] is None
+    assert summary["esd_clamps"] == 1  # of pads without a transistor the voltages mean nothing
     assert summary["leads"] >= summary["pads"] and 0 < summary["bond_wire_mm"] <= 5
     assert summary["black_boxes"] == list(BLOCKS) and summary["routed"] == len(small.core_pins())
     present = {file.name for file in (tmp_path / "out").iterdir()}
-    assert present == {*PAGES, *(f"asp_sensor.{suffix}" for suffix in (*RESULTS, "package.png", "package.svg"))}
+    assert present == {
+        *PAGES,
+        *(f"asp_sensor.{suffix}" for suffix in (*RESULTS, "esd.json", "package.png", "package.svg")),
+    }
     assert "insides of the black boxes" in (tmp_path / "out" / "report.html").read_text()
     for name, value in (
         ("open_nets", 1),

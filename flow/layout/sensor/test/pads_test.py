@@ -4,11 +4,11 @@ import pytest
 
 from talbot.base.gds import db, read_gds, write_gds
 from talbot.base.steps import Runner
-from talbot.flow.layout.sensor import pads
+from talbot.flow.layout.sensor import esd, pads
 from talbot.flow.layout.sensor.steps.die_pads import DiePads, DiePadsDrc, DiePadsLvs
 from talbot.flow.layout.steps.library import Library
 from talbot.flow.layout.steps.parameters import PdkParameters
-from talbot.platforms.pads import pad_process
+from talbot.platforms.pads import esd_models, pad_process
 from talbot.platforms.pixel import pixel_process
 
 pytestmark = pytest.mark.needs("layout")
@@ -120,13 +120,16 @@ def test_grounds_are_one_net_in_pads_alone():
 
 @pytest.mark.slow
 @pytest.mark.timeout(3600)
-@pytest.mark.needs("layout")
+@pytest.mark.needs("layout", "ngspice")
 def test_the_pads_keep_all_rules_and_a_fault_is_named(tmp_path):
     runner, parameters = Runner(tmp_path, {}), PdkParameters()
     runner.run(Library())
     assert runner.run(DiePads(parameters))["metrics"] == {"pad_cells": len(pad_process("sky130").cells)}
     assert runner.run(DiePadsDrc(parameters))["metrics"] == {"pad_drc_violations": 0}
     assert runner.run(DiePadsLvs(parameters))["metrics"] == {"pads_unmatched": 0}
+    lines = esd_models("sky130").lines(runner.paths["die_pads.spice"].read_text())
+    one, two = (esd.stress(lines, pad_process("sky130"), "IOPadIn", "pad", esd.HBM, "vss", 1, n) for n in (1, 2))
+    assert 10.5 < one.pad < 11.7 and 8.9 < two.pad < 10.3  # docs/results/layout.md
     layout = read_gds(runner.paths["die_pads.gds"])
     pad = layout.cell("IOPadAnalog")
     clamp = pad.shapes(layout.layer(*PIXEL.poly))  # a clamp's gate is cut off

@@ -1,0 +1,88 @@
+"""Electrostatic discharges into a pad, simulated with the clamps of its segment.
+
+Human body [JS001]: 100 pF through 1500 ohm and 7.5 uH. Charged device [JS002]: the die's 10 pF through 10 nH and 25
+ohm, a peak of about 8 A at 500 V. The pad is stressed against the ground or the pads' supply; what is not is open.
+"""
+
+import itertools
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from talbot.pixels.pixel_circuit.deck import analyse
+from talbot.platforms.pads import PadProcess
+
+GROUND, SUPPLY, CORE = "vss", "iovdd", "vdd"
+CORE_PF = 100.0  # between the core's supply and the ground
+OPTIONS = ".option gmin=1e-12 method=gear reltol=1e-3 itl4=200 temp=25"
+
+
+@dataclass(frozen=True)
+class Pulse:
+    """A capacitor of ``farad`` charged to ``volts`` that discharges through ``henry`` and ``ohm``; stop: s."""
+
+    name: str
+    volts: float
+    farad: float
+    henry: float
+    ohm: float
+    stop: float
+
+
+HBM = Pulse("HBM", 2000.0, 100e-12, 7.5e-6, 1500.0, 300e-9)
+CDM = Pulse("CDM", 500.0, 10e-12, 10e-9, 25.0, 10e-9)
+
+
+class Stress(NamedTuple):
+    """Largest current, A, and voltages against the ground, V: of the pad, of the pads' supply, of the core's.
+
+    volts: of the pulse; to: the net that is grounded.
+    """
+
+    cell: str
+    pulse: str
+    volts: float
+    to: str
+    ampere: float
+    pad: float
+    supply: float
+    core: float
+
+
+def cases(process: PadProcess) -> Iterator[tuple[str, str, Pulse, str, int]]:
+    """Arguments of `stress` between ``process`` and ``clamps``: each signal's pad, the core's supply, the pads'."""
+    cells = dict.fromkeys(process.signals.values(), "pad") | {process.supplies[pin]: pin for pin in (CORE, SUPPLY)}
+    for (cell, pin), pulse, to, sign in itertools.product(cells.items(), (HBM, CDM), (GROUND, SUPPLY), (1, -1)):
+        if pin != to:
+            yield cell, pin, pulse, to, sign
+
+
+def stress(
+    lines: Sequence[str], process: PadProcess, cell: str, pin: str, pulse: Pulse, to: str, sign: int, clamps: int
+) -> Stress:
+    """Simulate one pulse. lines: of models and pads. to: the net that is grounded. sign: of the charge."""
+    ports = next(line for line in lines if line.startswith(f".subckt {cell} ")).split()[2:]
+    on: Mapping[str, str] = {to: "0"}
+    nodes = [on.get(port, port) for port in ports]
+    ground, supply, core = (on.get(net, net) for net in (GROUND, SUPPLY, CORE))
+    deck = [*lines, OPTIONS, f"Xpad {' '.join(nodes)} {cell}"]
+    deck += [f"Xclamp_{k} {ground} {core} {supply} {process.supplies[SUPPLY]}" for k in range(clamps)]
+    deck += [
+        f"Ccore {core} {ground} {CORE_PF:g}p",
+        f"Cstart start 0 {pulse.farad:g} ic={sign * pulse.volts:g}",
+        "Sstart start on close 0 switch",
+        ".model switch sw vt=0.5 ron=0.1 roff=1e12",
+        f"Vclose close 0 pwl(0 0 {pulse.stop / 1000:g} 0 {pulse.stop / 500:g} 1)",
+        f"Lpath on path {pulse.henry:g}",
+        f"Rpath path into {pulse.ohm:g}",
+        f"Vpath into {pin} 0",
+    ]
+
+    def across(net: str) -> str:
+        return f"v({net})" if ground == "0" else f"v({net})-v({ground})" if net != "0" else f"0-v({ground})"
+
+    wanted = ["i(vpath)", *(across(on.get(net, net)) for net in (pin, SUPPLY, CORE))]
+    step = pulse.stop / 1000
+    found = analyse(deck, [f"tran {step:g} {pulse.stop:g} 0 {step:g} uic"], wanted)
+    peaks = [float(abs(one).max()) for one in found]
+    return Stress(cell, pulse.name, sign * pulse.volts, to, *peaks)

@@ -1,0 +1,39 @@
+"""SKY130's pads as netlists for ngspice: SkyWater's transistor models, fingers of one clamp as one device.
+
+Junctions of a clamp's fingers are as large as drawn: 32 fingers of 0.6 um on 173.7 um. BSIM4 has their avalanche
+breakdown (12.6 V for n, soft from 11 V on) and no parasitic bipolar transistor, which would turn a clamp on earlier.
+Diodes behind a resistor are left out: they would lower the voltage at a gate.
+"""
+
+import re
+from collections import Counter
+
+from talbot.platforms.sky130 import models
+
+FINGER_UM, END_UM = 2.41, 0.28  # of diffusion on either side of a gate: of a clamp, of another transistor
+OXIDE_NM = {"thick": 11.6, "thin": 4.1}  # of BSIM4's cards (toxe)
+_TRANSISTOR = re.compile(r"M(\S+) (\S+) (\S+) (\S+) (\S+) (sky130_fd_pr__\w+?)__model l=(\S+) w=(\S+)")
+_RESISTOR = re.compile(r"(R\S+) (\S+) (\S+) (\S+) sky130_fd_pr__res\w+ .*")
+
+
+def lines(spice: str, process: str = "tt") -> list[str]:
+    """Lines of a deck: models at ``process`` and the subcircuits of ``spice``, which `DiePads` writes."""
+    sizes, out = set[tuple[str, float, float]](), list[str]()
+    for body in re.findall(r"(?ms)^\.subckt .*?^\.ends[^\n]*", spice):
+        fingers = Counter[tuple[str, ...]]()
+        for line in body.splitlines():
+            if m := _TRANSISTOR.match(line):
+                ends = sorted((m[2], m[4]))
+                fingers["clamp" if "clamp" in m[1] else "", *ends, m[3], m[5], m[6], m[7], m[8]] += 1
+            elif not line.startswith("D"):
+                m = _RESISTOR.match(line)
+                out.append((" ".join(m.groups()) if m else line).replace("[", "_").replace("]", "_"))
+        end = out.pop()
+        for k, ((kind, low, high, gate, bulk, model, *size), count) in enumerate(fingers.items()):
+            length, width = (round(1e6 * float(one), 4) for one in size)
+            sizes.add((model, width, length))
+            side = FINGER_UM if kind else END_UM
+            junctions = f"ad={side * width:g} as={side * width:g} pd={side + width:g} ps={side + width:g}"
+            out.append(f"X{k} {low} {gate} {high} {bulk} {model} w={width:g} l={length:g} {junctions} m={count}")
+        out.append(end)
+    return [*models.cards("binned", process, sizes), *out]
