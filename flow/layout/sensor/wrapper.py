@@ -263,7 +263,10 @@ def check_wrapper(gds: Path, pdk: str) -> None:
     """Raise ParameterError for a file that is not a wrapper whose pins are known."""
     if not gds.is_file():
         raise ParameterError(f"wrapper = {gds}: no such file")
-    Surround.read(gds, pdk)
+    try:
+        Surround.read(gds, pdk)
+    except RuntimeError as error:
+        raise ParameterError(f"wrapper = {gds}: must be GDS: {error}") from None
 
 
 def _natural(row: str) -> list[Any]:

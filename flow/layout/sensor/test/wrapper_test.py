@@ -98,6 +98,9 @@ def test_what_does_not_fit_is_refused(wrapped, tmp_path):
         check_wrapper(small.wrapper(tmp_path / "other.gds", cell="other"), "sky130")
     with pytest.raises(ParameterError, match="no such file"):
         check_wrapper(tmp_path / "none.gds", "sky130")
+    (tmp_path / "text.gds").write_text("no GDS")
+    with pytest.raises(ParameterError, match="text.gds: must be GDS"):
+        check_wrapper(tmp_path / "text.gds", "sky130")
     empty = tmp_path / "empty.gds"
     import klayout.db as db
 
