@@ -114,7 +114,7 @@ class Surround:
     ) -> Iterator[tuple[str, Branch]]:
         """Pairs (net, Branch) of the signals' pins. Raises StepError for a signal without one.
 
-        In the west and the east the lowest pin has the branch nearest to the edge, as long as it is free of trunks.
+        In the west and the east the lowest pin has the branch nearest to the edge: its stub meets the fewest trunks.
         """
         nets = [net for net, ends in routed.items() if ("die", net) in ends]
         named = {net: self.pin(self.wrapper.signals[net]) for net in nets if net in self.wrapper.signals}
