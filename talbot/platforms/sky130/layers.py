@@ -20,7 +20,7 @@ DIFF, TAP = (65, 20), (65, 44)
 NWELL, NSDM, PSDM = (64, 20), (93, 44), (94, 20)
 HVTP, LVTN = (78, 44), (125, 44)
 CELL_CORE = 81, 4  # areaid.core: cells of a library
-# Where a shuttle's fill is kept out, as Magic's sky130A.tech reads it: of diffusion, poly, met1 to met5
+# Where a shuttle's fill is kept out (waffleDrop of cfom, cp1m, cmm1 to cmm5), as Magic's sky130A.tech reads it
 FILL_BLOCKS = (22, 24), (33, 24), (62, 24), (105, 52), (107, 24), (112, 4), (117, 4)
 SEALED = 81, 1  # areaid.seal: where cuts may be rings
 CELL_OUTLINE = 236, 0
