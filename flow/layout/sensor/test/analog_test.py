@@ -213,7 +213,7 @@ def test_the_drawn_blocks_of_another_sensor_are_a_die(tmp_path):
             given |= outputs
     small.plan(given, tmp_path, DieParameters())
     plan = json.loads(given["die_plan.plan"].read_text())
-    assert plan["die"] == [3_200_000, 2_560_000]
+    assert plan["die"] == [3_200_000, 2_440_000]
     assert small.connectivity(given, tmp_path, drawn=BLOCKS) == {"open_nets": 0, "shorts": 0, "lvs_match": True}
     assert small.run(DieAntenna(PdkParameters()), given, tmp_path)["antenna_violations"] == 0
     assert small.run(DieDrc(PdkParameters()), given, tmp_path)["drc_violations"] == 0
