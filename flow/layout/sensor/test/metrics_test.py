@@ -58,7 +58,7 @@ def test_a_small_die_in_a_wrapper(tmp_path, monkeypatch):
 @pytest.mark.slow
 @pytest.mark.timeout(3600)
 def test_a_small_die(tmp_path, monkeypatch):
-    path, lines = laid_out(tmp_path, monkeypatch, DieParameters(west=2))
+    path, lines = laid_out(tmp_path, monkeypatch, DieParameters(4800.0, 5000.0, west=2))
     summary = json.loads(path.read_text())
     assert lines == [] and summary["lvs_match"] and summary["drc_violations"] == summary["antenna_violations"] == 0
     assert summary["equivalence"] is None and summary["gate_tests"] is None and summary["wns_ns"] is None
