@@ -25,17 +25,8 @@ from talbot.platforms.foundry import installed
 from talbot.platforms.processes import PROCESSES
 
 NAMES = *DESIGNS, SENSOR, test_chip.DESIGN
-CELLS = (
-    "sensor",
-    "top",
-    "clock",
-    "reset",
-    "period_ns",
-    "utilization",
-    "liberty",
-    "analog",
-    "wrapper",
-)  # of other designs alone
+# Options of designs of cells: tt_pixels has none
+OF_CELLS = "sensor", "top", "clock", "reset", "period_ns", "utilization", "liberty", "analog", "wrapper"
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -104,7 +95,7 @@ def chosen_design(arguments: Namespace) -> Design:
 
 def pixels(arguments: Namespace) -> int:
     """Lay out the pixels' test chip and print what came of it; 1 where a check fails."""
-    for name in CELLS:
+    for name in OF_CELLS:
         if (value := getattr(arguments, name)) not in (None, []):
             raise ParameterError(f"{name} = {value}: must not be with DESIGN={test_chip.DESIGN}, which has no cells")
     folder = arguments.out / arguments.design

@@ -17,7 +17,7 @@ class Wrapper:
     of the pins in the south that take a signal without a pin. supplies: side -> supply of the sensor -> pin. low, high:
     pins with a constant level. levels: side -> supplies of these two. outputs: prefixes of the pins that the sensor
     drives; inouts: of those without a direction; power: of supplies; the others are inputs. files: name -> text of what
-    the shuttle's repository needs beside the layout.
+    the shuttle's repository needs with the layout.
     """
 
     name: str
@@ -34,6 +34,6 @@ class Wrapper:
     files: Mapping[str, str]
 
 
-def wrappers(pdk: str) -> tuple[Wrapper, ...]:
-    """Return the wrappers of shuttles in ``pdk``. Raises ParameterError for a process without one."""
+def wrappers(pdk: str) -> Mapping[str, Wrapper]:
+    """Return the wrappers of shuttles in ``pdk`` by their cells. Raises ParameterError for a process without one."""
     return import_module(f"talbot.platforms.{package(pdk, PROCESSES, ' for a wrapper')}.chipignite").WRAPPERS

@@ -19,8 +19,8 @@ from talbot.flow.layout.sensor.routing import (
     Outside,
     Tracks,
     branches,
+    heights,
     length,
-    levels,
     raised,
     side_room,
     split_nets,
@@ -86,7 +86,7 @@ def arranged_as_is(
     routed, abutted = split_nets(low, found)
     routes = branches(low, routed, tracks, layers, outside)
     begin = nm(die.ring_um + die.edge_um + die.gap_um)
-    y, count = levels(routes, tracks, begin)
+    y, count = heights(routes, tracks, begin)
     height = begin + count * tracks.trunk_pitch + nm(die.gap_um)
     high = with_core(placed, blocks[CORE], die, room, height)
     return Arranged(high, found, raised(routes, height), y, len(abutted), (begin, height), count)

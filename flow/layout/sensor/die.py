@@ -2,10 +2,11 @@
 
 import json
 import shutil
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from talbot.base.files import staged
 from talbot.base.steps import Runner, Step, StepError
@@ -55,7 +56,7 @@ PARTS |= {f"library.{deck}": f"library.{deck}" for deck in ("drc", "lvs")}
 RESULTS = {"gds": "die_gds.gds", "v": "die_plan.verilog", "sdc": "die_parasitics.sdc", "drc.lyrdb": "die_drc.report"}
 RESULTS |= {"connectivity.json": "die_connectivity.report", "parasitics.json": "die_parasitics.nets"}
 RESULTS |= {"esd.json": "die_esd.report"}
-PACKAGE = f"{SENSOR}.pins.md", f"{SENSOR}.package.png", f"{SENSOR}.package.svg"
+PINS, PACKAGE = f"{SENSOR}.pins.md", (f"{SENSOR}.package.png", f"{SENSOR}.package.svg")
 WRAPPED = "wrapped"  # label of the folder of a sensor in a wrapper
 SHUTTLE = "shuttle"  # folder of the files for its repository
 
@@ -109,7 +110,7 @@ def lay_out_sensor(
     """Lay out the chip and the die around it: (path of summary.json, limits broken).
 
     What needs no more of the chip than there is runs beside it. analog: folder of a user's blocks. wrapper: a shuttle's
-    empty wrapper, which the die has in place of pads. out: folder of all designs. Raises ParameterError, StepError for
+    empty wrapper, for a die without pads. out: folder of all designs. Raises ParameterError, StepError for
     a chip that breaks a limit.
     """
     top_metal(options.pdk)  # a process without one is refused before anything runs
@@ -120,8 +121,8 @@ def lay_out_sensor(
         check_wrapper(wrapper, options.pdk)
     folder = out / "-".join([folder_name(replace(chip, name=SENSOR), options.pdk), *([WRAPPED] if wrapper else [])])
     blocks = files(folder / "black_boxes", options.pdk, analog, sensor)
-    blocks.paths.update({"wrapper": wrapper} if wrapper else {})
-    runner = Runner(folder / "steps", blocks.paths, note, out / "shared")
+    paths = blocks.paths | ({"wrapper": wrapper} if wrapper else {})
+    runner = Runner(folder / "steps", paths, note, out / "shared")
     given = [f"timing.{corner}" for corner in options.corners] + [f"foundry.{name}" for name, _ in options.decks]
     sources = PARTS | {name: name for name in given}
 
@@ -151,8 +152,8 @@ def lay_out_die(
 ) -> tuple[Path, list[str]]:
     """Lay out the die around a chip that is laid out: (path of summary.json, limits broken).
 
-    runner: its files are PARTS of the chip, those of the blocks, and 'wrapper' for a die in one; the results are beside
-    its folder.
+    runner: its files are PARTS of the chip, those of the blocks, and 'wrapper' for a die in one; the results are in
+    the folder above its own.
     """
     folder, wrapped = runner.folder.parent, "wrapper" in runner.paths
     runner.run_all(die_steps(chip, options, drawn, die, sensor, wrapped))
@@ -160,49 +161,48 @@ def lay_out_die(
     lines, tech = broken(summary, RULES), layout_platform(options.pdk)
     tech = replace(tech, metals=(*tech.metals, top_metal(options.pdk).metal))
     results = RESULTS | {f"{corner}.sta.txt": f"die_sta_{corner}.report" for corner in options.corners}
-    others = [*PACKAGE[:1], SHUTTLE] if wrapped else PACKAGE
-    with staged(folder, [*(f"{SENSOR}.{suffix}" for suffix in results), *others]) as part:
+    plan = json.loads(runner.paths["die_plan.plan"].read_text(encoding="utf-8"))
+    others = [SHUTTLE] if wrapped else PACKAGE
+    with staged(folder, [*(f"{SENSOR}.{suffix}" for suffix in results), PINS, *others]) as part:
         for suffix, source in results.items():
             if source in runner.paths:
                 shutil.copyfile(runner.paths[source], part / f"{SENSOR}.{suffix}")
         blocks = part / f"{SENSOR}.blocks.png"
-        by_block(blocks, json.loads(runner.paths["die_plan.plan"].read_text(encoding="utf-8")), black_boxes)
+        by_block(blocks, plan, black_boxes)
         if wrapped:
-            shuttle_files(runner, options, part)
+            shuttle_files(runner, options, plan["cell"], part)
         else:
-            pin_map(runner, options, part)
+            pin_map(runner, options, plan, part)
         layout = render(runner.paths["die_gds.gds"], tech)
         layout.image.save(part / f"{SENSOR}.png")
         shown = [picture(blocks, "Blocks; hatched: black box, no circuit" if black_boxes else "Blocks")]
         if not wrapped:
-            shown.append(picture(part / PACKAGE[1], "Package and bond wires, to scale"))
+            shown.append(picture(part / PACKAGE[0], "Package and bond wires, to scale"))
         write_report(part, folder, summary, lines, layout, shown)
     return folder / "summary.json", lines
 
 
-def shuttle_files(runner: Runner, options: Options, part: Path) -> None:
-    """Write the pin map, and the files that the shuttle's repository takes, in SHUTTLE."""
-    shutil.copyfile(runner.paths["die_plan.pins"], part / PACKAGE[0])
-    cell = json.loads(runner.paths["die_plan.plan"].read_text(encoding="utf-8"))["cell"]
+def shuttle_files(runner: Runner, options: Options, cell: str, part: Path) -> None:
+    """Write the pin map, and in SHUTTLE the files that the shuttle's repository takes. cell: of the wrapper."""
+    shutil.copyfile(runner.paths["die_plan.pins"], part / PINS)
     for place, source in {"gds/{}.gds": "die_gds.gds", "verilog/gl/{}.v": "die_plan.verilog"}.items():
         path = part / SHUTTLE / place.format(cell)
         path.parent.mkdir(parents=True)
         shutil.copyfile(runner.paths[source], path)
-    for wrapper in wrappers(options.pdk):
-        for name, text in wrapper.files.items() if wrapper.cell == cell else ():
-            path = part / SHUTTLE / name
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_text(text, encoding="utf-8")
+    for name, text in wrappers(options.pdk)[cell].files.items():
+        path = part / SHUTTLE / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8")
 
 
-def pin_map(runner: Runner, options: Options, part: Path) -> None:
-    """Write PACKAGE: the pin map and the drawing of the package. Raises StepError for bond wires that cross."""
+def pin_map(runner: Runner, options: Options, plan: Mapping[str, Any], part: Path) -> None:
+    """Write PINS and PACKAGE, the drawing of the package. Raises StepError for bond wires that cross."""
     process, pixel = pad_process(options.pdk), pixel_process(options.pdk)
-    total, found = package.leads(json.loads(runner.paths["die_plan.plan"].read_text(encoding="utf-8")))
+    total, found = package.leads(plan)
     if crossed := package.crossings(found):
         raise StepError(f"package: the bond wires of {' and '.join(crossed[0])} cross")
     volt = {lead.signal: package.volts(lead, process, pixel.supply_v, pixel.gate_v) for lead in found}
     cells = (*process.signals.values(), *process.supplies.values())
     clamps = package.protection(runner.paths["die_pads.spice"].read_text(encoding="utf-8"), cells)
-    (part / PACKAGE[0]).write_text(package.table(total, found, volt, clamps), encoding="utf-8")
-    package.draw([part / name for name in PACKAGE[1:]], total, found)
+    (part / PINS).write_text(package.table(total, found, volt, clamps), encoding="utf-8")
+    package.draw([part / name for name in PACKAGE], total, found)

@@ -1,7 +1,7 @@
 """Electrostatic discharges into a pad, simulated with the clamps of its segment.
 
 Human body [JS001]: 100 pF through 1500 ohm and 7.5 uH. Charged device [JS002]: the die's 10 pF through 10 nH and 25
-ohm, a peak of about 8 A at 500 V. The pad is stressed against the ground or the pads' supply; what is not is open.
+ohm, a peak of 9 A at 500 V. The pad is stressed against the ground or the pads' supply; other pins are open.
 """
 
 import itertools
@@ -81,8 +81,8 @@ def stress(
     def across(net: str) -> str:
         return f"v({net})" if ground == "0" else f"v({net})-v({ground})" if net != "0" else f"0-v({ground})"
 
-    wanted = ["i(vpath)", *(across(on.get(net, net)) for net in (pin, SUPPLY, CORE))]
+    vectors = ["i(vpath)", *(across(on.get(net, net)) for net in (pin, SUPPLY, CORE))]
     step = pulse.stop / 1000
-    found = analyse(deck, [f"tran {step:g} {pulse.stop:g} 0 {step:g} uic"], wanted)
-    peaks = [float(abs(one).max()) for one in found]
+    waves = analyse(deck, [f"tran {step:g} {pulse.stop:g} 0 {step:g} uic"], vectors)
+    peaks = [float(abs(wave).max()) for wave in waves]
     return Stress(cell, pulse.name, sign * pulse.volts, to, *peaks)

@@ -199,7 +199,7 @@ def _on_side(
         yield net, Branch("die", net, low + tracks.branch_pitch // 2 + k * tracks.branch_pitch, at + middle, box, side)
 
 
-def levels(made: Found, tracks: Tracks, begin: int) -> tuple[dict[str, int], int]:
+def heights(made: Found, tracks: Tracks, begin: int) -> tuple[dict[str, int], int]:
     """Return the y of each net's trunk, and the number of tracks from ``begin`` on.
 
     The tracks are in an order in which no trunk meets the stub of another net's pin in the west or the east of the die.
@@ -210,21 +210,20 @@ def levels(made: Found, tracks: Tracks, begin: int) -> tuple[dict[str, int], int
     count = max(numbers.values()) + 1
     stubs = [(net, b) for net, found in made.items() for b in found if b.block == "die" and b.side in ("west", "east")]
     meets = set[tuple[int, int]]()  # (track, place)
-    for net, stub_of in stubs:
-        half = (stub_of.box[3] - stub_of.box[1]) // 2 if stub_of.box else 0
-        reach = half + tracks.trunk_pitch
-        near = [k for k in range(count) if abs(begin + k * tracks.trunk_pitch - stub_of.end) < reach]
+    for net, pin in stubs:
+        reach = tracks.trunk_pitch + ((pin.box[3] - pin.box[1]) // 2 if pin.box else 0)
+        near = [k for k in range(count) if abs(begin + k * tracks.trunk_pitch - pin.end) < reach]
         for other, (low, high) in spans.items() if near else ():
-            beyond = low < stub_of.x + tracks.trunk if stub_of.side == "west" else high > stub_of.x - tracks.trunk
+            beyond = low < pin.x + tracks.trunk if pin.side == "west" else high > pin.x - tracks.trunk
             if other != net and beyond:
                 meets.update((numbers[other], k) for k in near)
     places = list(range(count))  # of the tracks
     for track in range(count):
         if (track, places[track]) in meets:
             free = (k for k in range(count) if {(track, places[k]), (k, places[track])}.isdisjoint(meets))
-            if (other_track := next(free, None)) is None:
-                raise StepError("ring: a pad beside the channel meets all of its tracks")
-            places[track], places[other_track] = places[other_track], places[track]
+            if (swapped := next(free, None)) is None:
+                raise StepError("channel: the stub of a pin in the west or the east meets all tracks")
+            places[track], places[swapped] = places[swapped], places[track]
     return {net: begin + places[number] * tracks.trunk_pitch for net, number in numbers.items()}, count
 
 

@@ -46,17 +46,17 @@ class Around(Protocol):
 
 
 def metal(
-    made: Arranged, die: DieParameters, tracks: Tracks, rules: RoutingRules, top: TopMetal, pads: Around
+    made: Arranged, die: DieParameters, tracks: Tracks, rules: RoutingRules, top: TopMetal, around: Around
 ) -> list[Shape]:
     """All shapes of the die but those of the ring's cells."""
-    found = supplies(made.blocks, die, rules, top, pads)
+    found = supplies(made.blocks, die, rules, top, around)
     for net, branches in made.routes.items():
         found += shapes.signal(net, branches, made.y[net], tracks, rules)
     return found
 
 
 def supplies(
-    blocks: Mapping[str, Block], die: DieParameters, rules: RoutingRules, top: TopMetal, pads: Around
+    blocks: Mapping[str, Block], die: DieParameters, rules: RoutingRules, top: TopMetal, around: Around
 ) -> list[Shape]:
     """Shapes of the supplies.
 
@@ -72,8 +72,8 @@ def supplies(
             own = [line.box for line in lines if (line.net, line.side) == (net, side)]
             if own:
                 ends = plan.bar(net, side, die)
-                tracks = [pads.track(net, side, len(rules.layers) - 1, (box[1], box[3])) for box in own]
-                reach = pads.reach(net, side)
+                tracks = [around.track(net, side, len(rules.layers) - 1, (box[1], box[3])) for box in own]
+                reach = around.reach(net, side)
                 met[side] = any(tracks) or bool(reach)
                 boxes = [to_track(box, side, track or ends) for box, track in zip(own, tracks, strict=True)]
                 found += _bar(net, ends, boxes, reach, rules.layers[-1], top)

@@ -1,6 +1,6 @@
 """The sensor in a shuttle's wrapper, whose fixed pins take the place of the ring of pads; in nm.
 
-Digital signals have pins in the west and the east, references in the north, above the array. Beside the edge are two
+Digital signals have pins in the west and the east, references in the north, above the array. Along the edge are two
 lines a side with the levels of the pins that are constant. A supply's pin meets its bar, in the north its line.
 """
 
@@ -45,7 +45,7 @@ class Surround:
     def read(cls, gds: Path, pdk: str) -> "Surround":
         """Read the empty wrapper's GDS. Raises ParameterError for one that is not known."""
         layout, tech = read_gds(gds), layout_platform(pdk)
-        known = {wrapper.cell: wrapper for wrapper in wrappers(pdk)}
+        known = wrappers(pdk)
         names = [cell.name for cell in layout.top_cells()]
         if len(names) != 1 or names[0] not in known:
             raise ParameterError(
@@ -164,7 +164,7 @@ class Surround:
     def nets(
         self, inner: Mapping[str, Sequence[Terminal]], carried: Mapping[str, Sequence[str]]
     ) -> dict[str, list[Terminal]]:
-        """Terminals of the nets with the wrapper's pins in place of the die's."""
+        """Terminals of the nets; those of the die are the wrapper's pins."""
         return {
             net: [("die", name) for name in carried.get(net, ())] + [end for end in ends if end[0] != "die"]
             for net, ends in inner.items()

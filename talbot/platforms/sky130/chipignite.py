@@ -53,4 +53,4 @@ CARAVAN = Wrapper(
     power=("vcc", "vdd", "vss"),
     files={"verilog/rtl/user_defines.v": defines()},
 )
-WRAPPERS = (CARAVAN,)
+WRAPPERS = {CARAVAN.cell: CARAVAN}

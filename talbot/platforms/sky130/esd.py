@@ -11,7 +11,6 @@ from collections import Counter
 from talbot.platforms.sky130 import models
 
 FINGER_UM, END_UM = 2.41, 0.28  # of diffusion on either side of a gate: of a clamp, of another transistor
-OXIDE_NM = {"thick": 11.6, "thin": 4.1}  # of BSIM4's cards (toxe)
 _TRANSISTOR = re.compile(r"M(\S+) (\S+) (\S+) (\S+) (\S+) (sky130_fd_pr__\w+?)__model l=(\S+) w=(\S+)")
 _RESISTOR = re.compile(r"(R\S+) (\S+) (\S+) (\S+) sky130_fd_pr__res\w+ .*")
 
@@ -30,7 +29,7 @@ def lines(spice: str, process: str = "tt") -> list[str]:
                 out.append((" ".join(m.groups()) if m else line).replace("[", "_").replace("]", "_"))
         end = out.pop()
         for k, ((kind, low, high, gate, bulk, model, *size), count) in enumerate(fingers.items()):
-            length, width = (round(1e6 * float(one), 4) for one in size)
+            length, width = (round(1e6 * float(metres), 4) for metres in size)
             sizes.add((model, width, length))
             side = FINGER_UM if kind else END_UM
             junctions = f"ad={side * width:g} as={side * width:g} pd={side + width:g} ps={side + width:g}"

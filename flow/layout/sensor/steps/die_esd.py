@@ -32,8 +32,9 @@ class DieEsd(Step[PdkParameters]):
         clamps = min(nets.count(net) for net in set(nets))
         lines = esd_models(pdk).lines(inputs["spice"].read_text(encoding="utf-8"))
         jobs = (delayed(esd.stress)(lines, process, *case, clamps) for case in esd.cases(process))
-        found: Any = Parallel(n_jobs=-1, prefer="threads")(jobs)  # joblib has no types
-        outputs["report"].write_text(json.dumps([one._asdict() for one in found], indent=1) + "\n", encoding="utf-8")
-        body = [one for one in found if one.pulse == esd.HBM.name]
-        worst = {"esd_pad_v": max(one.pad for one in body), "esd_core_v": max(one.core for one in body)}
+        stresses: Any = Parallel(n_jobs=-1, prefer="threads")(jobs)  # joblib has no types
+        report = json.dumps([stress._asdict() for stress in stresses], indent=1)
+        outputs["report"].write_text(report + "\n", encoding="utf-8")
+        body = [stress for stress in stresses if stress.pulse == esd.HBM.name]
+        worst = {"esd_pad_v": max(stress.pad for stress in body), "esd_core_v": max(stress.core for stress in body)}
         return {"esd_clamps": clamps, **{name: round(volts, 2) for name, volts in worst.items()}}

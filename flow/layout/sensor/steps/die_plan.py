@@ -66,7 +66,7 @@ class DiePlan(Step[DiePlanParameters]):
         return metrics
 
     def read(self, inputs: Files) -> tuple[RoutingRules, dict[str, Block], list[str]]:
-        """Rules, blocks, and the pins that these have beside those of their black boxes."""
+        """Rules, blocks, and the pins that these have and their black boxes lack."""
         tech = layout_platform(self.parameters.pdk)
         rules = RoutingRules.of(tech, json.loads(inputs["rules"].read_text(encoding="utf-8")))
         blocks = {name: Block.read(name, inputs[f"{name}.lef"].read_text(encoding="utf-8")) for name in (*BLOCKS, CORE)}

@@ -50,7 +50,7 @@ class WrappedPlan(DiePlan):
 
 
 class WrappedGds(DieGds):
-    """`DieGds` with the pins of a wrapper in place of ring, fill and seal ring, which are the shuttle's."""
+    """`DieGds` with the pins of a wrapper; pads, fill and seal ring are the shuttle's."""
 
     inputs = {f"{block}.gds": f"{block}.gds" for block in (*BLOCKS, CORE)}
     inputs |= {"plan": "die_plan.plan", "rules": "library.rules", "wrapper": "wrapper"}

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from talbot.base.steps import StepError
 from talbot.flow.layout.sensor.channel import check_apart, free, left_edge
 from talbot.flow.layout.sensor.plan import DieParameters
-from talbot.flow.layout.sensor.routing import STUB, Branch, Tracks, levels
+from talbot.flow.layout.sensor.routing import STUB, Branch, Tracks, heights
 from talbot.flow.layout.sensor.rules import RoutingRules
 from talbot.flow.layout.sensor.shapes import signal
 from talbot.flow.layout.sensor.test import small
@@ -54,7 +54,7 @@ def test_branches_too_near_are_refused():
 
 @st.composite
 def routes(draw):
-    """dict net -> list of Branch: pins from the north, from the die's edges and beside a chip, no two at one x."""
+    """dict net -> list of Branch: pins from the north, the die's edges and a chip's sides, no two at one x."""
     places = draw(st.lists(st.integers(0, 80), unique=True, min_size=4, max_size=24))
     made = {}
     for k, place in enumerate(places):
@@ -75,7 +75,7 @@ def routes(draw):
 @given(routes())
 def test_metal_joins_each_net_and_keeps_others_apart(made):
     try:
-        y, _ = levels(made, TRACKS, 20_000)
+        y, _ = heights(made, TRACKS, 20_000)
     except StepError:
         reject()
     shapes = [shape for net, found in made.items() for shape in signal(net, found, y[net], TRACKS, ROUTING_RULES)]

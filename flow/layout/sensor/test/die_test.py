@@ -63,14 +63,14 @@ def test_pads_of_signals_are_on_three_sides(made, tmp_path):
             assert place["at"] > plan["channel"][1] and place["nets"]["vdd"] == "vdd"
     ways = [shape for shape in plan["shapes"] if shape[0] in SIGNALS[:2] and shape[1:3] == [70, 20]]
     assert min(min(right - left, top - bottom) for *_, left, bottom, right, top in ways) >= 300  # pins have less
-    beside = made[0] | {}
-    small.plan(beside, tmp_path, replace(small.DIE, trunk_pitch=25.0, height_um=0.0))
-    plan = json.loads(beside["die_plan.plan"].read_text())
+    level = made[0] | {}
+    small.plan(level, tmp_path, replace(small.DIE, trunk_pitch=25.0, height_um=0.0))
+    plan = json.loads(level["die_plan.plan"].read_text())
     ends = [
         branch["end"] for net in SIGNALS[:2] for branch in plan["routes"][net]["branches"] if branch["block"] == "die"
     ]
     assert any(low < end < high for end in ends for low, high in [plan["channel"]])
-    assert small.connectivity(beside, tmp_path)["lvs_match"]
+    assert small.connectivity(level, tmp_path)["lvs_match"]
     with pytest.raises(StepError, match="ring: no room for the branches of 7 pads in the west"):
         small.plan(made[0] | {}, tmp_path, replace(small.DIE, west=7, bar_um=4.0))
 

@@ -80,13 +80,13 @@ def test_a_pin_without_its_metal_is_open(wrapped, tmp_path, name):
 
 @pytest.mark.parametrize("width, height", [(2760.0, 1850.0), (3001.0, 2003.0), (2920.0, 1950.0)])
 def test_other_outlines(wrapped, tmp_path, width, height):
-    """Pins are beside the channel at other heights: the tracks are in an order in which none meets another's stub."""
+    """At other heights pins are level with the channel: in the order of its tracks none meets another's stub."""
     given = wrapped[0] | {"wrapper": small.wrapper(tmp_path / "wrapper.gds", width, height)}
     small.run(WrappedPlan(DiePlanParameters()), given, tmp_path)
     plan = json.loads(given["die_plan.plan"].read_text())
     low, high = plan["channel"]
-    beside = [b for route in plan["routes"].values() for b in route["branches"] if b["side"] in ("west", "east")]
-    assert any(low < branch["end"] < high for branch in beside)
+    sideways = [b for route in plan["routes"].values() for b in route["branches"] if b["side"] in ("west", "east")]
+    assert any(low < branch["end"] < high for branch in sideways)
     assert connected(given, tmp_path) == {"open_nets": 0, "shorts": 0, "lvs_match": True}
 
 
