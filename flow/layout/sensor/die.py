@@ -198,11 +198,11 @@ def shuttle_files(runner: Runner, options: Options, cell: str, part: Path) -> No
 def pin_map(runner: Runner, options: Options, plan: Mapping[str, Any], part: Path) -> None:
     """Write PINS and PACKAGE, the drawing of the package. Raises StepError for bond wires that cross."""
     process, pixel = pad_process(options.pdk), pixel_process(options.pdk)
-    total, found = package.leads(plan)
-    if crossed := package.crossings(found):
+    chosen, leads = package.packaged(plan)
+    if crossed := package.crossings(leads):
         raise StepError(f"package: the bond wires of {' and '.join(crossed[0])} cross")
-    volt = {lead.signal: package.volts(lead, process, pixel.supply_v, pixel.gate_v) for lead in found}
+    volt = {lead.signal: package.volts(lead, process, pixel.supply_v, pixel.gate_v) for lead in leads}
     cells = (*process.signals.values(), *process.supplies.values())
     clamps = package.protection(runner.paths["die_pads.spice"].read_text(encoding="utf-8"), cells)
-    (part / PINS).write_text(package.table(total, found, volt, clamps), encoding="utf-8")
-    package.draw([part / name for name in PACKAGE], total, found)
+    (part / PINS).write_text(package.table(chosen, leads, volt, clamps), encoding="utf-8")
+    package.draw([part / name for name in PACKAGE], chosen, leads)

@@ -8,7 +8,7 @@ from typing import Any
 from talbot.base.steps import Runner
 from talbot.flow.layout.options import Options
 from talbot.flow.layout.report.metrics import timing_basis
-from talbot.flow.layout.sensor.package import leads
+from talbot.flow.layout.sensor.package import packaged
 from talbot.flow.layout.sensor.plan import BLOCKS
 from talbot.flow.layout.sensor.steps.die_sta import DieSta
 
@@ -46,7 +46,7 @@ def summarize(name: str, options: Options, runner: Runner, black_boxes: Sequence
     nets = json.loads(runner.paths["die_parasitics.nets"].read_text(encoding="utf-8"))
     loads = {net: found["load_pf"] for net, found in nets.items()}
     wrapped = not plan["ring"]
-    total, bonded = (None, []) if wrapped else leads(plan)
+    package, bonded = (None, []) if wrapped else packaged(plan)
     return {
         "design": name,
         "top": name,
@@ -61,7 +61,8 @@ def summarize(name: str, options: Options, runner: Runner, black_boxes: Sequence
         **{key: metrics[key] for key in ROUTED + CHECKED + LOADS},
         **{key: metrics.get(key) for key in (*PADS, *ESD)},
         "wrapper": plan["cell"] if wrapped else None,
-        "leads": total,
+        "leads": package.leads if package else None,
+        "lead_pitch_mm": package.pitch_mm if package else None,
         "bond_wire_mm": round(max(lead.wire_mm for lead in bonded), 2) if bonded else None,
         **dict.fromkeys(("equivalence", "gate_tests", "power_uw")),
         "timing_rests_on": f"the chip, its ports with the die's nets{extrapolated(sta)}; {timing_basis(options)}",

@@ -13,11 +13,41 @@ from talbot.flow.layout.sensor.ring import OUTSIDE
 from talbot.platforms.pads import PadProcess
 
 LEADS = 48, 64, 80, 100, 128, 144  # of a QFN, as many on each side
-PITCH_MM, CORNER_MM, LEAD_MM = 0.5, 1.0, 0.6  # of the leads; from the body's corner to the first; length of a lead
+PITCHES_MM = 0.5, 0.4  # of the leads, the preferred one first
+CORNER_MM, LEAD_MM = 1.0, 0.6  # from the body's corner to the first lead; length of a lead
+WIRE_MM = 5.0  # longest bond wire, seen from above
 ORDER = "west", "south", "east", "north"  # counterclockwise from lead 1, the north one of the west
 Point = tuple[float, float]
 Wire = tuple[Point, Point]
 BACKWARDS = "west", "north"  # sides whose leads have falling coordinates
+
+
+@dataclass(frozen=True)
+class Package:
+    """A QFN. leads: as many on each side. pitch_mm: of the leads."""
+
+    leads: int
+    pitch_mm: float = PITCHES_MM[0]
+
+    @property
+    def each(self) -> int:
+        """Leads on a side."""
+        return self.leads // 4
+
+    @property
+    def body_mm(self) -> float:
+        """Side of the package."""
+        return round((self.each - 1) * self.pitch_mm + 2 * CORNER_MM, 3)
+
+    @property
+    def text(self) -> str:
+        """Name and size."""
+        return f"QFN-{self.leads}, {self.body_mm:g} mm x {self.body_mm:g} mm"
+
+    def lead_mm(self, side: str, slot: int) -> Point:
+        """Middle of the inner end of a side's lead ``slot``, from the body's middle."""
+        along, out = (slot - (self.each - 1) / 2) * self.pitch_mm, self.body_mm / 2 - LEAD_MM
+        return {"west": (-out, -along), "south": (along, -out), "east": (out, along), "north": (-along, out)}[side]
 
 
 @dataclass(frozen=True)
@@ -48,24 +78,32 @@ class Lead:
         return ((x - to_x) ** 2 + (y - to_y) ** 2) ** 0.5
 
 
-def leads(plan: Mapping[str, Any]) -> tuple[int, list[Lead]]:
-    """Number of the package's leads, the fewest for the fullest side, and the leads of the pads in their order."""
+def packaged(plan: Mapping[str, Any]) -> tuple[Package, list[Lead]]:
+    """Package with the fewest leads that serve the fullest side, and the leads of the pads in their order.
+
+    The pitch is the first with no bond wire above WIRE_MM, or the last. Raises StepError for too many pads.
+    """
     pads = {side: [place for place in plan["ring"] if place["side"] == side and place["nets"]] for side in ORDER}
     most = max(map(len, pads.values()))
     total = next((count for count in LEADS if count >= 4 * most), 0)
     if not total:
         raise StepError(f"package: {most} pads on a side, {LEADS[-1] // 4} leads at most")
-    each, die = total // 4, (plan["die"][0] / 1e6, plan["die"][1] / 1e6)
-    found = []
+    die = plan["die"][0] / 1e6, plan["die"][1] / 1e6
+    choices = [(package, _leads(package, pads, die)) for package in (Package(total, pitch) for pitch in PITCHES_MM)]
+    short = (choice for choice in choices if max((lead.wire_mm for lead in choice[1]), default=0) <= WIRE_MM)
+    return next(short, choices[-1])
+
+
+def _leads(package: Package, pads: Mapping[str, Sequence[Mapping[str, Any]]], die: tuple[float, float]) -> list[Lead]:
+    leads = []
     for place, side in enumerate(ORDER):
-        here = sorted(pads[side], key=lambda pad: pad["at"], reverse=side in BACKWARDS)
-        for k, pad in enumerate(here):
-            slot = (2 * k + 1) * each // (2 * len(here))
+        ordered = sorted(pads[side], key=lambda pad: pad["at"], reverse=side in BACKWARDS)
+        for k, pad in enumerate(ordered):
+            slot = (2 * k + 1) * package.each // (2 * len(ordered))
             left, bottom, right, top = pad["box"]
-            at = (left + right) / 2e3, (bottom + top) / 2e3
-            name = signal(pad["name"])
-            found.append(Lead(place * each + slot + 1, name, pad["cell"], at, _lead(side, slot, each), die))
-    return total, found
+            at, number = ((left + right) / 2e3, (bottom + top) / 2e3), place * package.each + slot + 1
+            leads.append(Lead(number, signal(pad["name"]), pad["cell"], at, package.lead_mm(side, slot), die))
+    return leads
 
 
 def signal(pad: str) -> str:
@@ -73,22 +111,9 @@ def signal(pad: str) -> str:
     return re.sub(r"_\d+$", "", pad.removeprefix(OUTSIDE))
 
 
-def body_mm(total: int) -> float:
-    """Side of the package."""
-    return (total // 4 - 1) * PITCH_MM + 2 * CORNER_MM
-
-
-def _lead(side: str, slot: int, each: int) -> Point:
-    """Middle of a lead's inner end."""
-    along, out = (slot - (each - 1) / 2) * PITCH_MM, body_mm(4 * each) / 2 - LEAD_MM
-    return {"west": (-out, -along), "south": (along, -out), "east": (out, along), "north": (-along, out)}[side]
-
-
-def crossings(found: Sequence[Lead]) -> list[tuple[str, str]]:
+def crossings(leads: Sequence[Lead]) -> list[tuple[str, str]]:
     """Pairs of signals whose bond wires cross."""
-    return [
-        (one.signal, other.signal) for one, other in itertools.combinations(found, 2) if _cross(one.wire, other.wire)
-    ]
+    return [(a.signal, b.signal) for a, b in itertools.combinations(leads, 2) if _cross(a.wire, b.wire)]
 
 
 def _cross(one: Wire, other: Wire) -> bool:
@@ -112,19 +137,19 @@ def volts(lead: Lead, process: PadProcess, analog_v: float, reset_v: float) -> f
     return known.get(lead.signal, process.pad_v)
 
 
-def table(total: int, found: Sequence[Lead], volt: Mapping[str, float | None], clamps: Mapping[str, str]) -> str:
+def table(package: Package, leads: Sequence[Lead], volt: Mapping[str, float | None], clamps: Mapping[str, str]) -> str:
     """The pin map as Markdown. clamps: of a cell what protects it."""
     lines = [
-        f"# Pin map: QFN-{total}, {body_mm(total):g} mm x {body_mm(total):g} mm, {PITCH_MM:g} mm",
+        f"# Pin map: {package.text}, leads every {package.pitch_mm:g} mm",
         "",
-        f"{len(found)} of {total} leads; the others are not connected. Lead 1 is the north one of the west side, "
-        "numbers are counterclockwise, seen from above. The longest bond wire is "
-        f"{max(lead.wire_mm for lead in found):.2f} mm.",
+        f"{len(leads)} of {package.leads} leads; the others are not connected. Lead 1 is the north one of the west "
+        "side, numbers are counterclockwise, seen from above. The longest bond wire is "
+        f"{max(lead.wire_mm for lead in leads):.2f} mm.",
         "",
         "| lead | signal | V | pad | x, y on the die, um |",
         "|---:|---|---:|---|---|",
     ]
-    for lead in found:
+    for lead in leads:
         level = volt[lead.signal]
         x, y = lead.pad_um
         lines.append(
@@ -173,27 +198,27 @@ def protection(spice: str, cells: Sequence[str]) -> dict[str, str]:
 
 
 @own_style()
-def draw(paths: Sequence[Path], total: int, found: Sequence[Lead]) -> None:
+def draw(paths: Sequence[Path], package: Package, leads: Sequence[Lead]) -> None:
     """The package from above: leads, bond wires and the die, to scale."""
     from matplotlib.collections import LineCollection
     from matplotlib.figure import Figure
     from matplotlib.patches import Circle, Rectangle
 
-    side, (width, height) = body_mm(total), found[0].die_mm
+    side, (width, height) = package.body_mm, leads[0].die_mm
     figure = Figure(figsize=(9, 9), layout="constrained")
     axes = figure.subplots()
     axes.add_patch(Rectangle((-side / 2, -side / 2), side, side, facecolor="#f4f4f4", edgecolor="0.3"))
     axes.add_patch(Circle((-side / 2 + 0.45, side / 2 - 0.45), 0.18, facecolor="0.3"))
     axes.add_patch(Rectangle((-width / 2, -height / 2), width, height, facecolor="#c9dcec", edgecolor="0.3"))
-    named, each = {lead.number: lead for lead in found}, total // 4
-    for number in range(1, total + 1):
-        place, slot = divmod(number - 1, each)
+    named, pitch = {lead.number: lead for lead in leads}, package.pitch_mm
+    for number in range(1, package.leads + 1):
+        place, slot = divmod(number - 1, package.each)
         way = ORDER[place]
-        x, y = _lead(way, slot, each)
+        x, y = package.lead_mm(way, slot)
         flat, lead = way in ("west", "east"), named.get(number)
-        size = (LEAD_MM, PITCH_MM / 2) if flat else (PITCH_MM / 2, LEAD_MM)
-        left = x - (LEAD_MM if way == "west" else 0 if flat else PITCH_MM / 4)
-        bottom = y - (LEAD_MM if way == "south" else 0 if not flat else PITCH_MM / 4)
+        size = (LEAD_MM, pitch / 2) if flat else (pitch / 2, LEAD_MM)
+        left = x - (LEAD_MM if way == "west" else 0 if flat else pitch / 4)
+        bottom = y - (LEAD_MM if way == "south" else 0 if not flat else pitch / 4)
         axes.add_patch(Rectangle((left, bottom), *size, facecolor="#b8860b" if lead else "0.85", linewidth=0))
         out = side / 2 + 0.15
         at = {"west": (-out, y), "east": (out, y), "south": (x, -out), "north": (x, out)}[way]
@@ -202,12 +227,12 @@ def draw(paths: Sequence[Path], total: int, found: Sequence[Lead]) -> None:
         axes.annotate(
             f"{number} {lead.signal}" if lead else str(number), at, fontsize=6, color="0.1" if lead else "0.6", **style
         )
-    axes.add_collection(LineCollection([lead.wire for lead in found], colors="#b8860b", linewidths=0.6))
-    for lead in found:
+    axes.add_collection(LineCollection([lead.wire for lead in leads], colors="#b8860b", linewidths=0.6))
+    for lead in leads:
         (x, y), _ = lead.wire
         axes.add_patch(Rectangle((x - 0.04, y - 0.04), 0.08, 0.08, facecolor="#b8860b", linewidth=0))
     axes.annotate(f"die {width:g} × {height:g} mm", (0, 0), ha="center", va="center", fontsize=9)
-    axes.annotate(f"QFN-{total}, {side:g} × {side:g} mm, from above", (0, side / 2 - 1.2), ha="center", fontsize=9)
+    axes.annotate(f"{package.text.replace(' mm x', ' ×')}, from above", (0, side / 2 - 1.2), ha="center", fontsize=9)
     margin = side / 2 + 1.6
     axes.set(xlim=(-margin, margin), ylim=(-margin, margin), aspect="equal")
     axes.axis("off")

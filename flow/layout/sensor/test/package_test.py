@@ -32,8 +32,8 @@ def plan(**sides):
 
 
 def test_leads_are_counterclockwise_from_the_north_of_the_west():
-    total, found = package.leads(plan(west=["low", "high"], south=["a", "b"], east=["c", "d"], north=["f", "e"]))
-    assert total == 48 and package.body_mm(total) == 7.5
+    chosen, found = package.packaged(plan(west=["low", "high"], south=["a", "b"], east=["c", "d"], north=["f", "e"]))
+    assert chosen == package.Package(48, 0.5) and chosen.body_mm == 7.5
     assert [lead.signal for lead in found] == ["high", "low", "a", "b", "c", "d", "e", "f"]
     assert [lead.number for lead in found] == [4, 10, 16, 22, 28, 34, 40, 46]
     assert found[0].lead_mm == (-(7.5 / 2 - 0.6), 2.5 * 0.5) and package.crossings(found) == []
@@ -41,19 +41,31 @@ def test_leads_are_counterclockwise_from_the_north_of_the_west():
 
 def test_the_fullest_side_decides_the_package():
     names = [f"n{k}" for k in range(17)]
-    assert package.leads(plan(south=names, west=["a"]))[0] == 80
+    assert package.packaged(plan(south=names, west=["a"]))[0].leads == 80
     with pytest.raises(StepError, match="package: 37 pads on a side, 36 leads at most"):
-        package.leads(plan(south=[f"n{k}" for k in range(37)]))
+        package.packaged(plan(south=[f"n{k}" for k in range(37)]))
+
+
+def test_a_small_die_takes_a_finer_pitch_where_its_wires_would_be_too_long():
+    """Lead 1 of 80 is 4.75 mm north of the middle at 0.5 mm, 3.8 mm at 0.4 mm."""
+    few, many = plan(south=["a"]), plan(south=[f"n{k}" for k in range(20)], west=[f"w{k}" for k in range(20)])
+    assert package.packaged(few)[0].pitch_mm == package.packaged(many)[0].pitch_mm == 0.5
+    for place in many["ring"]:
+        place["box"] = [um // 2 for um in place["box"]]
+    chosen, leads = package.packaged(many | {"die": [2_000_000, 2_000_000]})
+    assert chosen == package.Package(80, 0.4) and chosen.body_mm == 9.6
+    assert max(lead.wire_mm for lead in leads) <= package.WIRE_MM and not package.crossings(leads)
 
 
 def test_a_wire_that_is_too_long_breaks_a_limit():
     """As of the die with 34 pads in the south: a package of 144 leads, wires of 9.8 mm."""
+    assert RULES["bond_wire_mm"]["most"] == package.WIRE_MM
     assert broken({"bond_wire_mm": 9.81}, {"bond_wire_mm": RULES["bond_wire_mm"]})
     assert not broken({"bond_wire_mm": 4.4}, {"bond_wire_mm": RULES["bond_wire_mm"]})
 
 
 def test_two_leads_swapped_cross():
-    _, found = package.leads(plan(south=["a", "b", "c"]))
+    _, found = package.packaged(plan(south=["a", "b", "c"]))
     one, other, third = found
     swapped = [
         package.Lead(one.number, "a", one.cell, one.pad_um, other.lead_mm, one.die_mm),
@@ -89,14 +101,14 @@ def test_numbers_of_supply_pads_are_not_of_the_lead():
 def test_an_analog_signal_has_no_level_of_its_pad():
     """What is to be 1.8 V or less at an analog pad is not said to be the pads' 3.3 V."""
     process = pad_process("sky130")
-    _, found = package.leads(plan(south=["clk", "vref"]))
+    _, found = package.packaged(plan(south=["clk", "vref"]))
     clk, vref = found[0], replace(found[1], cell=process.signals["analog"])
     assert package.volts(clk, process, 3.3, 5.0) == 3.3 and package.volts(vref, process, 3.3, 5.0) is None
 
 
 def test_a_users_settings_of_matplotlib_change_no_picture(tmp_path):
     lead = package.Lead(1, "clk", "pad", (100.0, 200.0), (-3.0, 2.0), (4.0, 4.0))
-    package.draw([tmp_path / "plain.png"], 24, [lead])
+    package.draw([tmp_path / "plain.png"], package.Package(24), [lead])
     with rc_context({"figure.facecolor": "red", "font.size": 30, "savefig.bbox": "tight"}):
-        package.draw([tmp_path / "styled.png"], 24, [lead])
+        package.draw([tmp_path / "styled.png"], package.Package(24), [lead])
     assert (tmp_path / "plain.png").read_bytes() == (tmp_path / "styled.png").read_bytes()
