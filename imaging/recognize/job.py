@@ -75,7 +75,7 @@ def measure(task: Study, folder: Path) -> Recognition:
     start, base, data = perf_counter(), task.base, task.data
     lead = task.fronts[0]
     chosen = {front: replace(base, front=front) for front in task.fronts}
-    if "asp" in chosen:  # one sensor in its modes
+    if "asp" in chosen and task.curves:  # one sensor in its modes
         limits = (max(base.threshold // 2, 1), min(2 * base.threshold, 127))
         chosen |= {f"asp_{limit}": replace(base, front="asp", threshold=limit) for limit in limits}
         chosen[WHOLE] = replace(base, front=WHOLE)
@@ -205,6 +205,6 @@ def write_weights(task: Study, path: Path) -> None:
     base, data = replace(task.base, front=task.fronts[0], classifier="lenet"), task.data
     channels, (chosen, _) = study.see(base, data.radiance).channels, data.split(base.seed)
     net = study.network(base, channels.shape[1:], data.classes, base.seed)
-    net.train(channels[chosen], data.labels[chosen], base.epochs)
+    net.train(channels[chosen], data.labels[chosen], base.epochs, base.shift)
     with atomic(path) as part, part.open("wb") as file:
         net.save(file)

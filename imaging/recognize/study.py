@@ -53,7 +53,8 @@ class Setting:
     threshold: codes. bits: of a code that are kept; levels: bits of the gradient. snr_db, snr_train_db: of white noise
     in the pictures that are tested and trained on, None for none. noise: times the physical noise. ideal: neither noise
     nor converters. draw: of random pixel types, 0 for the sensor's. seeds: splits and draws, from ``seed`` on.
-    classifier: kernel; lenet, trained for ``epochs``; shipped, a lenet of digits trained on the split of seed 1.
+    classifier: kernel; lenet, trained for ``epochs`` on pictures moved by up to ``shift`` px; shipped, a lenet of
+    digits trained on the split of seed 1.
     """
 
     sensor: SensorParameters = STANDARD
@@ -73,6 +74,7 @@ class Setting:
     seeds: int = 3
     classifier: str = "kernel"
     epochs: int = 20
+    shift: int = 0
 
     def __post_init__(self) -> None:
         check_choice("front", self.front, (*FRONTS, *FREE, WHOLE, "learned"))
@@ -80,6 +82,7 @@ class Setting:
         check_int("seed", self.seed, 0, 1 << 31)
         check_int("seeds", self.seeds, 1, 100)
         check_int("epochs", self.epochs, 1, 1000)
+        check_int("shift", self.shift, 0, 4)
         check_int("bits", self.bits, 1, 8)
         check_int("threshold", self.threshold, 0, 127)
         if self.classifier == "shipped" and (self.seed, self.seeds, self.front) != (1, 1, "asp"):
@@ -263,7 +266,7 @@ def trained(
         if setting.classifier == "shipped":
             net.load(WEIGHTS)
         else:
-            net.train(channels[chosen], labels, setting.epochs)
+            net.train(channels[chosen], labels, setting.epochs, setting.shift)
         return net.classify, net.flops - (0 if setting.by_optics else net.products[0])
 
     def rows(x: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:

@@ -313,8 +313,8 @@ class Network:
         """
         check_int("epochs", epochs, 1, 1000)
         check_int("shift", shift, 0, 4)
-        self.mean = pictures.mean((0, 1, 2), dtype=np.float64).astype(np.float32)
-        spread = pictures.std((0, 1, 2), dtype=np.float64)
+        mean, spread = _moments(pictures)
+        self.mean = mean.astype(np.float32)
         self.scale = (1 / np.where(spread > 0, spread, 1)).astype(np.float32)
         learned = [layer for layer in self.layers if layer.weights and not layer.fixed]
         moments = [[(np.zeros_like(w), np.zeros_like(w)) for w in layer.weights] for layer in learned]
@@ -355,6 +355,15 @@ class Network:
             if any(a.shape != b.shape for a, b in zip(new, layer.weights, strict=True)):
                 raise ParameterError(f"weights = {path}: must be of the same layers")
             layer.weights = new
+
+
+def _moments(pictures: npt.NDArray[Any]) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+    """Mean and standard deviation of every channel, without a copy of all pictures as float64."""
+    count = pictures[..., 0].size
+    parts = range(0, len(pictures), CHUNK)
+    mean = np.sum([pictures[i : i + CHUNK].sum((0, 1, 2), dtype=np.float64) for i in parts], 0) / count
+    squares = [np.square(pictures[i : i + CHUNK] - mean).sum((0, 1, 2)) for i in parts]
+    return mean, np.sqrt(np.sum(squares, 0) / count)
 
 
 def _cycle(part: float) -> float:
