@@ -15,7 +15,7 @@ from talbot.imaging.frame.command import typed_of
 from talbot.imaging.frame.sensor import add_pixel, asked_sensor
 
 DEFAULT_FRONTS, DEFAULT_CURVES = "asp,ternary,gradient", "threshold,bits,snr,blur,wake"
-CURVES_HELP = "of threshold, bits, snr, blur, draws, wake, gestures, intensity, with commas; none: FRONT alone"
+CURVES_HELP = "of threshold, bits, snr, blur, draws, wake, gestures, intensity, pose; none: FRONT alone"
 SCALE = Number("scale", "sensor px along an edge of a picture px", 1, 32, "6")
 BLUR = Number("blur", "blur of a point in picture px, positive behind the focal plane", -16, 16, "4", kind=float)
 THRESHOLD = Number("threshold", "|code| below it is left out", 0, 127, "10")
@@ -25,7 +25,7 @@ SEEDS = Number("seeds", "splits and draws, from the seed on", 1, 100, "3")
 EPOCHS = Number("epochs", "of the classifier lenet", 1, 1000, "20")
 SHIFT = Number("shift", "px by which lenet's pictures are moved at random, in training", 0, 4, "0")
 COUNT = Number("count", "pictures at most", 10, 10**7, word="all", note="all")
-SOME = Number("some", "pictures of a curve's point, or clips, at most", 10, 10**7, "600")
+SOME = Number("some", "pictures of a curve's point, clips or heads, at most", 10, 10**7, "600")
 DRAWS = Number("draws", "of six random pixel types, for the curve draws", 1, 1000, "100")
 NUMBERS = (SCALE, BLUR, THRESHOLD, NOISE, SEED, SEEDS, EPOCHS, SHIFT, COUNT, SOME, DRAWS)
 

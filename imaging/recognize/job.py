@@ -12,7 +12,7 @@ import numpy as np
 from talbot.base.files import atomic
 from talbot.base.jobs import Job
 from talbot.base.jobs import run as run_jobs
-from talbot.imaging.recognize import chip, gestures, intensity, study, wake
+from talbot.imaging.recognize import chip, gestures, intensity, pose, study, wake
 from talbot.imaging.recognize.data import Pictures, load
 from talbot.imaging.recognize.study import CURVES, FREE, FRONTS, WHOLE, Point, Setting
 from talbot.models.parameters import ParameterError, check_choice
@@ -21,7 +21,7 @@ from talbot.models.recognition.optics import Display, phase_types
 
 STORE = Path("parts")  # of the results' folder: kept parts of a run
 SAMPLE = 2  # pictures that the Verilog reads
-WAKE, GESTURES, INTENSITY = TASKS = "wake", "gestures", "intensity"  # with pictures of their own
+WAKE, GESTURES, INTENSITY, POSE = TASKS = "wake", "gestures", "intensity", "pose"  # with pictures of their own
 SOME = 600  # pictures of a curve's point
 
 
@@ -58,7 +58,7 @@ class Study:
 class Recognition:
     """Measurements. rows: of the table by name. lines: of each curve, (point, result). alarms: by contrast.
 
-    gestures: rows by name. intensity: by collection of pictures.
+    gestures: rows by name. intensity: by collection of pictures. pose: rows by name, and pixels.
     """
 
     study: Study
@@ -67,6 +67,7 @@ class Recognition:
     alarms: Mapping[str, dict[str, Any]]
     gestures: Mapping[str, dict[str, Any]]
     intensity: Mapping[str, dict[str, Any]]
+    pose: Mapping[str, Any]
     summary: dict[str, Any]
 
 
@@ -93,6 +94,7 @@ def measure(task: Study, folder: Path) -> Recognition:
     lines = _curves(task, folder)
     tasks = _tasks(task, folder)
     alarms, moves, recovered = tasks[WAKE], tasks[GESTURES].get(GESTURES, {}), tasks[INTENSITY]
+    angles = tasks[POSE].get(POSE, {})
     sample = _sample(task) if task.verilog else None
     summary = _summary(task, rows, sample) | {
         "curves": {
@@ -107,9 +109,10 @@ def measure(task: Study, folder: Path) -> Recognition:
         },
         "gestures": moves,
         "intensity": {name: result["rows"] for name, result in recovered.items()},
+        "pose": angles.get("rows", {}),
         "seconds": perf_counter() - start,
     }
-    return Recognition(task, rows, lines, alarms, moves, recovered, summary)
+    return Recognition(task, rows, lines, alarms, moves, recovered, angles, summary)
 
 
 def as_trained(task: Study) -> bool:
@@ -144,6 +147,8 @@ def _tasks(task: Study, folder: Path) -> dict[str, dict[str, Any]]:
     calls: dict[tuple[str, str], tuple[Callable[..., Any], tuple[Any, ...], str]] = {}
     if GESTURES in task.curves:
         calls[GESTURES, GESTURES] = gestures.classify, (base, min(task.some, gestures.CLIPS)), str(task.some)
+    if POSE in task.curves:
+        calls[POSE, POSE] = pose.regress, (base, min(task.some, pose.HEADS)), str(task.some)
     if INTENSITY in task.curves:
         for pictures in intensity.collections(task.data.part(task.some)):
             calls[INTENSITY, pictures.name] = intensity.recover, (base, pictures), pictures.digest

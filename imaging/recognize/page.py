@@ -19,6 +19,7 @@ from talbot.imaging.recognize.chip import CHUNK
 from talbot.imaging.recognize.gestures import FRAMES, MOVES
 from talbot.imaging.recognize.intensity import ACTIVE
 from talbot.imaging.recognize.job import Recognition
+from talbot.imaging.recognize.pose import PITCH, YAW
 
 NAMES = ("recognize.html", "summary.json", "features.npz")
 TEXTS = {
@@ -96,19 +97,35 @@ def gesture_table(s: dict[str, Any]) -> str:
     return markdown_table(HEAD, gesture_rows(s), 1)
 
 
+def pose_rows(s: dict[str, Any]) -> list[tuple[str, ...]]:
+    """Rows of the table of head poses."""
+    return [
+        (name, *(f"{row[key]:.2f}" for key in POSE_KEYS), *_cost(row), f"{row['network_uj']:.3g}")
+        for name, row in s["pose"].items()
+    ]
+
+
+def pose_table(s: dict[str, Any]) -> str:
+    """Return the table of head poses as Markdown."""
+    return markdown_table(POSE_HEAD, pose_rows(s), 1)
+
+
 def _quality(row: dict[str, Any]) -> tuple[str, ...]:
     places = {"psnr_db": 2, "psnr_db_std": 2, "ssim": 3, "ssim_std": 3}
     return tuple("-" if row[key] is None else f"{row[key]:.{n}f}" for key, n in places.items())
 
 
 INTENSITY_HEAD = ("", "from", "PSNR, dB", "spread of seeds", "SSIM", "spread of seeds", "bytes", "sensor, uJ")
-TABLES_OF = {"gestures": gesture_table, "intensity": intensity_table}  # of a document, by curve
+POSE_KEYS = ("error_deg", "error_deg_std", "yaw_deg", "pitch_deg")
+POSE_HEAD = ("", "mean error, deg", "spread of seeds", "yaw", "pitch", *HEAD[3:])
+TABLES_OF = {"gestures": gesture_table, "intensity": intensity_table, "pose": pose_table}  # of a document, by curve
 
 
 def lines(s: dict[str, Any]) -> str:
     """Return the table as Markdown, without other thresholds, and without ``same_bytes`` where it is ``image``."""
     chosen = {name: row for name, row in s["rows"].items() if name in TEXTS}
-    if chosen.get("same_bytes") == chosen.get("image"):
+    same, image = (chosen.get(name, {}) | {"train_s": 0} for name in ("same_bytes", "image"))
+    if same == image:
         chosen.pop("same_bytes", None)
     return markdown_table(HEAD, rows(s | {"rows": chosen}), 1)
 
@@ -144,6 +161,7 @@ def write(folder: Path, result: Recognition) -> None:
             *_alarms(result),
             *_gestures(result),
             *_intensity(result),
+            *_pose(result),
         ],
     )
     (folder / "recognize.html").write_text(text, encoding="utf-8")
@@ -252,6 +270,17 @@ def _intensity(result: Recognition) -> list[Section]:
     return [
         Section("Intensity from one binary frame (Sec. A.5)", text, pictures=pictures, head=INTENSITY_HEAD, rows=rows)
     ]
+
+
+def _pose(result: Recognition) -> list[Section]:
+    if not result.pose:
+        return []
+    text = (
+        f"Yaw up to {YAW:g} and pitch up to {PITCH:g} degrees of rendered heads, by ridge regression in a Gaussian "
+        "kernel: mean absolute error of held-out heads."
+    )
+    pictures = [Picture("pose", "", "heads, and their binary gradients", _large(_pixels(dict(result.pose))))]
+    return [Section("Head pose", text, pictures=pictures, head=POSE_HEAD, rows=pose_rows(result.summary))]
 
 
 def _pixels(recovered: dict[str, Any]) -> Array:

@@ -10,7 +10,7 @@ from PIL import Image
 
 from talbot.api.recognize import recognize
 from talbot.commands import main
-from talbot.imaging.recognize import chip, gestures, intensity, page, study
+from talbot.imaging.recognize import chip, gestures, intensity, page, pose, study
 from talbot.imaging.recognize.data import load, picture
 from talbot.imaging.recognize.job import Study, as_trained
 from talbot.imaging.recognize.study import Setting, evaluate, noisy, reduced, see
@@ -171,6 +171,26 @@ def test_temporal_gradients_of_gestures_are_equation_a2(monkeypatch):
     assert cheap["bytes"] == 7 * 32 < dear["bytes"] and 20 * cheap["energy_uj"][1] < dear["energy_uj"][0]
 
 
+def test_a_ray_meets_the_head_where_it_is_drawn():
+    turn, radii, centre = np.linalg.qr(np.random.default_rng(1).normal(size=(3, 3)))[0], np.array([0.7, 1, 0.8]), 0.1
+    v, u = np.mgrid[-1.2:1.2:9j, -1.2:1.2:9j]
+    z, point = pose._hit(u, v, turn, np.full(3, centre), radii)
+    met = np.isfinite(z)
+    assert 10 < met.sum() < 81
+    assert np.allclose((((point - centre) / radii) ** 2).sum(-1)[met], 1)
+    assert np.allclose((point @ turn.T)[met], np.stack([u, v, z], -1)[met])
+
+
+def test_the_pose_of_held_out_heads_is_better_than_their_mean():
+    shown, angles = pose.heads(8, 1)
+    assert np.array_equal(pose.heads(8, 1)[0], shown) and not np.array_equal(pose.heads(8, 2)[0], shown)
+    assert (np.abs(angles) <= (45, 30)).all() and shown.shape == (8, 32, 32)
+    rows = pose.regress(Setting(seeds=2), 200)["rows"]
+    error = {name: row["error_deg"] for name, row in rows.items()}
+    mean = error.pop("mean of the angles to learn from")
+    assert 15 < mean < 25 and max(error.values()) < 0.75 * mean
+
+
 def test_intensity_of_held_out_digits_is_better_than_gray(digits):
     rows = intensity.recover(Setting(seeds=2), digits)["rows"]
     psnr = {name: row["psnr_db"] for name, row in rows.items()}
@@ -179,24 +199,26 @@ def test_intensity_of_held_out_digits_is_better_than_gray(digits):
     assert psnr[intensity.JPEG] is None and rows["binary frame, Poisson"]["bytes"] == 8
 
 
-def test_tables_of_gestures_and_intensity_enter_a_document(tmp_path, monkeypatch):
+def test_tables_of_the_tasks_enter_a_document(tmp_path, monkeypatch):
     monkeypatch.setattr(intensity, "SCENE", 16)
     monkeypatch.setattr(intensity, "FACES", 20)
     document = tmp_path / "document.md"
-    marks = ("digits", "gestures", "intensity")
+    marks = ("digits", "gestures", "intensity", "pose")
     document.write_text("".join(f"<!-- {mark} -->\n<!-- end of {mark} -->\n" for mark in marks))
-    words = ("--some", "16", "--front", "gradient", "--curves", "gestures,intensity", "--document", str(document))
+    words = ("--some", "16", "--front", "gradient", "--curves", "gestures,intensity,pose", "--document", str(document))
     assert main(["recognize", *SMALL, *words, "--out", str(tmp_path / "o")]) == 0
     s, text = json.loads((tmp_path / "o" / "summary.json").read_text()), document.read_text()
     assert s["intensity"].keys() == {"digits", "faces", "photographs"} and len(s["gestures"]) == 9
     faces = s["intensity"]["faces"]
     assert faces["gray"]["ssim"] < faces["ternary differences along x and y, Poisson"]["ssim"] < 1
+    assert len(s["pose"]) == 5 and "| mean of the angles to learn from |" in text
     assert "| temporal binary gradients (Eq. A.2) |" in text and "| JPEG in as many bytes | - |" in text
 
 
 def test_the_table_of_a_document_has_one_threshold_and_no_row_twice():
     row = {"accuracy": 0.5, "accuracy_std": 0.0, "bytes": 9, "energy_uj": (1.0, 2.0), "network_uj": 1.0}
-    s = {"types": 12, "threshold": 10, "rows": dict.fromkeys(("asp", "asp_5", "image", "same_bytes"), row)}
+    s = {"types": 12, "threshold": 10, "rows": dict.fromkeys(("asp", "asp_5", "image"), row)}
+    s["rows"]["same_bytes"] = row | {"train_s": 1.0}
     assert len(page.rows(s)) == 4 and len(page.lines(s).splitlines()) == 2 + 2
     s["rows"]["same_bytes"] = row | {"bytes": 8}
     assert len(page.lines(s).splitlines()) == 2 + 3
