@@ -22,7 +22,7 @@ THRESHOLD = Number("threshold", "|code| below it is left out", 0, 127, "10")
 NOISE = Number("noise", "times the physical noise", 0, 100, "1", kind=float)
 SEED = Number("seed", "of splits and of every random draw", 0, 2**31, "1")
 SEEDS = Number("seeds", "splits and draws, from the seed on", 1, 100, "3")
-EPOCHS = Number("epochs", "of the classifier lenet", 1, 1000, "20")
+EPOCHS = Number("epochs", "of lenet and binary", 1, 1000, "20")
 SHIFT = Number("shift", "px by which lenet's pictures are moved at random, in training", 0, 4, "0")
 COUNT = Number("count", "pictures at most", 10, 10**7, word="all", note="all")
 SOME = Number("some", "pictures of a curve's point, clips or heads, at most", 10, 10**7, "600")
@@ -35,7 +35,11 @@ def add_arguments(parser: ArgumentParser) -> None:
     add = parser.add_argument
     add("--data", default="digits", help="digits, an .npz, or a folder (imaging/recognize/README.md)")
     add("--front", default=DEFAULT_FRONTS, help="asp, ternary, gradient, image, with commas; the first leads")
-    add("--classifier", default="kernel", help="kernel, in closed form, or lenet, trained by Adam")
+    add(
+        "--classifier",
+        default="kernel",
+        help="kernel, in closed form; lenet, trained by Adam; binary, its weights signs",
+    )
     add("--curves", default=DEFAULT_CURVES, help=CURVES_HELP)
     for number in NUMBERS:
         number.add(parser)
@@ -44,7 +48,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     add("--golden", action="store_true", help="by the golden chip alone, without its Verilog")
     add("--workers", type=worker_count, default=-1, help="processes, -1: all cores")
     add("--weights", type=Path, help="also write the lenet of the first front and seed as .npz, at most 100 kB")
-    add("--document", type=Path, help="also put the tables between the marks of this file")
+    add("--document", type=Path, help="also put the tables between this file's marks: digits, digits_lenet, ...")
     add("--out", type=Path, help="folder for the results (default: build/recognize/<data>)")
 
 
@@ -67,8 +71,9 @@ def run(options: Namespace) -> int:
     check_folder("out", folder, page.NAMES)
     if options.weights:
         check_file("weights", options.weights)
+    table = data.name if base.classifier == "kernel" else f"{data.name}_{base.classifier}"
     if options.document:
-        marked(options.document, data.name)
+        marked(options.document, table)
     typed = {name: str(value) for name, value in typed_of(options, add_arguments).items()}
     result = measure(study, folder / STORE)
     summary = result.summary | {"arguments": typed}
@@ -78,11 +83,11 @@ def run(options: Namespace) -> int:
     if options.weights:
         write_weights(study, options.weights)
     if options.document:
-        insert(options.document, data.name, page.lines(summary))
+        insert(options.document, table, page.lines(summary))
         text = options.document.read_text(encoding="utf-8")
-        for name, table in page.TABLES_OF.items():
+        for name, tabled in page.TABLES_OF.items():
             if name in curves and f"<!-- {name} -->" in text:
-                insert(options.document, name, table(summary))
+                insert(options.document, name, tabled(summary))
     _print(summary, folder)
     return int(bool(summary["stream_mismatches"]))
 

@@ -48,7 +48,7 @@ class Study:
         for name in self.curves:
             check_choice("curves", name, (*CURVES, *TASKS))
         if self.base.classifier == "shipped":
-            raise ParameterError("classifier = 'shipped': must be kernel or lenet")
+            raise ParameterError("classifier = 'shipped': must be kernel, lenet or binary")
         if not self.fronts or len(set(self.fronts)) != len(self.fronts):
             raise ParameterError(f"front = {','.join(self.fronts)!r}: must be different ones of {', '.join(FRONTS)}")
         Display(self.base.sensor, self.data.images.shape[1:], self.base.scale)  # fits
@@ -87,7 +87,7 @@ def measure(task: Study, folder: Path) -> Recognition:
         free["same_bytes"] = replace(free["same_bytes"], classifier="kernel")
     if as_trained(task):
         free["shipped"] = Setting(classifier="shipped", seeds=1)
-    if base.classifier == "lenet":
+    if base.classifier != "kernel":
         free["learned"] = replace(base, front="learned")
     rows |= study.run(free, data, folder, "baseline", task.workers)
     rows = {name: study.figures(row) for name, row in rows.items()}

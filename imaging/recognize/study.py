@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from time import perf_counter
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -34,12 +34,12 @@ from talbot.models.recognition.statistics import Spread, first_layer_flops
 FRONTS = "asp", "ternary", "gradient", "image"
 FREE = "same_bytes", "random", "chance"  # what costs nothing
 WHOLE = "whole"
-CLASSIFIERS = "kernel", "lenet", "shipped"
+CLASSIFIERS = "kernel", "lenet", "binary", "shipped"
 WEIGHTS = Path(recognition.__file__).with_name("digits_lenet.npz")  # docs/results/recognition.md: how it was trained
 FILTERS, KERNEL = 12, 5  # of a first layer that is computed
 GRADIENT = 0.2  # threshold of the gradient, of white
 WHITE = 255 * 0.5  # codes of white in image mode, at the default light
-MAC = 0.23e-12  # J, 8-bit multiplication and addition at 45 nm [Horowitz2014]
+MAC, ADD = 0.23e-12, 0.03e-12  # J, at 45 nm, 8 bits: multiplication and addition, addition [Horowitz2014]
 SIX = (2, 3)  # tile of six random types
 
 
@@ -53,8 +53,8 @@ class Setting:
     threshold: codes. bits: of a code that are kept; levels: bits of the gradient. snr_db, snr_train_db: of white noise
     in the pictures that are tested and trained on, None for none. noise: times the physical noise. ideal: neither noise
     nor converters. draw: of random pixel types, 0 for the sensor's. seeds: splits and draws, from ``seed`` on.
-    classifier: kernel; lenet, trained for ``epochs`` on pictures moved by up to ``shift`` px; shipped, a lenet of
-    digits trained on the split of seed 1.
+    classifier: kernel; lenet, trained for ``epochs`` on pictures moved by up to ``shift`` px; binary, one of
+    binary weights; shipped, a lenet of digits trained on the split of seed 1.
     """
 
     sensor: SensorParameters = STANDARD
@@ -88,7 +88,7 @@ class Setting:
         if self.classifier == "shipped" and (self.seed, self.seeds, self.front) != (1, 1, "asp"):
             raise ParameterError("classifier = 'shipped': must be with front asp, seed 1 and one seed: of its training")
         if self.front == "learned" and self.classifier == "kernel":
-            raise ParameterError("front = 'learned': must be with classifier lenet, which learns it")
+            raise ParameterError("front = 'learned': must be with classifier lenet or binary, which learn it")
 
     @property
     def text(self) -> str:
@@ -227,7 +227,7 @@ def evaluate(setting: Setting, data: Pictures) -> dict[str, Any]:
     if setting.front == "chance":
         tests = [data.labels[data.split(seed)[1]] for seed in setting.draws]
         most = [float(np.bincount(labels).max() / len(labels)) for labels in tests]  # the most frequent class
-        return {"accuracies": most, "bytes": 0.0, "energy_uj": [0.0, 0.0], "share": 0.0} | _flops(0, 0)
+        return {"accuracies": most, "bytes": 0.0, "energy_uj": [0.0, 0.0], "share": 0.0} | _operations(0, Work(0, 0.0))
     with threadpool_limits(1):
         test = see(setting, noisy(data.radiance, setting.snr_db, setting.seed))
         train = test
@@ -238,27 +238,40 @@ def evaluate(setting: Setting, data: Pictures) -> dict[str, Any]:
 
 def scored(setting: Setting, data: Pictures, train: Seen, test: Seen) -> dict[str, Any]:
     """Train on ``train`` and test on ``test``, which hold all pictures of ``data``, for every seed."""
-    right, flops, seconds = [], 0, 0.0
+    right, work, seconds = [], Work(0, 0.0), 0.0
     for seed in setting.draws:
         start = perf_counter()
-        classify, flops = trained(setting, train.channels, data, seed)
+        classify, work = trained(setting, train.channels, data, seed)
         seconds += perf_counter() - start
         chosen = data.split(seed)[1]
         right.append(float((classify(test.channels[chosen]) == data.labels[chosen]).mean()))
     out = {"accuracies": right, "bytes": test.bytes, "energy_uj": [1e6 * e for e in test.energy], "share": test.share}
     if test.image_energy:
         out["image_mode_uj"] = [1e6 * e for e in test.image_energy]
-    return out | _flops(test.first, flops) | {"train_s": seconds / setting.seeds}
+    return out | _operations(test.first, work) | {"train_s": seconds / setting.seeds}
 
 
-def _flops(first: int, behind: int) -> dict[str, Any]:
-    return {"flops_first_layer": first, "flops_total": first + behind, "network_uj": 1e6 * MAC * (first + behind)}
+class Work(NamedTuple):
+    """Operations of a picture behind the first layer, and their energy in J."""
+
+    operations: int
+    joules: float
+
+    @classmethod
+    def of(cls, operations: int, additions: int = 0) -> "Work":
+        """Return the work of operations, of which some are additions alone."""
+        return cls(operations, MAC * (operations - additions) + ADD * additions)
+
+
+def _operations(first: int, behind: Work) -> dict[str, Any]:
+    total, joules = first + behind.operations, MAC * first + behind.joules
+    return {"flops_first_layer": first, "flops_total": total, "network_uj": 1e6 * joules}
 
 
 def trained(
     setting: Setting, channels: npt.NDArray[np.float32], data: Pictures, seed: int
-) -> tuple[Callable[[npt.NDArray[np.float32]], npt.NDArray[np.intp]], int]:
-    """Return a classifier of channels, and its operations a picture behind the first layer."""
+) -> tuple[Callable[[npt.NDArray[np.float32]], npt.NDArray[np.intp]], Work]:
+    """Return a classifier of channels, and its work for a picture."""
     chosen = data.split(seed)[0]
     labels = data.labels[chosen]
     if setting.classifier != "kernel":
@@ -267,19 +280,20 @@ def trained(
             net.load(WEIGHTS)
         else:
             net.train(channels[chosen], labels, setting.epochs, setting.shift)
-        return net.classify, net.flops - (0 if setting.by_optics else net.products[0])
+        behind = net.flops - (0 if setting.by_optics else net.products[0])
+        return net.classify, Work.of(behind, net.additions)
 
     def rows(x: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
         return kernel.features(filtered(x, seed) if setting.front == "random" else x)
 
     classifier = kernel.train(rows(channels[chosen]), labels, data.classes, seed)
-    return lambda x: classifier.classify(rows(x)), classifier.flops
+    return lambda x: classifier.classify(rows(x)), Work.of(classifier.flops)
 
 
 def network(setting: Setting, shape: tuple[int, ...], classes: int, seed: int) -> Network:
     """Return a LeNet whose first layer is the optics, or 12 filters; random ones stay as they are drawn."""
     first = [] if setting.by_optics else [Conv(FILTERS, KERNEL, fixed=setting.front == "random")]
-    return Network(lenet(shape[0], classes, first), shape, seed)
+    return Network(lenet(shape[0], classes, first, setting.classifier == "binary"), shape, seed)
 
 
 @dataclass(frozen=True)

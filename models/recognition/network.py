@@ -33,6 +33,12 @@ class Layer(ABC):
     weights: tuple[Floats, ...] = ()
     gradients: tuple[Floats, ...] = ()
     fixed = False  # its weights stay as they are drawn
+    binary = False  # its weights are signs, and a factor an output
+
+    def _factors(self) -> Floats:
+        """Weights as they multiply: of a binary layer signs times their mean magnitude [Rastegari2016, Eq. 6]."""
+        w = self.weights[0]
+        return np.sign(w) * np.abs(w).mean(0) if self.binary else w
 
     def _start(self, shape: tuple[int, ...], rng: np.random.Generator) -> tuple[int, ...]:
         """Draw the weights for a picture of this shape at the input; return its shape at the output."""
@@ -134,9 +140,10 @@ class Drop(Layer):
 
 @dataclass(eq=False)
 class Dense(Layer):
-    """Fully connected. outputs: how many."""
+    """Fully connected. outputs: how many. binary: its weights are signs, and a factor an output."""
 
     outputs: int = 10
+    binary: bool = False
 
     def _start(self, shape: tuple[int, ...], rng: np.random.Generator) -> tuple[int, ...]:
         """Draw by the inputs' number [He2015]; see `Layer._start`."""
@@ -147,12 +154,12 @@ class Dense(Layer):
     def _forward(self, x: Floats, rng: np.random.Generator | None) -> Floats:
         """Multiply; see `Layer._forward`."""
         self._shape, self._x = x.shape, x.reshape(len(x), -1)
-        return self._x @ self.weights[0] + self.weights[1]
+        return self._x @ self._factors() + self.weights[1]
 
     def _backward(self, g: Floats) -> Floats:
-        """See `Layer._backward`."""
+        """See `Layer._backward`; the gradient of a binary layer passes its signs unchanged."""
         self.gradients = self._x.T @ g, g.sum(0)
-        return (g @ self.weights[0].T).reshape(self._shape)
+        return (g @ self._factors().T).reshape(self._shape)
 
     def _products(self, shape: tuple[int, ...]) -> int:
         """See `Layer._products`."""
@@ -163,13 +170,14 @@ class Dense(Layer):
 class Conv(Layer):
     """Convolution of size x size, as large as its input (zeros around), or without a border.
 
-    fixed: its weights stay as they are drawn.
+    fixed: its weights stay as they are drawn. binary: as of `Dense`.
     """
 
     filters: int = 12
     size: int = 5
     same: bool = True
     fixed: bool = False
+    binary: bool = False
     first: bool = field(default=False, init=False)  # nothing ahead of it takes a gradient
 
     def _start(self, shape: tuple[int, ...], rng: np.random.Generator) -> tuple[int, ...]:
@@ -188,7 +196,7 @@ class Conv(Layer):
         patches = np.lib.stride_tricks.sliding_window_view(x, (self.size, self.size), (1, 2))
         n, height, width = patches.shape[:3]
         self._patches = patches.transpose(0, 1, 2, 4, 5, 3).reshape(n * height * width, -1)
-        return (self._patches @ self.weights[0] + self.weights[1]).reshape(n, height, width, self.filters)
+        return (self._patches @ self._factors() + self.weights[1]).reshape(n, height, width, self.filters)
 
     def _backward(self, g: Floats) -> Floats:
         """See `Layer._backward`."""
@@ -198,7 +206,7 @@ class Conv(Layer):
         if self.first:
             return g
         k, out = self.size, np.zeros(self._padded, np.float32)
-        back = (flat @ self.weights[0].T).reshape(n, height, width, k, k, -1)
+        back = (flat @ self._factors().T).reshape(n, height, width, k, k, -1)
         for y in range(k):
             for x in range(k):
                 out[:, y : y + height, x : x + width] += back[:, :, :, y, x]
@@ -214,17 +222,20 @@ def _drawn(rng: np.random.Generator, shape: tuple[int, int], inputs: int) -> Flo
     return rng.standard_normal(shape, np.float32) * np.float32(np.sqrt(2 / inputs))
 
 
-def lenet(size: int, classes: int, first: Sequence[Layer] = ()) -> list[Layer]:
+def lenet(size: int, classes: int, first: Sequence[Layer] = (), binary: bool = False) -> list[Layer]:
     """Lay a network out behind a first layer, which the optics or ``first`` computes.
 
     size: height of the pictures in px, 4 or more; from `LARGE` on they are pooled at the start, as LeNet's are.
-    classes: outputs, 2 or more. first: the first layer, where the optics has none. Returns list of Layer: both signs of
-    the first layer rectified, a convolution, pooling, two dense layers.
+    classes: outputs, 2 or more. first: the first layer, where the optics has none. binary: the weights of the
+    layers between the first and the last are signs. Returns list of Layer: both signs of the first layer rectified, a
+    convolution, pooling, two dense layers.
     """
     check_int("size", size, SMALLEST, 1 << 12)
     check_int("classes", classes, 2, 1 << 12)
-    head = [Pool(), Conv(32, 5, same=False)] if size >= LARGE else [Conv(24, 3, same=False)]
-    return [*first, Signs(), *head, Relu(), Pool(), Drop(0.2), Dense(64), Relu(), Drop(0.2), Dense(classes)]
+    large = [Pool(), Conv(32, 5, same=False, binary=binary)]
+    head = large if size >= LARGE else [Conv(24, 3, same=False, binary=binary)]
+    tail = [Relu(), Pool(), Drop(0.2), Dense(64, binary), Relu(), Drop(0.2), Dense(classes)]
+    return [*first, Signs(), *head, *tail]
 
 
 class Network:
@@ -249,6 +260,11 @@ class Network:
     def flops(self) -> int:
         """Multiply-accumulate operations of a picture, all layers."""
         return sum(self.products)
+
+    @property
+    def additions(self) -> int:
+        """Those of `flops` that are additions: of binary layers."""
+        return sum(n for n, layer in zip(self.products, self.layers, strict=True) if layer.binary)
 
     @property
     def parameters(self) -> int:

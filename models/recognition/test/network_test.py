@@ -71,6 +71,25 @@ def test_training_learns_and_repeats_and_its_file_gives_the_same_answers(tmp_pat
         Network(lenet(8, 3, [Conv(4, 3)]), (8, 8, 1)).load(tmp_path / "w.npz")
 
 
+def test_a_binary_layer_multiplies_by_signs_and_a_factor_an_output():
+    conv, dense = Conv(3, 3, binary=True), Dense(4, binary=True)
+    net = Network([conv, dense], (6, 6, 2))
+    out = net.scores(PICTURES)
+    for layer in (conv, dense):
+        w = layer.weights[0]
+        layer.weights = (np.where(w > 0, 1, -1) * np.abs(w).mean(0, keepdims=True), layer.weights[1])
+        layer.binary = False
+    assert np.allclose(net.scores(PICTURES), out, atol=1e-4) and net.additions == 0
+
+
+def test_a_binary_network_learns_and_adds():
+    (x, y), (new, truth) = bars(400, 1), bars(200, 2)
+    net = Network(lenet(8, 2, [Conv(4, 3)], binary=True), (8, 8, 1), 7)
+    net.train(x, y, 6)
+    assert (net.classify(new) == truth).mean() > 0.9
+    assert net.flops - net.additions == net.products[0] + 64 * 2
+
+
 def test_fixed_filters_stay():
     layer = Conv(4, 3, fixed=True)
     net = Network(lenet(8, 2, [layer]), (8, 8, 1))
