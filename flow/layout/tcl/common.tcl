@@ -42,15 +42,11 @@ proc routing_layers {} {
   }
 }
 
-# Nets above which `route` ends after the first iterations, and the number of the last of these
-set large 4000
-set first_iterations 3
-
 # Detailed routing, which goes on from the routes that there are. Its violations stay with the database. New cells are not
 # on the supplies yet in every release, and their rails would be shorts to the router.
-proc route_in_detail {args} {
+proc route_in_detail {} {
   global_connect
-  detailed_route -output_drc route_drc.rpt -verbose 1 {*}$args
+  detailed_route -output_drc route_drc.rpt -verbose 1
   set block [ord::get_db_block]
   set count [odb::dbIntProperty_find $block violations]
   if {$count ne "NULL"} { odb::dbProperty_destroy $count }

@@ -1,5 +1,4 @@
-# The iterations of detailed routing that are left, with diodes where a gate's net is too large an antenna; fillers last,
-# since a diode wants a free site.
+# Diodes where a gate's net is too large an antenna; fillers last, since a diode wants a free site.
 source common.tcl
 open_stage route
 set_propagated_clock [all_clocks]
@@ -7,7 +6,6 @@ routing_layers
 
 # Antennas wait for the real routes: on global routes the router's second pass after a diode ends the run in some
 # releases ("heap underflow", GRT-0183), and what it estimates is not what is left.
-if {[violations] > 0} { route_in_detail }
 for {set turn 0} {$turn < 3 && [check_antennas] > 0} {incr turn} {
   if {[repair_antennas $diode] == 0} { break }
   route_in_detail

@@ -1,9 +1,7 @@
-# Detailed routes along the global ones of `loads`. Of a large design the first iterations alone, which take most of the
-# time: `mend` goes on from there, and a run that is killed then resumes there.
+# Detailed routes along the global ones of `loads`.
 source common.tcl
 open_stage loads
 set_propagated_clock [all_clocks]
 routing_layers
-set nets [llength [[ord::get_db_block] getNets]]
-route_in_detail {*}[expr {$nets > $large ? [list -droute_end_iter $first_iterations] : ""}]
+route_in_detail
 write_db route.odb
