@@ -1,7 +1,7 @@
 """The tables that `talbot document` writes between the marks of docs/host.md: pins, tile, worked examples."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from textwrap import fill
 
 import numpy as np
@@ -14,6 +14,13 @@ from talbot.models.digital.phase import phase_samples
 from talbot.models.parameters import AmpTiming, FrameParameters, SensorParameters, Window
 from talbot.models.parameters.registers import RegisterMap, array_resets, register_map
 from talbot.rtl.host.document.pins import host_pins
+
+
+def block(head: Iterable[object], rows: Iterable[Iterable[object]]) -> str:
+    """Return a code block of right-aligned columns."""
+    lines = [[str(cell) for cell in row] for row in (head, *rows)]
+    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
+    return "\n".join(["```", *("  ".join(map(str.rjust, line, widths)) for line in lines), "```"])
 
 
 def example(sensor: SensorParameters) -> FrameParameters:
@@ -58,8 +65,8 @@ def map_of(sensor: SensorParameters) -> RegisterMap:
 def tile_order(sensor: SensorParameters) -> str:
     """Return the table of the pixel type at each position of a tile."""
     tile = sensor.tile
-    rows = ([f"**{r}**", *tile.order[tile.cols * r : tile.cols * (r + 1)]] for r in range(tile.rows))
-    return markdown_table(["row in tile \\ k", *map(str, range(tile.cols))], rows)
+    rows = ([f"row {r}", *tile.order[tile.cols * r : tile.cols * (r + 1)]] for r in range(tile.rows))
+    return block(["k", *range(tile.cols)], rows)
 
 
 def pixel_types(sensor: SensorParameters) -> str:
@@ -85,7 +92,7 @@ def phase_examples(sensor: SensorParameters) -> str:
     taps = [(100, 100, 100, 200), (200, 100, 0, 10), (90, 91, 90, 89)]
     sent = zip(*phase_samples(np.array(taps), sensor.chip, noise_floor=8))
     rows = ((*four, *pair) for four, pair in zip(taps, sent))
-    return markdown_table(["i0", "i90", "i180", "i270", "phase", "amplitude"], rows)
+    return block(["i0", "i90", "i180", "i270", "phase", "amplitude"], rows)
 
 
 def pattern_examples(sensor: SensorParameters) -> str:
@@ -94,7 +101,7 @@ def pattern_examples(sensor: SensorParameters) -> str:
     places = [(0, 0, 5, 0), (4, 0, 0, 0), (100, 63, 5, 3)]
     places = [p for p in places if p[0] < array.rows and p[1] * tile.cols + p[2] < array.cols and p[2] < tile.cols]
     places += [(array.rows - 1, *divmod(array.cols - 1, tile.cols), 0)]
-    return markdown_table(["row", "tile", "k", "sub", "value"], ((*p, int(pattern_value(*p))) for p in places))
+    return block(["row", "tile", "k", "sub", "value"], ((*p, int(pattern_value(*p))) for p in places))
 
 
 def session(sensor: SensorParameters) -> str:
