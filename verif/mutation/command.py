@@ -20,7 +20,6 @@ from talbot.base.records import from_json
 from talbot.base.sources import code
 from talbot.models.parameters import check_real
 from talbot.rtl.replay import load
-from talbot.rtl.tops import TOPS
 from talbot.verif.coverage.testplan import folder_of
 from talbot.verif.coverage.traces import recorded
 from talbot.verif.mutation.constants import jobs as constants
@@ -53,6 +52,7 @@ NUMBERS = {  # of mutants of bits, and as many of the text
     "RunLength": 18,
     "RegFile": 12,
     "AspChip": 12,
+    "Proc": 20,
 }
 OTHERS = 2  # parameter sets with a proof, besides the main one
 
@@ -104,13 +104,14 @@ def try_mutants(blocks: Iterable[str], store: Path, factor: float = 1.0, seed: i
     tests, judges, whole, of = [], [], [], []
     for group in groups:
         text, formal = group.folder / "mutants.v", PACKAGE / "rtl" / folder_of(group.block) / "formal"
+        proofs = (formal,) if formal.is_dir() else ()
         decides = group.path.with_suffix(".trace"), text, code(f"rtl/{folder_of(group.block)}/test")
         tried = (str(group.path), str(group.folder), group.folder.name == "bits")  # the tests of a block once
         whole.append(Job(group.name, try_original, tried, decides))
         for mutant in group.mutants:
             name, arguments = f"{group.name}-{mutant.number}", (str(group.path), str(group.folder), mutant)
             tests.append(Job(name, try_tests, arguments, decides))
-            judges.append(Job(name, judge, arguments, (text, formal)))  # independent of the tests
+            judges.append(Job(name, judge, arguments, (text, *proofs)))  # independent of the tests
             of.append(group.block)
     run_jobs(whole, store / "tests", "tests without a mutant")
     results = from_json(list[Judgement], run_jobs(tests, store / "tests", "mutants against the tests"))
@@ -161,7 +162,7 @@ SEED_OPTION = seed_of("of the sample")
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot mutate`."""
-    parser.add_argument("--only", nargs="+", choices=TOPS, metavar="BLOCK", help=f"of {', '.join(TOPS)}")
+    parser.add_argument("--only", nargs="+", choices=NUMBERS, metavar="BLOCK", help=f"of {', '.join(NUMBERS)}")
     SEED_OPTION.add(parser)
     parser.add_argument("--factor", type=number_of, default=1.0, help="of the sample's size")
     parser.add_argument("--out", type=Path, default=OUT, help="folder of mutation.json")
@@ -171,7 +172,7 @@ def run(options: Namespace) -> int:
     """Return 0, 1 with survivors."""
     check_real("factor", options.factor, 1e-3, 100)
     seed = SEED_OPTION.value(options)
-    summaries = try_mutants(options.only or TOPS, options.out / "mutation", options.factor, seed)
+    summaries = try_mutants(options.only or NUMBERS, options.out / "mutation", options.factor, seed)
     write_step("mutation", summaries, options.out)
     whole = Counter()
     for block, entry in summaries.items():

@@ -76,8 +76,10 @@ def generate(verilog: str, top: str, folder: str, number: int, seed: int) -> lis
     where, lines = sources_of(verilog), ["", *verilog.splitlines()]
     mutants: list[Mutant] = []
     listed = (line for module in parts for line in files[f"{module}.list"].decode().splitlines())
-    # In the proof of equivalence every register is clocked alike: of a changed clock it would say nothing
-    chosen = dict.fromkeys(line for line in listed if "-port CLK " not in line)
+    # In the proof of equivalence every register is clocked alike: of a changed clock it would say nothing. A memory is
+    # read without a clock, and Yosys refuses an enable there.
+    unused = re.compile(r"-port CLK |-cell \$memrd\S* -port EN ")
+    chosen = dict.fromkeys(line for line in listed if not unused.search(line))
     for options in chosen:
         (module,) = re.findall(r"-module (\S+)", options)
         line = _line(options)

@@ -10,7 +10,7 @@ from talbot.rtl.harness.reset import outputs_after_reset
 from talbot.rtl.proc import Proc, ProcCL, ProcFL
 from talbot.rtl.proc.assembler import assemble
 from talbot.rtl.proc.golden import run
-from talbot.rtl.proc.isa import BRANCHES, IMMEDIATE, LOADS, REGISTER, SHIFTS, STORES
+from talbot.rtl.proc.isa import BRANCHES, IMMEDIATE, LOADS, MASK, REGISTER, SHIFTS, STORES
 from talbot.rtl.proc.test.proc_bench import ALWAYS, Bench, simulator
 from talbot.rtl.proc.test.programs import PROGRAMS, WILD_PROGRAMS
 
@@ -38,7 +38,7 @@ class TestFL:
     def bench(self, hart_id=0):
         return Bench(type(self).cls, self.verilog, hart_id)
 
-    def check(self, program, words=(), willing=ALWAYS, latencies=(1,), hart_id=5):
+    def check(self, program, words=(), willing=ALWAYS, latencies=(1,), hart_id=0x9E3779B9):
         """Compare a program's accesses, words to the manager and memory with the golden run; returns the bench."""
         golden = run(program, words, hart_id, limit=5000)
         if not golden.stopped:
@@ -52,9 +52,9 @@ class TestFL:
         return self.check(assemble(text), words, **how)
 
     @SETTINGS
-    @given(PROGRAMS, WORDS, STALLS, LATENCIES)
-    def test_random_programs(self, program, words, willing, latencies):
-        self.check(program, words * 40, willing, latencies)
+    @given(PROGRAMS, WORDS, STALLS, LATENCIES, st.integers(0, MASK))
+    def test_random_programs(self, program, words, willing, latencies, hart_id):
+        self.check(program, words * 40, willing, latencies, hart_id)
 
     @SETTINGS
     @given(WILD_PROGRAMS, WORDS, STALLS, LATENCIES)
