@@ -28,7 +28,8 @@ class Capacitor:
 class PadProcess:
     """Pads of a process, drawn by c4m-flexio.
 
-    package: of PDKMaster. module, factory: of it, what draws pads. cells: what a die uses, by c4m-flexio's names.
+    package: of PDKMaster. module: its pads. drawing, factory: the module and in it the class that draws those of a die.
+    cells: what a die uses, by the factory's names.
     signals: function -> its cell. fillers: their cells by width in um, the widest first. width_um, height_um: of
     a pad, its bond pad in the south. tap: mask of taps. bond: of the opening over a bond pad. masks: rules of KLayout
     for the masks that are added. capacitor: for decoupling. pad_v, core_v: supplies.
@@ -36,6 +37,7 @@ class PadProcess:
 
     package: str
     module: str
+    drawing: str
     factory: str
     signals: Mapping[str, str]
     supplies: Mapping[str, str]

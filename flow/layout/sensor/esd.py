@@ -7,13 +7,16 @@ ohm, a peak of 9 A at 500 V. The pad is stressed against the ground or the pads'
 import itertools
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from talbot.pixels.pixel_circuit.deck import analyse
 from talbot.platforms.pads import PadProcess
 
 GROUND, SUPPLY, CORE = "vss", "iovdd", "vdd"
 CORE_PF = 100.0  # between the core's supply and the ground
+HOT = 100.0  # degree Celsius
+RISE = 10e-6  # s
+RIPPLE, PERIOD, EDGE, PERIODS = 0.1, 100e-9, 1e-9, 20  # V from peak to peak of a square wave; s; s; number simulated
 OPTIONS = ".option gmin=1e-12 method=gear reltol=1e-3 itl4=200 temp=25"
 
 
@@ -31,6 +34,18 @@ class Pulse:
 
 HBM = Pulse("HBM", 2000.0, 100e-12, 7.5e-6, 1500.0, 300e-9)
 CDM = Pulse("CDM", 500.0, 10e-12, 10e-9, 25.0, 10e-9)
+
+
+class Quiet(NamedTuple):
+    """Currents of the core's supply into its pad in operation, A.
+
+    leak: at rest. rise: the largest while the supply rises within RISE, ripple: the mean under RIPPLE, both with that
+    of the capacitances.
+    """
+
+    leak: float
+    rise: float
+    ripple: float
 
 
 class Stress(NamedTuple):
@@ -58,15 +73,27 @@ def cases(process: PadProcess) -> Iterator[tuple[str, str, Pulse, str, int]]:
 
 
 def stress(
-    lines: Sequence[str], process: PadProcess, cell: str, pin: str, pulse: Pulse, to: str, sign: int, clamps: int
+    lines: Sequence[str],
+    process: PadProcess,
+    cell: str,
+    pin: str,
+    pulse: Pulse,
+    to: str,
+    sign: int,
+    clamps: int,
+    cores: int = 0,
 ) -> Stress:
-    """Simulate one pulse. lines: of models and pads. to: the net that is grounded. sign: of the charge."""
+    """Simulate one pulse. lines: of models and pads. to: the net that is grounded. sign: of the charge.
+
+    clamps, cores: other pads in the segment, of the pads' supply and of the core's.
+    """
     ports = next(line for line in lines if line.startswith(f".subckt {cell} ")).split()[2:]
     on: Mapping[str, str] = {to: "0"}
     nodes = [on.get(port, port) for port in ports]
     ground, supply, core = (on.get(net, net) for net in (GROUND, SUPPLY, CORE))
     deck = [*lines, OPTIONS, f"Xpad {' '.join(nodes)} {cell}"]
-    deck += [f"Xclamp_{k} {ground} {core} {supply} {process.supplies[SUPPLY]}" for k in range(clamps)]
+    for net, count in ((SUPPLY, clamps), (CORE, cores)):
+        deck += [f"X{net}_{k} {ground} {core} {supply} {process.supplies[net]}" for k in range(count)]
     deck += [
         f"Ccore {core} {ground} {CORE_PF:g}p",
         f"Cstart start 0 {pulse.farad:g} ic={sign * pulse.volts:g}",
@@ -86,3 +113,35 @@ def stress(
     waves = analyse(deck, [f"tran {step:g} {pulse.stop:g} 0 {step:g} uic"], vectors)
     peaks = [float(abs(wave).max()) for wave in waves]
     return Stress(cell, pulse.name, sign * pulse.volts, to, *peaks)
+
+
+def quiet(leaky: Sequence[str], fast: Sequence[str], process: PadProcess) -> Quiet:
+    """Simulate the core's pad in operation at HOT. leaky, fast: lines of models and pads, for leak and the others."""
+    high, half = process.core_v, PERIOD / 2
+    (leak,) = _supplied(leaky, process, f"{high}", "op", "i(vcore)")
+    (rise,) = _supplied(
+        fast, process, f"pwl(0 0 {RISE:g} {high})", f"tran {RISE / 500:g} {1.5 * RISE:g} 0 {RISE / 500:g}", "i(vcore)"
+    )
+    wave = f"pulse({high - RIPPLE / 2} {high + RIPPLE / 2} {half:g} {EDGE:g} {EDGE:g} {half - EDGE:g} {PERIOD:g})"
+    begin, end = PERIODS / 2 * PERIOD, PERIODS * PERIOD
+    (charge,) = _supplied(fast, process, wave, f"tran {PERIOD / 100:g} {end:g} {begin:g} {PERIOD / 100:g}", "v(charge)")
+    return Quiet(abs(float(leak[-1])), float(abs(rise).max()), float(charge[-1] - charge[0]) * 1e-12 / (end - begin))
+
+
+def _supplied(lines: Sequence[str], process: PadProcess, core: str, analysis: str, vector: str) -> Any:
+    """Return a vector of the core's pad at HOT. core: value of its source; v(charge): what it gave, pC."""
+    pad = process.supplies[CORE]
+    nets = {GROUND: "0", CORE: "core", SUPPLY: "pads"}
+    ports = next(line for line in lines if line.startswith(f".subckt {pad} ")).split()[2:]
+    deck = [
+        *lines,
+        OPTIONS.replace("temp=25", f"temp={HOT:g}"),
+        f"Xpad {' '.join(nets[port] for port in ports)} {pad}",
+        f"Vpads pads 0 {process.pad_v}",
+        f"Vcore core 0 {core}",
+        "Fcharge charge 0 Vcore 1",
+        "Ccharge charge 0 1p",
+        "Rcharge charge 0 1e12",
+        ".ic v(charge)=0",
+    ]
+    return analyse(deck, [analysis], [vector])

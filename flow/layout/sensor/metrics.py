@@ -20,7 +20,8 @@ PADS = "pad_drc_violations", "pads_unmatched"
 LOADS = "wire_pf", "worst_load_pf", "worst_load", "worst_delay_ns", "worst_delay", "loads_over"
 SLACKS = [name for name in DieSta.metrics if name != "f_max_mhz"]  # by corner
 PADS_ONLY = "pads: rules and LVS of each cell; ESD without resistance of wires and without parasitic bipolars"
-ESD = "esd_clamps", "esd_pad_v", "esd_core_v"
+ESD = "esd_clamps", "esd_core_clamps", "esd_pad_v", "esd_core_v"
+QUIET = "core_leak_ua", "core_rise_ua", "core_ripple_ua"
 WRAPPED = "the wrapper's pads without a driver have no ESD clamp; fill and seal ring are the shuttle's"
 SHOWN = 12  # nets in the summary, those with the largest loads
 BOXES_NOT_CHECKED = "insides of the black boxes: outlines with pins, no circuit; they have no rule, netlist or current"
@@ -59,7 +60,7 @@ def summarize(name: str, options: Options, runner: Runner, black_boxes: Sequence
         "black_boxes": list(black_boxes),
         "circuits": [block for block in BLOCKS if block not in black_boxes],
         **{key: metrics[key] for key in ROUTED + CHECKED + LOADS},
-        **{key: metrics.get(key) for key in (*PADS, *ESD)},
+        **{key: metrics.get(key) for key in (*PADS, *ESD, *QUIET)},
         "wrapper": plan["cell"] if wrapped else None,
         "leads": package.leads if package else None,
         "lead_pitch_mm": package.pitch_mm if package else None,

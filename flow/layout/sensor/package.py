@@ -165,7 +165,7 @@ def table(package: Package, leads: Sequence[Lead], volt: Mapping[str, float | No
 
 
 def protection(spice: str, cells: Sequence[str]) -> dict[str, str]:
-    """Of each pad what its netlist has of clamps: widths of thick-oxide transistors, resistor and diodes behind them.
+    """Of each pad what its netlist has of clamps: widths of transistors by oxide, resistor and diodes behind them.
 
     Raises StepError for a pad that has no clamp.
     """
@@ -181,18 +181,19 @@ def protection(spice: str, cells: Sequence[str]) -> dict[str, str]:
 
     found = {}
     for cell in cells:
-        width = {"n": 0.0, "p": 0.0}
+        width = dict[tuple[str, str], float]()
         parts = []
         for of, line in inside(cell):
-            if of.startswith("Clamp") and (m := re.search(r"([np])fet_g5v0d10v5\S* l=\S+ w=(\S+)", line)):
-                width[m[1]] += 1e6 * float(m[2])
+            if line.startswith("Mclamp_") and (m := re.search(r"([np])fet_(\S+) l=\S+ w=(\S+)", line)):
+                kind = m[1], "" if m[2].startswith("g5v0d10v5") else " of thin oxide"
+                width[kind] = width.get(kind, 0.0) + 1e6 * float(m[3])
             if of == "SecondaryProtection" and line.startswith("R"):
                 parts.append(f"{float(line.split()[3]):.0f} Ohm and two diodes behind it")
-            if of == "RCClampInverter" and "RC clamp" not in parts:
+            if of.startswith("RCClampInverter") and "RC clamp" not in parts:
                 parts.append("RC clamp")
-        if not sum(width.values()):
+        if not width:
             raise StepError(f"pads: {cell} has no clamp")
-        clamps = [f"{kind} {um:.0f} um" for kind, um in width.items() if um]
+        clamps = [f"{kind} {um:.0f} um{oxide}" for (kind, oxide), um in sorted(width.items())]
         found[cell] = ", ".join([*clamps, *parts])
     return found
 

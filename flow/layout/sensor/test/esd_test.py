@@ -5,6 +5,7 @@ import math
 import pytest
 
 from talbot.flow.layout.sensor import esd
+from talbot.flow.layout.sensor.steps.die_esd import fewest
 from talbot.platforms.pads import esd_models, pad_process
 
 pytestmark = pytest.mark.needs("layout", "ngspice")
@@ -17,6 +18,10 @@ Rp2c p2c vss 1.0000000000e+03 sky130_fd_pr__res_generic_po l=5e-06 w=1e-06
 .subckt IOPadIOVdd vss vdd iovdd
 Riovdd iovdd vss 1.0000000000e+06 sky130_fd_pr__res_generic_po l=5e-06 w=1e-06
 .ends IOPadIOVdd
+"""
+RESISTOR = """.subckt IOPadVddClamp vss vdd iovdd
+Rvdd vdd vss 1.0000000000e+06 sky130_fd_pr__res_generic_po l=5e-06 w=1e-06
+.ends IOPadVddClamp
 """
 CLAMPED = SHORT.replace(
     ".ends IOPadIOVdd",
@@ -60,4 +65,30 @@ def test_two_clamps_carry_it_at_a_lower_voltage():
 def test_every_pad_is_stressed_both_ways():
     cases = list(esd.cases(PROCESS))
     assert len(set(cases)) == len(cases) == 4 * 8 + 4
-    assert {case[0] for case in cases} == {*PROCESS.signals.values(), "IOPadVdd", "IOPadIOVdd"}
+    assert {case[0] for case in cases} == {
+        *PROCESS.signals.values(),
+        *(PROCESS.supplies[pin] for pin in ("vdd", "iovdd")),
+    }
+
+
+def test_the_core_pads_of_the_segment_lower_its_voltage():
+    """The other pad of the core's supply is 1 ohm to the ground."""
+    lines = esd_models("sky130").lines(SHORT + RESISTOR + RESISTOR.replace("IOPadVddClamp", "Pad"))
+    lines = [line.replace("1.0000000000e+06", "1") if line.startswith("Rvdd") else line for line in lines]
+    alone, both = (esd.stress(lines, PROCESS, "Pad", "vdd", esd.HBM, "vss", 1, 1, n) for n in (0, 1))
+    assert both.core == pytest.approx(alone.core / 2, rel=0.02)
+
+
+def test_a_resistor_conducts_in_operation_what_ohm_says():
+    """1 Mohm: at rest, under a ripple whose mean is 0, and while the supply rises."""
+    lines = esd_models("sky130").lines(RESISTOR)
+    found = esd.quiet(lines, lines, PROCESS)
+    assert all(ampere == pytest.approx(PROCESS.core_v / 1e6, rel=0.01) for ampere in found)
+
+
+def test_the_net_with_the_fewest_clamps_is_the_worst():
+    ring = [{"cell": cell, "nets": {"vdd": net}} for cell, net in (("Core", "a"), ("Core", "a"), ("Core", "b"))]
+    ring.append({"cell": "Filler", "nets": {}})
+    assert fewest(ring, "vdd", "Core") == 1
+    ring.append({"cell": "Input", "nets": {"vdd": "c"}})
+    assert fewest(ring, "vdd", "Core") == 0

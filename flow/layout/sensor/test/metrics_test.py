@@ -62,7 +62,7 @@ def test_a_small_die(tmp_path, monkeypatch):
     summary = json.loads(path.read_text())
     assert lines == [] and summary["lvs_match"] and summary["drc_violations"] == summary["antenna_violations"] == 0
     assert summary["equivalence"] is None and summary["gate_tests"] is None and summary["wns_ns"] is None
-    assert summary["esd_clamps"] == 1  # of pads without a transistor the voltages mean nothing
+    assert summary["esd_clamps"] == summary["esd_core_clamps"] == 1
     assert summary["leads"] >= summary["pads"] and 0 < summary["bond_wire_mm"] <= 5
     assert summary["black_boxes"] == list(BLOCKS) and summary["routed"] == len(small.core_pins())
     present = {file.name for file in (tmp_path / "out").iterdir()}
@@ -77,6 +77,7 @@ def test_a_small_die(tmp_path, monkeypatch):
         ("lvs_match", False),
         ("drc_violations", 1),
         ("antenna_violations", None),
+        ("esd_core_v", 4.51),
         ("bond_wire_mm", 5.01),
         ("wns_ns", {"ss": -0.1}),
     ):

@@ -76,12 +76,16 @@ def test_two_leads_swapped_cross():
 
 
 SPICE = """.subckt Clamp_N n g
-M1 n g n n sky130_fd_pr__nfet_g5v0d10v5__model l=6e-07 w=1.69e-05
-M2 n g n n sky130_fd_pr__nfet_g5v0d10v5__model l=6e-07 w=1.69e-05
+Mclamp_g0 n g n n sky130_fd_pr__nfet_g5v0d10v5__model l=6e-07 w=1.69e-05
+Mclamp_g1 n g n n sky130_fd_pr__nfet_g5v0d10v5__model l=6e-07 w=1.69e-05
 .ends Clamp_N
 .subckt Good n g
 Xclamp n g Clamp_N
 .ends Good
+.subckt Core n g
+Mclamp_g0_r0 n g n n sky130_fd_pr__nfet_01v8__model l=1.8e-07 w=1.9e-05
+Mnmos0 n g n n sky130_fd_pr__nfet_01v8__model l=1.8e-07 w=2.4e-06
+.ends Core
 .subckt Bare n g
 R1 n g 2.4e+02 res l=1 w=1
 .ends Bare
@@ -89,7 +93,8 @@ R1 n g 2.4e+02 res l=1 w=1
 
 
 def test_a_pad_without_a_clamp_is_named():
-    assert package.protection(SPICE, ["Good"]) == {"Good": "n 34 um"}
+    clamps = {"Good": "n 34 um", "Core": "n 19 um of thin oxide"}
+    assert package.protection(SPICE, ["Good", "Core"]) == clamps
     with pytest.raises(StepError, match="pads: Bare has no clamp"):
         package.protection(SPICE, ["Good", "Bare"])
 

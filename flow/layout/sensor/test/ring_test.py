@@ -84,6 +84,15 @@ def test_only_a_line_with_another_track_before_its_own_has_a_slot(cells):
     assert [net for net in ("vdd", "vss", "vddio") if pads.crossed(net, "west", 500_000)] == ["vddio"]
 
 
+def test_every_segment_has_a_clamp_of_the_cores_supply(cells):
+    """A segment is what lies between two borders; all corners but the south-west and north-west are inside of one."""
+    _, places, gaps = made(cells, 3_000_000)
+    border = {gap.side: gap.at for gap in gaps if gap.whole}
+    clamps = [(place.side, place.at < border[place.side]) for place in places if place.cell == PROCESS.supplies["vdd"]]
+    segments = ("west", True), ("west", False), ("east", True), ("east", False)
+    assert all(clamps.count(segment) >= 1 for segment in segments) and PROCESS.supplies["vdd"].endswith("Clamp")
+
+
 def test_a_line_at_the_border_of_two_segments(cells):
     with pytest.raises(NoRoom, match="ring: west_border and slot of vddr overlap in the west, at 916 um"):
         made(cells, 3_000_000, lines=[920_000])
