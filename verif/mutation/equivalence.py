@@ -21,8 +21,9 @@ EQUIVALENT, DIFFERENT, UNKNOWN = "equivalent", "different", "unknown"
 
 # The miter as an AIG: two-input gates and flip-flops that start at 0
 SCRIPT = """read_verilog -sv mutants.v miter.v; hierarchy -check -top Miter; flatten -noscopeinfo; proc;
-opt_clean; memory_map; setundef -init -zero; opt -full; techmap; opt; async2sync; dfflegalize -cell $_DFF_P_ 0; opt_clean;
-setundef -undriven -zero; abc -g AND; opt_clean; aigmap; opt_clean; stat; write_aiger -zinit -symbols miter.aig"""
+opt_clean; memory_map; setundef -init -zero; opt -full; techmap; opt; async2sync; dfflegalize -cell $_DFF_P_ 0;
+opt_clean; setundef -undriven -zero; abc -g AND; opt_clean; aigmap; opt_clean; stat;
+write_aiger -zinit -symbols miter.aig"""
 
 
 def miter(top: str, ports: Sequence[Port], number: int) -> str:
