@@ -124,7 +124,7 @@ DESIGNS = {
         tile("tt_quad_divider", "tt_um_talbot_divider", netlist_names=("tt_um_talbot_divider",), frame="tt_1x1"),
         tile("tt_amp_ctrl", "tt_um_talbot_amp_ctrl", netlist_names=("tt_um_talbot_amp_ctrl",), frame="tt_1x2"),
         tile("tt_asp_chip", "tt_um_talbot_chip", netlist_names=("tt_um_talbot_chip",), frame="tt_4x4"),
-        chip(CHIP, utilization=0.62, aspect=1.5, closed=("bottom", "top")),
+        chip(CHIP, utilization=0.5, aspect=1.5, closed=("bottom", "top")),
     )
 }
 
