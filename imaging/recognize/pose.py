@@ -29,7 +29,7 @@ def heads(count: int, seed: int) -> tuple[npt.NDArray[np.float32], Floats]:
     """
     rng = np.random.default_rng([seed, 61])
     angles = rng.uniform(-1, 1, (count, 2)) * (YAW, PITCH)
-    pictures = np.stack([_head(*np.deg2rad(pair), rng) for pair in angles])
+    pictures = np.stack([_head(yaw, pitch, rng) for yaw, pitch in np.deg2rad(angles)])
     return np.clip(pictures, 0.02, 1).astype(np.float32), angles
 
 
