@@ -13,8 +13,8 @@ from talbot.flow.openroad.results import broken
 
 FOUNDRY = "quad_divider", "amp_ctrl", "asp_chip"  # designs with a row of the foundry's cells, run or not
 HEAD = (
-    "design | cells | area, mm2 | instances | cell area, um2 | f_max at ss, MHz | setup, hold, ns | "
-    "power at tt, uW | leakage at tt / ss / ff, uW | wire, mm | wire, pF | seconds | MiB | limits broken | utilization"
+    "design | cells | area, mm2 | instances | f_max at ss, MHz | setup, hold, ns | power at tt, uW | "
+    "leakage at tt / ss / ff, uW | wire, mm | seconds | limits broken | utilization"
 )
 
 
@@ -75,17 +75,15 @@ def row(summary: Mapping[str, Any]) -> list[str]:
     figures = (
         (summary["area_um2"], 1e-6, ".4f"),
         (summary["cells"], 1, ",d"),
-        (summary["cell_area_um2"], 1, ",.0f"),
         (summary["f_max_mhz"], 1, ".1f"),
     )
-    more = (summary["wire_um"], 1e-3, ",.1f"), (summary["wire_pf"], 1, ",.1f")
-    run = (sum(summary["wall_s"].values()), 1, ",.0f"), (max(summary["peak_mib"].values()), 1, ",d")
+    more = (summary["wire_um"], 1e-3, ",.1f"), (sum(summary["wall_s"].values()), 1, ",.0f")
     return [
         *(_written(*figure) for figure in figures),
         ", ".join(_written(slack, 1, "+.2f") for slack in slacks),
         _written(power, 1, ",.0f"),
         leakage,
-        *(_written(*figure) for figure in (*more, *run)),
+        *(_written(*figure) for figure in more),
         str(len(broken(dict(summary)))),
         _written(summary.get("utilization"), 1, ".2f"),
     ]

@@ -27,7 +27,7 @@ def test_a_row_stays_where_its_layout_is_not_there(tmp_path, capsys):
     written = document.read_text().splitlines()
     assert written[0] == "<!-- cells -->" and "| quad_divider | sky130_fd_sc_hd | 7 |" in written
     (measured,) = [text for text in written if text.startswith("| quad_divider | compact |")]
-    assert "| 0.0050 | 5,000 |" in measured and "| 637 | 405 |" in measured
+    assert "| 0.0050 | 5,000 |" in measured and "| 5.0 | 637 |" in measured
     assert "| +1.00, +0.10 | 29 | 0.06 / 1,234 / 0.50 |" in measured
     assert {"Not run with `compact`: `amp_ctrl`.", "Not run with `sky130_fd_sc_hd`: `amp_ctrl`."} <= set(written)
     capsys.readouterr()

@@ -206,7 +206,7 @@ class CorePad(FactoryCellT):
 
 
 class PadFactory(Sky130IOFactory):
-    """c4m-flexio's pads and the pad of the core's supply with its clamp."""
+    """Pads of c4m-flexio, and that of the core's supply with its clamp."""
 
     def get_cell(self, name: str, **options: Any) -> Any:
         """Return the cell ``name``, drawn on the first call."""
