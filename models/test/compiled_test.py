@@ -37,7 +37,7 @@ def test_what_is_damaged_is_compiled_again(stats, tmp_path, suffix):
     assert [stats(), stats()] == [(0, 1), (1, 0)]
     (file,) = (tmp_path / "__pycache__").glob(f"*.{suffix}")
     data = file.read_bytes()
-    for damaged in (b"", data[:300], bytes(range(256)), data[:600] + b"x" + data[601:]):
+    for damaged in (b"", data[:300], bytes(range(256)), data[:600] + bytes([data[600] ^ 1]) + data[601:]):
         file.write_bytes(damaged)
         assert [stats(), stats()] == [(0, 1), (1, 0)]
 

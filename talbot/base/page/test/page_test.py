@@ -152,7 +152,11 @@ def test_a_compiled_template_that_is_damaged_is_compiled_again(tmp_path, monkeyp
     monkeypatch.setattr("talbot.base.page.BUILD", tmp_path)
     whole, files = page(), list((tmp_path / "templates").iterdir())
     assert files
-    for damage in (lambda data: b"", lambda data: data[:-9], lambda data: data[:60] + b"x" + data[61:]):
+    for damage in (
+        lambda data: b"",
+        lambda data: data[:-9],
+        lambda data: data[:60] + bytes([data[60] ^ 1]) + data[61:],
+    ):
         kept = [file.read_bytes() for file in files]
         for file in files:
             file.write_bytes(damage(file.read_bytes()))
