@@ -84,6 +84,7 @@ class CorePad(FactoryCellT):
         low = self.ring("n", "iovdd", 0.0, RING_LOW)
         self.ring("n", "iovdd", RING_LOW, track - fab.computed.guardring_space)
         high = self.ring("p", "iovss", track, track + RING_HIGH)
+        self.tie()
         self.transistor()
         self.trigger()
         frame.draw_trackconn(
@@ -104,6 +105,17 @@ class CorePad(FactoryCellT):
         ring = self.circuit.instantiate(cell, name=f"ring_{round(bottom)}")
         self.circuit.nets[net].childports += ring.ports["conn"]
         return self.layouter.place(ring, x=width / 2, y=(bottom + top) / 2)
+
+    def tie(self) -> None:
+        """Join the rings of the pads' supply to its track, as the clamp of that supply does in other pads."""
+        comp, frame, net = self.fab.computed, self.fab.frame, self.circuit.nets["iovdd"]
+        track, width = frame.track_specs["iovdd"].bottom, self.fab.spec.monocell_width
+        top = track - comp.guardring_space
+        left = frame.pad_bb(prim=comp.metal[2].prim).right + 3 * SPACE + LINE  # next to the ground's line
+        box = left, top - comp.guardring_width, width - SPACE, top
+        for level in (1, 2):
+            self.vias(level, net, *box)
+        self.metal(3, net, *box[:3], track + LINE)
 
     def metal(self, level: int, net: Any, left: float, bottom: float, right: float, top: float) -> None:
         """Draw a rectangle; level 1 is the lowest metal."""
