@@ -72,11 +72,7 @@ def row(summary: Mapping[str, Any]) -> list[str]:
     slacks = [min(summary[name].values()) if summary[name] else None for name in ("wns_ns", "whs_ns")]
     power = next((uw for corner, uw in (summary["power_uw"] or {}).items() if corner.startswith("tt")), None)
     leakage = " / ".join(f"{uw:,.{0 if uw >= 100 else 2}f}" for uw in (summary.get("leakage_uw") or {}).values())
-    figures = (
-        (summary["area_um2"], 1e-6, ".4f"),
-        (summary["cells"], 1, ",d"),
-        (summary["f_max_mhz"], 1, ".1f"),
-    )
+    figures = ((summary["area_um2"], 1e-6, ".4f"), (summary["cells"], 1, ",d"), (summary["f_max_mhz"], 1, ".1f"))
     more = (summary["wire_um"], 1e-3, ",.1f"), (sum(summary["wall_s"].values()), 1, ",.0f")
     return [
         *(_written(*figure) for figure in figures),
