@@ -88,7 +88,7 @@ def _sent(active: npt.NDArray[np.bool_], frames: int) -> tuple[float, tuple[floa
     """Bytes and energy of a clip of bit maps (n, maps, height, width), of which ``frames`` frames are scanned."""
     pixels = active.shape[2] * active.shape[3]
     share = active.sum() / (len(active) * frames * pixels)
-    joules = frames * gradient.power(1, pixels, float(share)) / gradient.RATE
+    joules = frames * gradient.energy(1, pixels, float(share))
     return active.shape[1] * gradient.packed_bytes(pixels, 1), (joules, joules)
 
 

@@ -66,7 +66,7 @@ def recover(base: Setting, data: Pictures) -> dict[str, Any]:
     with threadpool_limits(1):
         for seed in base.draws:
             train, test = data.split(seed)
-            threshold = float(np.quantile(gradient.contrast(light[train]), 1 - ACTIVE))
+            threshold = gradient.threshold_of(light[train], ACTIVE)
             active = gradient.spatial(light, threshold)
             dx, dy = (np.sign(d) * (np.abs(d) > threshold) for d in differences(light))
             estimates = {
@@ -85,7 +85,7 @@ def recover(base: Setting, data: Pictures) -> dict[str, Any]:
                 scores.setdefault(name, []).append(_score(estimate, truth[test]))
             if not shown:
                 shown = {"picture": truth[test], BINARY: active[test]} | images
-    joules = gradient.power(1, pixels, float(np.mean(share))) / gradient.RATE
+    joules = gradient.energy(1, pixels, float(np.mean(share)))
     scores.setdefault(JPEG, [(None, None)])  # no JPEG is that small
     rows = {name: _figures(pairs) | _cost(name, bits, joules, seen.energy) for name, pairs in scores.items()}
     drawn = sheet(shown)

@@ -10,7 +10,7 @@ from threadpoolctl import threadpool_limits
 from talbot.imaging.recognize import chip, study
 from talbot.imaging.recognize.data import Pictures
 from talbot.imaging.recognize.intensity import ACTIVE
-from talbot.imaging.recognize.study import MAC, Setting, in_focus
+from talbot.imaging.recognize.study import Setting, Work, in_focus
 from talbot.models.recognition import gradient, kernel
 from talbot.models.recognition.statistics import Spread
 
@@ -88,9 +88,9 @@ def regress(base: Setting, count: int = HEADS) -> dict[str, Any]:
     coarse = chip.read(in_focus(base.sensor, small.shape[1:]), small, "image", 0, base.noise, base.seed)
     codes, few = image.codes.astype(np.float32), coarse.codes.astype(np.float32)
     data = Pictures("heads", np.clip(codes, 0, 255).astype(np.uint8), np.zeros(count, np.int64))
-    train = data.split(base.seed)[0]
-    active = gradient.spatial(codes, float(np.quantile(gradient.contrast(codes[train]), 1 - ACTIVE)))
-    joules = gradient.power(1, SIZE * SIZE, float(active.mean())) / gradient.RATE
+    splits = [data.split(seed) for seed in base.draws]
+    active = gradient.spatial(codes, gradient.threshold_of(codes[splits[0][0]], ACTIVE))
+    joules = gradient.energy(1, SIZE * SIZE, float(active.mean()))
     inputs = {
         "binary gradient (Eq. A.1)": (active.astype(np.float32), size, (joules, joules)),
         "plain image": (codes, image.bytes, image.energy),
@@ -103,21 +103,16 @@ def regress(base: Setting, count: int = HEADS) -> dict[str, Any]:
     }
     rows = {}
     with threadpool_limits(1):
-        for name, (pictures, bytes_, energy) in inputs.items():
-            errors, operations = [], 0
-            for seed in base.draws:
-                train, test = data.split(seed)
-                x = kernel.features(pictures[..., None])
+        for name, (pictures, frame_bytes, energy) in inputs.items():
+            errors, work = [], Work(0, 0.0)
+            x = kernel.features(pictures[..., None])
+            for seed, (train, test) in zip(base.draws, splits, strict=True):
                 model = kernel.regress(x[train], angles[train], seed)
                 errors.append(np.abs(model.scores(x[test]) - angles[test]).mean(0))
-                operations = model.flops
-            rows[name] = _row(errors) | {
-                "bytes": bytes_,
-                "energy_uj": [1e6 * e for e in energy],
-                "network_uj": 1e6 * MAC * operations,
-            }
-    errors = [np.abs(angles[test] - angles[train].mean(0)).mean(0) for train, test in map(data.split, base.draws)]
-    rows["mean of the angles to learn from"] = _row(errors) | {"bytes": 0, "energy_uj": [0.0, 0.0], "network_uj": 0.0}
+                work = Work.of(model.flops)
+            rows[name] = _row(errors, frame_bytes, energy, work)
+    errors = [np.abs(angles[test] - angles[train].mean(0)).mean(0) for train, test in splits]
+    rows["mean of the angles to learn from"] = _row(errors, 0, (0.0, 0.0), Work(0, 0.0))
     some = np.vstack([np.hstack([*data.images[:SHOWN]]), np.hstack([*(255 * active[:SHOWN].astype(np.uint8))])])
     return {"rows": rows, "size": list(some.shape), "pixels": some.tobytes().hex()}
 
@@ -128,8 +123,10 @@ def _standard(codes: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
     return level / np.maximum(level.std((1, 2), keepdims=True), 1e-3)
 
 
-def _row(errors: list[Floats]) -> dict[str, Any]:
-    """Figures of the errors (yaw, pitch) of every seed."""
+def _row(errors: list[Floats], frame_bytes: float, energy: tuple[float, float], work: Work) -> dict[str, Any]:
+    """Figures of the errors (yaw, pitch) of every seed, and what a frame costs."""
     spread = Spread.of(np.mean(errors, 1))
     yaw, pitch = np.mean(errors, 0)
-    return {"error_deg": spread.mean, "error_deg_std": spread.std, "yaw_deg": float(yaw), "pitch_deg": float(pitch)}
+    error = {"error_deg": spread.mean, "error_deg_std": spread.std, "yaw_deg": float(yaw), "pitch_deg": float(pitch)}
+    cost = {"bytes": frame_bytes, "energy_uj": [1e6 * e for e in energy], "network_uj": 1e6 * work.joules}
+    return error | cost

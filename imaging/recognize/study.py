@@ -155,7 +155,7 @@ def see(setting: Setting, radiance: npt.NDArray[np.float32]) -> Seen:
     if setting.front == "gradient":
         active = gradient.levels(reading.codes, setting.levels, GRADIENT * WHITE)
         share = float((active > 0).mean())
-        joules = gradient.power(setting.levels, height * width, share) / gradient.RATE
+        joules = gradient.energy(setting.levels, height * width, share)
         size = gradient.packed_bytes(height * width, setting.levels)
         return Seen(active[..., None].astype(np.float32), size, (joules, joules), share)
     filters = setting.front in ("random", "learned") or setting.classifier != "kernel"

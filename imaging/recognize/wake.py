@@ -70,7 +70,7 @@ def detect(sensor: SensorParameters, contrast: float, seed: int) -> dict[str, An
         "ternary edges that change": (_densest(signs[:, 1] != signs[:, 0], SCALE), edge.energy, edge.bytes),
         "temporal gradient (Eq. A.2)": (
             _densest(changes, 1),
-            (gradient.power(1, SIZE * SIZE, float(changes.mean())) / gradient.RATE,) * 2,
+            (gradient.energy(1, SIZE * SIZE, float(changes.mean())),) * 2,
             gradient.packed_bytes(SIZE * SIZE, 1),
         ),
         "image difference": (np.abs(codes[:, 1] - codes[:, 0]).max((1, 2)), plain.energy, plain.bytes),

@@ -75,6 +75,23 @@ def power(bits: int, pixels: int, active: float) -> float:
     return pixels * ((1 << bits) * SCAN + active * DELIVER)
 
 
+def energy(bits: int, pixels: int, active: float) -> float:
+    """Energy of a frame of binary gradients.
+
+    bits, pixels, active: as of `power`. Returns float: in J.
+    """
+    return power(bits, pixels, active) / RATE
+
+
+def threshold_of(pictures: npt.ArrayLike, active: float) -> float:
+    """Threshold above which a share of the pixels is active.
+
+    pictures: (n, height, width), intensity. active: the share, 0..1. Returns float: in the unit of the intensity.
+    """
+    check_real("active", active, 0, 1)
+    return float(np.quantile(contrast(pictures), 1 - active))
+
+
 def packed_bytes(pixels: int, bits: int) -> int:
     """Bytes of a frame of gradients sent as a bit map.
 
