@@ -1,26 +1,20 @@
 """The lanes of a memory's word alone against the golden instructions."""
 
-from functools import cache
 from itertools import product
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from talbot.rtl.harness.testbench import build
 from talbot.rtl.proc.access_rtl import LoadLanes, StoreLanes
 from talbot.rtl.proc.isa import LOADS, MASK, STORES, lanes, loaded
-
-
-@cache
-def simulators():
-    return build(StoreLanes()), build(LoadLanes())
+from talbot.rtl.proc.test.proc_bench import simulator
 
 
 @settings(max_examples=40, deadline=None)
 @given(st.integers(0, MASK))
 def test_lanes(word):
     """Every size at every address: strobe and data of a store, the register of a load."""
-    store, load = simulators()
+    store, load = simulator(StoreLanes), simulator(LoadLanes)
     for name, low in product((*STORES, *LOADS), range(4)):
         funct3, golden = (LOADS | STORES)[name], lanes(name, low, word)
         store.size @= funct3 & 3

@@ -1,25 +1,19 @@
 """The Alu alone against the golden instructions."""
 
-from functools import cache
 from itertools import product
 
 import pytest
 
-from talbot.rtl.harness.testbench import build
 from talbot.rtl.proc.alu_rtl import Alu
 from talbot.rtl.proc.isa import BRANCHES, MASK, REGISTER, TABLE, compute, taken
+from talbot.rtl.proc.test.proc_bench import simulator
 
 CORNERS = 0, 1, 0xFFFFFFFF, 0x7FFFFFFF, 0x80000000, 0x12345678, 0xEDCBA987
 
 
-@cache
-def simulator():
-    return build(Alu())
-
-
 def evaluated(name, a, b):
     """Return result and decision of the Alu for an instruction."""
-    sim, (_, _, funct3, funct7) = simulator(), TABLE[name]
+    sim, (_, _, funct3, funct7) = simulator(Alu), TABLE[name]
     sim.funct3 @= funct3
     sim.alternative @= funct7 == 0x20
     sim.a @= a

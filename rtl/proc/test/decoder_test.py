@@ -1,11 +1,8 @@
 """The Decoder alone against the golden instructions."""
 
-from functools import cache
-
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from talbot.rtl.harness.testbench import build
 from talbot.rtl.proc.decoder_rtl import ALU, BRANCH, CHANNEL, HALT, JUMP, LOAD, STORE, SUM, Decoder
 from talbot.rtl.proc.isa import (
     BRANCHES,
@@ -21,6 +18,7 @@ from talbot.rtl.proc.isa import (
     encode,
 )
 from talbot.rtl.proc.test.isa_test import instructions
+from talbot.rtl.proc.test.proc_bench import simulator
 
 KINDS = dict.fromkeys((*REGISTER, *IMMEDIATE, *SHIFTS), ALU) | dict.fromkeys(("lui", "auipc", "fence"), SUM)
 KINDS |= dict.fromkeys(LOADS, LOAD) | dict.fromkeys(STORES, STORE) | dict.fromkeys(BRANCHES, BRANCH)
@@ -34,16 +32,11 @@ any_word = st.one_of(
 )
 
 
-@cache
-def simulator():
-    return build(Decoder())
-
-
 @settings(max_examples=600, deadline=None)
 @given(any_word, words)
 def test_decoder(word, hart_id):
     """Every field of any instruction; a word that is none, or one bit away from one, too."""
-    sim = simulator()
+    sim = simulator(Decoder)
     sim.word @= word
     sim.hart_id @= hart_id
     sim.sim_eval_combinational()

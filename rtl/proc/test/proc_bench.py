@@ -12,7 +12,7 @@ ALWAYS = (True,)
 
 
 @cache
-def simulator(cls, verilog):
+def simulator(cls, verilog=False):
     return build(cls(), verilog)
 
 
