@@ -17,7 +17,7 @@ CORE_PF = 100.0  # between the core's supply and the ground
 HOT = 100.0  # degree Celsius
 RISE = 10e-6  # s
 RIPPLE, PERIOD, EDGE, PERIODS = 0.1, 100e-9, 1e-9, 20  # V from peak to peak of a square wave; s; s; number simulated
-OPTIONS = ".option gmin=1e-12 method=gear reltol=1e-3 itl4=200 temp=25"
+ROOM, OPTIONS = 25.0, ".option gmin=1e-12 method=gear reltol=1e-3 itl4=200 temp={:g}"  # degree Celsius
 
 
 @dataclass(frozen=True)
@@ -87,11 +87,9 @@ def stress(
 
     clamps, cores: other pads in the segment, of the pads' supply and of the core's.
     """
-    ports = next(line for line in lines if line.startswith(f".subckt {cell} ")).split()[2:]
     on: Mapping[str, str] = {to: "0"}
-    nodes = [on.get(port, port) for port in ports]
     ground, supply, core = (on.get(net, net) for net in (GROUND, SUPPLY, CORE))
-    deck = [*lines, OPTIONS, f"Xpad {' '.join(nodes)} {cell}"]
+    deck = [*lines, OPTIONS.format(ROOM), _pad(lines, cell, on)]
     for net, count in ((SUPPLY, clamps), (CORE, cores)):
         deck += [f"X{net}_{k} {ground} {core} {supply} {process.supplies[net]}" for k in range(count)]
     deck += [
@@ -115,6 +113,12 @@ def stress(
     return Stress(cell, pulse.name, sign * pulse.volts, to, *peaks)
 
 
+def _pad(lines: Sequence[str], cell: str, on: Mapping[str, str]) -> str:
+    """Return the pad as an instance. on: port -> net, of ports on a net of another name."""
+    ports = next(line for line in lines if line.startswith(f".subckt {cell} ")).split()[2:]
+    return f"Xpad {' '.join(on.get(port, port) for port in ports)} {cell}"
+
+
 def quiet(leaky: Sequence[str], fast: Sequence[str], process: PadProcess) -> Quiet:
     """Simulate the core's pad in operation at HOT. leaky, fast: lines of models and pads, for leak and the others."""
     high, half = process.core_v, PERIOD / 2
@@ -130,13 +134,10 @@ def quiet(leaky: Sequence[str], fast: Sequence[str], process: PadProcess) -> Qui
 
 def _supplied(lines: Sequence[str], process: PadProcess, core: str, analysis: str, vector: str) -> Any:
     """Return a vector of the core's pad at HOT. core: value of its source; v(charge): what it gave, pC."""
-    pad = process.supplies[CORE]
-    nets = {GROUND: "0", CORE: "core", SUPPLY: "pads"}
-    ports = next(line for line in lines if line.startswith(f".subckt {pad} ")).split()[2:]
     deck = [
         *lines,
-        OPTIONS.replace("temp=25", f"temp={HOT:g}"),
-        f"Xpad {' '.join(nets[port] for port in ports)} {pad}",
+        OPTIONS.format(HOT),
+        _pad(lines, process.supplies[CORE], {GROUND: "0", CORE: "core", SUPPLY: "pads"}),
         f"Vpads pads 0 {process.pad_v}",
         f"Vcore core 0 {core}",
         "Fcharge charge 0 Vcore 1",

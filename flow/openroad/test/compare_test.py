@@ -12,8 +12,7 @@ SUMMARY = {
     "power_uw": {"tt": 29.0},
     "leakage_uw": {"tt": 0.061, "ss": 1234.4, "ff": 0.5},
     "wall_s": {"route": 600.0, "sta": 37.4},
-    "peak_mib": {"route": 405},
-} | dict.fromkeys(("area_um2", "cells", "cell_area_um2", "f_max_mhz", "wire_um", "wire_pf"), 5000)
+} | dict.fromkeys(("area_um2", "cells", "f_max_mhz", "wire_um"), 5000)
 
 
 def test_a_row_stays_where_its_layout_is_not_there(tmp_path, capsys):

@@ -82,8 +82,8 @@ def test_the_core_pads_of_the_segment_lower_its_voltage():
 def test_a_resistor_conducts_in_operation_what_ohm_says():
     """1 Mohm: at rest, under a ripple whose mean is 0, and while the supply rises."""
     lines = esd_models("sky130").lines(RESISTOR)
-    found = esd.quiet(lines, lines, PROCESS)
-    assert all(ampere == pytest.approx(PROCESS.core_v / 1e6, rel=0.01) for ampere in found)
+    currents = esd.quiet(lines, lines, PROCESS)
+    assert all(ampere == pytest.approx(PROCESS.core_v / 1e6, rel=0.01) for ampere in currents)
 
 
 def test_the_net_with_the_fewest_clamps_is_the_worst():

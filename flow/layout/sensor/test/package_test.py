@@ -32,11 +32,11 @@ def plan(**sides):
 
 
 def test_leads_are_counterclockwise_from_the_north_of_the_west():
-    chosen, found = package.packaged(plan(west=["low", "high"], south=["a", "b"], east=["c", "d"], north=["f", "e"]))
+    chosen, leads = package.packaged(plan(west=["low", "high"], south=["a", "b"], east=["c", "d"], north=["f", "e"]))
     assert chosen == package.Package(48, 0.5) and chosen.body_mm == 7.5
-    assert [lead.signal for lead in found] == ["high", "low", "a", "b", "c", "d", "e", "f"]
-    assert [lead.number for lead in found] == [4, 10, 16, 22, 28, 34, 40, 46]
-    assert found[0].lead_mm == (-(7.5 / 2 - 0.6), 2.5 * 0.5) and package.crossings(found) == []
+    assert [lead.signal for lead in leads] == ["high", "low", "a", "b", "c", "d", "e", "f"]
+    assert [lead.number for lead in leads] == [4, 10, 16, 22, 28, 34, 40, 46]
+    assert leads[0].lead_mm == (-(7.5 / 2 - 0.6), 2.5 * 0.5) and package.crossings(leads) == []
 
 
 def test_the_fullest_side_decides_the_package():
@@ -65,8 +65,8 @@ def test_a_wire_that_is_too_long_breaks_a_limit():
 
 
 def test_two_leads_swapped_cross():
-    _, found = package.packaged(plan(south=["a", "b", "c"]))
-    one, other, third = found
+    _, leads = package.packaged(plan(south=["a", "b", "c"]))
+    one, other, third = leads
     swapped = [
         package.Lead(one.number, "a", one.cell, one.pad_um, other.lead_mm, one.die_mm),
         package.Lead(other.number, "b", other.cell, other.pad_um, one.lead_mm, other.die_mm),
@@ -106,8 +106,8 @@ def test_numbers_of_supply_pads_are_not_of_the_lead():
 def test_an_analog_signal_has_no_level_of_its_pad():
     """What is to be 1.8 V or less at an analog pad is not said to be the pads' 3.3 V."""
     process = pad_process("sky130")
-    _, found = package.packaged(plan(south=["clk", "vref"]))
-    clk, vref = found[0], replace(found[1], cell=process.signals["analog"])
+    _, leads = package.packaged(plan(south=["clk", "vref"]))
+    clk, vref = leads[0], replace(leads[1], cell=process.signals["analog"])
     assert package.volts(clk, process, 3.3, 5.0) == 3.3 and package.volts(vref, process, 3.3, 5.0) is None
 
 

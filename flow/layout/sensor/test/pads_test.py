@@ -161,11 +161,11 @@ def test_the_pads_keep_all_rules_and_a_fault_is_named(tmp_path):
     assert runner.run(DiePads(parameters))["metrics"] == {"pad_cells": len(pad_process("sky130").cells)}
     assert runner.run(DiePadsDrc(parameters))["metrics"] == {"pad_drc_violations": 0}
     assert runner.run(DiePadsLvs(parameters))["metrics"] == {"pads_unmatched": 0}
-    lines = esd_models("sky130").lines(runner.paths["die_pads.spice"].read_text())
+    spice, layout = runner.paths["die_pads.spice"].read_text(), read_gds(runner.paths["die_pads.gds"])
+    lines = esd_models("sky130").lines(spice)
     one, two = (esd.stress(lines, pad_process("sky130"), "IOPadIn", "pad", esd.HBM, "vss", 1, n) for n in (1, 2))
     assert 10.5 < one.pad < 11.7 and 8.9 < two.pad < 10.3  # docs/results/layout.md
-    check_core_clamp(runner.paths["die_pads.spice"].read_text(), read_gds(runner.paths["die_pads.gds"]))
-    layout = read_gds(runner.paths["die_pads.gds"])
+    check_core_clamp(spice, layout)
     pad = layout.cell("IOPadAnalog")
     clamp = pad.shapes(layout.layer(*PIXEL.poly))  # a clamp's gate is cut off
     max(clamp.each(), key=lambda shape: shape.bbox().height()).delete()
