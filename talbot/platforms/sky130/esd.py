@@ -1,9 +1,9 @@
 """SKY130's pads as netlists for ngspice: SkyWater's transistor models, fingers of one clamp as one device.
 
-Junctions of a clamp's fingers are as large as drawn: 32 fingers of 0.6 um on 173.7 um, and 84 of the core's clamp,
-whose diffusions of 0.77 um two fingers share. BSIM4 has their avalanche
-breakdown (12.6 V for n, soft from 11 V on) and no parasitic bipolar transistor, which would turn a clamp on earlier.
-Diodes behind a resistor are left out: they would lower the voltage at a gate.
+Junctions of a clamp's fingers are as large as drawn. Two fingers share a drain of 1.53 um, each has a source of 0.685
+um; in the core's clamp two share every diffusion, of 0.77 um. BSIM4 has their avalanche breakdown (12.6 V for n, soft
+from 11 V on) and no parasitic bipolar transistor, which would turn a clamp on earlier. Diodes behind a resistor are
+left out: they would lower the voltage at a gate.
 """
 
 import re
@@ -11,7 +11,7 @@ from collections import Counter
 
 from talbot.platforms.sky130 import models
 
-FINGER_UM, END_UM = 2.41, 0.28  # of diffusion on either side of a gate: of a clamp, of another transistor
+FINGER_UM, END_UM = 0.765, 0.28  # of diffusion on either side of a gate: of a clamp, of another transistor
 THIN_FINGER_UM = 0.385  # of a clamp of thin oxide
 _TRANSISTOR = re.compile(r"M(\S+) (\S+) (\S+) (\S+) (\S+) (sky130_fd_pr__\w+?)__model l=(\S+) w=(\S+)")
 _RESISTOR = re.compile(r"(R\S+) (\S+) (\S+) (\S+) sky130_fd_pr__res\w+ .*")

@@ -171,7 +171,7 @@ def test_the_pads_keep_all_rules_and_a_fault_is_named(tmp_path):
     max(clamp.each(), key=lambda shape: shape.bbox().height()).delete()
     opening = layout.cell("IOPadIn").shapes(layout.layer(*PIXEL.contact_poly))
     next(opening.each()).delete()
-    vss = layout.cell("IOPadVss")  # thick oxide ends in the clamp's well, beside its tap
+    vss = layout.cell("IOPadVss")  # thick oxide ends in the clamp's well, next to its tap
     thick = vss.shapes(layout.layer(*PIXEL.thick[0][0]))
     whole = max(thick.each(), key=lambda shape: shape.bbox().height())
     box = whole.bbox()
