@@ -262,14 +262,21 @@ def _count(circuit: Circuit) -> int:
 
 
 def _source(
-    deck: Deck, name: str, high: float, bit: int, half: bool = False, rise: float = 0.0, fall: float = 0.0
+    deck: Deck,
+    name: str,
+    high: float,
+    bit: int,
+    half: bool = False,
+    rise: float = 0.0,
+    fall: float = 0.0,
+    low: float = 0.0,
 ) -> str:
-    """Add a control, 0 or ``high`` V where its bit is 0 or 1; returns its node.
+    """Add a control, ``low`` or ``high`` V where its bit is 0 or 1; returns its node.
 
     half: while clk is low alone. rise, fall: s by which its changes to 1 and to 0 are late.
     """
     deck.sources.append(f"V{name} {name} 0 external")
-    deck.drive.append(f"v{name} {bit} 0 {high:g} {int(half)} {rise:.9g} {fall:.9g}")
+    deck.drive.append(f"v{name} {bit} {low:g} {high:g} {int(half)} {rise:.9g} {fall:.9g}")
     return name
 
 
