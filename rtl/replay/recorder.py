@@ -16,13 +16,14 @@ LEVELS = ("cls", "component", "level")  # names under which a test class holds t
 class Recorder:
     """Traces of the components of the class named ``cls`` that `rtl.harness.testbench.build` builds.
 
-    verilog: those in Verilator, else those in PyMTL.
+    verilog: those in Verilator, else those in PyMTL. A test with the mark ``sets_registers`` is left out: no ports
+    bring the component where it begins.
     """
 
     def __init__(self, cls: str, verilog: bool = False) -> None:
         self.cls, self.verilog = cls, verilog
         self.parts: list[Trace] = []
-        self.test = ""  # the test that runs
+        self.test = ""  # the test that runs; '' for one that is left out
 
     def observe(self, top: Any, dut: Any, verilog: Level) -> Callable[[], None] | None:
         """See rtl.harness.testbench.hooked."""
@@ -39,6 +40,8 @@ class Recorder:
         lines, tests = part.lines, part.tests
 
         def hook() -> None:
+            if not self.test:
+                return
             if not tests or tests[-1][1] != self.test:
                 tests.append((len(lines), self.test))
             lines.append("%d %x %x" % (not lines, *values(top)))
@@ -92,7 +95,7 @@ class Plugin(OneLevel):
 
     def pytest_runtest_setup(self, item: pytest.Item) -> None:
         """Note the test that runs."""
-        self.recorder.test = item.nodeid
+        self.recorder.test = "" if item.get_closest_marker("sets_registers") else item.nodeid
 
     def pytest_sessionfinish(self) -> None:
         """Save the traces."""

@@ -167,6 +167,7 @@ class TestReadoutSeqSizes:
         size = Size(4 * 40 + 3, 6 + 5, 1)
         self.run(size, row_choices(size, random.Random(0)))
 
+    @pytest.mark.sets_registers
     @pytest.mark.parametrize("bit", (8, 16, 24, 32, 40, 63))
     def test_carries_of_the_cycles(self, bit):
         """The count of the RTL passes a power of two, here soon after the start."""
