@@ -21,6 +21,7 @@ RISER_WIDTH = 0.3  # um, of the segment from a track to the channel's upper edge
 TOP_MARGIN = 3.0  # um, from the last track to the upper edge
 VIA_DEPTH = 1.2  # um, of the vias below the upper edge
 PAD_HALF = 0.3  # um, half the third metal there
+LEAST_WIRE = 0.64  # um, of third metal as wide as a track: its least area
 Row = list[tuple[str, float, float]]
 
 
@@ -60,7 +61,9 @@ class Channel:
         for number, row in enumerate(self.rows):
             y = self.y + TRACK_PITCH * (number + 0.5)
             for net, left, right in row:
-                canvas.wire(THIRD, left - half, y - half, right + half, y + half)
+                long = max(right - left + 2 * half, LEAST_WIRE) / 2
+                middle = (left + right) / 2
+                canvas.wire(THIRD, middle - long, y - half, middle + long, y + half)
                 for x in self.below.get(net, ()):
                     canvas.wire(FOURTH, x - half, bottom, x + half, y + half)
                     canvas.stack(x, y, THIRD, FOURTH)
