@@ -1,5 +1,6 @@
 """The tests of one folder in a separate pytest process: outcomes, messages and times."""
 
+import os
 import re
 import sys
 import tempfile
@@ -9,6 +10,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from talbot.base.paths import ROOT
+from talbot.base.supervise import RUN
 from talbot.base.tools import ToolTimeout, finish
 
 TESTED = "models", "rtl", "imaging", "memory", "pixels", "signoff", "flow", "verif", "talbot"
@@ -63,7 +65,7 @@ def run_folder(folder: str, options: Sequence[str] = (), root: Path = ROOT) -> F
         # Compiled models are kept in a folder per worker (rtl/harness): two folders' tests must not share one.
         worker = "verify-" + re.sub(r"\W", "-", folder)
         try:
-            done = finish(command, {"PYTEST_XDIST_WORKER": worker}, root, SECONDS)
+            done = finish(command, {"PYTEST_XDIST_WORKER": worker} | outside(), root, SECONDS)
             status, output = done.returncode, (done.stdout + done.stderr).strip()[-1500:]
         except ToolTimeout as error:
             status, output = -1, str(error)
@@ -71,6 +73,12 @@ def run_folder(folder: str, options: Sequence[str] = (), root: Path = ROOT) -> F
     if status not in (0, 1, NO_TESTS) or not cases or status == 1 and all(c.outcome != "failed" for c in cases):
         cases.append(Case(folder, "failed", 0.0, f"pytest ended with status {status}: {output}"))
     return FolderRun(folder, sum(c.seconds for c in cases), cases)
+
+
+def outside() -> dict[str, str]:
+    """Variables with which tests run as in a shell: a command that they start supervises itself."""
+    run = os.environ.get(RUN)
+    return {RUN: "", "TMPDIR": str(Path(run).parent)} if run else {}
 
 
 def read_report(path: Path) -> Iterator[Case]:

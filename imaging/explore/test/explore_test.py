@@ -388,6 +388,7 @@ def test_dask_runs_the_same_trials(whole, tmp_path, monkeypatch):
     import distributed
 
     findings, _ = whole
+    monkeypatch.setenv("PYTHONHASHSEED", "0")  # a cluster sets it for its workers, and leaves it
     with (
         distributed.LocalCluster(n_workers=1, threads_per_worker=1, processes=True, dashboard_address=None) as cluster,
         monkeypatch.context() as patch,
