@@ -9,7 +9,7 @@
 It is never off.
 """
 
-from collections.abc import Callable
+from typing import Protocol
 
 from talbot.pixels.circuits.amplifier import TRIM_BITS, UNITS, AmplifierSizes, AmplifierSpec, amplifier
 from talbot.pixels.circuits.lane import LaneSizes
@@ -21,7 +21,6 @@ from talbot.pixels.datasheet.deck import Setup
 from talbot.pixels.datasheet.job import amplifier_of
 
 AFTER = 1e-9  # s after the sample's end at which columns leave the lanes and the reset begins
-Drive = Callable[..., str]  # name, V at 1; half, rise, fall, low: see `deck.source`
 
 
 def sized(pdk: str, spec: LaneSpec, lane: LaneSizes) -> tuple[AmplifierSpec, AmplifierSizes]:
@@ -34,23 +33,31 @@ def circuits(sizes: AmplifierSizes) -> tuple[Circuit, ...]:
     return amplifier(sizes), bias()
 
 
+class Drive(Protocol):
+    """Adds a control and returns its node: `deck._source` of a deck."""
+
+    def __call__(
+        self, name: str, high: float, bit: int, /, *, rise: float = ..., fall: float = ..., low: float = ...
+    ) -> str: ...
+
+
 def column_volts(spec: LaneSpec, sizes: AmplifierSizes, gain: float) -> float:
     """Return volts of a column for an LSB of a diode, so that a difference of 1 LSB is ``gain`` LSB at the lane."""
     return gain * spec.lsb / sizes.gain
 
 
 def lane_lines(lane: int, drive: Drive, supply: float, dark: bool = True, second: str = "") -> list[str]:
-    """The amplifier of a lane from its columns cola, colb to its input. drive: makes a control of the lane's sample.
+    """The amplifier of a lane from its columns cola, colb to its input. drive: makes its controls.
 
     dark: between samples its columns are at column_dark; else something else puts them there. second: in raw mode, the
     node that is high for the second diode.
     """
-    reset = drive(f"amplifier_reset{lane}", 0.0, fall=AFTER, low=supply)
+    reset = drive(f"amplifier_reset{lane}", 0.0, lane, fall=AFTER, low=supply)
     code = ("vdd" if UNITS >> k & 1 else "0" for k in reversed(range(TRIM_BITS)))
     mode = f"vdd 0 {second}" if second else "0 0 0"
     pins = f"cola{lane} colb{lane} vdd {reset}", " ".join(code), f"{mode} in{lane} ref ibias{lane} vdd 0 amplifier"
     lines = [f"Xamplifier{lane} {' '.join(pins)}", f"Xbias{lane} ibias{lane} vdd 0 bias"]
     if dark:
-        on = drive(f"amplifier_dark{lane}", 0.0, rise=COLUMNS / 2, fall=2 * AFTER, low=supply)
+        on = drive(f"amplifier_dark{lane}", 0.0, lane, rise=COLUMNS / 2, fall=2 * AFTER, low=supply)
         lines += [f"Xdark{d}{lane} column_dark col{d}{lane} {on} vdd 0 selector" for d in "ab"]
     return lines

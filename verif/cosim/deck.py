@@ -139,7 +139,7 @@ def build(
         body += [f"Xlane{i} {' '.join(pins)} {one.name}", f"Cin{i} in{i} 0 50f"]
         deck.saved += [f"q{i}", f"in{i}", *deck.inside(i)]
         if amplifier:
-            body += amplified.lane_lines(i, partial(_source, deck, bit=i), spec.supply, not charges, second)
+            body += amplified.lane_lines(i, partial(_source, deck), spec.supply, not charges, second)
             deck.saved += [f"cola{i}", f"colb{i}"]
     level = 0.5 * (spec.refp + spec.refn)
     for (column, sub), value in sorted(values.items()) if not charges else ():
