@@ -73,8 +73,9 @@ def jobs(blocks: Iterable[str], factor: float, seed: int) -> list[tuple[str, Job
 
 
 def is_noticed(bug: Planted) -> bool:
-    """Return whether a witness fails with the change. Tests that cannot run with it are none."""
-    return count("failed", attempt(bug, "--continue-on-collection-errors").stdout) > 0
+    """Return whether a witness fails, or a parameter is refused. Other tests that cannot run with it are none."""
+    output = attempt(bug, "--continue-on-collection-errors").stdout
+    return count("failed", output) > 0 or "ParameterError: " in output
 
 
 def _python(text: str) -> Iterator[tuple[str, str]]:
@@ -115,7 +116,7 @@ def _python(text: str) -> Iterator[tuple[str, str]]:
         value = node.value
         if isinstance(value, int | float) and not isinstance(value, bool):
             new = repr(value + 1 if isinstance(value, int) else value * 1.5 or 1.5)
-            yield f"line {node.lineno}: {text[slice(*span(node))]} is {new}", replaced((node, new))
+            yield f"line {node.lineno}, {node.col_offset}: {text[slice(*span(node))]} is {new}", replaced((node, new))
 
 
 def _name(node: ast.AST) -> str | None:

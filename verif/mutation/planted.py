@@ -70,9 +70,10 @@ def jobs(blocks: Iterable[str]) -> list[tuple[str, Job]]:
 
 def is_caught(bug: Planted) -> bool:
     """Return whether a test of the bug fails. Raises ToolError where the tests cannot run with it."""
-    done = attempt(bug, "-x")
+    done = attempt(bug, "-x", "--all")
     statuses = pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED
-    if done.returncode not in statuses or count("error", done.stdout):
+    ran = count("passed", done.stdout) + count("failed", done.stdout)
+    if done.returncode not in statuses or count("error", done.stdout) or not ran:
         raise ToolError(f"{bug.name}: its tests cannot run: {(done.stdout + done.stderr)[-1500:]}")
     return done.returncode == pytest.ExitCode.TESTS_FAILED
 
