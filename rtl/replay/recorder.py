@@ -23,7 +23,7 @@ class Recorder:
     def __init__(self, cls: str, verilog: bool = False) -> None:
         self.cls, self.verilog = cls, verilog
         self.parts: list[Trace] = []
-        self.test = ""  # the test that runs; '' for one that is left out
+        self.test: str | None = ""  # the test that runs; None for one that is left out
 
     def observe(self, top: Any, dut: Any, verilog: Level) -> Callable[[], None] | None:
         """See rtl.harness.testbench.hooked."""
@@ -40,7 +40,7 @@ class Recorder:
         lines, tests = part.lines, part.tests
 
         def hook() -> None:
-            if not self.test:
+            if self.test is None:
                 return
             if not tests or tests[-1][1] != self.test:
                 tests.append((len(lines), self.test))
@@ -95,7 +95,7 @@ class Plugin(OneLevel):
 
     def pytest_runtest_setup(self, item: pytest.Item) -> None:
         """Note the test that runs."""
-        self.recorder.test = "" if item.get_closest_marker("sets_registers") else item.nodeid
+        self.recorder.test = None if item.get_closest_marker("sets_registers") else item.nodeid
 
     def pytest_sessionfinish(self) -> None:
         """Save the traces."""

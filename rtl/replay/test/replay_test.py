@@ -145,7 +145,7 @@ def test_traces_of_several_simulators_are_joined():
 
     recorder = Recorder("EdgeAdc")
     with hooked(observe=recorder.observe):
-        for test, ticks in (("one", 5), ("", 4), ("two", 7)):  # '': a test whose trace is left out
+        for test, ticks in (("one", 5), (None, 4), ("two", 7)):  # None: a test whose trace is left out
             recorder.test = test
             sim = build(EdgeAdc())
             for _ in range(ticks):
