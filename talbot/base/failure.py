@@ -13,7 +13,7 @@ import traceback
 from collections.abc import Callable
 from pathlib import Path
 
-from talbot.base.supervise import RUN
+from talbot.base.supervise import lasting_temporary
 
 INTERNAL = 3  # exit status: neither a check that fails (1) nor bad input (2)
 ROOM = 64 << 20  # bytes
@@ -49,8 +49,7 @@ def internal(program: str, error: Exception) -> int:
 def _kept(text: str) -> str:
     """Write ``text`` to a file in the first writable folder, and return what a user should do with it."""
     here = Path(__file__).parents[2]
-    run = os.environ.get(RUN)  # its folder goes with the run: beside it
-    elsewhere = Path(run).parent if run else Path(tempfile.gettempdir())
+    elsewhere = lasting_temporary()
     name = f"talbot-error-{time.strftime('%Y%m%d-%H%M%S')}-{os.getpid()}.txt"
     for folder in ([here / "build"] if (here / "pyproject.toml").is_file() else []) + [elsewhere]:
         try:

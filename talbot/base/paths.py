@@ -7,7 +7,7 @@ from pathlib import Path
 
 from platformdirs import user_cache_path
 
-from talbot.base.supervise import RUN
+from talbot.base.supervise import lasting_temporary
 
 PACKAGE = Path(__file__).parents[1]  # the folder talbot, as Python found it: in a checkout its parts are links
 ROOT = PACKAGE.parent  # the repository, or the folder of an installation's packages
@@ -47,8 +47,7 @@ def unwritable(folder: Path) -> Path | None:
 
 def _temporary() -> Path:
     """A folder of this user's among the temporary ones; of another user's, who waits for what is kept there, none."""
-    run = os.environ.get(RUN)  # which has a folder for its temporary files, that goes with it
-    folder = (Path(run).parent if run else Path(tempfile.gettempdir())) / f"talbot-{os.getuid()}"
+    folder = lasting_temporary() / f"talbot-{os.getuid()}"
     folder.mkdir(mode=0o700, exist_ok=True)
     return folder if folder.stat().st_uid == os.getuid() else Path(tempfile.mkdtemp(prefix="talbot-"))
 

@@ -112,6 +112,12 @@ def writing(folder: Path) -> None:
             file.write(b"".join(os.fsencode(path) + b"\0" for path in [*new, folder.absolute()]) + b"\0")
 
 
+def lasting_temporary() -> Path:
+    """Return the folder of temporary files that outlive a run, whose files are in a folder there that goes with it."""
+    run = os.environ.get(RUN)
+    return Path(run).parent if run else Path(tempfile.gettempdir())
+
+
 def _run() -> Path | None:
     name = os.environ.get(RUN)
     return Path(name) if name and os.path.isdir(name) else None

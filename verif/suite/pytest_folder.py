@@ -1,6 +1,5 @@
 """The tests of one folder in a separate pytest process: outcomes, messages and times."""
 
-import os
 import re
 import sys
 import tempfile
@@ -10,7 +9,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from talbot.base.paths import ROOT
-from talbot.base.supervise import RUN
+from talbot.base.supervise import RUN, lasting_temporary
 from talbot.base.tools import ToolTimeout, finish
 
 TESTED = "models", "rtl", "imaging", "memory", "pixels", "signoff", "flow", "verif", "talbot"
@@ -65,7 +64,9 @@ def run_folder(folder: str, options: Sequence[str] = (), root: Path = ROOT) -> F
         # Compiled models are kept in a folder per worker (rtl/harness): two folders' tests must not share one.
         worker = "verify-" + re.sub(r"\W", "-", folder)
         try:
-            done = finish(command, {"PYTEST_XDIST_WORKER": worker} | outside(), root, SECONDS)
+            # As in a shell: a command that a test starts supervises itself
+            variables = {"PYTEST_XDIST_WORKER": worker, RUN: "", "TMPDIR": str(lasting_temporary())}
+            done = finish(command, variables, root, SECONDS)
             status, output = done.returncode, (done.stdout + done.stderr).strip()[-1500:]
         except ToolTimeout as error:
             status, output = -1, str(error)
@@ -73,12 +74,6 @@ def run_folder(folder: str, options: Sequence[str] = (), root: Path = ROOT) -> F
     if status not in (0, 1, NO_TESTS) or not cases or status == 1 and all(c.outcome != "failed" for c in cases):
         cases.append(Case(folder, "failed", 0.0, f"pytest ended with status {status}: {output}"))
     return FolderRun(folder, sum(c.seconds for c in cases), cases)
-
-
-def outside() -> dict[str, str]:
-    """Variables with which tests run as in a shell: a command that they start supervises itself."""
-    run = os.environ.get(RUN)
-    return {RUN: "", "TMPDIR": str(Path(run).parent)} if run else {}
 
 
 def read_report(path: Path) -> Iterator[Case]:

@@ -5,6 +5,7 @@ import pytest
 
 from talbot.base import paths
 from talbot.base.paths import BUILD, ROOT, build, results
+from talbot.base.supervise import RUN
 
 
 def test_a_checkout_keeps_what_it_builds():
@@ -33,7 +34,7 @@ def checkout(tmp_path, monkeypatch):
     monkeypatch.setenv(paths.CHOSEN, "")  # so that what `build` sets goes after the test
     monkeypatch.delenv(paths.CHOSEN)
     monkeypatch.setattr(paths.tempfile, "tempdir", str(tmp_path))
-    monkeypatch.delenv(paths.RUN, raising=False)
+    monkeypatch.delenv(RUN, raising=False)
     denied = set()
     access = os.access
     monkeypatch.setattr(paths.os, "access", lambda path, mode: str(path) not in denied and access(path, mode))
