@@ -152,7 +152,7 @@ def test_the_column_amplifiers_are_in_the_loop(mode):
 def test_a_drawn_row_begins_as_the_trim_leaves_it(mode):
     """From 0 V an inner node of the gates moved a line by 1 mV, half an LSB of a sum."""
     row = read_row(RowRequest(mode=mode, cols=6, lanes=1, types=1, amplifier=True, columns=True, extracted=True))
-    assert np.abs(row.at_lane).max() < 0.35 and row.decks[0].repeated == 0
+    assert np.abs(row.at_lane).max() < 0.2 and row.decks[0].repeated == 0
 
 
 @pytest.mark.slow
@@ -163,7 +163,7 @@ def test_a_trim_depends_on_no_tolerance(monkeypatch, edge):
     found = columns.trimmed(*of)
     monkeypatch.setattr(columns, "EXACT", replace(columns.EXACT, reltol=1e-5))
     tight = columns.trimmed.__wrapped__(*of)
-    assert found.repeated == 0
+    assert found.repeated == tight.repeated == 0
     assert np.abs(np.subtract(found.start, tight.start)).max() < 2e-4  # 0.1 LSB; both diodes alike
     assert 0.55 < found.rest["vbp"] < 0.58 and found.column.keys() == tight.column.keys()
 
