@@ -162,7 +162,7 @@ class Runner:
                 ended[step.name].set()
 
         # A thread for each step, in batches of one: a step that waits blocks no other. joblib has no types
-        parallel = joblib.Parallel(n_jobs=len(steps), backend="threading", batch_size=1)  # pyright: ignore[reportArgumentType]
+        parallel = joblib.Parallel(n_jobs=max(1, len(steps)), backend="threading", batch_size=1)  # pyright: ignore[reportArgumentType]
         try:
             parallel(joblib.delayed(begin)(step) for step in steps)
         except BaseException:

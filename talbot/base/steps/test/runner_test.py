@@ -142,6 +142,10 @@ def test_of_steps_that_run_together_the_failed_one_is_told(tmp_path, text):
         Runner(tmp_path / "steps", {"text": text}).run_all([Crash(), Repeat()])
 
 
+def test_no_steps_have_no_records(tmp_path):
+    assert Runner(tmp_path / "steps", {}).run_all([]) == []
+
+
 def test_a_step_that_breaks_its_declaration_leaves_nothing(tmp_path, text):
     with pytest.raises(StepError, match=r"did not write \['out.txt'\], wrote undeclared \['more.txt'\]"):
         Runner(tmp_path / "steps", {"text": text}).run(Careless())
