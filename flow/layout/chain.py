@@ -26,6 +26,7 @@ from talbot.flow.layout.steps.library import Library
 from talbot.flow.layout.steps.lvs import Lvs
 from talbot.flow.layout.steps.parameters import PdkParameters
 from talbot.flow.layout.steps.power import Power, PowerParameters
+from talbot.flow.layout.steps.routed import RoutedParameters
 from talbot.flow.layout.steps.sta import Sta, StaParameters
 from talbot.flow.layout.steps.stage import STAGES, Stage, StageParameters, called, design_tcl, scripts
 from talbot.flow.layout.steps.stimulus import SMALL, Stimulus, StimulusParameters
@@ -92,17 +93,23 @@ def floors(design: Design, options: Options) -> Iterator[Floor]:
 
 
 def stages(design: Design, options: Options, floor: Floor) -> list[Step]:
-    """The stages of place and route in OpenROAD, and the layout that they end in."""
+    """The stages of place and route in OpenROAD, and the layout that they end in.
+
+    Between `mend` and `thresholds` the parasitics of the routed layout.
+    """
     common = options.pdk, design.top, options.corners
     own: dict[str, StageParameters] = {
         "floorplan": StageParameters(*common, "floorplan", floor, design.frame),
         "power": StageParameters(*common, "power", frame=design.frame),
         "place": StageParameters(*common, "place", frame=design.frame, closed=design.closed),
         "cts": StageParameters(*common, "cts", clock=design.clock.port),
-        "loads": StageParameters(*common, "loads", clock=design.clock.port),
+        "thresholds": StageParameters(*common, "thresholds", clock=design.clock.port),
     }
     steps: list[Step] = [Stage(own.get(name, StageParameters(*common, name))) for name in STAGES]
-    return [*steps, StreamOut(StreamOutParameters(options.pdk, design.frame))]
+    first = list(STAGES).index("thresholds")
+    routed = RoutedParameters(options.pdk, routed=True)
+    streams = [StreamOut(StreamOutParameters(options.pdk, on, design.frame)) for on in (True, False)]
+    return [*steps[:first], streams[0], Fill(routed), Extraction(routed), *steps[first:], streams[1]]
 
 
 def scripts_of(design: Design, options: Options, utilization: float, paths: Mapping[str, Path]) -> dict[str, str]:
@@ -110,18 +117,19 @@ def scripts_of(design: Design, options: Options, utilization: float, paths: Mapp
     floor, named = Floor(utilization, design.aspect), StageParameters(options.pdk, design.top, options.corners)
     whole = replace(named, floor=floor, frame=design.frame, closed=design.closed, clock=design.clock.port)
     files = {"design.tcl": design_tcl(whole)}
-    for step in stages(design, options, floor)[:-1]:
-        files |= {
-            called(whole, step.name)[name]: paths[source].read_text("utf-8")
-            for name, source in step.inputs.items()
-            if name != "database"
-        }
+    for step in stages(design, options, floor):
+        if isinstance(step, Stage) and step.name != "thresholds":
+            files |= {
+                called(whole, step.name)[name]: paths[source].read_text("utf-8")
+                for name, source in step.inputs.items()
+                if name not in ("database", "raised")
+            }
     return files
 
 
 def checks(options: Options) -> list[Step]:
     """The steps that decide whether a layout keeps the design rules."""
-    return [step(PdkParameters(options.pdk)) for step in (Fill, Drc, Antenna)]
+    return [Fill(RoutedParameters(options.pdk)), *(step(PdkParameters(options.pdk)) for step in (Drc, Antenna))]
 
 
 def slowest(corners: Sequence[str]) -> str:
@@ -138,7 +146,9 @@ def signoff_steps(design: Design, options: Options) -> list[Step]:
         Equivalence(EquivalenceParameters(design.top, design.clock.port, design.reset)),
         *netlist_tests(design),
         *foundry,
-        *(step(PdkParameters(options.pdk)) for step in (Lef, Extraction, Lvs)),
+        Lef(PdkParameters(options.pdk)),
+        Extraction(RoutedParameters(options.pdk)),
+        Lvs(PdkParameters(options.pdk)),
         *timing_steps(design, options),
     ]
 

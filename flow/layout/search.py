@@ -9,6 +9,7 @@ from talbot.flow.layout.chain import Signoff, all_steps, checks, floors, signoff
 from talbot.flow.layout.design import Design
 from talbot.flow.layout.options import Options
 from talbot.flow.layout.report.metrics import Attempt
+from talbot.flow.layout.steps.stage import Stage
 from talbot.platforms.layout import layout_platform
 
 FIRST = "floorplan", "power"  # stages that no other outline helps
@@ -54,6 +55,8 @@ def _attempted(design: Design, options: Options, runner: Runner) -> list[Attempt
         *places, out = stages(design, options, floor)
         for stage in places:
             metrics = runner.run(stage)["metrics"]
+            if not isinstance(stage, Stage):
+                continue
             attempt.again += [f"{stage.name}: {metrics['again']}"] if metrics["again"] else []
             if metrics["stopped"]:
                 attempt.stopped = f"{stage.name}: {metrics['stopped']}"

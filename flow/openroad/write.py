@@ -9,6 +9,7 @@ from talbot.flow.layout.timing.constraints import sdc
 from talbot.flow.layout.variables import Floor, variables
 from talbot.flow.openroad.librelane import librelane
 from talbot.flow.openroad.orfs import orfs
+from talbot.flow.openroad.stages import stages
 from talbot.flow.openroad.tinytapeout import PROJECTS, project_files
 from talbot.platforms.openroad import OpenRoadPlatform
 from talbot.platforms.sky130.tinytapeout import FRAME
@@ -53,7 +54,8 @@ def write(design: Design, tech: OpenRoadPlatform, folder: Path) -> list[str]:
     if (project := f"{FRAME}{design.name}") in PROJECTS:
         files |= project_files(DESIGNS[project], rtl(DESIGNS[project], folder / "tinytapeout" / "src"))
     files |= {str(path): text for path, text in ClockGate(*tech.clock_gate).files().items()}
-    files |= {script.name: script.read_text(encoding="utf-8") for script in SCRIPTS.glob("*.tcl")}
+    names = dict.fromkeys(f"{name}.tcl" for name in ("common", *(stage.name for stage in stages(tech))))
+    files |= {name: (SCRIPTS / name).read_text(encoding="utf-8") for name in names}
     for name, text in files.items():
         with staged((folder / name).parent) as part:
             (part / Path(name).name).write_text(text, encoding="utf-8")

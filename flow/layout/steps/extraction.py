@@ -3,8 +3,8 @@
 from typing import Any
 
 from talbot.base.gds import read_gds
-from talbot.base.steps import Files, Step
-from talbot.flow.layout.steps.parameters import PdkParameters
+from talbot.base.steps import Files
+from talbot.flow.layout.steps.routed import RoutedParameters, RoutedStep
 from talbot.platforms.extraction import extraction_platform
 from talbot.platforms.layout import layout_platform
 from talbot.signoff.netlist.netlist import Netlist
@@ -12,7 +12,7 @@ from talbot.signoff.parasitics.extract import extract
 from talbot.signoff.parasitics.spef import spef
 
 
-class Extraction(Step[PdkParameters]):
+class Extraction(RoutedStep[RoutedParameters]):
     """Capacitances with coupling, of all shapes, and every net as a tree of resistors.
 
     A corner of cells is timed with the wires of `platforms.wires.wire_corner`. Metrics: at the typical corner; a net's

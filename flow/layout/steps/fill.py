@@ -4,13 +4,13 @@ import json
 from typing import Any
 
 from talbot.base.gds import read_gds, write_gds
-from talbot.base.steps import Files, Step
-from talbot.flow.layout.steps.parameters import PdkParameters
+from talbot.base.steps import Files
+from talbot.flow.layout.steps.routed import RoutedParameters, RoutedStep
 from talbot.platforms.layout import layout_platform
 from talbot.signoff.geometry.fill import densities, fill, fill_cells
 
 
-class Fill(Step[PdkParameters]):
+class Fill(RoutedStep[RoutedParameters]):
     """Shapes on all metals but the lowest until a layer has its density or no room; diffusion and li in filler cells.
 
     density: share of every layer that is covered in its densest window. density_violations: layers with more than the

@@ -23,6 +23,7 @@ from talbot.platforms.layout import layout_platform
 from talbot.platforms.place_and_route import place_and_route
 
 SCRIPTS = Path(__file__).parents[1] / "tcl"
+LEFS = {"tech_lef": "library.tech_lef", "cell_lef": "library.cell_lef"}
 # Stages in their order, with the figures that their scripts print
 STAGES: dict[str, dict[str, str]] = {
     "floorplan": {},
@@ -30,15 +31,23 @@ STAGES: dict[str, dict[str, str]] = {
     "place": {"placement_density": ""},
     "cts": {},
     "repair": {},
-    "loads": {
-        "raised_thresholds": "",
-        "estimated_beyond": "pins",
-        "estimated_setup_ns": "ns",
-        "estimated_hold_ns": "ns",
-    },
+    "loads": {"estimated_beyond": "pins", "estimated_setup_ns": "ns", "estimated_hold_ns": "ns"},
     "route": {},
     "mend": {"router_drc_violations": "", "router_antennas": ""},
+    "thresholds": {"raised_thresholds": "", "routed_beyond": "pins", "routed_setup_ns": "ns"},
     "finish": {"open_nets": ""},
+}
+# What a stage reads that is not the database of the stage before
+INPUTS: dict[str, dict[str, str]] = {
+    "floorplan": {"netlist": "synthesis.verilog"} | LEFS,
+    "thresholds": {"netlist": "routed_stream_out.verilog", "wires": "routed_extraction.max"} | LEFS,
+    "finish": {"database": "mend.database", "raised": "thresholds.raised"},
+}
+# What a stage writes that is not a database alone
+OUTPUTS: dict[str, dict[str, str]] = {
+    "mend": {"database": "mend.odb", "def": "mend.def"},
+    "thresholds": {"raised": "raised.txt"},
+    "finish": {"def": "final.def"},
 }
 # Threads that wait give their core away: next to other jobs, placement of the divider took 15 times its CPU time
 ENVIRONMENT = {"OMP_WAIT_POLICY": "passive"}
@@ -103,13 +112,11 @@ class Stage(Step[StageParameters]):
         super().__init__(parameters)
         self.name = parameters.stage
         names = list(STAGES)
-        if self.name == names[0]:
-            self.inputs = {"netlist": "synthesis.verilog", **{f"{k}_lef": f"library.{k}_lef" for k in ("tech", "cell")}}
-        else:
-            self.inputs = {"database": f"{names[names.index(self.name) - 1]}.database"}
-        self.inputs |= {"sdc": "place_and_route_sdc", "common": "tcl.common", "script": f"tcl.{self.name}"}
+        before = names[names.index(self.name) - 1]
+        self.inputs = INPUTS.get(self.name, {"database": f"{before}.database"})
+        self.inputs = self.inputs | {"sdc": "place_and_route_sdc", "common": "tcl.common", "script": f"tcl.{self.name}"}
         self.inputs |= {corner: f"timing.{corner}" for corner in parameters.corners}
-        self.outputs = {"def": "final.def"} if self.name == "finish" else {"database": f"{self.name}.odb"}
+        self.outputs = OUTPUTS.get(self.name, {"database": f"{self.name}.odb"})
         self.metrics = {"stopped": "", "again": "", **STAGES[self.name]}
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
@@ -179,7 +186,7 @@ def design_tcl(p: StageParameters) -> str:
 def called(p: StageParameters, stage: str, before: str = "") -> dict[str, str]:
     """Names that the scripts have for the inputs of ``stage``. before: the stage whose database it opens."""
     names = {"netlist": "netlist.v", "tech_lef": "tech.lef", "cell_lef": "cells.lef", "sdc": f"{p.top}.sdc"}
-    names |= {corner: f"{corner}.lib" for corner in p.corners}
+    names |= {corner: f"{corner}.lib" for corner in p.corners} | {"wires": "wires.spef", "raised": "raised.txt"}
     return names | {"common": "common.tcl", "script": f"{stage}.tcl", "database": f"{before}.odb"}
 
 

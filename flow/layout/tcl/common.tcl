@@ -123,6 +123,38 @@ proc shorten {} {
   check_placement -verbose
 }
 
+# A pin's or an instance's name without the escapes of either database.
+proc plain_name {name} { return [string map {\\ {}} $name] }
+
+# Pins and ports beyond a limit of slew or load, as a dictionary.
+proc beyond_limits {} {
+  with_output_to_variable text { report_check_types -max_slew -max_capacitance -violators }
+  set beyond [dict create]
+  foreach line [split $text \n] {
+    if {[string match *(VIOLATED)* $line]} { dict set beyond [plain_name [lindex [split [string trim $line]] 0]] 1 }
+  }
+  return $beyond
+}
+
+proc is_beyond {net beyond} {
+  foreach pin [$net getITerms] {
+    set name [plain_name [[$pin getInst] getName]]/[[$pin getMTerm] getName]
+    if {[dict exists $beyond $name]} { return 1 }
+  }
+  foreach port [$net getBTerms] {
+    if {[dict exists $beyond [plain_name [$port getName]]]} { return 1 }
+  }
+  return 0
+}
+
+proc drivers {net} {
+  set found {}
+  foreach pin [$net getITerms] {
+    if {[$pin isOutputSignal]} { lappend found [$pin getInst] }
+  }
+  return $found
+}
+
 # One line a figure, in a form that is ours: no report of the tool has to be understood.
 proc measured {name value} {
   puts "TALBOT $name $value"

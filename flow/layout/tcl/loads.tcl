@@ -81,113 +81,6 @@ proc buffer_halfway {net} {
   $inst setPlacementStatus PLACED
 }
 
-# The cells between the clock's port and its registers, as a dictionary: their edges are balanced against one another.
-proc clock_cells {} {
-  global clock
-  set found [dict create]
-  set nets [expr {$clock eq "" ? "" : [list [[ord::get_db_block] findNet $clock]]}]
-  while {[llength $nets]} {
-    set nets [lassign $nets net]
-    foreach pin [$net getITerms] {
-      set inst [$pin getInst]
-      if {![$pin isInputSignal] || [string match df* [[$inst getMaster] getName]]} { continue }
-      if {[dict exists $found [$inst getName]]} { continue }
-      dict set found [$inst getName] 1
-      foreach out [$inst getITerms] {
-        if {[$out isOutputSignal] && [$out getNet] ne "NULL"} { lappend nets [$out getNet] }
-      }
-    }
-  }
-  return $found
-}
-
-# A pin's or an instance's name without the escapes of either database.
-proc plain_name {name} { return [string map {\\ {}} $name] }
-
-# Names of the instances on a late path, and of those that drive what is beyond a limit or the inputs of such a driver,
-# as a dictionary.
-proc too_slow {margin} {
-  set found [dict create]
-  foreach path [find_timing_paths -path_delay max -slack_max $margin -endpoint_count 400 -group_count 400] {
-    foreach point [get_property $path points] {
-      set pin [plain_name [get_full_name [get_property $point pin]]]
-      dict set found [string range $pin 0 [expr {[string last / $pin] - 1}]] 1
-    }
-  }
-  set beyond [beyond_limits]
-  if {![dict size $beyond]} { return $found }
-  foreach net [[ord::get_db_block] getNets] {
-    if {[is_beyond $net $beyond]} {
-      foreach driver [drivers $net] {
-        dict set found [plain_name [$driver getName]] 1
-        foreach pin [$driver getITerms] {
-          if {![$pin isInputSignal] || [$pin getNet] eq "NULL"} { continue }
-          foreach before [drivers [$pin getNet]] { dict set found [plain_name [$before getName]] 1 }
-        }
-      }
-    }
-  }
-  return $found
-}
-
-# Pins and ports beyond a limit of slew or load, as a dictionary.
-proc beyond_limits {} {
-  with_output_to_variable text { report_check_types -max_slew -max_capacitance -violators }
-  set beyond [dict create]
-  foreach line [split $text \n] {
-    if {[string match *(VIOLATED)* $line]} { dict set beyond [plain_name [lindex [split [string trim $line]] 0]] 1 }
-  }
-  return $beyond
-}
-
-proc is_beyond {net beyond} {
-  foreach pin [$net getITerms] {
-    set name [plain_name [[$pin getInst] getName]]/[[$pin getMTerm] getName]
-    if {[dict exists $beyond $name]} { return 1 }
-  }
-  foreach port [$net getBTerms] {
-    if {[dict exists $beyond [plain_name [$port getName]]]} { return 1 }
-  }
-  return 0
-}
-
-proc drivers {net} {
-  set found {}
-  foreach pin [$net getITerms] {
-    if {[$pin isOutputSignal]} { lappend found [$pin getInst] }
-  }
-  return $found
-}
-
-# Cells become their twins with high-threshold transistors, which leak a hundredth: of the same size, with the same pins,
-# so that places and routes stay. Those of the clock stay; those that are too slow for it become plain again.
-proc raise_thresholds {margin} {
-  global twin
-  set db [ord::get_db]
-  set fixed [clock_cells]
-  set raised [dict create]
-  foreach inst [[ord::get_db_block] getInsts] {
-    set master [$db findMaster "[[$inst getMaster] getName]$twin"]
-    if {$master eq "NULL" || [dict exists $fixed [$inst getName]]} { continue }
-    dict set raised [plain_name [$inst getName]] [list $inst [$inst getMaster]]
-    $inst swapMaster $master
-  }
-  for {set turn 0} {$turn < 30} {incr turn} {
-    estimate_parasitics -global_routing
-    set plain {}
-    dict for {name _} [too_slow $margin] {
-      if {[dict exists $raised $name]} { lappend plain $name }
-    }
-    if {![llength $plain]} { break }
-    foreach name $plain {
-      lassign [dict get $raised $name] inst master
-      $inst swapMaster $master
-      dict unset raised $name
-    }
-  }
-  measured raised_thresholds [dict size $raised]
-}
-
 global_route -allow_congestion -congestion_iterations $congestion_iterations
 estimate_parasitics -global_routing
 set load_margin [expr {2 * $load_margin}]
@@ -198,7 +91,6 @@ set_max_transition [expr {0.9 * $longest_slew}] [current_design]
 help_and_reroute
 repair_hold
 help_and_reroute
-raise_thresholds $setup_margin
 set_max_transition $longest_slew [current_design]
 measured estimated_beyond [dict size [beyond_limits]]
 

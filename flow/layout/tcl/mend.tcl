@@ -16,3 +16,4 @@ check_placement -verbose
 measured router_drc_violations [violations]
 measured router_antennas [check_antennas]
 write_db mend.odb
+write_def mend.def

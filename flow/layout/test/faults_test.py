@@ -1,5 +1,7 @@
 """A small design from Verilog to GDS; faults planted in the layout are found by the rules and the comparison."""
 
+import re
+
 import pytest
 
 from talbot.base.steps import Runner
@@ -9,7 +11,10 @@ from talbot.flow.layout.search import lay_out_smallest
 from talbot.flow.layout.steps.drc import Drc
 from talbot.flow.layout.steps.lvs import Lvs
 from talbot.flow.layout.steps.parameters import PdkParameters
+from talbot.flow.layout.steps.stage import Stage, StageParameters
 from talbot.flow.layout.test import counter
+from talbot.platforms.twins import TWIN
+from talbot.signoff.netlist.netlist import Netlist
 
 pytestmark = [pytest.mark.slow, pytest.mark.needs(*counter.NEEDS)]
 
@@ -109,3 +114,27 @@ def test_a_hole_that_is_too_small_is_found(runner, tmp_path):
     gds, step = changed(runner, tmp_path, ring), Drc(PdkParameters())
     inputs = {"gds": gds, "deck": runner.paths["library.drc"]}
     assert step.run(inputs, {n: tmp_path / f for n, f in step.outputs.items()})["drc_violations"] == 1
+
+
+def test_the_netlist_has_the_twins_that_thresholds_names(runner):
+    netlist = Netlist.read(runner.paths["stream_out.netlist"])
+    twins = {instance.name for instance in netlist.instances if instance.cell.endswith(TWIN)}
+    assert len(twins) > 10 and twins == set(runner.paths["thresholds.raised"].read_text().split())
+
+
+def test_the_driver_of_a_net_with_a_large_load_stays_plain(runner, tmp_path):
+    netlist = Netlist.read(runner.paths["stream_out.netlist"])
+    driver = next(i for i in netlist.instances if i.cell == f"inv_x1{TWIN}")
+    wires = runner.paths["routed_extraction.max"].read_text()
+    name = driver.pins["nq"]
+    loaded, times = re.subn(rf"(?m)^(\*D_NET {name} .*\n(?:.*\n)*?\*CAP\n1 \S+) \S+", r"\1 200", wires)
+    assert times == 1
+    (tmp_path / "wires.spef").write_text(loaded)
+    step = Stage(StageParameters(top="Counter", corners=Options().corners, stage="thresholds", clock="clk"))
+    inputs = {name: runner.paths[source] for name, source in step.inputs.items()} | {"wires": tmp_path / "wires.spef"}
+    metrics = step.run(inputs, {name: tmp_path / file for name, file in step.outputs.items()})
+    assert metrics["stopped"] is None and metrics["routed_beyond"]
+    before, after = (
+        set(path.read_text().split()) for path in (runner.paths["thresholds.raised"], tmp_path / "raised.txt")
+    )
+    assert driver.name in before - after

@@ -76,7 +76,7 @@ EXACTLY = [
     ("models/capture/operator.py", {"stimulus"}),
     ("imaging/simulate/bench.sv", FRAMES),
     ("pixels/afe.sv", FRAMES),
-    ("signoff/netlist/routed.py", {"stream_out"}),
+    ("signoff/netlist/routed.py", {"stream_out", "routed_stream_out"}),
     ("flow/layout/power/mesh.py", {"ir_drop"}),
     ("cells/characterize/constraint.py", {"timing"}),
     ("cells/report/curve.py", set()),
