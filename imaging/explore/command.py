@@ -2,6 +2,7 @@
 
 import json
 from argparse import ArgumentParser, Namespace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,7 +16,7 @@ from talbot.models.parameters import ParameterError, SensorParameters, check_cho
 if TYPE_CHECKING:
     from talbot.imaging.explore.search import Findings, Plan
 
-STORE = "trials.sqlite"
+STORE, RANDOM = "trials.sqlite", "random.sqlite"
 NUMBERS = (
     Number("lux", "illuminance of white, of edges, lightfield and polarization", 1e-3, 1e6, "500", kind=float),
     Number("trials", "points that are simulated", 1, 10**6, "40"),
@@ -40,6 +41,7 @@ def add_arguments(parser: ArgumentParser) -> None:
         number.add(parser)
     add("--sampler", default="tpe", help="tpe, nsga or random")
     add("--full", action="store_true", help="every point in full, none in a small scene first")
+    add("--baseline", action="store_true", help="also search with random points, as many, for comparison")
     add("--no-thesis", action="store_true", help="without the thesis's sensor, which takes as long as many small ones")
     add("--sensor", type=Path, help=f"of keys that do not vary: {HELP}")
     add("--workers", type=worker_count, default=1, help="processes, -1: all cores; results do not depend on them")
@@ -56,7 +58,7 @@ def run(options: Namespace) -> int:
     mark = f"{plan.task.name} {','.join(plan.objectives)}"
     if options.document:
         marked(options.document, mark)
-    findings, summary = explored(plan, folder, robust)
+    findings, summary = explored(plan, folder, robust, options.baseline)
     if options.document:
         from talbot.imaging.explore.results import lines
 
@@ -110,7 +112,7 @@ def plan_of(task: Any, figures: tuple[str, ...], numbers: dict[str, Any], option
     )
 
 
-def explored(plan: "Plan", folder: Path, robust: int = 0) -> "tuple[Findings, dict[str, Any]]":
+def explored(plan: "Plan", folder: Path, robust: int = 0, baseline: bool = False) -> "tuple[Findings, dict[str, Any]]":
     """Search, and write the files of the results into ``folder``, all or none. Raises ParameterError, OSError."""
     from talbot.imaging.explore import page, results
     from talbot.imaging.explore.robust import robustness
@@ -118,6 +120,9 @@ def explored(plan: "Plan", folder: Path, robust: int = 0) -> "tuple[Findings, di
 
     findings = search(plan, folder / STORE)
     summary = results.summarize(findings, folder)
+    if baseline:
+        by_chance = search(replace(plan, sampler="random", thesis=False), folder / RANDOM)
+        summary["baseline"] = results.shares({plan.sampler: findings, "random": by_chance})
     if robust and findings.front:
         least = min(findings.front, key=lambda row: (row.full or {})["figures"]["error"])
         summary["robustness"] = robustness(plan, least, robust)
@@ -143,6 +148,9 @@ def _print(s: dict[str, Any]) -> None:
         print(f"  {entry['point']:8}" + "".join(f"{entry['figures'][name]:>14.4g}" for name in s["objectives"]))
     if s["free_error"] is not None:
         print(f"  nothing: error {s['free_error']:.4g}")
+    if shares := s.get("baseline"):
+        told = ", ".join(f"{name} {100 * share:.1f} %" for name, share in shares.items())
+        print(f"  dominated, of the box of all points in full: {told}")
     if robust := s.get("robustness"):
         worst = ", ".join(f"{kind} {value:.4g}" for kind, value in robust["worst_error"].items() if value is not None)
         share = "-" if robust["yield"] is None else f"{100 * robust['yield']:.0f} %"

@@ -56,7 +56,7 @@ def _data(findings: Findings, summary: Mapping[str, Any], first: Row | None) -> 
             {
                 "point": name_of(row),
                 "front": row.front,
-                "values": {name: row.values.get(name) for name in findings.plan.space},
+                "values": {name: findings.plan.task.effective(row.values).get(name) for name in findings.plan.space},
                 "figures": record["figures"],
                 "picture": record["picture"],
                 "command": command_of(findings, row, summary["folder"]),

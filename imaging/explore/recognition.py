@@ -16,6 +16,9 @@ from talbot.imaging.recognize import chip, data, study
 from talbot.models.parameters import STANDARD, SensorParameters
 from talbot.models.recognition.optics import Display
 
+FRONTS = "asp", "ternary", "image"
+OPTICAL = "scale", "blur", "threshold"  # of no effect on a plain image
+
 
 @dataclass(frozen=True)
 class Recognition:
@@ -26,7 +29,7 @@ class Recognition:
 
     name: ClassVar[str] = "recognition"
     about: ClassVar[str] = "1 - accuracy of the kernel classifier, mean over splits"
-    extra: ClassVar[Sequence[str]] = ()
+    extra: ClassVar[Sequence[str]] = ("total_uj",)  # of the sensor and the classifier
     thesis: ClassVar[Mapping[str, Any]] = {"front": "asp", "scale": 6, "blur": 4.0, "threshold": 10}
     SOME: ClassVar[int] = 400  # pictures of the small fidelity
 
@@ -34,7 +37,7 @@ class Recognition:
     def space(self) -> Space:
         """What is sent, optics as a first layer, converters."""
         return {
-            "front": ["asp", "image"],
+            "front": list(FRONTS),
             "scale": (2, 8),
             "blur": (0.5, 8.0),
             "threshold": (2, 40),
@@ -42,14 +45,19 @@ class Recognition:
             "chip.lanes": LANES,
         }
 
+    def effective(self, values: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Without the optics' settings and the threshold for a plain image."""
+        plain = values.get("front") == "image"
+        return {name: value for name, value in values.items() if not plain or name not in OPTICAL}
+
     def sensor(self, point: Point) -> SensorParameters:
         """With an array that a picture fills."""
         return chip.sized(self._display(point))
 
     def requests(self, point: Point) -> Sequence[FrameRequest]:
         """A frame of a picture."""
-        mode = "edge" if point.settings["front"] == "asp" else "image"
-        return [chip.frame_request(self._display(point), mode, point.settings["threshold"], 1.0, 1)]
+        setting = self._setting(point, 1, 1)
+        return [chip.frame_request(self._display(point), setting.mode, setting.threshold, 1.0, 1)]
 
     def _display(self, point: Point) -> Display:
         shape: Any = data.load(self.data).images.shape[1:]
@@ -75,6 +83,7 @@ class Recognition:
         figures = {
             "error": 1 - float(np.mean(evaluation["accuracies"])),
             "energy_uj": evaluation["energy_uj"][0],
+            "total_uj": evaluation["energy_uj"][0] + evaluation["network_uj"],
             "bytes": evaluation["bytes"],
             "frames_per_s": known["frames_per_s"],
         }
@@ -88,7 +97,7 @@ class Recognition:
     def words(self, point: Point) -> str:
         """`make recognize` with the point's settings."""
         s = point.settings
-        words = [f"{name.upper()}={s[name]}" for name in ("front", "scale", "blur", "threshold")]
+        words = [f"{name.upper()}={s[name]}" for name in ("front", *OPTICAL) if name in s]
         return " ".join(["make recognize", f"DATA={self.data}", "CURVES=none", *words])
 
     def content(self) -> Sequence[object]:

@@ -52,7 +52,8 @@ def table(findings: Findings) -> list[dict[str, Any]]:
     thesis = [findings.thesis] if findings.thesis else []
     for row in [*thesis, *findings.rows]:
         entry: dict[str, Any] = {"point": name_of(row), "status": row.status, "front": row.front}
-        entry |= {name: row.values.get(name) for name in findings.plan.space}
+        values = findings.plan.task.effective(row.values)
+        entry |= {name: values.get(name) for name in findings.plan.space}
         for prefix, record in (("", row.full), ("small_", row.small)):
             figures = record["figures"] if record else {}
             entry |= {prefix + name: figures.get(name) for name in names}
@@ -107,7 +108,7 @@ def _entry(findings: Findings, row: Row, folder: Path) -> dict[str, Any]:
     figures = (row.full or {})["figures"]
     return {
         "point": name_of(row),
-        "values": row.values,
+        "values": findings.plan.task.effective(row.values),
         "figures": figures,
         "command": command_of(findings, row, folder),
     }
@@ -130,6 +131,16 @@ def convergence(findings: Findings) -> list[dict[str, float]]:
     ]
 
 
+def shares(searches: Mapping[str, Findings]) -> dict[str, float]:
+    """What the points in full of each search dominate, of the box of objectives that those of all searches span."""
+    points = {
+        name: oriented([row.full["figures"] for row in found.rows if row.full], found.plan.objectives)
+        for name, found in searches.items()
+    }
+    every = np.concatenate(list(points.values()))
+    return {name: dominated_share(those, every.min(0), every.max(0)) for name, those in points.items()}
+
+
 def provenance(findings: Findings) -> dict[str, Any]:
     """Where results come from: commit or version, the search's digest, the scenes' content, packages."""
     packages = {name: version(name) for name in PACKAGES}
@@ -145,11 +156,13 @@ def provenance(findings: Findings) -> dict[str, Any]:
 
 def lines(findings: Findings, objectives: Sequence[str]) -> str:
     """The front as a table of Markdown."""
-    names = [name for name in findings.plan.space if len({str(row.values[name]) for row in findings.front}) > 1]
+    effective = findings.plan.task.effective
+    front = [effective(row.values) for row in findings.front]
+    names = [name for name in findings.plan.space if len({str(values.get(name)) for values in front}) > 1]
     rows = []
     for row in [*findings.thesis_in_full, *findings.front]:
         figures = (row.full or {})["figures"]
-        values = (short(row.values.get(name)) for name in names)
+        values = (short(effective(row.values).get(name)) for name in names)
         rows.append([name_of(row), *(f"{figures[name]:.4g}" for name in objectives), *values])
     return markdown_table(["point", *objectives, *names], rows)
 

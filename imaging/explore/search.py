@@ -229,10 +229,11 @@ def _ask(
     plan: Plan, study: optuna.Study, distributions: Mapping[str, BaseDistribution], size: int, findings: Findings
 ) -> list[tuple[Trial, Row]]:
     """The next ``size`` points that keep what is known before; fewer where the space has no more."""
-    seen, out = {key(row.values) for row in findings.rows}, []
+    effective = plan.task.effective
+    seen, out = {key(effective(row.values)) for row in findings.rows}, []
     for _ in range(ASKED * size):
         trial = study.ask(dict(distributions))
-        point, name = considered(plan.task, trial.params, plan.limits), key(trial.params)
+        point, name = considered(plan.task, trial.params, plan.limits), key(effective(trial.params))
         if isinstance(point, str) or name in seen:
             study.tell(trial, state=TrialState.FAIL)
             reason = point.partition(" = ")[0] if isinstance(point, str) else "asked for before"
@@ -264,7 +265,7 @@ def considered(task: Task, values: Mapping[str, Any], limits: Sequence[Limit]) -
     That is: parameters' ranges, the columns' settling, area and time, and the least of energy and bytes.
     """
     try:
-        point = point_of(values, task.base)
+        point = point_of(task.effective(values), task.base)
         point = Point(point.values, task.sensor(point), point.settings)
         costs.check_settling(point.sensor)
         known = {"area_mm2": costs.area_mm2(point.sensor)}

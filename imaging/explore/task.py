@@ -98,6 +98,10 @@ class Task(Protocol):
         """Values of the thesis's sensor, which is on the page as a point; empty without one."""
         ...
 
+    def effective(self, values: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Values of a point without those of no effect."""
+        ...
+
     def sensor(self, point: Point) -> SensorParameters:
         """The sensor of a point, its array of the size that the task gives it. Raises ParameterError."""
         ...
@@ -264,6 +268,10 @@ class OwnTask:
     def space(self) -> Space:
         """SPACE of the file."""
         return self.module["SPACE"]
+
+    def effective(self, values: Mapping[str, Any]) -> Mapping[str, Any]:
+        """All: what the file reads is not known."""
+        return values
 
     def sensor(self, point: Point) -> SensorParameters:
         """The sensor of a point."""

@@ -60,6 +60,10 @@ class SceneTask(ABC):
     extra: ClassVar[Sequence[str]] = ()
     thesis: ClassVar[Mapping[str, Any]] = {"array.rows": 384, TILE: TILES[-1], "chip.lanes": 8, "exposure": 1.0}
 
+    def effective(self, values: Mapping[str, Any]) -> Mapping[str, Any]:
+        """All."""
+        return values
+
     def sensor(self, point: Point) -> SensorParameters:
         """The point's own."""
         return point.sensor

@@ -69,6 +69,7 @@ def explore(
     sampler: str = "tpe",
     full: bool = False,
     no_thesis: bool = False,
+    baseline: bool = False,
     sensor: Sensor | None = None,
     workers: int = 1,
     **numbers: float,
@@ -80,8 +81,8 @@ def explore(
         exploration.sensor(exploration.front[0]).save("mine.toml")
 
     task: edges, lightfield, polarization, depth, recognition, or a file .py (imaging/explore/README.md). out: folder,
-    build/explore/<task> without one. scenes, budget, objectives, keys, sampler, full, no_thesis, workers: as of the
-    command. sensor: of keys that do not vary. numbers: lux, trials, seed, batch, timeout, robust.
+    build/explore/<task> without one. scenes, budget, objectives, keys, sampler, full, no_thesis, baseline, workers: as
+    of the command. sensor: of keys that do not vary. numbers: lux, trials, seed, batch, timeout, robust.
 
     Raises ParameterError.
     """
@@ -93,5 +94,5 @@ def explore(
     for number in NUMBERS:
         setattr(options, number.field, str(numbers.get(number.field, number.default)))
     folder, plan, robust = folder_and_plan(options, sensor.parameters if sensor else None)
-    findings, summary = explored(plan, folder, robust)
+    findings, summary = explored(plan, folder, robust, baseline)
     return Exploration(findings, summary, folder)

@@ -218,6 +218,20 @@ def test_other_samplers(sampler, tmp_path):
     assert len(findings.rows) == 8 and all(row.status == "full" for row in findings.rows) and findings.front
 
 
+def test_random_points_are_a_baseline_in_the_same_box(tmp_path, capsys):
+    command = f"--task {OWN} --objectives error,energy_uj --trials 8 --batch 4 --no-thesis --baseline --out {tmp_path}"
+    assert main(["explore", *command.split()]) == 0
+    by_search, by_chance = map(float, re.search(r"tpe ([\d.]+) %, random ([\d.]+) %", capsys.readouterr().out).groups())
+    assert 0 < by_search <= 100 and 0 < by_chance <= 100
+
+
+def test_settings_of_no_effect_make_no_other_point():
+    task = Recognition()
+    image, edges = ({"front": front, "scale": 3, "blur": 1.0, "threshold": 8} for front in ("image", "asp"))
+    assert task.effective(image) == task.effective(image | {"scale": 5, "threshold": 20}) == {"front": "image"}
+    assert task.effective(edges) == edges
+
+
 def test_a_budget_that_no_sensor_keeps_is_refused_before_any_evaluation(tmp_path, trouble):
     limits = budget.limits_of("area_mm2<1", FIGURES)
     findings = search(plan(limits=limits), tmp_path / "s.sqlite")
