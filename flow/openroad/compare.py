@@ -63,7 +63,7 @@ def table(names: Sequence[str], out: Path, before: str = "") -> str:
                 lines.append(earlier)
             else:
                 missing.setdefault(library, []).append(f"`{name}`")
-    lines += [text for library in missing for text in ("", f"Not run with `{library}`: {', '.join(missing[library])}.")]
+    lines += [text for library in missing for text in ("", f"No layout with `{library}`: {', '.join(missing[library])}.")]
     return "\n".join(lines)
 
 
