@@ -63,7 +63,8 @@ def table(names: Sequence[str], out: Path, before: str = "") -> str:
                 lines.append(earlier)
             else:
                 missing.setdefault(library, []).append(f"`{name}`")
-    lines += [text for library in missing for text in ("", f"Not run with `{library}`: {', '.join(missing[library])}.")]
+    for library, designs in missing.items():
+        lines += ["", f"No layout with `{library}`: {', '.join(designs)}."]
     return "\n".join(lines)
 
 

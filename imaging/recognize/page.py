@@ -57,8 +57,11 @@ def _text(name: str, s: dict[str, Any]) -> str:
 
 
 def _cells(row: dict[str, Any]) -> tuple[str, ...]:
-    spread = f"{100 * row['accuracy_std']:.2f}"
-    return f"{100 * row['accuracy']:.2f} %", spread, *_cost(row), f"{row['network_uj']:.3g}"
+    return f"{100 * row['accuracy']:.2f} %", _percent(row["accuracy_std"]), *_cost(row), f"{row['network_uj']:.3g}"
+
+
+def _percent(spread: float | None) -> str:
+    return "-" if spread is None else f"{100 * spread:.2f}"
 
 
 def _cost(row: dict[str, Any]) -> tuple[str, str]:
@@ -100,7 +103,7 @@ def gesture_table(s: dict[str, Any]) -> str:
 def pose_rows(s: dict[str, Any]) -> list[tuple[str, ...]]:
     """Rows of the table of head poses."""
     return [
-        (name, *(f"{row[key]:.2f}" for key in POSE_KEYS), *_cost(row), f"{row['network_uj']:.3g}")
+        (name, *_written(row, dict.fromkeys(POSE_KEYS, 2)), *_cost(row), f"{row['network_uj']:.3g}")
         for name, row in s["pose"].items()
     ]
 
@@ -111,7 +114,10 @@ def pose_table(s: dict[str, Any]) -> str:
 
 
 def _quality(row: dict[str, Any]) -> tuple[str, ...]:
-    places = {"psnr_db": 2, "psnr_db_std": 2, "ssim": 3, "ssim_std": 3}
+    return _written(row, {"psnr_db": 2, "psnr_db_std": 2, "ssim": 3, "ssim_std": 3})
+
+
+def _written(row: dict[str, Any], places: dict[str, int]) -> tuple[str, ...]:
     return tuple("-" if row[key] is None else f"{row[key]:.{n}f}" for key, n in places.items())
 
 
@@ -180,7 +186,7 @@ def _headline(s: dict[str, Any]) -> list[Tile]:
     return [
         Tile(
             f"{100 * s['accuracy']:.2f} %",
-            f"accuracy, spread {100 * s['accuracy_std']:.2f} (chance: {100 * free['chance']['accuracy']:.1f} %)",
+            f"accuracy, spread {_percent(s['accuracy_std'])} (chance: {100 * free['chance']['accuracy']:.1f} %)",
         ),
         Tile(f"{100 * same['accuracy']:.2f} %", "of a plain image in at most as many bytes"),
         Tile(f"{s['bytes']:.0f}", "bytes a frame"),

@@ -9,10 +9,10 @@ from talbot.models.parameters import ParameterError
 
 
 class Spread(NamedTuple):
-    """Mean of some values, and their standard deviation (0 of one value)."""
+    """Mean of some values, and their standard deviation (None of one value)."""
 
     mean: float
-    std: float
+    std: float | None
 
     @classmethod
     def of(cls, values: npt.ArrayLike) -> "Spread":
@@ -21,7 +21,7 @@ class Spread(NamedTuple):
         values: (n,), 1 or more. Returns Spread: with the standard deviation of a sample, over n - 1.
         """
         array = np.asarray(values, float)
-        return cls(float(array.mean()), float(array.std(ddof=1)) if array.size > 1 else 0.0)
+        return cls(float(array.mean()), float(array.std(ddof=1)) if array.size > 1 else None)
 
 
 class Roc(NamedTuple):

@@ -28,7 +28,7 @@ def test_a_row_stays_where_its_layout_is_not_there(tmp_path, capsys):
     (measured,) = [text for text in written if text.startswith("| quad_divider | compact |")]
     assert "| 0.0050 | 5,000 |" in measured and "| 5.0 | 637 |" in measured
     assert "| +1.00, +0.10 | 29 | 0.06 / 1,234 / 0.50 |" in measured
-    assert {"Not run with `compact`: `amp_ctrl`.", "Not run with `sky130_fd_sc_hd`: `amp_ctrl`."} <= set(written)
+    assert {"No layout with `compact`: `amp_ctrl`.", "No layout with `sky130_fd_sc_hd`: `amp_ctrl`."} <= set(written)
     capsys.readouterr()
     assert main(compare, line) == 0  # of no document nothing is known
-    assert "Not run with `sky130_fd_sc_hd`: `quad_divider`, `amp_ctrl`." in capsys.readouterr().out
+    assert "No layout with `sky130_fd_sc_hd`: `quad_divider`, `amp_ctrl`." in capsys.readouterr().out

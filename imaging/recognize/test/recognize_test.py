@@ -224,6 +224,15 @@ def test_the_table_of_a_document_has_one_threshold_and_no_row_twice():
     assert len(page.lines(s).splitlines()) == 2 + 3
 
 
+def test_one_seed_has_no_spread():
+    result = {"accuracies": [0.5], "bytes": 9, "energy_uj": (1.0, 2.0), "network_uj": 1.0}
+    one, two = (study.figures(result | {"accuracies": values}) for values in ([0.5], [0.5, 0.5]))
+    table = page.gesture_table({"gestures": {"one": one, "two": two}})
+    assert "| one | 50.00 % | - | 9 | 1 to 2 | 1 |" in table and "| two | 50.00 % | 0.00 | 9 |" in table
+    pose = {"error_deg": 1.0, "error_deg_std": None, "yaw_deg": 1.0, "pitch_deg": 1.0}
+    assert "| heads | 1.00 | - | 1.00 | 1.00 | 9 |" in page.pose_table({"pose": {"heads": result | pose}})
+
+
 def labelled(n=30):
     rng = np.random.default_rng(4)
     return rng.integers(0, 256, (n, 9, 7), dtype=np.uint8), rng.permutation(np.arange(n) % 3).astype(np.uint8)

@@ -50,4 +50,4 @@ def test_roc_of_known_detectors():
 
 
 def test_spread_is_of_a_sample():
-    assert Spread.of([1, 3]) == (2, pytest.approx(np.sqrt(2))) and Spread.of([5]) == (5, 0)
+    assert Spread.of([1, 3]) == (2, pytest.approx(np.sqrt(2))) and Spread.of([5]) == (5, None)

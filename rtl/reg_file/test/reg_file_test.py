@@ -186,6 +186,24 @@ class TestFL:
             bench.spi.transfer(bytes((0x80 | CHIP["loop_back"].byte, value)))
             assert bench.loop[-1] == value
 
+    def test_unmapped_and_read_only_addresses_ignore_writes(self):
+        """All ones over zeros, then zeros over ones: no register changes, and an unmapped address reads 0."""
+        bench, writable, image = self.bench(), CHIP.writable(), CHIP.image(CHIP.identity, RESETS)
+        image[CHIP["done"].byte] = 1 << CHIP["done"].shift
+        counters = {f.byte + i for f in CHIP.counters for i in range(f.bytes)}
+        effects = {*writable, *(CHIP[name].byte for name in ("start", "busy", "loop_back"))}
+        for value in (0xFF, 0):
+            bench.status(done=1)
+            bench.write([(address, value ^ 0xFF) for address in writable])
+            cfg = bench.sim.cfg.clone()
+            bench.write([(address, value) for address in range(128) if address not in effects])
+            assert bench.sim.cfg == cfg
+            for address in sorted({*range(128)} - {*writable} - counters):
+                assert bench.read(address)[0] == image.get(address, 0), address
+            for counter in CHIP.counters:
+                assert bench.read(counter.byte, 8) == bytes(8)
+            assert not (bench.starts or bench.aborts or bench.loop or bench.sim.loop.val)
+
     def test_start_is_one_strobe(self):
         bench = self.bench()
         bench.spi.transfer(command("start"))
@@ -557,6 +575,7 @@ class TestVerilog(TestRTL):
 
     verilog = True
     test_every_address_after_reset = test_a_byte_alone = test_every_bit_of_every_register = None
+    test_unmapped_and_read_only_addresses_ignore_writes = None
     test_reset_in_a_transfer = test_a_waiting_loop_back_byte_locks_the_configuration = None
     test_every_address_is_locked = test_a_reset_clears_what_can_be_read = test_a_stopped_clock = None
 
