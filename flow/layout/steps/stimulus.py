@@ -36,7 +36,7 @@ TAP = """module Tap;
   end
   reg fresh = 1;
   always @(posedge {clock}) begin
-    $fwrite(file, "%b %h %h\\n", fresh, {{{inputs}}}, {{{outputs}}});
+    $fwrite(file, "%b %b %b\\n", fresh, {{{inputs}}}, {{{outputs}}});
     fresh <= 0;
   end
 endmodule
@@ -152,16 +152,18 @@ def in_host(parameters: StimulusParameters, rtl: Path, folder: Path, trace: Path
 
 def recorded(tap: str) -> list[str]:
     """The lines of a trace; the first is fresh, since what was before it is unknown."""
-    first, *lines = [line for line in map(settled, tap.splitlines()) if line]
+    first, *lines = map(settled, tap.splitlines())
     return ["1" + first[1:], *lines]
 
 
 def settled(line: str) -> str:
-    """A line of the tap as one of a trace, fresh where an output is X, so that a reset lasts; '' without inputs."""
-    fresh, inputs, outputs = line.split()
-    if "x" in inputs:
-        return ""
-    return f"{'1' if 'x' in outputs else fresh} {inputs} {outputs.replace('x', '0')}"
+    """A line of the tap, in bits, as one of a trace: fresh where an output is X, so that a reset lasts.
+
+    An input that is X, as data are during a reset, is 0.
+    """
+    fresh, *vectors = line.split()
+    packed = (f"{int(bits.replace('x', '0').replace('z', '0'), 2):0{-(-len(bits) // 4)}x}" for bits in vectors)
+    return " ".join(["1" if "x" in vectors[1] else fresh, *packed])
 
 
 def middle(full: "Window", tiles: int) -> "Window":

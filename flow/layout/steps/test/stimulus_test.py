@@ -50,13 +50,17 @@ def test_the_tiles_of_the_middle(tiles, columns):
 
 
 def test_a_reset_lasts_as_long_as_outputs_are_unknown():
-    assert settled("0 1f x3") == "1 1f 03"
-    assert settled("1 1f 3") == "1 1f 3" and settled("0 1f 3") == "0 1f 3"
-    assert settled("1 x 3") == ""
+    assert settled("0 11111 xxxx0011") == "1 1f 03"
+    assert settled("1 11111 11") == "1 1f 3" and settled("0 11111 11") == "0 1f 3"
+
+
+def test_a_reset_with_unknown_data_is_kept():
+    """RunLength's message is unknown during the chip's reset."""
+    assert settled("0 xx1x1 001") == "0 05 1"
 
 
 def test_a_trace_begins_fresh():
-    assert recorded("1 x 3\n0 1f 3\n0 1f x3\n0 2f 3\n") == ["1 1f 3", "1 1f 03", "0 2f 3"]
+    assert recorded("0 x1 1\n0 11 1\n0 10 x\n0 10 1\n") == ["1 1 1", "0 3 1", "1 2 0", "0 2 1"]
 
 
 @pytest.mark.needs("iverilog", "yosys")
