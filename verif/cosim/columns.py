@@ -20,14 +20,17 @@ from talbot.pixels.circuits.row_driver import THICK
 from talbot.pixels.circuits.specification import CODES
 from talbot.pixels.circuits.support import bias
 from talbot.pixels.datasheet.amplifier import COLUMNS, EXACT
-from talbot.pixels.datasheet.column import CURRENT, GAP, ROW, SETTLED, nearer
+from talbot.pixels.datasheet.column import GAP, ROW, SETTLED, nearer
 from talbot.platforms.sky130 import analog
 from talbot.verif.cosim import extracted
+from talbot.verif.cosim.accuracy import Accuracy
 from talbot.verif.cosim.amplified import AFTER, Drive
 from talbot.verif.cosim.pixels import PixelSizes, pixel, row_line
 
 TIMING = AmpTiming()  # of a row with these columns: the holder has 16 cycles in each half
 CELSIUS = 25.0
+# A row's. With 0.1 pA and a reltol of 1e-5 no time step converged after a control's edge
+CURRENT = f".option abstol={Accuracy().abstol:g}"
 LINE, CIN = 0.5, 1.2  # V of a column's line and coupling capacitors as the first step of a trim begins
 STEPS = 3  # of the trim: as drawn a lane follows `start` by 1.15 of what the circuit's does, and is 5 mV off after one
 SOURCE = "vbn", "vbp", "source", "start", "part_1", "part_2", "part_3"  # nodes of a bias
