@@ -33,6 +33,9 @@ CELSIUS = 25.0
 CURRENT = f".option abstol={Accuracy().abstol:g}"
 LINE, CIN = 0.5, 1.2  # V of a column's line and coupling capacitors as the first step of a trim begins
 STEPS = 3  # of the trim: as drawn a lane follows `start` by 1.15 of what the circuit's does, and is 5 mV off after one
+# F of a column at `clear`, as drawn: 14.7 fF of wires and two gates. Its fall reaches the first diode's output, and the
+# faster the more: with two columns more in the deck a sample was 0.6 LSB off
+CLEAR_FARAD = 16e-15
 SOURCE = "vbn", "vbp", "source", "start", "part_1", "part_2", "part_3"  # nodes of a bias
 RESTING = (*BIASES, "level", "ibias_columns", *(f"xcolumn_source.{name}" for name in SOURCE))
 BIAS = (
@@ -95,6 +98,7 @@ def lines(
         *BIAS,
         f"Xcascodes vcn reads readsn {own['edge']} {own['edgen']} cn vcnb 0 cascode_lines",
         "Xclear row_ref row_refn clear vbp vdd 0 clear_pulse",
+        f"Cclear clear 0 {(spec.array - len(diodes)) * CLEAR_FARAD:.9g}",  # columns that the row does not read
     ]
     for lane in sorted(set(lanes.values())):
         for d, reference in (("a", "reference"), ("b", "dark")):
