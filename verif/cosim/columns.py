@@ -20,16 +20,24 @@ from talbot.pixels.circuits.row_driver import THICK
 from talbot.pixels.circuits.specification import CODES
 from talbot.pixels.circuits.support import bias
 from talbot.pixels.datasheet.amplifier import COLUMNS, EXACT
-from talbot.pixels.datasheet.column import CURRENT, GAP, ROW, SETTLED, nearer
+from talbot.pixels.datasheet.column import GAP, ROW, SETTLED, nearer
 from talbot.platforms.sky130 import analog
 from talbot.verif.cosim import extracted
+from talbot.verif.cosim.accuracy import Accuracy
 from talbot.verif.cosim.amplified import AFTER, Drive
 from talbot.verif.cosim.pixels import PixelSizes, pixel, row_line
 
 TIMING = AmpTiming()  # of a row with these columns: the holder has 16 cycles in each half
 CELSIUS = 25.0
+# A row's. With 0.1 pA and a reltol of 1e-5 no time step converged after a control's edge
+CURRENT = f".option abstol={Accuracy().abstol:g}"
 LINE, CIN = 0.5, 1.2  # V of a column's line and coupling capacitors as the first step of a trim begins
-STEPS = 3  # of the trim: as drawn a lane follows `start` by 1.15 of what the circuit's does, and is 5 mV off after one
+# Of the trim: as drawn a lane follows `start` by 1.15 of what the circuit's does. It is 5 mV off after one, after three
+# the second diode's is 0.12 mV off, 0.13 LSB of a difference
+STEPS = 4
+# F of a column at `clear`, as drawn: 14.7 fF of wires and two gates. Its fall reaches the first diode's output, and the
+# faster the more: with two columns more in the deck a sample was 0.6 LSB off
+CLEAR_FARAD = 16e-15
 SOURCE = "vbn", "vbp", "source", "start", "part_1", "part_2", "part_3"  # nodes of a bias
 RESTING = (*BIASES, "level", "ibias_columns", *(f"xcolumn_source.{name}" for name in SOURCE))
 BIAS = (
@@ -92,6 +100,7 @@ def lines(
         *BIAS,
         f"Xcascodes vcn reads readsn {own['edge']} {own['edgen']} cn vcnb 0 cascode_lines",
         "Xclear row_ref row_refn clear vbp vdd 0 clear_pulse",
+        f"Cclear clear 0 {(spec.array - len(diodes)) * CLEAR_FARAD:.9g}",  # columns that the row does not read
     ]
     for lane in sorted(set(lanes.values())):
         for d, reference in (("a", "reference"), ("b", "dark")):

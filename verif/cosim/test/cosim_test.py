@@ -168,6 +168,16 @@ def test_a_trim_depends_on_no_tolerance(monkeypatch, edge):
     assert 0.55 < found.rest["vbp"] < 0.58 and found.column.keys() == tight.column.keys()
 
 
+@pytest.mark.parametrize("count", [1, 3])
+def test_clear_has_the_capacitance_of_all_columns(count):
+    """With that of the deck's columns alone a drawn difference was 0.6 LSB off where the deck had two more."""
+    spec, trim = ColumnSpec.of(), columns.Trim((1.2, 1.2), {"vbp": 0.5}, {"line_a": 0.5}, 0)
+    diodes, lanes = {c: {0: (0.0, 0.0)} for c in range(count)}, dict.fromkeys(range(count), 0)
+    deck = columns.lines(diodes, lanes, "edge", 1.0, spec, column_size(spec, analog), PixelSizes(), trim, 6)
+    (others,) = (float(line.split()[3]) for line in deck if line.startswith("Cclear "))
+    assert others + count * columns.CLEAR_FARAD == pytest.approx(spec.array * columns.CLEAR_FARAD)
+
+
 @library
 @pytest.mark.slow
 def test_a_sum_does_not_depend_on_its_turn():
