@@ -23,8 +23,8 @@ from talbot.models.plan.exposure import frame_cycles
 from talbot.pixels.blocks import AnalogSizes
 
 # docs/results: the chip as laid out with the cells Compact (layout.md), gates of blocks (blocks.md)
-CHIP_MM2, CHIP_GATES, LANES, LANE_GATES = 0.1778, 25531, 8, 4723 / 8
-PHASE_GATES, DIVIDER_GATES = 3402, {"radix2": 954, "radix4": 1176, "pipelined": 3432, "cordic": 2044}
+CHIP_MM2, CHIP_GATES, LANES, LANE_GATES = 0.2231, 25892, 8, 4834 / 8
+PHASE_GATES, DIVIDER_GATES = 3063, {"radix2": 952, "radix4": 1135, "pipelined": 3382, "cordic": 2128}
 TURN_S = 91.2e-9  # settling of the column's turn as drawn, slowest of the corners that keep the limit (analog.md)
 
 

@@ -19,6 +19,7 @@ import pytest
 from joblib.externals.loky import get_reusable_executor
 
 from talbot.base.page.check import faults
+from talbot.base.paths import ROOT
 from talbot.base.table import read_csv
 from talbot.commands import main
 from talbot.imaging.explore import budget, costs, space
@@ -452,12 +453,27 @@ def test_costs_are_those_of_the_verilog(mode, phase):
     assert least["energy_uj"] <= measured["energy_uj"] and least["bytes"] < measured["bytes"]
 
 
+def test_gates_are_those_of_the_results():
+    pages = {name: (ROOT / f"docs/results/{name}.md").read_text(encoding="utf-8") for name in ("blocks", "layout")}
+    gates = {
+        block: int(count.replace(",", ""))
+        for block, count in re.findall(r"\[(\w+)\].* ([\d,]+) \|$", pages["blocks"], re.M)
+    }
+    of_divider = {"cordic": gates["Cordic"]} | {
+        name.removeprefix("QuadDivider").lower(): count for name, count in gates.items() if name.startswith("Quad")
+    }
+    assert of_divider == costs.DIVIDER_GATES and gates["AspChip"] == costs.CHIP_GATES
+    assert gates["AdcBank"] / costs.LANES == costs.LANE_GATES
+    assert f"AspChip has {costs.PHASE_GATES:,} gates" in pages["blocks"]
+    assert f"| asp_chip | compact | {costs.CHIP_MM2:.4f} |" in pages["layout"]
+
+
 def test_area_counts_lanes_and_divider():
     area = costs.area_mm2(STANDARD)
     more = replace(STANDARD, chip=replace(STANDARD.chip, lanes=16, divider="pipelined"))
     assert 17 < area < 18 and 0.57 < costs.area_mm2(more) - area < 0.65
     less = replace(STANDARD, chip=replace(STANDARD.chip, divider="none"))
-    assert area - costs.area_mm2(less) == pytest.approx(0.1778 * 3402 / 25531)
+    assert area - costs.area_mm2(less) == pytest.approx(0.2231 * 3063 / 25892)
     with pytest.raises(ParameterError, match="chip.f_clk = 2e"):
         costs.check_settling(replace(STANDARD, chip=replace(STANDARD.chip, f_clk=20e6)))
 
