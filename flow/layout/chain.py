@@ -14,8 +14,8 @@ from talbot.flow.layout.steps.block_liberty import BlockLiberty, BlockLibertyPar
 from talbot.flow.layout.steps.compiled import Compiled
 from talbot.flow.layout.steps.drc import Drc
 from talbot.flow.layout.steps.equivalence import Equivalence, EquivalenceParameters
-from talbot.flow.layout.steps.extraction import Extraction
-from talbot.flow.layout.steps.fill import Fill
+from talbot.flow.layout.steps.extraction import Extraction, RoutedExtraction
+from talbot.flow.layout.steps.fill import Fill, RoutedFill
 from talbot.flow.layout.steps.gate_delays import GateDelays, GateDelaysParameters
 from talbot.flow.layout.steps.gate_frames import GateFrames, GateFramesParameters
 from talbot.flow.layout.steps.gate_tests import GateTests, GateTestsParameters
@@ -26,11 +26,10 @@ from talbot.flow.layout.steps.library import Library
 from talbot.flow.layout.steps.lvs import Lvs
 from talbot.flow.layout.steps.parameters import PdkParameters
 from talbot.flow.layout.steps.power import Power, PowerParameters
-from talbot.flow.layout.steps.routed import RoutedParameters
 from talbot.flow.layout.steps.sta import Sta, StaParameters
 from talbot.flow.layout.steps.stage import STAGES, Stage, StageParameters, called, design_tcl, scripts
 from talbot.flow.layout.steps.stimulus import SMALL, Stimulus, StimulusParameters
-from talbot.flow.layout.steps.stream_out import StreamOut, StreamOutParameters
+from talbot.flow.layout.steps.stream_out import RoutedStreamOut, StreamOut, StreamOutParameters
 from talbot.flow.layout.steps.synthesis import SynthesisParameters, TimedSynthesis
 from talbot.flow.layout.steps.timing import Timing, TimingParameters
 from talbot.flow.layout.timing.constraints import sdc
@@ -106,10 +105,10 @@ def stages(design: Design, options: Options, floor: Floor) -> list[Step]:
         "thresholds": StageParameters(*common, "thresholds", clock=design.clock.port),
     }
     steps: list[Step] = [Stage(own.get(name, StageParameters(*common, name))) for name in STAGES]
-    first = list(STAGES).index("thresholds")
-    routed = RoutedParameters(options.pdk, routed=True)
-    streams = [StreamOut(StreamOutParameters(options.pdk, on, design.frame)) for on in (True, False)]
-    return [*steps[:first], streams[0], Fill(routed), Extraction(routed), *steps[first:], streams[1]]
+    first, pdk = list(STAGES).index("thresholds"), PdkParameters(options.pdk)
+    out = StreamOutParameters(options.pdk, design.frame)
+    routed = RoutedStreamOut(out), RoutedFill(pdk), RoutedExtraction(pdk)
+    return [*steps[:first], *routed, *steps[first:], StreamOut(out)]
 
 
 def scripts_of(design: Design, options: Options, utilization: float, paths: Mapping[str, Path]) -> dict[str, str]:
@@ -129,7 +128,7 @@ def scripts_of(design: Design, options: Options, utilization: float, paths: Mapp
 
 def checks(options: Options) -> list[Step]:
     """The steps that decide whether a layout keeps the design rules."""
-    return [Fill(RoutedParameters(options.pdk)), *(step(PdkParameters(options.pdk)) for step in (Drc, Antenna))]
+    return [step(PdkParameters(options.pdk)) for step in (Fill, Drc, Antenna)]
 
 
 def slowest(corners: Sequence[str]) -> str:
@@ -146,9 +145,7 @@ def signoff_steps(design: Design, options: Options) -> list[Step]:
         Equivalence(EquivalenceParameters(design.top, design.clock.port, design.reset)),
         *netlist_tests(design),
         *foundry,
-        Lef(PdkParameters(options.pdk)),
-        Extraction(RoutedParameters(options.pdk)),
-        Lvs(PdkParameters(options.pdk)),
+        *(step(PdkParameters(options.pdk)) for step in (Lef, Extraction, Lvs)),
         *timing_steps(design, options),
     ]
 

@@ -20,7 +20,6 @@ from talbot.flow.layout.steps.ir_drop import IrDrop as MeshDrop
 from talbot.flow.layout.steps.library import Library
 from talbot.flow.layout.steps.parameters import PdkParameters
 from talbot.flow.layout.steps.power import Power
-from talbot.flow.layout.steps.routed import RoutedParameters
 from talbot.flow.layout.steps.sta import Sta
 from talbot.flow.layout.timing.constraints import sdc
 from talbot.flow.openroad.drc import Drc
@@ -39,8 +38,7 @@ def checks(design: Design, tech: OpenRoadPlatform) -> list[Step]:
     powered = [step.parameters.corner for step in timing if isinstance(step, Power)]
     nets = tech.supply[0], tech.ground[0]
     return [
-        Fill(RoutedParameters(tech.name)),
-        *(step(PdkParameters(tech.name)) for step in (Drc, Antenna)),
+        *(step(PdkParameters(tech.name)) for step in (Fill, Drc, Antenna)),
         Equivalence(EquivalenceParameters(design.top, design.clock.port)),
         *netlist_tests(design),
         Lvs(PdkParameters(tech.name)),

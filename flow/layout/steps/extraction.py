@@ -3,8 +3,9 @@
 from typing import Any
 
 from talbot.base.gds import read_gds
-from talbot.base.steps import Files
-from talbot.flow.layout.steps.routed import RoutedParameters, RoutedStep
+from talbot.base.steps import Files, Step
+from talbot.flow.layout.steps.parameters import PdkParameters
+from talbot.flow.layout.steps.routed import PREFIX, of_routed
 from talbot.platforms.extraction import extraction_platform
 from talbot.platforms.layout import layout_platform
 from talbot.signoff.netlist.netlist import Netlist
@@ -12,7 +13,7 @@ from talbot.signoff.parasitics.extract import extract
 from talbot.signoff.parasitics.spef import spef
 
 
-class Extraction(RoutedStep[RoutedParameters]):
+class Extraction(Step[PdkParameters]):
     """Capacitances with coupling, of all shapes, and every net as a tree of resistors.
 
     A corner of cells is timed with the wires of `platforms.wires.wire_corner`. Metrics: at the typical corner; a net's
@@ -35,3 +36,10 @@ class Extraction(RoutedStep[RoutedParameters]):
         ff = [net.femtofarad for net in found[0].values()]
         ohm = max(sum(ohm for *_, ohm in net.resistors) for net in found[0].values())
         return {"wire_pf": round(sum(ff) / 1000, 3), "largest_ff": round(max(ff), 2), "largest_ohm": round(ohm, 1)}
+
+
+class RoutedExtraction(Extraction):
+    """The same of the routed layout."""
+
+    name = f"{PREFIX}{Extraction.name}"
+    inputs = of_routed(Extraction.inputs)

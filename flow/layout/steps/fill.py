@@ -4,13 +4,14 @@ import json
 from typing import Any
 
 from talbot.base.gds import read_gds, write_gds
-from talbot.base.steps import Files
-from talbot.flow.layout.steps.routed import RoutedParameters, RoutedStep
+from talbot.base.steps import Files, Step
+from talbot.flow.layout.steps.parameters import PdkParameters
+from talbot.flow.layout.steps.routed import PREFIX, of_routed
 from talbot.platforms.layout import layout_platform
 from talbot.signoff.geometry.fill import densities, fill, fill_cells
 
 
-class Fill(RoutedStep[RoutedParameters]):
+class Fill(Step[PdkParameters]):
     """Shapes on all metals but the lowest until a layer has its density or no room; diffusion and li in filler cells.
 
     density: share of every layer that is covered in its densest window. density_violations: layers with more than the
@@ -41,3 +42,10 @@ class Fill(RoutedStep[RoutedParameters]):
             "density_violations": sum(most > rules.density_most for _, most in after.values()),
             "thin_layers": [name for name, (least, _) in after.items() if least < rules.density_least],
         }
+
+
+class RoutedFill(Fill):
+    """The same of the routed layout."""
+
+    name = f"{PREFIX}{Fill.name}"
+    inputs = of_routed(Fill.inputs)

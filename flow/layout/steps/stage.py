@@ -37,13 +37,13 @@ STAGES: dict[str, dict[str, str]] = {
     "thresholds": {"raised_thresholds": "", "routed_beyond": "pins", "routed_setup_ns": "ns"},
     "finish": {"open_nets": ""},
 }
-# What a stage reads that is not the database of the stage before
+# What stages read other than the database of the stage before
 INPUTS: dict[str, dict[str, str]] = {
     "floorplan": {"netlist": "synthesis.verilog"} | LEFS,
     "thresholds": {"netlist": "routed_stream_out.verilog", "wires": "routed_extraction.max"} | LEFS,
     "finish": {"database": "mend.database", "raised": "thresholds.raised"},
 }
-# What a stage writes that is not a database alone
+# What stages write other than a database
 OUTPUTS: dict[str, dict[str, str]] = {
     "mend": {"database": "mend.odb", "def": "mend.def"},
     "thresholds": {"raised": "raised.txt"},
@@ -112,10 +112,9 @@ class Stage(Step[StageParameters]):
         super().__init__(parameters)
         self.name = parameters.stage
         names = list(STAGES)
-        before = names[names.index(self.name) - 1]
-        self.inputs = INPUTS.get(self.name, {"database": f"{before}.database"})
-        self.inputs = self.inputs | {"sdc": "place_and_route_sdc", "common": "tcl.common", "script": f"tcl.{self.name}"}
-        self.inputs |= {corner: f"timing.{corner}" for corner in parameters.corners}
+        before = {"database": f"{names[names.index(self.name) - 1]}.database"}
+        self.inputs = {"sdc": "place_and_route_sdc", "common": "tcl.common", "script": f"tcl.{self.name}"}
+        self.inputs |= INPUTS.get(self.name, before) | {corner: f"timing.{corner}" for corner in parameters.corners}
         self.outputs = OUTPUTS.get(self.name, {"database": f"{self.name}.odb"})
         self.metrics = {"stopped": "", "again": "", **STAGES[self.name]}
 

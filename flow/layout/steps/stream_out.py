@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from talbot.base.gds import db, read_gds, write_gds
-from talbot.base.steps import Files, StepError
-from talbot.flow.layout.steps.routed import RoutedParameters, RoutedStep
+from talbot.base.steps import Files, Step, StepError
+from talbot.flow.layout.steps.routed import PREFIX, of_routed
 from talbot.platforms.layout import LayoutPlatform, layout_platform
 from talbot.platforms.place_and_route import place_and_route
 from talbot.signoff.geometry.merge import merge
@@ -16,13 +16,14 @@ from talbot.signoff.netlist.routed import Routed
 
 
 @dataclass(frozen=True)
-class StreamOutParameters(RoutedParameters):
-    """Parameters of `StreamOut`. frame: of the process, or ''."""
+class StreamOutParameters:
+    """Parameters of `StreamOut`. pdk: process. frame: of the process, or ''."""
 
+    pdk: str = "sky130"
     frame: str = ""
 
 
-class StreamOut(RoutedStep[StreamOutParameters]):
+class StreamOut(Step[StreamOutParameters]):
     """OpenROAD's DEF and the cells' GDS as one layout.
 
     plan: size, box of the rows (core), names of the supplies, in a frame its box. placement: the straps, (net, x in
@@ -100,6 +101,13 @@ class StreamOut(RoutedStep[StreamOutParameters]):
             "diodes": len(routed.diodes()),
             "clock_buffers": sum(i.name.startswith("clkbuf") for i in logic),
         }
+
+
+class RoutedStreamOut(StreamOut):
+    """The same of the routed layout."""
+
+    name = f"{PREFIX}{StreamOut.name}"
+    inputs = of_routed(StreamOut.inputs)
 
 
 def label(layout: "db.Layout", tech: LayoutPlatform) -> None:

@@ -12,6 +12,16 @@ proc read_cells {} {
   }
 }
 
+proc read_netlist {} {
+  global tech_lef cell_lef top constraints
+  read_lef $tech_lef
+  read_lef $cell_lef
+  read_cells
+  read_verilog netlist.v
+  link_design $top
+  read_sdc $constraints
+}
+
 proc open_stage {before} {
   global constraints dont_use
   read_cells

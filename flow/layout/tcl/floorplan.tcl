@@ -1,11 +1,6 @@
 # Netlist -> rows and tracks. In a frame (die, core: boxes in um) the outline is given.
 source common.tcl
-read_lef $tech_lef
-read_lef $cell_lef
-read_cells
-read_verilog netlist.v
-link_design $top
-read_sdc $constraints
+read_netlist
 if {[llength $die]} {
   initialize_floorplan -site $site -die_area $die -core_area $core
 } else {

@@ -77,12 +77,7 @@ proc raise_thresholds {margin} {
   return [dict keys $raised]
 }
 
-read_lef tech.lef
-read_lef cells.lef
-read_cells
-read_verilog netlist.v
-link_design $top
-read_sdc $constraints
+read_netlist
 set_propagated_clock [all_clocks]
 set raised [raise_thresholds $setup_margin]
 set file [open raised.txt w]
