@@ -14,9 +14,9 @@ from talbot.models.parameters import DRAWN, circuit_converter
 from talbot.models.parameters.electrical import AMPLIFIER
 from talbot.pixels.analog_layout.amplifier import amplifier_cell
 from talbot.pixels.analog_layout.bias import bias_cell
-from talbot.pixels.circuits.amplifier import UNITS, AmplifierSpec, size
+from talbot.pixels.circuits.amplifier import AmplifierSpec, size
 from talbot.pixels.circuits.support import BARS
-from talbot.pixels.datasheet.amplifier import DARK, END, REACH, load_of, opened, sample
+from talbot.pixels.datasheet.amplifier import measure
 from talbot.pixels.datasheet.job import TYPICAL, amplifier_of, setup_of
 from talbot.pixels.post_layout.amplifier import capacitors
 from talbot.pixels.post_layout.checks import differences, drc, lvs
@@ -127,15 +127,8 @@ def test_the_table_of_the_drawn_amplifier_is_of_these_masks():
     setup, lane = setup_of("sky130")
     spec, sizes = amplifier_of(setup, lane)
     drawn, _ = extract(amplifier_cell(MASKS, sizes), MASKS, WIRES["typ"])
-    corner, load, lsb = Corner.parse(TYPICAL), load_of(setup, lane, Corner.parse(TYPICAL)), setup.spec.lsb
-    ideal, got = np.array([-1.0, 0.0, 1.0]) * REACH * 128, list[float]()
-    with opened(setup, spec, drawn, corner) as spice:
-        for value in ideal:
-            volts, low = float(value) * lsb / sizes.gain, DARK * spec.swing
-            before = spec.vref - (1 if value >= 0 else -1) * REACH * 128 * lsb
-            pair = low + max(volts, 0.0), low + max(-volts, 0.0)
-            wave = sample(spice, spec, corner, load, *pair, UNITS, before, until=END)
-            got.append((wave.at("lane", END * spec.hold) - spec.vref) / lsb)
+    points = measure(setup, spec, sizes, lane, Corner.parse(TYPICAL), drawn).points
+    ideal, got = np.transpose(points)
     fitted = circuit_converter(DRAWN)
     curve = np.polynomial.Polynomial([getattr(fitted, name) for name in AMPLIFIER])
-    assert np.array(got) - ideal == pytest.approx(curve(ideal / 128), abs=0.03)  # 0.013 of the fit
+    assert got - ideal == pytest.approx(curve(ideal / 128), abs=0.03)  # 0.013 of the fit
