@@ -226,8 +226,8 @@ def test_the_table_of_a_document_has_one_threshold_and_no_row_twice():
 
 def test_one_seed_has_no_spread():
     result = {"accuracies": [0.5], "bytes": 9, "energy_uj": (1.0, 2.0), "network_uj": 1.0}
-    one, two = (study.figures(result | {"accuracies": values}) for values in ([0.5], [0.5, 0.5]))
-    table = page.gesture_table({"gestures": {"one": one, "two": two}})
+    single, double = (study.figures(result | {"accuracies": values}) for values in ([0.5], [0.5, 0.5]))
+    table = page.gesture_table({"gestures": {"one": single, "two": double}})
     assert "| one | 50.00 % | - | 9 | 1 to 2 | 1 |" in table and "| two | 50.00 % | 0.00 | 9 |" in table
     pose = {"error_deg": 1.0, "error_deg_std": None, "yaw_deg": 1.0, "pitch_deg": 1.0}
     assert "| heads | 1.00 | - | 1.00 | 1.00 | 9 |" in page.pose_table({"pose": {"heads": result | pose}})
