@@ -114,6 +114,8 @@ def plan_of(task: Any, figures: tuple[str, ...], numbers: dict[str, Any], option
 
 def explored(plan: "Plan", folder: Path, robust: int = 0, baseline: bool = False) -> "tuple[Findings, dict[str, Any]]":
     """Search, and write the files of the results into ``folder``, all or none. Raises ParameterError, OSError."""
+    if baseline and plan.sampler == "random":
+        raise ParameterError("sampler = 'random': must be another with a baseline, whose points are random")
     from talbot.imaging.explore import page, results
     from talbot.imaging.explore.robust import robustness
     from talbot.imaging.explore.search import search
@@ -149,8 +151,8 @@ def _print(s: dict[str, Any]) -> None:
     if s["free_error"] is not None:
         print(f"  nothing: error {s['free_error']:.4g}")
     if shares := s.get("baseline"):
-        told = ", ".join(f"{name} {100 * share:.1f} %" for name, share in shares.items())
-        print(f"  dominated, of the box of all points in full: {told}")
+        percents = ", ".join(f"{name} {100 * share:.1f} %" for name, share in shares.items())
+        print(f"  dominated, of the box of all points in full: {percents}")
     if robust := s.get("robustness"):
         worst = ", ".join(f"{kind} {value:.4g}" for kind, value in robust["worst_error"].items() if value is not None)
         share = "-" if robust["yield"] is None else f"{100 * robust['yield']:.0f} %"

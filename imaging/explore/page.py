@@ -50,13 +50,13 @@ def _data(findings: Findings, summary: Mapping[str, Any], first: Row | None) -> 
     """What the script shows, as JSON that may stand in HTML. first: the point that is chosen at the start."""
     points = []
     for row in [*findings.thesis_in_full, *(row for row in findings.rows if row.full)]:
-        record = row.full or {}
+        record, values = row.full or {}, findings.effective(row)
         shown = row.front or row.number < 0
         points.append(
             {
                 "point": name_of(row),
                 "front": row.front,
-                "values": {name: findings.plan.task.effective(row.values).get(name) for name in findings.plan.space},
+                "values": {name: values.get(name) for name in findings.plan.space},
                 "figures": record["figures"],
                 "picture": record["picture"],
                 "command": command_of(findings, row, summary["folder"]),

@@ -16,7 +16,7 @@ from talbot.imaging.recognize import chip, data, study
 from talbot.models.parameters import STANDARD, SensorParameters
 from talbot.models.recognition.optics import Display
 
-FRONTS = "asp", "ternary", "image"
+FRONTS = "asp", "ternary", "image"  # of `study`, those that this chip reads
 OPTICAL = "scale", "blur", "threshold"  # of no effect on a plain image
 
 

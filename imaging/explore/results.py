@@ -11,7 +11,7 @@ import numpy as np
 from talbot.base.cache import digest
 from talbot.base.table import markdown_table, write_csv
 from talbot.base.tools import commit
-from talbot.imaging.explore.search import Findings, Row, considered, dominated_share, importances, oriented
+from talbot.imaging.explore.search import Findings, Row, considered, dominated_share, importances
 from talbot.imaging.explore.tasks import figures_of
 from talbot.models.parameters import ParameterError, SensorParameters, sensor_text
 
@@ -52,7 +52,7 @@ def table(findings: Findings) -> list[dict[str, Any]]:
     thesis = [findings.thesis] if findings.thesis else []
     for row in [*thesis, *findings.rows]:
         entry: dict[str, Any] = {"point": name_of(row), "status": row.status, "front": row.front}
-        values = findings.plan.task.effective(row.values)
+        values = findings.effective(row)
         entry |= {name: values.get(name) for name in findings.plan.space}
         for prefix, record in (("", row.full), ("small_", row.small)):
             figures = record["figures"] if record else {}
@@ -108,7 +108,7 @@ def _entry(findings: Findings, row: Row, folder: Path) -> dict[str, Any]:
     figures = (row.full or {})["figures"]
     return {
         "point": name_of(row),
-        "values": findings.plan.task.effective(row.values),
+        "values": findings.effective(row),
         "figures": figures,
         "command": command_of(findings, row, folder),
     }
@@ -119,10 +119,9 @@ def convergence(findings: Findings) -> list[dict[str, float]]:
 
     The box is from the best to the worst of each objective in the points of the whole search.
     """
-    full = [row for row in findings.rows if row.full]
+    full, points = findings.objectives()
     if not full:
         return []
-    points = oriented([row.full["figures"] for row in full if row.full], findings.plan.objectives)
     low, high = points.min(0), points.max(0)
     numbers = np.array([row.number for row in full])
     return [
@@ -132,12 +131,14 @@ def convergence(findings: Findings) -> list[dict[str, float]]:
 
 
 def shares(searches: Mapping[str, Findings]) -> dict[str, float]:
-    """What the points in full of each search dominate, of the box of objectives that those of all searches span."""
-    points = {
-        name: oriented([row.full["figures"] for row in found.rows if row.full], found.plan.objectives)
-        for name, found in searches.items()
-    }
+    """What the points in full of each search dominate, of the box of objectives that those of all searches span.
+
+    Empty where no search has a point in full.
+    """
+    points = {name: findings.objectives()[1] for name, findings in searches.items()}
     every = np.concatenate(list(points.values()))
+    if not len(every):
+        return {}
     return {name: dominated_share(those, every.min(0), every.max(0)) for name, those in points.items()}
 
 
@@ -156,14 +157,13 @@ def provenance(findings: Findings) -> dict[str, Any]:
 
 def lines(findings: Findings, objectives: Sequence[str]) -> str:
     """The front as a table of Markdown."""
-    effective = findings.plan.task.effective
-    front = [effective(row.values) for row in findings.front]
+    front = [findings.effective(row) for row in findings.front]
     names = [name for name in findings.plan.space if len({str(values.get(name)) for values in front}) > 1]
     rows = []
     for row in [*findings.thesis_in_full, *findings.front]:
-        figures = (row.full or {})["figures"]
-        values = (short(effective(row.values).get(name)) for name in names)
-        rows.append([name_of(row), *(f"{figures[name]:.4g}" for name in objectives), *values])
+        figures, values = (row.full or {})["figures"], findings.effective(row)
+        written = (short(values.get(name)) for name in names)
+        rows.append([name_of(row), *(f"{figures[name]:.4g}" for name in objectives), *written])
     return markdown_table(["point", *objectives, *names], rows)
 
 

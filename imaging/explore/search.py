@@ -112,6 +112,15 @@ class Findings:
         """The thesis's sensor where it was evaluated, else none."""
         return [self.thesis] if self.thesis and self.thesis.full else []
 
+    def effective(self, row: Row) -> Mapping[str, Any]:
+        """The values of a point that have an effect."""
+        return self.plan.task.effective(row.values)
+
+    def objectives(self) -> tuple[list[Row], npt.NDArray[np.float64]]:
+        """Points in full, and their objectives, as `oriented` gives them."""
+        rows = [row for row in self.rows if row.full]
+        return rows, oriented([row.full["figures"] for row in rows if row.full], self.plan.objectives)
+
     @property
     def front(self) -> list[Row]:
         """Points in full that keep the limits and that no other beats in every objective."""

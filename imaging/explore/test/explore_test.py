@@ -19,7 +19,6 @@ import pytest
 from joblib.externals.loky import get_reusable_executor
 
 from talbot.base.page.check import faults
-from talbot.base.paths import ROOT
 from talbot.base.table import read_csv
 from talbot.commands import main
 from talbot.imaging.explore import budget, costs, space
@@ -31,11 +30,8 @@ from talbot.imaging.explore.space import TILES, narrowed, point_of, tile_of
 from talbot.imaging.explore.store import Store
 from talbot.imaging.explore.task import FIGURES, FULL, SMALL, Fidelity, golden
 from talbot.imaging.explore.tasks import SCENES, task_of
-from talbot.imaging.frame.figures import energy_of
-from talbot.imaging.frame.job import simulate_frame
 from talbot.imaging.frame.request import request
 from talbot.models.parameters import STANDARD, ParameterError, read_sensor
-from talbot.models.plan.exposure import frame_cycles
 
 OWN = str(Path(__file__).with_name("own.py"))
 OBJECTIVES = "error", "energy_uj"
@@ -147,6 +143,7 @@ def test_keys():
         ("--task OWN --objectives error,sharp", "objectives = 'sharp': must be one of error, energy_uj"),
         ("--task OWN --objectives error,error", "must be different"),
         ("--task OWN --sampler best", "sampler = 'best': must be one of tpe, nsga, random"),
+        ("--task OWN --sampler random --baseline", "sampler = 'random': must be another with a baseline"),
         ("--task OWN --trials 0", "trials = '0': must be an integer in 1..1000000"),
         ("--task recognition --scenes a,b", "must be one set of pictures"),
     ],
@@ -220,10 +217,16 @@ def test_other_samplers(sampler, tmp_path):
 
 
 def test_random_points_are_a_baseline_in_the_same_box(tmp_path, capsys):
-    command = f"--task {OWN} --objectives error,energy_uj --trials 8 --batch 4 --no-thesis --baseline --out {tmp_path}"
-    assert main(["explore", *command.split()]) == 0
+    words = ["--objectives", "error,energy_uj", "--trials", "8", "--batch", "4", "--no-thesis", "--baseline"]
+    assert main(["explore", "--task", OWN, *words, "--out", str(tmp_path)]) == 0
     by_search, by_chance = map(float, re.search(r"tpe ([\d.]+) %, random ([\d.]+) %", capsys.readouterr().out).groups())
     assert 0 < by_search <= 100 and 0 < by_chance <= 100
+
+
+def test_a_baseline_without_a_point_has_no_share(tmp_path, trouble, capsys):
+    words = ["--budget", "area_mm2<1", "--trials", "4", "--no-thesis", "--baseline"]
+    assert main(["explore", "--task", OWN, *words, "--out", str(tmp_path)]) == 0
+    assert "dominated" not in capsys.readouterr().out
 
 
 def test_settings_of_no_effect_make_no_other_point():
@@ -432,50 +435,6 @@ def test_importances_find_the_key_that_counts(tmp_path):
     findings = search(plan(trials=40, multi=False), tmp_path / "s.sqlite")
     worth = importances(findings, "bytes")
     assert max(worth, key=worth.get) in ("threshold", "array.rows") and sum(worth.values()) == pytest.approx(1)
-
-
-SIZE = {"rows": 13, "cols": 50, "lanes": 4}  # of other tests, too: one simulator
-
-
-@pytest.mark.parametrize(
-    "mode, phase", [("edge", False), ("image", False), ("raw", False), ("tof", False), ("tof", True)]
-)
-def test_costs_are_those_of_the_verilog(mode, phase):
-    scene = {"scale": 1.0, "focus": 3.0, "focal_length": 25e-3}
-    camera = replace(STANDARD.optics.camera, **scene) if mode == "tof" else None
-    asked = request(**SIZE, scene="tilted" if mode == "tof" else "coins", mode=mode, phase=phase, camera=camera)
-    result = simulate_frame(asked)
-    real, energy = result.chip.status["cycles"], energy_of(result)["total"]
-    assert frame_cycles(asked.frame, asked.sensor) == pytest.approx(real, rel=0.05)
-    measured = costs.measured([asked], [result])
-    assert measured["energy_uj"] == pytest.approx(energy, rel=0.05) and measured["bytes"] == len(result.stream)
-    least = costs.least([asked])
-    assert least["energy_uj"] <= measured["energy_uj"] and least["bytes"] < measured["bytes"]
-
-
-def test_gates_are_those_of_the_results():
-    pages = {name: (ROOT / f"docs/results/{name}.md").read_text(encoding="utf-8") for name in ("blocks", "layout")}
-    gates = {
-        block: int(count.replace(",", ""))
-        for block, count in re.findall(r"\[(\w+)\].* ([\d,]+) \|$", pages["blocks"], re.M)
-    }
-    of_divider = {"cordic": gates["Cordic"]} | {
-        name.removeprefix("QuadDivider").lower(): count for name, count in gates.items() if name.startswith("Quad")
-    }
-    assert of_divider == costs.DIVIDER_GATES and gates["AspChip"] == costs.CHIP_GATES
-    assert gates["AdcBank"] / costs.LANES == costs.LANE_GATES
-    assert f"AspChip has {costs.PHASE_GATES:,} gates" in pages["blocks"]
-    assert f"| asp_chip | compact | {costs.CHIP_MM2:.4f} |" in pages["layout"]
-
-
-def test_area_counts_lanes_and_divider():
-    area = costs.area_mm2(STANDARD)
-    more = replace(STANDARD, chip=replace(STANDARD.chip, lanes=16, divider="pipelined"))
-    assert 17 < area < 18 and 0.57 < costs.area_mm2(more) - area < 0.65
-    less = replace(STANDARD, chip=replace(STANDARD.chip, divider="none"))
-    assert area - costs.area_mm2(less) == pytest.approx(0.2231 * 3063 / 25892)
-    with pytest.raises(ParameterError, match="chip.f_clk = 2e"):
-        costs.check_settling(replace(STANDARD, chip=replace(STANDARD.chip, f_clk=20e6)))
 
 
 VALUES = {"array.rows": 96, "chip.lanes": 4, "tile.types": "12+24/2", "exposure": 0.5, "chip.f_clk": 10e6}
